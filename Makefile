@@ -1,0 +1,44 @@
+# `make demo` and `make test` set up what they need. Everything lives in .venv.
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+
+.PHONY: demo test test-heavy lint format bench clean
+
+demo: $(READY)
+	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
+
+test: $(READY)
+	$(BIN)/python -m pytest -n 2
+
+test-heavy: $(READY)
+	$(BIN)/python -m pytest -m heavy
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: $(READY)
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: $(READY)
+	$(BIN)/python -m benchmarks
+
+clean:
+	rm -rf $(VENV) runs
+
+$(READY): pyproject.toml constraints.txt
+	@set -e; \
+	if [ ! -x $(BIN)/python ]; then \
+	  if command -v uv >/dev/null 2>&1; then uv venv --quiet --seed --python 3.11 $(VENV); \
+	  elif command -v python3.11 >/dev/null 2>&1; then python3.11 -m venv $(VENV); \
+	  elif python3 -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null; then python3 -m venv $(VENV); \
+	  else echo "PeopleBoy needs Python 3.11: install python3.11 with its venv module, or uv (https://docs.astral.sh/uv)" >&2; exit 2; \
+	  fi; \
+	fi
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	# trackeval asks for opencv-python, which would overwrite the headless build: its own code alone is enough.
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps trackeval
+	@touch $(READY)

@@ -1,0 +1,1 @@
+"""Tracks and sonar in, velocity command out."""

@@ -1,0 +1,1 @@
+"""Scenario files, the closed loop, recordings and the command line."""

@@ -1,0 +1,1 @@
+"""The simulated world: robot, people, cameras and the exact truth about them."""

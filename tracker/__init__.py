@@ -1,0 +1,1 @@
+"""People in thermal and colour images: particle filters with an elliptic contour."""

@@ -1,0 +1,1 @@
+"""How well people are found: thesis, paper and MOT metrics."""
