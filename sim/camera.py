@@ -1,0 +1,94 @@
+"""Pinhole camera geometry: where it sits, what it sees, which pixel a point falls on."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Matrix = NDArray[np.float64]
+
+# Columns: where the optical frame's x (right), y (down), z (forward) point in a frame with x forward, y left, z up.
+_BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Camera:
+    """A distortion-free camera with square pixels, fixed to the robot.
+
+    Image frame: u right, v down, origin at the centre of the top-left pixel, so that the image spans
+    -0.5 .. width - 0.5. Optical frame: x right, y down, z forward.
+
+    Attributes:
+        width, height: [px] size of the image.
+        vertical_fov_rad: [rad] angle between the upper and the lower edge of the image.
+        position_m: [m] optical centre in the robot's frame (x forward, y left, z up; z = 0 on the floor).
+        pitch_rad: [rad] tilt, positive looks down.
+        yaw_rad: [rad] pan, positive looks left.
+    """
+
+    width: int = 320
+    height: int = 240
+    vertical_fov_rad: float = math.radians(44.0)
+    position_m: tuple[float, float, float] = (0.14, 0.0, 1.2)
+    pitch_rad: float = 0.0
+    yaw_rad: float = 0.0
+
+    @property
+    def focal_px(self) -> float:
+        """Focal length [px]."""
+        return self.height / 2.0 / math.tan(self.vertical_fov_rad / 2.0)
+
+    @property
+    def centre_px(self) -> tuple[float, float]:
+        """Principal point (u, v) [px]: the middle of the image."""
+        return (self.width - 1) / 2.0, (self.height - 1) / 2.0
+
+    @property
+    def intrinsics(self) -> Matrix:
+        """(3, 3) [px] camera matrix."""
+        u, v = self.centre_px
+        return np.array([[self.focal_px, 0.0, u], [0.0, self.focal_px, v], [0.0, 0.0, 1.0]])
+
+    @property
+    def robot_from_camera(self) -> Matrix:
+        """(4, 4) optical frame to robot frame."""
+        cy, sy = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        cp, sp = math.cos(self.pitch_rad), math.sin(self.pitch_rad)
+        yaw = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+        pitch = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+        pose = np.eye(4)
+        pose[:3, :3] = yaw @ pitch @ _BODY_FROM_OPTICAL
+        pose[:3, 3] = self.position_m
+        return pose
+
+    def project(self, camera_points: Matrix) -> Matrix:
+        """Project points of the optical frame to the image.
+
+        Args:
+            camera_points: (..., 3) [m] x right, y down, z forward.
+
+        Returns:
+            (..., 2) [px] u, v; NaN for points that are not in front of the camera.
+        """
+        z = np.where(camera_points[..., 2] > 1e-9, camera_points[..., 2], np.nan)
+        u, v = self.centre_px
+        return np.stack(
+            [self.focal_px * camera_points[..., 0] / z + u, self.focal_px * camera_points[..., 1] / z + v],
+            axis=-1,
+        )
+
+
+def invert_pose(pose: Matrix) -> Matrix:
+    """Invert a rigid (4, 4) pose: a_from_b to b_from_a."""
+    inverse = np.eye(4)
+    inverse[:3, :3] = pose[:3, :3].T
+    inverse[:3, 3] = -pose[:3, :3].T @ pose[:3, 3]
+    return inverse
+
+
+def transform(pose: Matrix, points: Matrix) -> Matrix:
+    """Map (..., 3) points by a rigid (4, 4) pose."""
+    return points @ pose[:3, :3].T + pose[:3, 3]

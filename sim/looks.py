@@ -1,0 +1,56 @@
+"""How surfaces look to the thermal and the colour camera."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+Rgb = tuple[float, float, float]
+
+
+class PatternKind(IntEnum):
+    """Two-valued patterns that a surface may carry, in the frame of its part."""
+
+    PLAIN = 0
+    STRIPES = 1  # horizontal bands across the part's z axis
+    CHECKS = 2  # a chessboard in y and z
+    PATCH = 3  # an upright ellipse on the side that faces +x, like a print on a chest
+    SPECKLE = 4  # irregular blotches
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pattern:
+    """A pattern and its period: the width of a pair of stripes, or the height of a patch [m]."""
+
+    kind: PatternKind = PatternKind.PLAIN
+    period_m: float = 0.1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Look:
+    """One surface, as both cameras need it.
+
+    Attributes:
+        temperature_c: [degC] mean surface temperature.
+        emissivity: share of black-body radiance that the surface emits; the rest mirrors the surroundings.
+        variation_k: [K] amplitude of the smooth variation of temperature over the surface.
+        variation_m: [m] wavelength of that variation.
+        contrast_k: [K] temperature of the pattern's second value above the first.
+        thermal_pattern: where the second temperature applies.
+        rgb: linear reflectance 0..1 of the first colour.
+        second_rgb: linear reflectance of the pattern's second colour.
+        colour_pattern: where the second colour applies.
+        glow: share of light that the surface gives out itself (a lamp or a monitor), whatever the room's
+            light; 0 for everything else.
+    """
+
+    temperature_c: float
+    emissivity: float = 0.95
+    variation_k: float = 0.0
+    variation_m: float = 0.25
+    contrast_k: float = 0.0
+    thermal_pattern: Pattern = field(default_factory=Pattern)
+    rgb: Rgb = (0.5, 0.5, 0.5)
+    second_rgb: Rgb = (0.5, 0.5, 0.5)
+    colour_pattern: Pattern = field(default_factory=Pattern)
+    glow: float = 0.0
