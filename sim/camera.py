@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Matrix = NDArray[np.float64]
 
-# Columns: where the optical frame's x (right), y (down), z (forward) point in a frame with x forward, y left, z up.
+# Columns: the optical axes (right, down, forward) in a frame with x forward, y left, z up.
 _BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
