@@ -1,0 +1,552 @@
+"""The only caller of PyBullet: bodies by name, physics steps, rays, contacts and TinyRenderer's images."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bad_input import BadInput
+from sim.camera import Camera, Matrix
+from sim.opengl import metric_depth, projection_matrix, view_matrix
+from sim.quiet import quiet
+from sim.rotations import pose_matrices
+from sim.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
+
+try:
+    with quiet():
+        import pybullet
+        import pybullet_data
+except ImportError as error:
+    raise BadInput(
+        "pybullet is not installed: its wheels are for Linux and Python 3.10 or 3.11; use Python 3.11"
+    ) from error
+
+# The planes between which both renderers draw [m].
+NEAR_M = 0.05
+FAR_M = 100.0
+
+GRAVITY_M_S2 = 9.81
+_SHAPES_A_BODY = 16  # PyBullet drops whatever a createVisualShapeArray call holds beyond these
+Place = tuple[Vector, Quaternion]
+_HERE: Place = ((0.0, 0.0, 0.0), UPRIGHT)
+_PARKED: Vector = (0.0, 0.0, -500.0)
+_STATIC_MASK = -3  # collides with everything but other static bodies
+_FIRST_FREE_GROUP = 6
+_LAST_GROUP = 30
+
+_GEOMETRY = {
+    ShapeKind.SPHERE: pybullet.GEOM_SPHERE,
+    ShapeKind.CAPSULE: pybullet.GEOM_CAPSULE,
+    ShapeKind.CYLINDER: pybullet.GEOM_CYLINDER,
+    ShapeKind.BOX: pybullet.GEOM_BOX,
+    ShapeKind.PLANE: pybullet.GEOM_PLANE,
+    ShapeKind.MESH: pybullet.GEOM_MESH,
+}
+_KIND = {geometry: kind for kind, geometry in _GEOMETRY.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class PartKey:
+    """One part of the world: a link of a body, -1 being the body's base."""
+
+    name: str
+    link: int
+    link_name: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VisualShape:
+    """One visible shape as PyBullet reports it.
+
+    Attributes:
+        part: index into `Bullet.parts()`.
+        kind, size, mesh: as in `Shape`.
+        part_from_shape: (4, 4) pose of the shape in its part's frame.
+    """
+
+    part: int
+    kind: ShapeKind
+    size: Vector
+    part_from_shape: Matrix
+    mesh: Path | None
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A point at which a body touches another.
+
+    Attributes:
+        other: name of the other body.
+        position: [m] where, on the other body, world frame.
+        normal: unit vector from the other body to this one, world frame.
+        normal_force_n: [N] along that vector; 0 when they touch without pressing.
+    """
+
+    other: str
+    position: Vector
+    normal: Vector
+    normal_force_n: float
+
+
+@dataclass(slots=True, eq=False)
+class _Body:
+    """What PyBullet calls a named body: one id, or several for one part of more than 16 shapes."""
+
+    ids: tuple[int, ...]
+    parts: range
+    joints: Mapping[str, int]
+    base_from_inertia: Place
+    moves_by_itself: bool
+    group: int | None = None
+    hidden_at: Place | None = None
+
+
+class Bullet:
+    """A PyBullet world of its own, in which bodies go by name.
+
+    Parts are numbered in the order in which they were created; the number never changes. The frame of a
+    part is the frame in which its shapes were given: for a link of a URDF the link's own frame, not that
+    of its centre of mass. Use it as a context manager; several may be open at once.
+    """
+
+    def __init__(self, *, physics_hz: int = 240, gravity: bool = True) -> None:
+        with quiet():
+            self._client: int = pybullet.connect(pybullet.DIRECT)
+        self._bodies: dict[str, _Body] = {}
+        self._names: dict[int, str] = {}
+        self._parts: list[PartKey] = []
+        self._part_of_link: dict[tuple[int, int], int] = {}
+        self._poses = np.zeros((0, 4, 4))
+        self._moved: set[str] = set()
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1, physicsClientId=self._client
+        )
+        pybullet.setGravity(0.0, 0.0, -GRAVITY_M_S2 if gravity else 0.0, physicsClientId=self._client)
+
+    def __enter__(self) -> Bullet:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free the world; closing twice is harmless."""
+        if self._client >= 0:
+            pybullet.disconnect(physicsClientId=self._client)
+            self._client = -1
+
+    # Bodies
+
+    def add_part(
+        self,
+        name: str,
+        shapes: Sequence[Shape],
+        *,
+        position: Vector = (0.0, 0.0, 0.0),
+        orientation: Quaternion = UPRIGHT,
+        visible: bool = True,
+        solid: bool = True,
+    ) -> None:
+        """Add a body of one part that stays where it is put, however hard it is hit.
+
+        An invisible part is drawn by no renderer; one that is not solid is passed by rays and bodies.
+
+        Raises:
+            BadInput: the name is taken, there are no shapes, or a mesh file cannot be read.
+        """
+        self._check_new(name)
+        if not shapes:
+            raise BadInput(f"body {name!r}: it has no shapes; give at least one")
+        for shape in shapes:
+            if shape.kind == ShapeKind.MESH and not (shape.mesh and shape.mesh.is_file()):
+                raise BadInput(
+                    f"body {name!r}: mesh {shape.mesh} is not a file; give an OBJ, STL or DAE file"
+                )
+        ids = tuple(
+            self._create(
+                name, shapes[start : start + _SHAPES_A_BODY], (position, orientation), visible, solid
+            )
+            for start in range(0, len(shapes), _SHAPES_A_BODY)
+        )
+        self._register(name, ids, moves_by_itself=False)
+
+    def add_urdf(
+        self,
+        name: str,
+        path: Path | str,
+        *,
+        position: Vector = (0.0, 0.0, 0.0),
+        orientation: Quaternion = UPRIGHT,
+        fixed: bool = True,
+        scale: float = 1.0,
+    ) -> None:
+        """Add the robot or thing of a URDF file, or the first model of an SDF file.
+
+        Args:
+            name: what to call it.
+            path: the file; a relative one that does not exist is looked up in pybullet_data.
+            position: [m] of the base link's frame in the world.
+            orientation: of the base link's frame, world from base.
+            fixed: held in place for good.
+            scale: factor on all lengths.
+
+        Raises:
+            BadInput: the name is taken, or the file is missing or broken.
+        """
+        self._check_new(name)
+        file = find_model(path)
+        load = self._load_sdf if file.suffix == ".sdf" else self._load_urdf
+        try:
+            with quiet():
+                body = load(file, fixed, scale)
+        except pybullet.error as error:
+            raise BadInput(f"body {name!r}: PyBullet cannot load {file}; give a valid URDF or SDF") from error
+        self._register(name, (body,), moves_by_itself=not fixed)
+        self.set_pose(name, position, orientation)
+
+    def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
+        """Put a body's base frame at `position` [m] and `orientation` in the world, at rest."""
+        body = self._body(name)
+        if body.hidden_at is not None:
+            body.hidden_at = (position, orientation)
+        else:
+            self._place(name, body, position, orientation)
+
+    def set_hidden(self, name: str, hidden: bool) -> None:
+        """Take a body out of images, rays and contacts, or put it back where it was last placed.
+
+        Raises:
+            BadInput: the body moves by itself, so that there is no place to put it back to.
+        """
+        body = self._body(name)
+        if body.moves_by_itself:
+            raise BadInput(f"body {name!r} moves by itself and cannot be hidden; fix it")
+        if hidden and body.hidden_at is None:
+            place = self._base_place(body)
+            self._place(name, body, _PARKED, UPRIGHT)
+            body.hidden_at = place
+        elif not hidden and body.hidden_at is not None:
+            place, body.hidden_at = body.hidden_at, None
+            self._place(name, body, *place)
+
+    def hidden_parts(self) -> NDArray[np.bool_]:
+        """(P,) which parts are hidden now."""
+        hidden = np.zeros(len(self._parts), np.bool_)
+        for body in self._bodies.values():
+            if body.hidden_at is not None:
+                hidden[body.parts] = True
+        return hidden
+
+    def set_friction(
+        self, name: str, link: int, *, lateral: float, rolling: float = 0.0, spinning: float = 0.0
+    ) -> None:
+        """Set the friction coefficients of one link, -1 being the base."""
+        for body in self._body(name).ids:
+            pybullet.changeDynamics(
+                body,
+                link,
+                lateralFriction=lateral,
+                rollingFriction=rolling,
+                spinningFriction=spinning,
+                physicsClientId=self._client,
+            )
+
+    # Motion
+
+    def step(self) -> None:
+        """Advance the world by one physics step."""
+        pybullet.stepSimulation(physicsClientId=self._client)
+        self._moved.update(name for name, body in self._bodies.items() if body.moves_by_itself)
+
+    def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
+        """Drive joints at speeds [rad/s, or m/s if they slide] with at most this torque [N m, or N] each.
+
+        Zero torque lets the joints run free.
+        """
+        body = self._body(name)
+        pybullet.setJointMotorControlArray(
+            body.ids[0],
+            [_joint(name, body, joint) for joint in speeds],
+            pybullet.VELOCITY_CONTROL,
+            targetVelocities=list(speeds.values()),
+            forces=[max_torque_nm] * len(speeds),
+            physicsClientId=self._client,
+        )
+
+    def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
+        """Positions (J,) [rad or m] and speeds (J,) [rad/s or m/s] of the named joints."""
+        body = self._body(name)
+        numbers = [_joint(name, body, joint) for joint in joints]
+        states = pybullet.getJointStates(body.ids[0], numbers, physicsClientId=self._client)
+        return np.array([state[0] for state in states]), np.array([state[1] for state in states])
+
+    def velocity(self, name: str) -> tuple[Matrix, Matrix]:
+        """Linear (3,) [m/s] velocity of the base's centre of mass and angular (3,) [rad/s], world frame."""
+        linear, angular = pybullet.getBaseVelocity(self._body(name).ids[0], physicsClientId=self._client)
+        return np.array(linear), np.array(angular)
+
+    # Poses and shapes
+
+    def parts(self) -> tuple[PartKey, ...]:
+        """All parts, in the order of their numbers."""
+        return tuple(self._parts)
+
+    def pose(self, name: str) -> Matrix:
+        """(4, 4) world from the frame of the body's base; where it will reappear if it is hidden."""
+        body = self._body(name)
+        return pose_matrices(*(body.hidden_at or self._base_place(body)))
+
+    def part_poses(self) -> Matrix:
+        """(P, 4, 4) world from part, a copy; hidden parts are far below the floor."""
+        moved = [self._bodies[name] for name in self._moved]
+        if moved:
+            places = [place for body in moved for place in (self._base_place(body), *self._link_places(body))]
+            numbers = [part for body in moved for part in body.parts]
+            self._poses[numbers] = pose_matrices(*zip(*places, strict=True))
+            self._moved.clear()
+        return self._poses.copy()
+
+    def visual_shapes(self) -> list[VisualShape]:
+        """Every shape that a renderer should draw, read back from PyBullet, in the order of the parts."""
+        return [
+            _visual_shape(row, self._part_of_link[row[0], row[1]])
+            for body in self._bodies.values()
+            for number in body.ids
+            for row in pybullet.getVisualShapeData(number, physicsClientId=self._client)
+            if row[7][3] > 0.0
+        ]
+
+    # Senses
+
+    def cast_rays(
+        self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
+    ) -> tuple[Matrix, NDArray[np.int64]]:
+        """Find the nearest solid along rays, which pass through the body called `ignore`.
+
+        Args:
+            from_m: (R, 3) [m] where rays start, world frame.
+            to_m: (R, 3) [m] where they end, world frame.
+            ignore: a body that the rays do not see, such as the one that sends them out.
+
+        Returns:
+            fraction: (R,) of the way at which a ray hits, 1 where it hits nothing.
+            part: (R,) part that is hit, -1 where none.
+        """
+        mask = -1 if ignore is None else ~self._group_of(ignore)
+        starts, ends = np.asarray(from_m, np.float64).tolist(), np.asarray(to_m, np.float64).tolist()
+        hits = pybullet.rayTestBatch(
+            starts, ends, numThreads=1, collisionFilterMask=mask, physicsClientId=self._client
+        )
+        fractions = np.array([hit[2] for hit in hits])
+        parts = np.array([self._part_of_link.get((hit[0], hit[1]), -1) for hit in hits], np.int64)
+        return fractions, parts
+
+    def contacts(self, name: str) -> list[Contact]:
+        """Where the body touched others during the last step."""
+        return [
+            Contact(self._names[row[2]], row[6], row[7], row[9])
+            for body in self._body(name).ids
+            for row in pybullet.getContactPoints(bodyA=body, physicsClientId=self._client)
+            if self._names[row[2]] != name
+        ]
+
+    def camera_image(
+        self, camera: Camera, world_from_camera: Matrix
+    ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """Draw the world with TinyRenderer, without shadows.
+
+        TinyRenderer replaces spheres and capsules by polyhedra of 42 corners and an infinite plane by a large
+        square, so that outlines of large round things lie some pixels inside the true ones.
+
+        Returns:
+            part: (H, W) number of the part seen at each pixel centre, -1 where none.
+            depth: (H, W) [m] along the optical axis, inf where none.
+        """
+        image = pybullet.getCameraImage(
+            camera.width,
+            camera.height,
+            view_matrix(world_from_camera),
+            projection_matrix(camera, NEAR_M, FAR_M),
+            shadow=0,
+            flags=pybullet.ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX,
+            renderer=pybullet.ER_TINY_RENDERER,
+            physicsClientId=self._client,
+        )
+        shape = (camera.height, camera.width)
+        part = self._part_numbers(np.reshape(image[4], shape))
+        depth = metric_depth(np.reshape(image[3], shape), NEAR_M, FAR_M)
+        return part, np.where(part >= 0, depth, np.inf).astype(np.float32)
+
+    # What the methods above share
+
+    def _check_new(self, name: str) -> None:
+        if name in self._bodies:
+            raise BadInput(f"body {name!r}: there is one already; choose another name")
+
+    def _body(self, name: str) -> _Body:
+        try:
+            return self._bodies[name]
+        except KeyError:
+            known = ", ".join(self._bodies) or "none"
+            raise BadInput(f"no body is called {name!r}; there are: {known}") from None
+
+    def _create(self, name: str, shapes: Sequence[Shape], place: Place, visible: bool, solid: bool) -> int:
+        """Make one PyBullet body of at most 16 shapes."""
+        try:
+            with quiet():
+                visual = pybullet.createVisualShapeArray(
+                    **_shape_arguments(shapes, "visual"),
+                    # A body without visual shapes is drawn by its collision shapes: transparency prevents it.
+                    rgbaColors=[[1.0, 1.0, 1.0, float(visible)]] * len(shapes),
+                    physicsClientId=self._client,
+                )
+                collision = -1
+                if solid:
+                    collision = pybullet.createCollisionShapeArray(
+                        **_shape_arguments(shapes, "collision"), physicsClientId=self._client
+                    )
+                body: int = pybullet.createMultiBody(
+                    0.0, collision, visual, *place, physicsClientId=self._client
+                )
+        except pybullet.error as error:
+            raise BadInput(f"body {name!r}: PyBullet refuses its shapes: {error}") from error
+        return body
+
+    def _register(self, name: str, ids: tuple[int, ...], *, moves_by_itself: bool) -> None:
+        joints = [
+            pybullet.getJointInfo(ids[0], link, physicsClientId=self._client)
+            for link in range(pybullet.getNumJoints(ids[0], physicsClientId=self._client))
+        ]
+        base_name = pybullet.getBodyInfo(ids[0], physicsClientId=self._client)[0].decode()
+        first = len(self._parts)
+        self._parts.append(PartKey(name, -1, base_name))
+        self._parts.extend(PartKey(name, joint[0], joint[12].decode()) for joint in joints)
+        for number in ids:
+            self._names[number] = name
+            self._part_of_link.update({(number, link): first + 1 + link for link in range(-1, len(joints))})
+        self._bodies[name] = _Body(
+            ids=ids,
+            parts=range(first, len(self._parts)),
+            joints={joint[1].decode(): joint[0] for joint in joints},
+            base_from_inertia=pybullet.getDynamicsInfo(ids[0], -1, physicsClientId=self._client)[3:5],
+            moves_by_itself=moves_by_itself,
+        )
+        self._poses = np.concatenate([self._poses, np.zeros((1 + len(joints), 4, 4))])
+        self._moved.add(name)
+
+    def _load_urdf(self, file: Path, fixed: bool, scale: float) -> int:
+        body: int = pybullet.loadURDF(
+            str(file), useFixedBase=fixed, globalScaling=scale, physicsClientId=self._client
+        )
+        return body
+
+    def _load_sdf(self, file: Path, fixed: bool, scale: float) -> int:
+        first, *others = pybullet.loadSDF(str(file), globalScaling=scale, physicsClientId=self._client)
+        for other in others:
+            pybullet.removeBody(other, physicsClientId=self._client)
+        if fixed:
+            pybullet.changeDynamics(first, -1, mass=0.0, physicsClientId=self._client)
+        number: int = first
+        return number
+
+    def _place(self, name: str, body: _Body, position: Vector, orientation: Quaternion) -> None:
+        if body.base_from_inertia != _HERE:
+            position, orientation = pybullet.multiplyTransforms(
+                position, orientation, *body.base_from_inertia
+            )
+        for number in body.ids:
+            pybullet.resetBasePositionAndOrientation(
+                number, position, orientation, physicsClientId=self._client
+            )
+        self._moved.add(name)
+
+    def _base_place(self, body: _Body) -> Place:
+        place: Place = pybullet.getBasePositionAndOrientation(body.ids[0], physicsClientId=self._client)
+        if body.base_from_inertia == _HERE:
+            return place
+        inertia_from_base = pybullet.invertTransform(*body.base_from_inertia)
+        base: Place = pybullet.multiplyTransforms(*place, *inertia_from_base)
+        return base
+
+    def _link_places(self, body: _Body) -> list[Place]:
+        links = range(len(body.parts) - 1)
+        states = pybullet.getLinkStates(
+            body.ids[0], links, computeForwardKinematics=1, physicsClientId=self._client
+        )
+        return [state[4:6] for state in states or ()]
+
+    def _group_of(self, name: str) -> int:
+        """The collision group of one body alone, which rays can leave out."""
+        body = self._body(name)
+        if body.group is None:
+            taken = sum(other.group is not None for other in self._bodies.values())
+            if _FIRST_FREE_GROUP + taken > _LAST_GROUP:
+                raise BadInput(f"rays cannot ignore {name!r}: {taken} other bodies are ignored already")
+            body.group = 1 << (_FIRST_FREE_GROUP + taken)
+            mask = -1 if body.moves_by_itself else _STATIC_MASK
+            for number in body.ids:
+                for link in range(-1, len(body.parts) - 1):
+                    pybullet.setCollisionFilterGroupMask(
+                        number, link, body.group, mask, physicsClientId=self._client
+                    )
+        return body.group
+
+    def _part_numbers(self, mask: NDArray[Any]) -> NDArray[np.int32]:
+        """TinyRenderer's mask of body and link to part numbers."""
+        values, places = np.unique(mask, return_inverse=True)
+        numbers = [
+            self._part_of_link.get((value & 0xFFFFFF, (value >> 24) - 1), -1) for value in values.tolist()
+        ]
+        return np.array(numbers, np.int32)[places].reshape(mask.shape)
+
+
+def find_model(path: Path | str) -> Path:
+    """Find a URDF or SDF file: as it stands, else in pybullet_data.
+
+    Raises:
+        BadInput: there is no such file.
+    """
+    for candidate in (Path(path), Path(pybullet_data.getDataPath()) / path):
+        if candidate.is_file():
+            return candidate.resolve()
+    raise BadInput(f"model file {path}: there is no such file, neither as it stands nor in pybullet_data")
+
+
+def _joint(name: str, body: _Body, joint: str) -> int:
+    if joint not in body.joints:
+        raise BadInput(f"body {name!r} has no joint {joint!r}; it has: {', '.join(body.joints) or 'none'}")
+    return body.joints[joint]
+
+
+def _shape_arguments(shapes: Sequence[Shape], prefix: str) -> dict[str, list[Any]]:
+    """Arguments of PyBullet's createVisualShapeArray and createCollisionShapeArray."""
+    round_along_z = (ShapeKind.CAPSULE, ShapeKind.CYLINDER)
+    arguments = {
+        "shapeTypes": [_GEOMETRY[shape.kind] for shape in shapes],
+        "radii": [shape.size[shape.kind in round_along_z] for shape in shapes],
+        "lengths": [shape.size[0] for shape in shapes],
+        "halfExtents": [[extent / 2.0 for extent in shape.size] for shape in shapes],
+        "fileNames": [str(shape.mesh) if shape.mesh else "" for shape in shapes],
+        "meshScales": [shape.size for shape in shapes],
+        f"{prefix}FramePositions": [shape.position for shape in shapes],
+        f"{prefix}FrameOrientations": [shape.orientation for shape in shapes],
+    }
+    if prefix == "collision":
+        # Without this a mesh would be solid in all its hollows, such as a table's between the legs.
+        hollow = pybullet.GEOM_FORCE_CONCAVE_TRIMESH
+        arguments["flags"] = [hollow if shape.kind == ShapeKind.MESH else 0 for shape in shapes]
+    return arguments
+
+
+def _visual_shape(row: Sequence[Any], part: int) -> VisualShape:
+    kind = _KIND[row[2]]
+    mesh = Path(row[4].decode()) if kind == ShapeKind.MESH else None
+    return VisualShape(part, kind, tuple(row[3]), pose_matrices(row[5], row[6]), mesh)
