@@ -1,0 +1,146 @@
+"""The robot: wheels that drive it, encoders that count, and a ring of sonars."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.bullet import Bullet, Contact
+from sim.camera import Matrix
+from sim.config import DriveConfig, RobotConfig
+from sim.random_streams import stream
+from sim.sonar import SonarRing
+
+NAME = "robot"
+URDF = Path(__file__).with_name("peoplebot.urdf")
+
+WHEEL_RADIUS_M = 0.0825
+WHEEL_DISTANCE_M = 0.333
+_JOINTS = ("left_wheel_joint", "right_wheel_joint")
+_BASE, _LEFT, _RIGHT, _CASTER = -1, 0, 1, 2
+_MOTOR_TORQUE_NM = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class Planar:
+    """Where something stands on the floor: x, y [m] and heading [rad], world frame."""
+
+    x: float
+    y: float
+    heading: float
+
+
+def limit_command(linear: float, angular: float, limits: DriveConfig) -> tuple[float, float]:
+    """Clip a velocity command [m/s, rad/s] to what the robot can do."""
+    return (
+        float(np.clip(linear, -limits.max_linear_m_s, limits.max_linear_m_s)),
+        float(np.clip(angular, -limits.max_angular_rad_s, limits.max_angular_rad_s)),
+    )
+
+
+def wheel_speeds(linear: float, angular: float) -> tuple[float, float]:
+    """Return the rim speeds [m/s] of the left and right wheel that give a robot's velocity [m/s, rad/s]."""
+    half = angular * WHEEL_DISTANCE_M / 2.0
+    return linear - half, linear + half
+
+
+class PeopleBot:
+    """A differential-drive robot in a PyBullet world, moved by its wheels alone.
+
+    Its wheels turn at controlled speeds and its acceleration is limited; grip, bumps and walls are left to
+    the physics engine. Odometry integrates what the encoders count, noise included, from the start pose.
+    """
+
+    def __init__(self, bullet: Bullet, config: RobotConfig, seed: int) -> None:
+        self._bullet = bullet
+        self._limits = config.drive
+        self._encoder_noise = stream(seed, "odometry.noise")
+        self._command = (0.0, 0.0)
+        self._target = (0.0, 0.0)
+        x, y = config.at_m
+        half = config.heading_rad / 2.0
+        bullet.add_urdf(
+            NAME,
+            URDF,
+            position=(x, y, 0.0),
+            orientation=(0.0, 0.0, math.sin(half), math.cos(half)),
+            fixed=False,
+        )
+        for wheel in (_LEFT, _RIGHT):
+            bullet.set_friction(NAME, wheel, lateral=1.0)
+        bullet.set_friction(NAME, _CASTER, lateral=0.0)
+        bullet.set_friction(NAME, _BASE, lateral=0.3)
+        self._sonar = SonarRing(bullet, config.sonar, stream(seed, "sonar.noise"), NAME)
+        self._turned = self._wheel_angles()
+        self.odometry = Planar(x, y, config.heading_rad)
+
+    def command(self, linear: float, angular: float) -> None:
+        """Ask for a velocity [m/s, rad/s], clipped to the robot's limits; it is approached, not jumped to."""
+        self._target = limit_command(linear, angular, self._limits)
+
+    def drive(self, dt_s: float) -> None:
+        """Move the wheel speeds towards the command, as far as the acceleration limits allow in dt_s."""
+        self._command = (
+            _approach(self._command[0], self._target[0], self._limits.linear_acceleration_m_s2 * dt_s),
+            _approach(self._command[1], self._target[1], self._limits.angular_acceleration_rad_s2 * dt_s),
+        )
+        speeds = wheel_speeds(*self._command)
+        self._bullet.set_joint_speeds(
+            NAME, {j: s / WHEEL_RADIUS_M for j, s in zip(_JOINTS, speeds, strict=True)}, _MOTOR_TORQUE_NM
+        )
+
+    def update_odometry(self) -> None:
+        """Integrate what the wheel encoders counted since the last call, with their noise."""
+        angles = self._wheel_angles()
+        travelled = (angles - self._turned) * WHEEL_RADIUS_M
+        self._turned = angles
+        noise = self._encoder_noise.standard_normal(2) * self._limits.encoder_noise
+        left, right = travelled * (1.0 + noise)
+        turn = (right - left) / WHEEL_DISTANCE_M
+        middle = self.odometry.heading + turn / 2.0
+        advance = (left + right) / 2.0
+        self.odometry = Planar(
+            self.odometry.x + advance * math.cos(middle),
+            self.odometry.y + advance * math.sin(middle),
+            math.remainder(self.odometry.heading + turn, math.tau),
+        )
+
+    def sonar(self) -> NDArray[np.float64]:
+        """Read the ring once: (16,) [m]."""
+        return self._sonar.read(self.world_from_robot())
+
+    def wheel_speeds(self) -> tuple[float, float]:
+        """Rim speeds [m/s] of the left and the right wheel, as they turn."""
+        _, speeds = self._bullet.joint_states(NAME, _JOINTS)
+        return float(speeds[0] * WHEEL_RADIUS_M), float(speeds[1] * WHEEL_RADIUS_M)
+
+    def world_from_robot(self) -> Matrix:
+        """(4, 4) true pose of the robot's frame."""
+        return self._bullet.pose(NAME)
+
+    def pose(self) -> Planar:
+        """Return the true pose on the floor."""
+        matrix = self.world_from_robot()
+        return Planar(float(matrix[0, 3]), float(matrix[1, 3]), math.atan2(matrix[1, 0], matrix[0, 0]))
+
+    def velocity(self) -> tuple[float, float]:
+        """Return the true forward speed [m/s] and turn rate [rad/s]."""
+        linear, angular = self._bullet.velocity(NAME)
+        return float(linear @ self.world_from_robot()[:3, 0]), float(angular[2])
+
+    def contacts(self) -> list[Contact]:
+        """Where the robot touched something else during the last physics step, the floor included."""
+        return self._bullet.contacts(NAME)
+
+    def _wheel_angles(self) -> NDArray[np.float64]:
+        angles, _ = self._bullet.joint_states(NAME, _JOINTS)
+        return angles
+
+
+def _approach(value: float, target: float, step: float) -> float:
+    """Move a value towards a target by at most one step."""
+    return value + min(max(target - value, -step), step)
