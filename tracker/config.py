@@ -1,0 +1,206 @@
+"""Every constant of the tracker, under its name; the variants are values of these records.
+
+Pixels are meant for an image of 240 rows and are scaled by image height / 240.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from bad_input import BadInput
+
+REFERENCE_HEIGHT_PX = 240
+"""Image height for which the sources give their constants."""
+
+
+def check_positive(config: object, *names: str) -> None:
+    """Refuse a record in which one of the named numbers is not positive."""
+    for name in names:
+        _refuse_unless(getattr(config, name) > 0, config, name, "positive")
+
+
+def check_share(config: object, *names: str) -> None:
+    """Refuse a record in which one of the named numbers is not in 0..1."""
+    for name in names:
+        _refuse_unless(0 <= getattr(config, name) <= 1, config, name, "in 0..1")
+
+
+def check_not_negative(config: object, *names: str) -> None:
+    """Refuse a record in which one of the named numbers is negative."""
+    for name in names:
+        _refuse_unless(getattr(config, name) >= 0, config, name, "0 or more")
+
+
+def _refuse_unless(is_right: bool, config: object, name: str, rule: str) -> None:
+    if not is_right:
+        raise BadInput(f"{type(config).__name__}: {name} must be {rule}, got {getattr(config, name)}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContourConfig:
+    """Where a contour is looked at, and how a difference of grey counts.
+
+    The thesis says that inner and outer pixels along the ellipses are compared; how far from the contour, at how many
+    points, and how wide the head is, it leaves open: `reach_px`, `points`, `head_aspect` and the angles are readings.
+    """
+
+    head_divisor: float = 4.4  # body semi-height / head semi-height
+    head_aspect: float = 0.75  # head semi-width / head semi-height
+    points: int = 8  # pairs of inner and outer points a section
+    neck_deg: float = 60.0  # opening of the head ellipse at the neck
+    head_top_deg: float = 90.0  # arc of the head's top section
+    shoulder_deg: float = 60.0  # arc of a shoulder, from the top of the body down
+    side_end_deg: float = 180.0  # where the sides end: 180 is the bottom of the body
+    reach_px: float = 2.0  # distance of the points from the contour, whatever its size
+    body_reach: float = 0.0  # the same as a share of the body's semi-width
+    head_reach: float = 0.0  # the same as a share of the head's semi-width
+    far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 is none
+    saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
+    cold_response: float = (
+        1.0  # what a colder inside of the body counts: 1 against, 0 nothing, -1 for a person
+    )
+    weights: tuple[float, ...] = (
+        0.18,
+        0.18,
+        0.18,
+        0.07,
+        0.07,
+        0.16,
+        0.16,
+    )  # alpha_1..7: head 3, shoulders 2, sides 2
+    feet_weight: float = 0.0  # weight of an eighth section, the line under the feet
+    feet_line: float = 2.05  # its distance below the body's centre, in body semi-heights
+    unseen_response: float = 0.0  # response of a point outside the image
+    hottest_grey: int = 256  # grey from which a surface is too hot for a person and counts as cold
+
+    def __post_init__(self) -> None:
+        check_positive(self, "head_divisor", "head_aspect", "points", "feet_line")
+        check_not_negative(self, "saturation_grey", "reach_px", "body_reach", "head_reach", "far_head_reach")
+        if len(self.weights) != 7:
+            raise BadInput(f"ContourConfig: weights must be 7 numbers, got {len(self.weights)}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimitsConfig:
+    """What proportions and places a sample may have (thesis, table in section 4.4)."""
+
+    ratio_wh: tuple[float, float] = (0.1, 0.9)
+    ratio_dw: tuple[float, float] = (-1.5, 1.5)
+    y: tuple[float, float] = (0.2, 0.8)  # [image heights]
+    h: tuple[float, float] = (0.02, 0.5)  # [image heights]; the sources name no largest
+    outside_weight: float = 1e-6  # factor on the weight of a sample outside: "a very low chance"
+
+    def __post_init__(self) -> None:
+        for name in ("ratio_wh", "ratio_dw", "y", "h"):
+            low, high = getattr(self, name)
+            if not (math.isfinite(low) and math.isfinite(high) and low < high):
+                raise BadInput(f"LimitsConfig: {name} must be low < high, got {low}..{high}")
+        check_share(self, "outside_weight")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LikelihoodConfig:
+    """How the section differences become a weight and a probability."""
+
+    model: str = "thesis"  # "thesis": equations 4.3 and 4.4; "paper": equations 3 and 4
+    slope: float = 0.125  # kappa
+    threshold: float = 22.0  # theta, in the unit of the section differences
+    section_threshold: float = 10.0  # t_h of the paper: a section below it loses its weight
+    sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0 weighs with the probability itself
+
+    def __post_init__(self) -> None:
+        if self.model not in ("thesis", "paper"):
+            raise BadInput(f"LikelihoodConfig: model must be thesis or paper, got {self.model!r}")
+        check_positive(self, "slope")
+        check_not_negative(self, "sharpness")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotionConfig:
+    """Amplitudes of the random walk, B of equation 4.7, and what is known of the camera's own motion."""
+
+    noise_x: float = 30.0  # [px/s]
+    noise_y: float = 30.0
+    noise_w: float = 22.0
+    noise_h: float = 22.0
+    noise_d: float = 60.0
+    noise_by_height: float = (
+        0.0  # semi-height [px] at which these hold, others in proportion; 0: the same for all
+    )
+    place_memory: float = 1.0  # share of (vx, vy) that lasts to the next step
+    size_memory: float = 1.0  # the same for (vw, vh)
+    uses_odometry: bool = False
+    view_angle_deg: float = 44.0  # vertical field of view, from which a turn becomes a shift in pixels
+
+    def __post_init__(self) -> None:
+        check_not_negative(self, "noise_x", "noise_y", "noise_w", "noise_h", "noise_d", "noise_by_height")
+        check_share(self, "place_memory", "size_memory")
+        _refuse_unless(0 < self.view_angle_deg < 180, self, "view_angle_deg", "between 0 and 180")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilterConfig:
+    """One particle filter: its size, where new samples come from, and which samples make the estimate."""
+
+    count: int = 1000  # N
+    fresh_share: float = 0.2  # share drawn anew from the prior in every step
+    log_uniform_h: bool = False  # prior of h: uniform, or uniform in log h
+    estimate_share: float = 1.0  # share of the samples, the best ones, that makes the estimate
+    estimate_reach: float = math.inf  # only those within so many semi-axes of the best
+
+    def __post_init__(self) -> None:
+        check_positive(self, "count", "estimate_share", "estimate_reach")
+        check_share(self, "fresh_share", "estimate_share")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LifeConfig:
+    """When a person is born, and when given up."""
+
+    birth_confidence: float = 0.5
+    birth_frames: int = 1  # frames in a row that must be above
+    death_confidence: float = 0.5
+    death_frames: int = 1  # frames in a row that must be below
+    uncertainty_px2: float = 400.0  # largest spread of a person's particles
+
+    def __post_init__(self) -> None:
+        check_share(self, "birth_confidence", "death_confidence")
+        check_positive(self, "birth_frames", "death_frames", "uncertainty_px2")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoxConfig:
+    """How a contour becomes a box (thesis: 2 w by 3.5 h; paper: 2 w by 3 h)."""
+
+    width_per_w: float = 2.0
+    height_per_h: float = 3.5
+
+    def __post_init__(self) -> None:
+        check_positive(self, "width_per_w", "height_per_h")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SmoothingConfig:
+    """Time constants of the low pass over a person's estimates; 0 is none."""
+
+    place_s: float = 0.0  # x, y
+    size_s: float = 0.0  # w, h, d
+
+    def __post_init__(self) -> None:
+        check_not_negative(self, "place_s", "size_s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackerConfig:
+    """A whole single-person tracker."""
+
+    contour: ContourConfig = field(default_factory=ContourConfig)
+    limits: LimitsConfig = field(default_factory=LimitsConfig)
+    likelihood: LikelihoodConfig = field(default_factory=LikelihoodConfig)
+    motion: MotionConfig = field(default_factory=MotionConfig)
+    detector: FilterConfig = field(default_factory=FilterConfig)
+    person: FilterConfig = field(default_factory=FilterConfig)
+    life: LifeConfig = field(default_factory=LifeConfig)
+    box: BoxConfig = field(default_factory=BoxConfig)
+    smoothing: SmoothingConfig = field(default_factory=SmoothingConfig)

@@ -1,0 +1,203 @@
+"""The contour of a person: a body and a head ellipse, looked at in sections.
+
+Every point on or beside the contour is the body's centre plus a fixed mix of d, w and h. A whole contour model is
+therefore a table of coefficients (`Probes`), and all variants share the one kernel that reads the image with it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from tracker.config import ContourConfig
+from tracker.particles import D, Floats, H, W, X, Y
+
+HEAD_LEFT, HEAD_TOP, HEAD_RIGHT, SHOULDER_LEFT, SHOULDER_RIGHT, SIDE_LEFT, SIDE_RIGHT, FEET = range(8)
+SECTIONS = 8
+GREYS = 256
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Probes:
+    """P pairs of points, one inside and one outside of the contour.
+
+    A point lies at (x, y) + (d, w, h, 1) mixed by its two rows of four coefficients.
+
+    Attributes:
+        inner: (P, 2, 4) float32 coefficients of the inner points, rows for u and v.
+        outer: (P, 2, 4) float32 the same for the outer points.
+        section: (P,) int64 the section of each pair.
+    """
+
+    inner: Floats
+    outer: Floats
+    section: NDArray[np.int64]
+
+
+def section_angles(config: ContourConfig) -> dict[int, tuple[float, float]]:
+    """Give each section's arc on its ellipse, in radians from the top, positive to the right.
+
+    The head's three arcs cover its ellipse but for the neck; shoulders and sides cover the body's down to
+    `side_end_deg`. The sources show the sections in a figure only; these arcs are a reading.
+    """
+    top, neck = np.radians(config.head_top_deg) / 2, np.pi - np.radians(config.neck_deg) / 2
+    shoulder, end = np.radians(config.shoulder_deg), np.radians(config.side_end_deg)
+    return {
+        HEAD_LEFT: (-neck, -top),
+        HEAD_TOP: (-top, top),
+        HEAD_RIGHT: (top, neck),
+        SHOULDER_LEFT: (-shoulder, 0.0),
+        SHOULDER_RIGHT: (0.0, shoulder),
+        SIDE_LEFT: (-end, -shoulder),
+        SIDE_RIGHT: (shoulder, end),
+    }
+
+
+def build_probes(config: ContourConfig, size: float) -> Probes:
+    """Lay out the pairs of points of all sections.
+
+    Args:
+        config: the contour model.
+        size: image height / 240, which scales `reach_px`.
+    """
+    near = config.reach_px * size
+    parts: list[tuple[Floats, Floats, int]] = []
+    for section, (start, end) in section_angles(config).items():
+        # The middles of equal pieces: no point is shared by two sections.
+        angle = start + (end - start) * (np.arange(config.points) + 0.5) / config.points
+        if section in (HEAD_LEFT, HEAD_TOP, HEAD_RIGHT):
+            inner = head_points(angle, config, -config.head_reach, -near)
+            parts.append((inner, head_points(angle, config, config.head_reach, near), section))
+            if config.far_head_reach > 0:
+                parts.append((inner, head_points(angle, config, config.far_head_reach, near), section))
+        else:
+            inner = body_points(angle, -config.body_reach, -near)
+            parts.append((inner, body_points(angle, config.body_reach, near), section))
+    if config.feet_weight > 0:
+        parts.append((*_feet_points(config), FEET))
+    return Probes(
+        np.concatenate([inner for inner, _, _ in parts]),
+        np.concatenate([outer for _, outer, _ in parts]),
+        np.concatenate([np.full(len(inner), section) for inner, _, section in parts]),
+    )
+
+
+def body_points(angle: NDArray[np.float64], grow: float, grow_px: float) -> Floats:
+    """Give points (K, 2, 4) of the body ellipse with both semi-axes longer by `grow` w + `grow_px`."""
+    points = np.zeros((len(angle), 2, 4), dtype=np.float32)
+    right, down = np.sin(angle), -np.cos(angle)
+    points[:, 0, 1] = (1 + grow) * right
+    points[:, 0, 3] = grow_px * right
+    points[:, 1, 1] = grow * down
+    points[:, 1, 2] = down
+    points[:, 1, 3] = grow_px * down
+    return points
+
+
+def head_points(angle: NDArray[np.float64], config: ContourConfig, grow: float, grow_px: float) -> Floats:
+    """Give points (K, 2, 4) of the head ellipse, both semi-axes longer by `grow` times its semi-width + `grow_px`."""
+    points = np.zeros((len(angle), 2, 4), dtype=np.float32)
+    right, down = np.sin(angle), -np.cos(angle)
+    tall = 1 / config.head_divisor
+    wide = tall * config.head_aspect
+    points[:, 0, 0] = 1.0
+    points[:, 0, 2] = wide * (1 + grow) * right
+    points[:, 0, 3] = grow_px * right
+    points[:, 1, 2] = -(1 + tall) + (tall + grow * wide) * down
+    points[:, 1, 3] = grow_px * down
+    return points
+
+
+def _feet_points(config: ContourConfig) -> tuple[Floats, Floats]:
+    """Give points (K, 2, 4) above and below the line under the feet."""
+    points = np.zeros((2, config.points, 2, 4), dtype=np.float32)
+    points[:, :, 0, 1] = np.linspace(-0.8, 0.8, config.points)
+    points[0, :, 1, 2] = config.feet_line - 0.12
+    points[1, :, 1, 2] = config.feet_line + 0.12
+    return points[0], points[1]
+
+
+def build_response(config: ContourConfig) -> Floats:
+    """Tabulate (8, 511) what a difference of grey -255..255, inner minus outer, counts in each section."""
+    difference = np.arange(1 - GREYS, GREYS, dtype=np.float64)
+    response = np.tanh(difference / config.saturation_grey) if config.saturation_grey > 0 else difference
+    table = np.tile(response, (SECTIONS, 1))
+    # A garment may be colder than what is behind it; a head never is.
+    table[SHOULDER_LEFT:] = np.where(difference < 0, config.cold_response * response, response)
+    return table.astype(np.float32)
+
+
+def section_weights(config: ContourConfig) -> NDArray[np.float64]:
+    """Give the weights (8,) of the sections, which sum to 1."""
+    weights = np.array([*config.weights, config.feet_weight])
+    return weights / weights.sum()
+
+
+def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np.uint8]:
+    """Turn what is too hot for a person as dark as the coldest surface, (H, W) in and out.
+
+    Lamps and radiators lose their bright outline that way, and people in front of them regain theirs.
+    """
+    table = np.arange(GREYS, dtype=np.uint8)
+    table[config.hottest_grey :] = 0
+    return table[thermal] if config.hottest_grey < GREYS else np.ascontiguousarray(thermal)
+
+
+def section_differences(
+    image: NDArray[np.uint8], state: Floats, probes: Probes, response: Floats, unseen: float
+) -> Floats:
+    """Measure the mean response (N, 8) of every section of every sample, D_j of equation 4.3.
+
+    Args:
+        image: (H, W) grey.
+        state: (N, 9) samples.
+        probes: the points to look at.
+        response: (8, 511) what a difference counts.
+        unseen: what a pair counts with a point outside the image.
+    """
+    return _differences(
+        image, state, probes.inner, probes.outer, probes.section, response, np.float32(unseen)
+    )
+
+
+@njit(cache=True, fastmath=True, nogil=True)
+def _differences(
+    image: NDArray[np.uint8],
+    state: Floats,
+    inner: Floats,
+    outer: Floats,
+    section: NDArray[np.int64],
+    response: Floats,
+    unseen: np.float32,
+) -> Floats:
+    total = np.zeros((len(state), SECTIONS), dtype=np.float32)
+    count = np.zeros(SECTIONS, dtype=np.float32)
+    for j in section:
+        count[j] += 1
+    for i in range(len(state)):
+        for p in range(len(section)):
+            inside = _grey(image, state[i], inner[p])
+            outside = _grey(image, state[i], outer[p])
+            j = section[p]
+            if inside < 0 or outside < 0:
+                total[i, j] += unseen
+            else:
+                total[i, j] += response[j, 255 + inside - outside]
+        for j in range(SECTIONS):
+            if count[j] > 0:
+                total[i, j] /= count[j]
+    return total
+
+
+@njit(cache=True, fastmath=True, nogil=True, inline="always")
+def _grey(image: NDArray[np.uint8], state: Floats, mix: Floats) -> int:
+    """Read the pixel nearest to a point of the contour; -1 outside the image."""
+    u = state[X] + mix[0, 0] * state[D] + mix[0, 1] * state[W] + mix[0, 2] * state[H] + mix[0, 3]
+    v = state[Y] + mix[1, 1] * state[W] + mix[1, 2] * state[H] + mix[1, 3]
+    column, row = int(np.floor(u + 0.5)), int(np.floor(v + 0.5))
+    if column < 0 or row < 0 or column >= image.shape[1] or row >= image.shape[0]:
+        return -1
+    return int(image[row, column])

@@ -1,0 +1,34 @@
+"""From a contour to what people look at: its box, and its outline for drawing."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracker.config import BoxConfig, ContourConfig
+from tracker.contour import body_points, head_points
+from tracker.track import Ellipse
+
+Box = tuple[float, float, float, float]
+
+
+def box_of(ellipse: Ellipse, config: BoxConfig, head_divisor: float) -> Box:
+    """Give the box left, top, width, height [px] of a contour.
+
+    Its top is the top of the head, its centre column the body's.
+
+    Source: thesis, section 3.4 (2 w by 3.5 h); paper, section 4.1 (2 w by 3 h).
+    """
+    width, height = config.width_per_w * ellipse.w, config.height_per_h * ellipse.h
+    top = ellipse.y - ellipse.h - 2 * ellipse.h / head_divisor
+    return ellipse.x - width / 2, top, width, height
+
+
+def outline(
+    ellipse: Ellipse, config: ContourConfig, count: int = 48
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give the outlines of body and head as two closed lines (count, 2) [px]."""
+    angle = np.linspace(0.0, 2 * np.pi, count)
+    mix = np.array([ellipse.d, ellipse.w, ellipse.h, 1.0])
+    centre = np.array([ellipse.x, ellipse.y])
+    return centre + body_points(angle, 0.0, 0.0) @ mix, centre + head_points(angle, config, 0.0, 0.0) @ mix

@@ -1,0 +1,138 @@
+"""One particle filter: predict, weigh, estimate, resample."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracker.config import REFERENCE_HEIGHT_PX, FilterConfig, TrackerConfig
+from tracker.frame import Frame
+from tracker.measure import ContourModel, fitness, is_within, probability, sample_weights
+from tracker.motion import predict
+from tracker.particles import (
+    Floats,
+    Particles,
+    core_rows,
+    mean_state,
+    resample,
+    select,
+    uncertainty_px2,
+)
+from tracker.prior import draw_prior
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """One frame as the filters see it.
+
+    Attributes:
+        image: (H, W) prepared grey image.
+        model: the contour laid out for its size.
+        dt_s: time since the last frame [s].
+        shift_px: how far the camera's turn moved the image to the right since then [px].
+    """
+
+    image: NDArray[np.uint8]
+    model: ContourModel
+    dt_s: float
+    shift_px: float
+
+    @property
+    def size(self) -> float:
+        """Image height / 240."""
+        return self.image.shape[0] / REFERENCE_HEIGHT_PX
+
+
+def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig) -> View:
+    """Prepare a frame for all filters; a left turn moves the image to the right."""
+    shift = 0.0
+    if config.motion.uses_odometry and frame.turn_rad is not None:
+        shift = focal_px(frame.height_px, config.motion.view_angle_deg) * math.tan(frame.turn_rad)
+    return View(model.prepare(frame.thermal), model, dt_s, shift)
+
+
+def focal_px(height_px: int, view_angle_deg: float) -> float:
+    """Give the focal length [px] of a camera with that many rows and vertical field of view."""
+    return height_px / 2 / math.tan(math.radians(view_angle_deg) / 2)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Belief:
+    """What a filter believes after one frame.
+
+    Attributes:
+        particles: the weighted samples, before resampling.
+        core: those of them that make the estimate.
+        estimate: (9,) state, the core's mean.
+        confidence: 0..1, the core's mean probability.
+        uncertainty_px2: the core's spread over x and y [px^2].
+    """
+
+    particles: Particles
+    core: Particles
+    estimate: NDArray[np.float64]
+    confidence: float
+    uncertainty_px2: float
+
+
+def weigh(state: Floats, view: View, filter_config: FilterConfig, config: TrackerConfig) -> Belief:
+    """Weigh samples (N, 9) by the image and estimate the person from them.
+
+    Source: thesis, algorithm 3 (update), equations 4.2 and 4.6.
+    """
+    fit = fitness(view.model.differences(view.image, state), view.model.weights, config.likelihood)
+    chance = probability(fit, config.likelihood)
+    inside = is_within(state, view.image.shape[0], config.limits)
+    weight = sample_weights(fit, chance, inside, config.likelihood, config.limits.outside_weight)
+    particles = Particles(state, weight)
+    rows = core_rows(particles, filter_config.estimate_share, filter_config.estimate_reach)
+    core = select(particles, rows)
+    return Belief(
+        particles=particles,
+        core=core,
+        estimate=mean_state(core),
+        confidence=float(core.weight @ chance[rows]),
+        uncertainty_px2=uncertainty_px2(core),
+    )
+
+
+def step(
+    particles: Particles,
+    view: View,
+    filter_config: FilterConfig,
+    config: TrackerConfig,
+    rng: np.random.Generator,
+) -> Belief:
+    """Carry a filter from the last frame to this one.
+
+    The weighted samples of the last frame are resampled first instead of last, which is the same cycle, cut at
+    another place: what a caller holds between two frames are the weighted samples, before any is lost.
+
+    Source: thesis, algorithm 3.
+    """
+    fresh = round(filter_config.fresh_share * filter_config.count)
+    kept = resample(particles, filter_config.count - fresh, rng)
+    moved = predict(kept, view.dt_s, view.shift_px, view.size, config.motion, rng)
+    return weigh(
+        np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)]),
+        view,
+        filter_config,
+        config,
+    )
+
+
+def begin(view: View, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator) -> Belief:
+    """Start a filter on samples from the prior."""
+    return weigh(
+        draw_fresh(filter_config.count, view, filter_config, config, rng), view, filter_config, config
+    )
+
+
+def draw_fresh(
+    count: int, view: View, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator
+) -> Floats:
+    """Draw samples (count, 9) from the prior for this image."""
+    return draw_prior(count, view.image.shape, view.size, config.limits, config.motion, filter_config, rng)

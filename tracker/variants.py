@@ -1,0 +1,61 @@
+"""The named settings of the single-person tracker: the sources' own, and ours."""
+
+from __future__ import annotations
+
+from tracker.config import (
+    BoxConfig,
+    ContourConfig,
+    FilterConfig,
+    LifeConfig,
+    LikelihoodConfig,
+    LimitsConfig,
+    MotionConfig,
+    SmoothingConfig,
+    TrackerConfig,
+)
+
+THESIS = TrackerConfig()
+"""Chapter 4 as it is written, with the readings named in tracker/config.py."""
+
+PAPER = TrackerConfig(
+    likelihood=LikelihoodConfig(model="paper"),
+    detector=FilterConfig(fresh_share=0.1, estimate_share=0.3),
+    person=FilterConfig(fresh_share=0.1, estimate_share=0.3),
+    life=LifeConfig(birth_frames=3),
+    box=BoxConfig(height_per_h=3.0),
+)
+"""The evaluation paper: equations 3 and 4, the best 30 %, 10 % anew, three frames to detect."""
+
+PEOPLEBOY = TrackerConfig(
+    contour=ContourConfig(
+        points=5,
+        reach_px=0.0,
+        body_reach=0.2,
+        head_reach=0.35,
+        far_head_reach=1.2,
+        saturation_grey=18.0,
+        side_end_deg=140.0,
+        cold_response=-0.3,
+        feet_weight=0.1,
+        unseen_response=0.3,
+        hottest_grey=250,
+    ),
+    limits=LimitsConfig(ratio_wh=(0.22, 0.62), ratio_dw=(-0.5, 0.5), y=(0.0, 1.0), h=(0.05, 0.5)),
+    likelihood=LikelihoodConfig(slope=6.0, threshold=0.55, sharpness=20.0),
+    motion=MotionConfig(
+        noise_x=30.0,
+        noise_y=15.0,
+        noise_w=10.0,
+        noise_h=15.0,
+        noise_d=60.0,
+        noise_by_height=45.0,
+        place_memory=0.9,
+        size_memory=0.5,
+        uses_odometry=True,
+    ),
+    detector=FilterConfig(fresh_share=0.5, log_uniform_h=True, estimate_share=0.3, estimate_reach=0.7),
+    person=FilterConfig(fresh_share=0.0, estimate_share=0.3),
+    life=LifeConfig(birth_confidence=0.6, birth_frames=3, death_confidence=0.3, death_frames=5),
+    smoothing=SmoothingConfig(place_s=0.05, size_s=0.2),
+)
+"""What works: the default."""
