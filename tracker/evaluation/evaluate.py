@@ -1,0 +1,126 @@
+"""The one call: from truth and tracks to every figure."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bad_input import BadInput
+from tracker.evaluation.association import associate, pair_up
+from tracker.evaluation.mot_metrics import MotMetrics, measure_mot
+from tracker.evaluation.paper_metrics import PaperMetrics, measure_paper
+from tracker.evaluation.sequence import Tracks, Truth
+from tracker.evaluation.sums import Sums
+from tracker.evaluation.thesis_metrics import ThesisMetrics, measure_thesis
+from tracker.evaluation.uncounted import MIN_VISIBLE, Rule, settle_uncounted
+
+
+@dataclass(frozen=True, slots=True)
+class Counts(Sums):
+    """What was there to count, after uncounted people were settled.
+
+    Attributes:
+        frames: frames of the sequence, with or without people.
+        targets: boxes to find.
+        candidates: boxes that the tracker gave.
+        ignored: further boxes that it gave, left out because they lie on uncounted people.
+        matches: candidates that are associated with a target (thesis, section 3.4).
+        tracks: track ids, ignored or not.
+        false_tracks: track ids of which no box ever matches anyone, counted or ignored.
+    """
+
+    frames: int
+    targets: int
+    candidates: int
+    ignored: int
+    matches: int
+    tracks: int
+    false_tracks: int
+
+    @property
+    def misses(self) -> int:
+        """Targets without a candidate."""
+        return self.targets - self.matches
+
+    @property
+    def false_alarms(self) -> int:
+        """Candidates without a target."""
+        return self.candidates - self.matches
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scores(Sums):
+    """How well people are found in one sequence, or, added up, in several."""
+
+    counts: Counts
+    thesis: ThesisMetrics
+    paper: PaperMetrics
+    mot: MotMetrics
+
+
+def evaluate(
+    truth: Truth,
+    tracks: Tracks,
+    *,
+    frames: int | None = None,
+    uncounted: Rule = "ignore",
+    min_visible: float = MIN_VISIBLE,
+) -> Scores:
+    """Score the tracks of one sequence against its truth.
+
+    Every id in `tracks` is taken for a confirmed track. A frame without targets is a frame without people,
+    also after the last target: candidates there are false alarms.
+
+    Args:
+        truth: the people.
+        tracks: what the tracker claims.
+        frames: length of the sequence, which the truth does not tell if nobody is there at its end; None
+            takes the last frame that has a target or a candidate. It changes `counts.frames` only.
+        uncounted: what to do about uncounted people: `ignore` candidates on them, or take them for `absent`.
+        min_visible: people of whom at most this fraction is visible are uncounted as well.
+
+    Raises:
+        BadInput: a target or candidate lies beyond `frames`, or an argument is out of range.
+    """
+    frames = _length(truth, tracks, frames)
+    judged = settle_uncounted(truth, tracks, rule=uncounted, min_visible=min_visible)
+    pairs = pair_up(judged.truth, judged.tracks)
+    matched = associate(pairs)
+    found_ids = np.concatenate([judged.tracks.id[pairs.candidate[matched]], judged.ignored.id])
+    return Scores(
+        counts=Counts(
+            frames=frames,
+            targets=len(judged.truth),
+            candidates=len(judged.tracks),
+            ignored=len(judged.ignored),
+            matches=len(matched),
+            tracks=len(np.unique(tracks.id)),
+            false_tracks=len(np.setdiff1d(tracks.id, found_ids)),
+        ),
+        thesis=measure_thesis(judged.truth, judged.tracks, pairs, matched),
+        paper=measure_paper(judged.truth, judged.tracks, pairs),
+        mot=measure_mot(judged.truth, judged.tracks, pairs),
+    )
+
+
+def combine(sequences: Sequence[Scores]) -> Scores:
+    """Take the sequences together: sums of numerators and denominators, not means of ratios.
+
+    Raises:
+        BadInput: there is no sequence.
+    """
+    if not sequences:
+        raise BadInput("scores to combine: at least one sequence is needed, got none")
+    first, *others = sequences
+    return sum(others, start=first)
+
+
+def _length(truth: Truth, tracks: Tracks, frames: int | None) -> int:
+    """Give the number of frames, which no row may exceed."""
+    last = max(truth.last_frame, tracks.last_frame)
+    if frames is None:
+        return last
+    for name, seen in (("truth", truth.last_frame), ("tracks", tracks.last_frame)):
+        if seen > frames:
+            raise BadInput(f"{name}: frame must be at most {frames}, the length of the sequence, got {seen}")
+    return frames

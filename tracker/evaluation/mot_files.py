@@ -1,0 +1,123 @@
+"""Truth and tracks as MOTChallenge text: one line per box, comma separated, frames from 1.
+
+Truth: frame, id, left, top, width, height, 1 if counted else 0, class 1 (person), visible fraction.
+Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position).
+An empty file is a sequence without people, or a tracker that found nobody.
+"""
+
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from bad_input import BadInput
+from tracker.evaluation.boxes import Floats
+from tracker.evaluation.sequence import Rows, Tracks, Truth, find_fault
+
+TRUTH_COLUMNS = "frame, id, left, top, width, height, counted, class, visible fraction"
+TRACKS_COLUMNS = "frame, id, left, top, width, height, confidence, x, y, z"
+PERSON = 1.0
+
+Kind = TypeVar("Kind", bound=Rows)
+
+
+def read_truth(path: Path) -> Truth:
+    """Read a truth file (`gt.txt`).
+
+    Raises:
+        BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
+    """
+    table = _read_table(path, TRUTH_COLUMNS)
+    for row in np.flatnonzero(table[:, 7] != PERSON)[:1]:
+        raise BadInput(f"{path}:{row + 1}: class must be 1 (person), got {table[row, 7]:g}")
+    return _build(path, Truth, table, counted=table[:, 6], visible=table[:, 8])
+
+
+def read_tracks(path: Path) -> Tracks:
+    """Read a tracker's results (`tracks.txt`); the world position in the last three columns is not kept.
+
+    Raises:
+        BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
+    """
+    table = _read_table(path, TRACKS_COLUMNS)
+    return _build(path, Tracks, table, confidence=table[:, 6])
+
+
+def write_truth(path: Path, truth: Truth) -> None:
+    """Write a truth file: boxes with 2 decimals, the visible fraction with 4; equal truth gives equal bytes.
+
+    Raises:
+        BadInput: the file cannot be written.
+    """
+    _write_lines(
+        path,
+        [
+            f"{_start(frame, identity, box)},{counted:d},1,{visible:.4f}"
+            for frame, identity, box, counted, visible in zip(
+                truth.frame, truth.id, truth.box, truth.counted, truth.visible, strict=True
+            )
+        ],
+    )
+
+
+def write_tracks(path: Path, tracks: Tracks) -> None:
+    """Write a tracker's results: boxes with 2 decimals, the confidence with 4; equal tracks give equal bytes.
+
+    Raises:
+        BadInput: the file cannot be written.
+    """
+    _write_lines(
+        path,
+        [
+            f"{_start(frame, identity, box)},{confidence:.4f},-1,-1,-1"
+            for frame, identity, box, confidence in zip(
+                tracks.frame, tracks.id, tracks.box, tracks.confidence, strict=True
+            )
+        ],
+    )
+
+
+def _read_table(path: Path, names: str) -> Floats:
+    """Read the lines as numbers (N, number of names)."""
+    columns = names.count(",") + 1
+    try:
+        lines = path.read_text(encoding="utf-8").split("\n")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not a text file"
+        raise BadInput(f"{path}: cannot be read as MOTChallenge text: {reason}") from error
+    if not lines[-1]:
+        lines.pop()  # the newline that ends the last line
+    table = [_parse_line(line, names, columns, f"{path}:{number}") for number, line in enumerate(lines, 1)]
+    return np.array(table, dtype=np.float64).reshape(-1, columns)
+
+
+def _parse_line(line: str, names: str, columns: int, where: str) -> list[float]:
+    cells = line.split(",")
+    if len(cells) != columns:
+        raise BadInput(f"{where}: must have {columns} numbers ({names}), got {len(cells)}: {line[:60]!r}")
+    try:
+        return [float(cell) for cell in cells]
+    except ValueError:
+        raise BadInput(f"{where}: must be numbers ({names}), got {line[:60]!r}") from None
+
+
+def _build(path: Path, kind: type[Kind], table: Floats, **others: Floats) -> Kind:
+    """Build the record from the table, naming the line of the first impossible row."""
+    columns: dict[str, Any] = {"frame": table[:, 0], "id": table[:, 1], "box": table[:, 2:6], **others}
+    fault = find_fault(columns)
+    if fault is not None:
+        raise BadInput(f"{path}:{fault[0] + 1}: {fault[1]}")
+    return kind(**columns)
+
+
+def _start(frame: np.int64, identity: np.int64, box: Floats) -> str:
+    """Format the columns that both kinds of file begin with."""
+    edges = ",".join(f"{edge:z.2f}" for edge in box)  # z: never -0.00
+    return f"{frame},{identity},{edges}"
+
+
+def _write_lines(path: Path, lines: list[str]) -> None:
+    try:
+        path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be written: {error.strerror}") from error

@@ -1,0 +1,154 @@
+"""One sequence of boxes: who was there (`Truth`), and what a tracker claims (`Tracks`)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bad_input import BadInput
+from tracker.evaluation.boxes import Floats
+
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+DTYPES = {"frame": np.int64, "id": np.int64, "counted": np.bool_}  # every other column is float64
+LARGEST = 2**53  # whole numbers above it are not exact in float64, through which every column passes
+FARTHEST = 1e6  # [px] no image is larger, and areas of larger boxes would overflow in the end
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Rows:
+    """Boxes of a sequence: one row per frame and id.
+
+    Rows may be given in any order; they are kept as read-only copies, sorted by frame, then id.
+
+    Attributes:
+        frame: (N,) from 1.
+        id: (N,) 0 or more, unique within a frame.
+        box: (N, 4) [px] left, top, width, height; sizes 0 or more.
+
+    Raises:
+        BadInput: a column has the wrong shape, or a value is impossible.
+    """
+
+    frame: Ints
+    id: Ints
+    box: Floats
+
+    def __post_init__(self) -> None:
+        columns = as_columns({column.name: getattr(self, column.name) for column in fields(self)})
+        fault = find_fault(columns)
+        if fault is not None:
+            raise BadInput(f"{type(self).__name__.lower()}: row {fault[0]}: {fault[1]}")
+        order = np.lexsort((columns["id"], columns["frame"]))
+        for name, column in columns.items():
+            settled: NDArray[Any] = column[order].astype(DTYPES.get(name, np.float64))
+            settled.setflags(write=False)
+            object.__setattr__(self, name, settled)
+
+    def __len__(self) -> int:
+        return len(self.frame)
+
+    def take(self, rows: Ints | Bools) -> Self:
+        """Keep only these rows: indices (M,), or a mask (N,)."""
+        taken: dict[str, Any] = {column.name: getattr(self, column.name)[rows] for column in fields(self)}
+        return replace(self, **taken)
+
+    def number_ids(self) -> tuple[Ints, Ints]:
+        """Number the K ids from 0: the number of each row's id (N,), and how many rows each id has (K,)."""
+        _, number, rows = np.unique(self.id, return_inverse=True, return_counts=True)
+        return number, rows
+
+    @property
+    def last_frame(self) -> int:
+        """The last frame that has a row; 0 without rows."""
+        return int(self.frame[-1]) if len(self) else 0
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Truth(Rows):
+    """The people of one sequence, the *targets*: one row per frame and person.
+
+    Attributes:
+        counted: (N,) False for people that a tracker need not find (nearer than 3 m, farther than 10 m).
+        visible: (N,) in 0..1, the fraction of the person that nothing hides.
+    """
+
+    counted: Bools
+    visible: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Tracks(Rows):
+    """What a tracker claims in one sequence, the *candidates*: one row per frame and track id.
+
+    Attributes:
+        confidence: (N,) finite; no metric here reads it.
+    """
+
+    confidence: Floats
+
+
+def as_columns(values: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+    """Copy the values into float columns of one length: `box` (N, 4), all others (N,).
+
+    Raises:
+        BadInput: a column has another shape.
+    """
+    rows = np.size(values["frame"])
+    columns = {}
+    for name, value in values.items():
+        column = np.array(value, dtype=np.float64)
+        shape = (rows, 4) if name == "box" else (rows,)
+        if rows == 0 and column.size == 0:
+            column = column.reshape(shape)
+        if column.shape != shape:
+            raise BadInput(f"column '{name}' must have shape {shape}, got {column.shape}")
+        columns[name] = column
+    return columns
+
+
+def find_fault(columns: Mapping[str, Floats]) -> tuple[int, str] | None:
+    """Find the first row that no sequence may have: its index, and one line about what is wrong with it."""
+    broken = [(int(np.argmin(good)), rule, name) for name, good, rule in _rules(columns) if not good.all()]
+    if not broken:
+        return None
+    row, rule, name = min(broken, key=lambda fault: fault[0])
+    value = ", ".join(f"{number:g}" for number in np.atleast_1d(columns[name][row]))
+    return row, f"{rule}, got {value}"
+
+
+def _rules(columns: Mapping[str, Floats]) -> list[tuple[str, Bools, str]]:
+    """List what must hold: the column, the rows (N,) where it holds, and the rule in words."""
+    is_near = np.asarray((np.abs(columns["box"]) <= FARTHEST).all(axis=1))
+    is_size = np.asarray((columns["box"][:, 2:] >= 0.0).all(axis=1))
+    rules: list[tuple[str, Bools, str]] = [
+        ("frame", _is_whole(columns["frame"], least=1), "frame must be a whole number from 1"),
+        ("id", _is_whole(columns["id"], least=0), "id must be a whole number from 0"),
+        ("box", is_near, f"left, top, width, height must be within +-{FARTHEST:.0e} pixels"),
+        ("box", is_size, "width and height must be 0 or more"),
+        ("id", _is_first(columns["frame"], columns["id"]), "an id must occur once in a frame"),
+    ]
+    if "visible" in columns:
+        visible, counted = columns["visible"], columns["counted"]
+        rules.append(("visible", (visible >= 0.0) & (visible <= 1.0), "the visible fraction must be 0 to 1"))
+        rules.append(("counted", np.isin(counted, (0.0, 1.0)), "counted must be 0 or 1"))
+    if "confidence" in columns:
+        rules.append(("confidence", np.isfinite(columns["confidence"]), "the confidence must be finite"))
+    return rules
+
+
+def _is_whole(values: Floats, least: int) -> Bools:
+    """Tell which values (N,) are whole numbers of at least `least`."""
+    return np.asarray((values >= least) & (values <= LARGEST) & (values == np.floor(values)))
+
+
+def _is_first(frame: Floats, identity: Floats) -> Bools:
+    """Tell which rows (N,) are the first of their frame and id."""
+    order = np.lexsort((np.arange(len(frame)), identity, frame))
+    repeats = (np.diff(frame[order]) == 0.0) & (np.diff(identity[order]) == 0.0)
+    first = np.ones(len(frame), dtype=np.bool_)
+    first[order[1:][repeats]] = False
+    return first

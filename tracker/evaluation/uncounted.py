@@ -1,0 +1,77 @@
+"""What to do about people whom nobody asked the tracker to find.
+
+A truth row is uncounted if the person is nearer than 3 m or farther than 10 m (`counted` is False), or so
+hidden that the visible fraction is at most `min_visible` (by default: totally hidden). Uncounted people are
+never misses. A tracker may find them all the same, and there are two rules for that:
+
+- `ignore` (default, as the distractors of MOTChallenge): a candidate on an uncounted person is neither right
+  nor wrong and leaves the evaluation.
+- `absent` (the sources to the letter): such people are simply not in the truth, so a candidate on one is a
+  false alarm.
+
+Either rule is applied once, before any metric, so that all metrics see the same data.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from bad_input import BadInput
+from tracker.evaluation.association import GATE, associate, pair_up
+from tracker.evaluation.sequence import Tracks, Truth
+
+Rule = Literal["ignore", "absent"]
+MIN_VISIBLE = 0.0  # a target counts if more than this fraction of the person is visible
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Judged:
+    """The rows that count.
+
+    Attributes:
+        truth: the counted targets.
+        tracks: the candidates to judge.
+        ignored: the candidates that were taken out, because they lie on uncounted people.
+    """
+
+    truth: Truth
+    tracks: Tracks
+    ignored: Tracks
+
+
+def settle_uncounted(
+    truth: Truth, tracks: Tracks, *, rule: Rule = "ignore", min_visible: float = MIN_VISIBLE
+) -> Judged:
+    """Take out the uncounted people by the named rule.
+
+    Raises:
+        BadInput: there is no such rule, or `min_visible` is not in 0..1.
+    """
+    if rule not in get_args(Rule):
+        raise BadInput(f"uncounted must be one of {', '.join(get_args(Rule))}, got {rule!r}")
+    if not 0.0 <= min_visible <= 1.0:
+        raise BadInput(f"min_visible must be 0 to 1, got {min_visible}")
+    counted = truth.counted & (truth.visible > min_visible)
+    truth = Truth(frame=truth.frame, id=truth.id, box=truth.box, counted=counted, visible=truth.visible)
+    if rule == "ignore":
+        return ignore_uncounted(truth, tracks)
+    return Judged(truth.take(counted), tracks, tracks.take(np.zeros(len(tracks), dtype=np.bool_)))
+
+
+def ignore_uncounted(truth: Truth, tracks: Tracks, gate: float = GATE) -> Judged:
+    """Take out the uncounted people, and the candidates on them.
+
+    Counted targets choose first. Of the candidates that they leave, each uncounted person takes out at most
+    one, that with more IoU than the gate; two candidates on one uncounted person leave one false alarm.
+    """
+    counted = truth.take(truth.counted)
+    pairs = pair_up(counted, tracks)
+    is_free = np.ones(len(tracks), dtype=np.bool_)
+    is_free[pairs.candidate[associate(pairs, gate)]] = False
+    free = np.flatnonzero(is_free)
+
+    pairs = pair_up(truth.take(~truth.counted), tracks.take(free))
+    is_ignored = np.zeros(len(tracks), dtype=np.bool_)
+    is_ignored[free[pairs.candidate[associate(pairs, gate)]]] = True
+    return Judged(counted, tracks.take(~is_ignored), tracks.take(is_ignored))
