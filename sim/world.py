@@ -1,0 +1,207 @@
+"""The whole simulated world: it takes velocity commands and gives observations, with the truth beside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import TracebackType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bad_input import BadInput
+from sim.bullet import Bullet
+from sim.camera import Camera, Matrix
+from sim.colour import colour_image, expose
+from sim.config import WorldConfig
+from sim.crowd import Crowd
+from sim.looks import Look
+from sim.observation import Observation
+from sim.peoplebot import NAME as ROBOT
+from sim.peoplebot import PeopleBot, Planar
+from sim.place import Place
+from sim.random_streams import stream
+from sim.render import View, render
+from sim.robot_looks import robot_look
+from sim.shape_table import make_shape_table
+from sim.surfaces import make_look_table
+from sim.thermal import detect, encode_8bit, make_detector, surface_image
+from sim.truth import Truth
+from sim.truth_maker import TruthMaker
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sight:
+    """What one camera sees: its pose and the view from there."""
+
+    world_from_camera: Matrix
+    view: View
+
+
+class World:
+    """A PyBullet world with a robot, people and cameras; use it as a context manager.
+
+    `observe` tells what the robot senses now; `truth` what is true at the same instant; `step` moves the
+    world on by one control step. The same configuration gives the same bytes in every process.
+    """
+
+    def __init__(self, config: WorldConfig) -> None:
+        self.config = config
+        self._tick = 0
+        self._touching: set[str] = set()
+        self._bullet = Bullet(physics_hz=config.physics_hz)
+        try:
+            self._build()
+        except BaseException:
+            self._bullet.close()
+            raise
+
+    def __enter__(self) -> World:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free the physics world."""
+        self._bullet.close()
+
+    @property
+    def time_s(self) -> float:
+        """Seconds since the start: a whole number of control steps."""
+        return self._tick / self.config.control_hz
+
+    @property
+    def robot_pose(self) -> Planar:
+        """True pose of the robot."""
+        return self._robot.pose()
+
+    def observe(self) -> Observation:
+        """Read every sensor once.
+
+        The images are those of this instant. Call it once a control step: each call draws fresh noise.
+        """
+        thermal_c = self._thermal_image()
+        lowest, highest = self.config.robot.thermal.lowest_c, self.config.robot.thermal.highest_c
+        return Observation(
+            time_s=self.time_s,
+            thermal=encode_8bit(thermal_c, lowest, highest),
+            thermal_c=thermal_c,
+            colour=self._colour_image(),
+            sonar_m=self._robot.sonar(),
+            odometry=self._robot.odometry,
+            wheel_speeds_m_s=self._robot.wheel_speeds(),
+        )
+
+    def truth(self) -> Truth:
+        """Tell what is true at this instant."""
+        sight = self._look(self.config.robot.thermal.camera)
+        return self._truth_maker.make(
+            time_s=self.time_s,
+            view=sight.view,
+            world_from_camera=sight.world_from_camera,
+            world_from_part=self._poses,
+            robot=self._robot.pose(),
+            robot_velocity=self._robot.velocity(),
+            contacts=tuple(sorted(self._touching)),
+        )
+
+    def step(self, linear_m_s: float, angular_rad_s: float) -> None:
+        """Drive the robot by a velocity command for one control step; people and light move on too.
+
+        Raises:
+            BadInput: the command is not finite.
+        """
+        if not (np.isfinite(linear_m_s) and np.isfinite(angular_rad_s)):
+            raise BadInput(f"velocity command ({linear_m_s}, {angular_rad_s}) must be finite")
+        steps = self.config.physics_hz // self.config.control_hz
+        self._robot.command(linear_m_s, angular_rad_s)
+        self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot)
+        self._touching.clear()
+        for k in range(steps):
+            self._robot.drive(1.0 / self.config.physics_hz)
+            self._crowd.move_bodies((k + 1) / steps)
+            self._bullet.step()
+            self._touching |= {contact.other.split("/")[0] for contact in self._robot.contacts()}
+        self._touching -= {"floor"}
+        self._robot.update_odometry()
+        self._tick += 1
+        self._settle()
+
+    def _build(self) -> None:
+        config, bullet = self.config, self._bullet
+        looks = _add_fixtures(bullet, config.place)
+        self._crowd = Crowd(bullet, config.people, config.place, config.seed)
+        self._robot = PeopleBot(bullet, config.robot, config.seed)
+        looks |= self._crowd.looks
+        keys = bullet.parts()
+        part_looks = [robot_look(key.link_name) if key.name == ROBOT else looks[key.name] for key in keys]
+        self._table = make_shape_table(bullet)
+        self._looks = make_look_table(part_looks, stream(config.seed, "surface.variation"))
+        self._truth_maker = TruthMaker(
+            keys, self._table, self._crowd, part_looks, config.robot.thermal.camera
+        )
+        self._detector = make_detector(config.robot.thermal, stream(config.seed, "thermal.detector"))
+        self._thermal_noise = stream(config.seed, "thermal.noise")
+        self._colour_noise = stream(config.seed, "colour.noise")
+        self._settle()
+
+    def _settle(self) -> None:
+        """Take over the poses of a new instant; what was seen before is forgotten."""
+        self._crowd.show()
+        self._poses = self._bullet.part_poses()
+        self._hidden = self._bullet.hidden_parts()
+        self._seen: dict[Camera, _Sight] = {}
+
+    def _look(self, camera: Camera) -> _Sight:
+        """Render one camera's view, once an instant."""
+        if camera not in self._seen:
+            pose = self._robot.world_from_robot() @ camera.robot_from_camera
+            self._seen[camera] = _Sight(pose, self._render(camera, pose))
+        return self._seen[camera]
+
+    def _render(self, camera: Camera, pose: Matrix) -> View:
+        return render(
+            self.config.renderer, self._bullet, self._table, camera, pose, self._poses,
+            self._truth_maker.person_of_part, self._hidden,
+        )  # fmt: skip
+
+    def _thermal_image(self) -> NDArray[np.float32]:
+        config = self.config.robot.thermal
+        sight = self._look(config.camera)
+        apparent = surface_image(
+            sight.view, self._looks, config, sight.world_from_camera, self._poses,
+            self.config.place.surroundings_c, self._robot.velocity()[1] * config.exposure_s,
+        )  # fmt: skip
+        return detect(apparent, self._detector, config, self._thermal_noise)
+
+    def _colour_image(self) -> NDArray[np.uint8]:
+        config = self.config.robot.colour
+        sight = self._look(config.camera)
+        linear = colour_image(
+            sight.view, self._looks, config, sight.world_from_camera, self._poses,
+            light_level(self.config.place, self.time_s), self._robot.velocity()[1] * config.exposure_s,
+        )  # fmt: skip
+        return expose(linear, config, self._colour_noise)
+
+
+def light_level(place: Place, time_s: float) -> float:
+    """Return the level of a place's light at a time: that of the last switch before it."""
+    return [level for start, level in place.light if start <= time_s][-1]
+
+
+def _add_fixtures(bullet: Bullet, place: Place) -> dict[str, Look]:
+    """Put everything that stands still into the physics world; returns the looks by body name."""
+    looks = {}
+    for fixture in place.fixtures:
+        at = {"position": fixture.position, "orientation": fixture.orientation}
+        if fixture.part is not None:
+            bullet.add_part(fixture.name, fixture.part.shapes, solid=fixture.is_solid, **at)
+            looks[fixture.name] = fixture.part.look
+        elif fixture.urdf is not None and fixture.look is not None:
+            bullet.add_urdf(fixture.name, fixture.urdf, scale=fixture.scale, **at)
+            looks[fixture.name] = fixture.look
+        else:
+            raise BadInput(f"fixture {fixture.name!r}: needs either a part, or a URDF with a look")
+    return looks
