@@ -53,8 +53,8 @@ class ContourConfig:
     shoulder_deg: float = 60.0  # arc of a shoulder, from the top of the body down
     side_end_deg: float = 180.0  # where the sides end: 180 is the bottom of the body
     reach_px: float = 2.0  # distance of the points from the contour, whatever its size
-    body_reach: float = 0.0  # the same as a share of the body's semi-width
-    head_reach: float = 0.0  # the same as a share of the head's semi-width
+    body_reach: tuple[float, ...] = (0.0,)  # plus this share of the body's semi-width; the points take turns
+    head_reach: tuple[float, ...] = (0.0,)  # plus this share of the head's semi-width
     far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 is none
     saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
     cold_response: float = (
@@ -71,12 +71,15 @@ class ContourConfig:
     )  # alpha_1..7: head 3, shoulders 2, sides 2
     feet_weight: float = 0.0  # weight of an eighth section, the line under the feet
     feet_line: float = 2.05  # its distance below the body's centre, in body semi-heights
+    feet_span: float = 0.6  # how far it reaches to both sides, in body semi-heights
+    feet_gain: float = 3.0  # factor on its response, up to 1: feet fill only a third of the line
     unseen_response: float = 0.0  # response of a point outside the image
     hottest_grey: int = 256  # grey from which a surface is too hot for a person and counts as cold
+    hot_margin_px: int = 0  # so do the pixels around it, whose grey is a blend
 
     def __post_init__(self) -> None:
         check_positive(self, "head_divisor", "head_aspect", "points", "feet_line")
-        check_not_negative(self, "saturation_grey", "reach_px", "body_reach", "head_reach", "far_head_reach")
+        check_not_negative(self, "saturation_grey", "reach_px", "far_head_reach")
         if len(self.weights) != 7:
             raise BadInput(f"ContourConfig: weights must be 7 numbers, got {len(self.weights)}")
 
@@ -89,6 +92,8 @@ class LimitsConfig:
     ratio_dw: tuple[float, float] = (-1.5, 1.5)
     y: tuple[float, float] = (0.2, 0.8)  # [image heights]
     h: tuple[float, float] = (0.02, 0.5)  # [image heights]; the sources name no largest
+    horizon: float = 0.5  # row of the horizon [image heights]; the middle for a level camera
+    y_below_horizon: tuple[float, float] = (-math.inf, math.inf)  # [body semi-heights]: where people who stand on the floor are
     outside_weight: float = 1e-6  # factor on the weight of a sample outside: "a very low chance"
 
     def __post_init__(self) -> None:
@@ -107,6 +112,7 @@ class LikelihoodConfig:
     slope: float = 0.125  # kappa
     threshold: float = 22.0  # theta, in the unit of the section differences
     section_threshold: float = 10.0  # t_h of the paper: a section below it loses its weight
+    weakest_share: float = 0.0  # share of the weakest of the seven sections in the fitness
     sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0 weighs with the probability itself
 
     def __post_init__(self) -> None:
@@ -145,6 +151,7 @@ class FilterConfig:
 
     count: int = 1000  # N
     fresh_share: float = 0.2  # share drawn anew from the prior in every step
+    limits: LimitsConfig = field(default_factory=LimitsConfig)
     log_uniform_h: bool = False  # prior of h: uniform, or uniform in log h
     estimate_share: float = 1.0  # share of the samples, the best ones, that makes the estimate
     estimate_reach: float = math.inf  # only those within so many semi-axes of the best
@@ -196,7 +203,6 @@ class TrackerConfig:
     """A whole single-person tracker."""
 
     contour: ContourConfig = field(default_factory=ContourConfig)
-    limits: LimitsConfig = field(default_factory=LimitsConfig)
     likelihood: LikelihoodConfig = field(default_factory=LikelihoodConfig)
     motion: MotionConfig = field(default_factory=MotionConfig)
     detector: FilterConfig = field(default_factory=FilterConfig)

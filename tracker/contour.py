@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -69,13 +70,16 @@ def build_probes(config: ContourConfig, size: float) -> Probes:
         # The middles of equal pieces: no point is shared by two sections.
         angle = start + (end - start) * (np.arange(config.points) + 0.5) / config.points
         if section in (HEAD_LEFT, HEAD_TOP, HEAD_RIGHT):
-            inner = head_points(angle, config, -config.head_reach, -near)
-            parts.append((inner, head_points(angle, config, config.head_reach, near), section))
+            reach = np.resize(config.head_reach, len(angle))
+            inner = head_points(angle, config, -reach, -near)
+            parts.append((inner, head_points(angle, config, reach, near), section))
             if config.far_head_reach > 0:
-                parts.append((inner, head_points(angle, config, config.far_head_reach, near), section))
+                far = np.full(len(angle), config.far_head_reach)
+                parts.append((inner, head_points(angle, config, far, near), section))
         else:
-            inner = body_points(angle, -config.body_reach, -near)
-            parts.append((inner, body_points(angle, config.body_reach, near), section))
+            reach = np.resize(config.body_reach, len(angle))
+            inner = body_points(angle, -reach, -near)
+            parts.append((inner, body_points(angle, reach, near), section))
     if config.feet_weight > 0:
         parts.append((*_feet_points(config), FEET))
     return Probes(
@@ -85,7 +89,7 @@ def build_probes(config: ContourConfig, size: float) -> Probes:
     )
 
 
-def body_points(angle: NDArray[np.float64], grow: float, grow_px: float) -> Floats:
+def body_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: float) -> Floats:
     """Give points (K, 2, 4) of the body ellipse with both semi-axes longer by `grow` w + `grow_px`."""
     points = np.zeros((len(angle), 2, 4), dtype=np.float32)
     right, down = np.sin(angle), -np.cos(angle)
@@ -97,7 +101,7 @@ def body_points(angle: NDArray[np.float64], grow: float, grow_px: float) -> Floa
     return points
 
 
-def head_points(angle: NDArray[np.float64], config: ContourConfig, grow: float, grow_px: float) -> Floats:
+def head_points(angle: NDArray[np.float64], config: ContourConfig, grow: NDArray[np.float64], grow_px: float) -> Floats:
     """Give points (K, 2, 4) of the head ellipse, both semi-axes longer by `grow` times its semi-width + `grow_px`."""
     points = np.zeros((len(angle), 2, 4), dtype=np.float32)
     right, down = np.sin(angle), -np.cos(angle)
@@ -113,8 +117,8 @@ def head_points(angle: NDArray[np.float64], config: ContourConfig, grow: float, 
 
 def _feet_points(config: ContourConfig) -> tuple[Floats, Floats]:
     """Give points (K, 2, 4) above and below the line under the feet."""
-    points = np.zeros((2, config.points, 2, 4), dtype=np.float32)
-    points[:, :, 0, 1] = np.linspace(-0.8, 0.8, config.points)
+    points = np.zeros((2, 12, 2, 4), dtype=np.float32)
+    points[:, :, 0, 2] = np.linspace(-config.feet_span, config.feet_span, 12)
     points[0, :, 1, 2] = config.feet_line - 0.12
     points[1, :, 1, 2] = config.feet_line + 0.12
     return points[0], points[1]
@@ -141,9 +145,13 @@ def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np
 
     Lamps and radiators lose their bright outline that way, and people in front of them regain theirs.
     """
-    table = np.arange(GREYS, dtype=np.uint8)
-    table[config.hottest_grey :] = 0
-    return table[thermal] if config.hottest_grey < GREYS else np.ascontiguousarray(thermal)
+    if config.hottest_grey >= GREYS:
+        return np.ascontiguousarray(thermal)
+    is_hot = (thermal >= config.hottest_grey).view(np.uint8)
+    if not is_hot.any():
+        return np.ascontiguousarray(thermal)
+    side = 2 * config.hot_margin_px + 1
+    return np.where(cv2.dilate(is_hot, np.ones((side, side), np.uint8)), np.uint8(0), thermal)
 
 
 def section_differences(

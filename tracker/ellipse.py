@@ -29,6 +29,7 @@ def outline(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Give the outlines of body and head as two closed lines (count, 2) [px]."""
     angle = np.linspace(0.0, 2 * np.pi, count)
+    nothing = np.zeros(count)
     mix = np.array([ellipse.d, ellipse.w, ellipse.h, 1.0])
     centre = np.array([ellipse.x, ellipse.y])
-    return centre + body_points(angle, 0.0, 0.0) @ mix, centre + head_points(angle, config, 0.0, 0.0) @ mix
+    return centre + body_points(angle, nothing, 0.0) @ mix, centre + head_points(angle, config, nothing, 0.0) @ mix

@@ -85,8 +85,8 @@ def weigh(state: Floats, view: View, filter_config: FilterConfig, config: Tracke
     """
     fit = fitness(view.model.differences(view.image, state), view.model.weights, config.likelihood)
     chance = probability(fit, config.likelihood)
-    inside = is_within(state, view.image.shape[0], config.limits)
-    weight = sample_weights(fit, chance, inside, config.likelihood, config.limits.outside_weight)
+    inside = is_within(state, view.image.shape[0], filter_config.limits)
+    weight = sample_weights(fit, chance, inside, config.likelihood, filter_config.limits.outside_weight)
     particles = Particles(state, weight)
     rows = core_rows(particles, filter_config.estimate_share, filter_config.estimate_reach)
     core = select(particles, rows)
@@ -135,4 +135,4 @@ def draw_fresh(
     count: int, view: View, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator
 ) -> Floats:
     """Draw samples (count, 9) from the prior for this image."""
-    return draw_prior(count, view.image.shape, view.size, config.limits, config.motion, filter_config, rng)
+    return draw_prior(count, view.image.shape, config.motion, filter_config, rng)

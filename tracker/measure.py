@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tracker.config import REFERENCE_HEIGHT_PX, ContourConfig, LikelihoodConfig, LimitsConfig
 from tracker.contour import (
+    FEET,
     Probes,
     build_probes,
     build_response,
@@ -49,7 +50,10 @@ class ContourModel:
 
     def differences(self, image: NDArray[np.uint8], state: Floats) -> Floats:
         """Measure every section of every sample in a prepared image, (N, 8)."""
-        return section_differences(image, state, self.probes, self.response, self.config.unseen_response)
+        result = section_differences(image, state, self.probes, self.response, self.config.unseen_response)
+        if self.config.feet_weight > 0:
+            result[:, FEET] = np.minimum(1.0, self.config.feet_gain * result[:, FEET])
+        return result
 
 
 def fitness(differences: Floats, weights: NDArray[np.float64], config: LikelihoodConfig) -> Floats:
@@ -60,7 +64,11 @@ def fitness(differences: Floats, weights: NDArray[np.float64], config: Likelihoo
     both fitnesses are grey levels and share one threshold.
     """
     if config.model == "thesis":
-        return differences @ weights.astype(np.float32)
+        total = differences @ weights.astype(np.float32)
+        if config.weakest_share == 0:
+            return total
+        weakest = differences[:, :FEET].min(axis=1)
+        return (1 - config.weakest_share) * total + config.weakest_share * weakest
     is_strong = differences >= config.section_threshold
     used = int((weights > 0).sum())
     return ((is_strong @ weights) * (differences.sum(axis=1) / used)).astype(np.float32)
@@ -108,6 +116,8 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
         & (state[:, D] < limits.ratio_dw[1] * w)
         & (state[:, Y] > limits.y[0] * height_px)
         & (state[:, Y] < limits.y[1] * height_px)
+        & (state[:, Y] - limits.horizon * height_px > limits.y_below_horizon[0] * h)
+        & (state[:, Y] - limits.horizon * height_px < limits.y_below_horizon[1] * h)
         & (h > limits.h[0] * height_px)
         & (h < limits.h[1] * height_px)
     )

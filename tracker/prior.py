@@ -6,15 +6,13 @@ import math
 
 import numpy as np
 
-from tracker.config import FilterConfig, LimitsConfig, MotionConfig
+from tracker.config import REFERENCE_HEIGHT_PX, FilterConfig, LimitsConfig, MotionConfig
 from tracker.particles import STATE_SIZE, VH, VW, VX, VY, D, Floats, H, W, X, Y
 
 
 def draw_prior(
     count: int,
     shape: tuple[int, int],
-    size: float,
-    limits: LimitsConfig,
     motion: MotionConfig,
     filter_config: FilterConfig,
     rng: np.random.Generator,
@@ -24,23 +22,32 @@ def draw_prior(
     Source: thesis, section 4.1, "in our case uniform".
     """
     height, width = shape
+    limits = filter_config.limits
     chance = rng.random((count, 5), dtype=np.float32)
     velocity = rng.standard_normal((count, 4), dtype=np.float32)
     state = np.empty((count, STATE_SIZE), dtype=np.float32)
     state[:, X] = width * chance[:, 0]
-    state[:, Y] = height * _between(limits.y, chance[:, 1])
-    low, high = limits.h
-    if filter_config.log_uniform_h:
-        state[:, H] = height * np.exp(_between((math.log(low), math.log(high)), chance[:, 2]))
-    else:
-        state[:, H] = height * _between(limits.h, chance[:, 2])
+    state[:, H] = height * _heights(limits.h, chance[:, 2], filter_config.log_uniform_h)
+    state[:, Y] = _rows(height, state[:, H], limits, chance[:, 1])
     state[:, W] = state[:, H] * _between(limits.ratio_wh, chance[:, 3])
     state[:, D] = state[:, W] * _between(limits.ratio_dw, chance[:, 4])
-    amplitude = size * np.array(
-        [motion.noise_x, motion.noise_y, motion.noise_w, motion.noise_h], dtype=np.float32
-    )
-    state[:, [VX, VY, VW, VH]] = amplitude * velocity
+    amplitude = np.array([motion.noise_x, motion.noise_y, motion.noise_w, motion.noise_h], dtype=np.float32)
+    state[:, [VX, VY, VW, VH]] = height / REFERENCE_HEIGHT_PX * amplitude * velocity
     return state
+
+
+def _heights(limits: tuple[float, float], chance: Floats, is_log_uniform: bool) -> Floats:
+    """Draw h in image heights: far and small people are as many as near and large ones where it is log-uniform."""
+    if not is_log_uniform:
+        return _between(limits, chance)
+    return np.exp(_between((math.log(limits[0]), math.log(limits[1])), chance))
+
+
+def _rows(height: int, h: Floats, limits: LimitsConfig, chance: Floats) -> Floats:
+    """Draw y [px] between the limits, those of the floor included."""
+    low = np.maximum(limits.y[0] * height, limits.horizon * height + limits.y_below_horizon[0] * h)
+    high = np.minimum(limits.y[1] * height, limits.horizon * height + limits.y_below_horizon[1] * h)
+    return (low + (high - low) * chance).astype(np.float32)
 
 
 def _between(limits: tuple[float, float], chance: Floats) -> Floats:

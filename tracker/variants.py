@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tracker.config import (
     BoxConfig,
     ContourConfig,
@@ -26,22 +28,24 @@ PAPER = TrackerConfig(
 )
 """The evaluation paper: equations 3 and 4, the best 30 %, 10 % anew, three frames to detect."""
 
+_LIMITS = LimitsConfig(ratio_wh=(0.22, 0.62), ratio_dw=(-0.5, 0.5), y=(0.1, 0.8), h=(0.05, 0.5))
+
 PEOPLEBOY = TrackerConfig(
     contour=ContourConfig(
         points=5,
         reach_px=0.0,
-        body_reach=0.2,
-        head_reach=0.35,
+        body_reach=(0.2,),
+        head_reach=(0.35,),
         far_head_reach=1.2,
         saturation_grey=18.0,
         side_end_deg=140.0,
         cold_response=-0.3,
-        feet_weight=0.1,
-        unseen_response=0.3,
+        feet_weight=0.15,
+        unseen_response=0.1,
         hottest_grey=250,
+        hot_margin_px=2,
     ),
-    limits=LimitsConfig(ratio_wh=(0.22, 0.62), ratio_dw=(-0.5, 0.5), y=(0.0, 1.0), h=(0.05, 0.5)),
-    likelihood=LikelihoodConfig(slope=6.0, threshold=0.55, sharpness=20.0),
+    likelihood=LikelihoodConfig(slope=6.0, threshold=0.5, weakest_share=0.25, sharpness=20.0),
     motion=MotionConfig(
         noise_x=30.0,
         noise_y=15.0,
@@ -53,9 +57,15 @@ PEOPLEBOY = TrackerConfig(
         size_memory=0.5,
         uses_odometry=True,
     ),
-    detector=FilterConfig(fresh_share=0.5, log_uniform_h=True, estimate_share=0.3, estimate_reach=0.7),
-    person=FilterConfig(fresh_share=0.0, estimate_share=0.3),
-    life=LifeConfig(birth_confidence=0.6, birth_frames=3, death_confidence=0.3, death_frames=5),
+    detector=FilterConfig(
+        fresh_share=0.5,
+        limits=replace(_LIMITS, y_below_horizon=(-0.1, 0.9)),
+        log_uniform_h=True,
+        estimate_share=0.3,
+        estimate_reach=0.7,
+    ),
+    person=FilterConfig(fresh_share=0.0, limits=_LIMITS, estimate_share=0.3),
+    life=LifeConfig(birth_confidence=0.6, birth_frames=3, death_confidence=0.3, death_frames=5, uncertainty_px2=100.0),
     smoothing=SmoothingConfig(place_s=0.05, size_s=0.2),
 )
 """What works: the default."""
