@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bad_input import BadInput
+from sim.bounds import FAR_M, NEAR_M
 from sim.camera import Camera, Matrix
 from sim.opengl import metric_depth, projection_matrix, view_matrix
 from sim.quiet import quiet
@@ -26,10 +27,6 @@ except ImportError as error:
     raise BadInput(
         "pybullet is not installed: its wheels are for Linux and Python 3.10 or 3.11; use Python 3.11"
     ) from error
-
-# The planes between which both renderers draw [m].
-NEAR_M = 0.05
-FAR_M = 100.0
 
 GRAVITY_M_S2 = 9.81
 _SHAPES_A_BODY = 16  # PyBullet drops whatever a createVisualShapeArray call holds beyond these
