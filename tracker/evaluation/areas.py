@@ -55,7 +55,11 @@ class AreaSums(Sums):
 
     @property
     def accuracy(self) -> float:
-        """Mean over frames, weighted by their boxes, of the Dice coefficient of the areas [%]."""
+        """Mean over frames, weighted by their boxes, of the Dice coefficient of the areas [%].
+
+        A false alarm lowers the coefficient of its frame, but raises the frame's weight: with a small one in
+        a good frame, the mean can rise.
+        """
         return percent(self.of_both, self.targets + self.candidates)
 
 

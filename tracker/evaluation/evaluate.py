@@ -117,9 +117,10 @@ def combine(sequences: Sequence[Scores]) -> Scores:
 
 def _length(truth: Truth, tracks: Tracks, frames: int | None) -> int:
     """Give the number of frames, which no row may exceed."""
-    last = max(truth.last_frame, tracks.last_frame)
     if frames is None:
-        return last
+        return max(truth.last_frame, tracks.last_frame)
+    if frames < 0:
+        raise BadInput(f"frames must be 0 or more, got {frames}")
     for name, seen in (("truth", truth.last_frame), ("tracks", tracks.last_frame)):
         if seen > frames:
             raise BadInput(f"{name}: frame must be at most {frames}, the length of the sequence, got {seen}")

@@ -37,6 +37,10 @@ class Hota(Sums):
     matches: Ints
     association: Floats
 
+    def __post_init__(self) -> None:
+        self.matches.setflags(write=False)
+        self.association.setflags(write=False)
+
     @classmethod
     def over(cls, truth: Truth, tracks: Tracks, pairs: Pairs) -> Self:
         """Match one sequence at all thresholds."""

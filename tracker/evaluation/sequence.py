@@ -116,7 +116,7 @@ def find_fault(columns: Mapping[str, Floats]) -> tuple[int, str] | None:
     if not broken:
         return None
     row, rule, name = min(broken, key=lambda fault: fault[0])
-    value = ", ".join(f"{number:g}" for number in np.atleast_1d(columns[name][row]))
+    value = ", ".join(f"{number:.15g}" for number in np.atleast_1d(columns[name][row]))
     return row, f"{rule}, got {value}"
 
 

@@ -1,0 +1,139 @@
+import json
+import math
+import subprocess
+import sys
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from random_sequences import sequences, tracks_of, truth_of
+
+from bad_input import BadInput
+from tracker.evaluation.evaluate import combine, evaluate
+from tracker.evaluation.sequence import Tracks, Truth
+from tracker.evaluation.table import FIGURES, rows, spread, to_json
+
+PERSON, FAR = (0, 0, 20, 60), (100, 0, 8, 20)
+TRUTH = truth_of([(1, 1, *PERSON), (2, 1, *PERSON), (1, 2, *FAR)], [True, True, False])
+TRACKS = tracks_of([(1, 5, *PERSON), (2, 5, *PERSON), (1, 6, *FAR), (2, 7, 200, 0, 20, 60)])
+
+
+def test_counts_match_those_worked_by_hand():
+    counts = evaluate(TRUTH, TRACKS).counts
+    assert (counts.frames, counts.targets, counts.candidates, counts.ignored) == (2, 2, 3, 1)
+    assert (counts.matches, counts.misses, counts.false_alarms) == (2, 0, 1)
+    assert (counts.tracks, counts.false_tracks) == (3, 1)
+
+
+def test_taking_uncounted_people_for_absent_makes_boxes_on_them_false_alarms():
+    ignore, absent = evaluate(TRUTH, TRACKS), evaluate(TRUTH, TRACKS, uncounted="absent")
+    assert ignore.thesis.cp == pytest.approx(100 * 2 / 3)
+    assert absent.thesis.cp == pytest.approx(100 * 2 / 4)
+    assert absent.thesis.cr == ignore.thesis.cr == 100.0
+    assert absent.counts.false_tracks == 2
+
+
+def test_a_track_of_uncounted_people_only_is_not_a_false_track():
+    scores = evaluate(truth_of([(1, 1, *FAR)], False), tracks_of([(1, 1, *FAR)]))
+    assert (scores.counts.candidates, scores.counts.false_tracks) == (0, 0)
+
+
+def test_candidates_after_the_last_person_are_false_alarms():
+    scores = evaluate(truth_of([(1, 1, *PERSON)]), tracks_of([(1, 1, *PERSON), (9, 1, *PERSON)]))
+    assert (scores.counts.frames, scores.counts.false_alarms) == (9, 1)
+
+
+def test_the_length_of_the_sequence_is_taken_over_and_changes_nothing_else():
+    told = evaluate(TRUTH, TRACKS, frames=50)
+    assert told.counts.frames == 50
+    assert to_json(told)["thesis"] == to_json(evaluate(TRUTH, TRACKS))["thesis"]
+
+
+@pytest.mark.parametrize(
+    ("truth_frame", "tracks_frame", "says"), [(3, 1, "truth: frame"), (1, 3, "tracks: frame")]
+)
+def test_rows_beyond_the_length_of_the_sequence_are_refused(truth_frame, tracks_frame, says):
+    truth, tracks = truth_of([(truth_frame, 1, *PERSON)]), tracks_of([(tracks_frame, 1, *PERSON)])
+    with pytest.raises(BadInput, match=f"{says} must be at most 2, .* got 3"):
+        evaluate(truth, tracks, frames=2)
+
+
+def test_a_sequence_of_no_frames_holds_nobody_and_one_of_fewer_is_refused():
+    nobody = truth_of([]), tracks_of([])
+    assert evaluate(*nobody, frames=0).counts.frames == 0
+    with pytest.raises(BadInput, match="frames must be 0 or more, got -1"):
+        evaluate(*nobody, frames=-1)
+
+
+def joined(many: list[tuple[Truth, Tracks]]) -> tuple[Truth, Tracks]:
+    """Put sequences one after another, with names of their own."""
+
+    def column(part: int, name: str, step: int = 0) -> np.ndarray:
+        return np.concatenate([getattr(one[part], name) + step * i for i, one in enumerate(many)])
+
+    shared = [
+        {"frame": column(part, "frame", 100), "id": column(part, "id", 1000), "box": column(part, "box")}
+        for part in (0, 1)
+    ]
+    counted = np.concatenate([truth.counted for truth, _ in many])
+    truth = Truth(**shared[0], counted=counted, visible=column(0, "visible"))
+    return truth, Tracks(**shared[1], confidence=column(1, "confidence"))
+
+
+@given(st.lists(sequences(), min_size=1, max_size=3))
+def test_combined_scores_are_those_of_the_joined_sequences(many):
+    combined = to_json(combine([evaluate(*one) for one in many]))
+    whole = to_json(evaluate(*joined(many)))
+    for group in ("thesis", "paper"):
+        for name, value in whole[group].items():
+            assert combined[group][name] == pytest.approx(value)
+    for name in ("targets", "candidates", "ignored", "matches", "false_tracks"):
+        assert combined["counts"][name] == whole["counts"][name]
+
+
+def test_combining_nothing_is_refused():
+    with pytest.raises(BadInput, match="at least one"):
+        combine([])
+
+
+@given(sequences())
+def test_every_figure_is_printed_explained_and_fit_for_json(sequence):
+    scores = evaluate(*sequence)
+    printed = rows(scores)
+    assert len({row.figure.name for row in printed}) == len(printed) == len(FIGURES)
+    for row in printed:
+        assert row.figure.unit in ("", "%")
+        assert row.figure.meaning.endswith(".")
+        assert isinstance(row.value, int if row.figure.unit == "" else float)
+        assert math.isnan(row.value) or row.value <= 100.0 or row.figure.unit == ""
+    stored = json.loads(json.dumps(to_json(scores), allow_nan=False))
+    assert list(stored) == ["thesis", "paper", "mot", "counts"]
+
+
+def test_the_spread_leaves_out_sequences_in_which_a_figure_is_undefined():
+    found, missed = evaluate(TRUTH, TRACKS), evaluate(TRUTH, tracks_of([]))
+    by_name = {row.figure.name: row for row in spread([found, missed])}
+    assert (by_name["CR"].mean, by_name["CR"].sequences) == (50.0, 2)
+    assert by_name["CR"].sd == pytest.approx(math.sqrt(2 * 50.0**2))
+    assert (by_name["CP"].mean, by_name["CP"].sequences) == (found.thesis.cp, 1)
+    assert math.isnan(by_name["CP"].sd)
+
+
+@given(sequences())
+def test_the_same_input_gives_the_same_scores(sequence):
+    assert to_json(evaluate(*sequence)) == to_json(evaluate(*sequence))
+
+
+def test_scores_hold_plain_numbers():
+    assert all(type(value) is int for value in asdict(evaluate(TRUTH, TRACKS).counts).values())
+
+
+def test_evaluation_needs_neither_simulator_nor_numba_nor_opencv():
+    code = (
+        "import sys, tracker.evaluation.table, tracker.evaluation.mot_files;"
+        "print(sorted({'pybullet', 'numba', 'cv2', 'trackeval'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
