@@ -53,8 +53,7 @@ class EventLog:
 
     def _look_at(self, person: PersonTruth) -> list[tuple[str, str, str]]:
         name = person.name
-        is_inside = person.whole_px > 0 and person.hidden_by.get("border", 0.0) < 1.0
-        if not is_inside:
+        if not person.is_in_image:
             return self._leave(name) if name in self._in_view else []
         found = []
         if name not in self._in_view:

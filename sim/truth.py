@@ -74,6 +74,11 @@ class PersonTruth:
     joint_is_visible: NDArray[np.bool_]
 
     @property
+    def is_in_image(self) -> bool:
+        """Whether any of the silhouette lies inside the image, hidden or not."""
+        return self.whole_px > 0 and self.hidden_by.get(BORDER, 0.0) < 1.0
+
+    @property
     def occluded_fraction(self) -> float:
         """Share of the silhouette inside the image that others hide; 1 when none of it is in the image."""
         inside = 1.0 - self.hidden_by.get(BORDER, 0.0)

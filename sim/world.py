@@ -1,4 +1,4 @@
-"""The whole simulated world: it takes velocity commands and gives observations, with the truth beside them."""
+"""The simulated world: it takes velocity commands and gives observations, with the truth beside them."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ class World:
         looks |= self._crowd.looks
         keys = bullet.parts()
         part_looks = [robot_look(key.link_name) if key.name == ROBOT else looks[key.name] for key in keys]
-        self._table = make_shape_table(bullet)
+        self._table = make_shape_table(bullet.visual_shapes())
         self._looks = make_look_table(part_looks, stream(config.seed, "surface.variation"))
         self._truth_maker = TruthMaker(
             keys, self._table, self._crowd, part_looks, config.robot.thermal.camera

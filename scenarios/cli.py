@@ -1,0 +1,190 @@
+"""The command line: `peopleboy`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from bad_input import BadInput
+from scenarios.show_scores import print_following, print_scores, print_spread
+
+BAD_INPUT = 2
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(package_name="peopleboy")
+def cli() -> None:
+    """Scripted people, a robot with thermal and colour cameras, and a tracker that sees only the images."""
+
+
+@cli.command("list")
+def list_command() -> None:
+    """List the scenarios of the library."""
+    from scenarios.load import library
+
+    for name, description in library().items():
+        click.echo(f"{name:20} {description}")
+
+
+@cli.command()
+@click.argument("scenario")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="What is drawn follows from it."
+)
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Picture to write.  [default: SCENARIO-plan.png]"
+)
+def show(scenario: str, seed: int, out: Path | None) -> None:
+    """Draw the plan of a scenario, with paths and times."""
+    from scenarios.load import load_scenario
+    from scenarios.plan import draw_plan
+
+    loaded = load_scenario(scenario)
+    path = out if out is not None else Path(f"{loaded.name}-plan.png")
+    draw_plan(loaded, seed, path)
+    click.echo(path)
+
+
+@cli.command()
+def schema() -> None:
+    """Print the JSON schema of scenario files, for editors."""
+    import json
+
+    from scenarios.schema import json_schema
+
+    click.echo(json.dumps(json_schema(), indent=2))
+
+
+@cli.command()
+@click.argument("scenario")
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="All that is random follows from it.",
+)
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder of the run.  [default: runs/SCENARIO-SEED]"
+)
+@click.option("--frames", is_flag=True, help="Write every thermal and colour image as PNG too.")
+@click.option("--tracker", default="peopleboy", show_default=True, help="peopleboy, thesis or paper.")
+@click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
+@click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
+@click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
+def run(
+    scenario: str,
+    seed: int,
+    out: Path | None,
+    frames: bool,
+    tracker: str,
+    renderer: str,
+    no_rrd: bool,
+    overwrite: bool,
+) -> None:
+    """Run a scenario headless, and leave a folder with truth, tracks, scores and a recording.
+
+    SCENARIO is a name from `peopleboy list` or the path of a YAML file.
+    """
+    from scenarios.load import load_scenario
+    from scenarios.progress import run_with_progress
+    from scenarios.run import RunOptions
+
+    loaded = load_scenario(scenario)
+    options = RunOptions(
+        seed=seed,
+        out=out if out is not None else Path("runs") / f"{loaded.name}-{seed}",
+        frames=frames,
+        tracker=tracker,
+        renderer=renderer,
+        record=not no_rrd,
+        overwrite=overwrite,
+    )
+    scores = run_with_progress(loaded, options)
+    print_scores(scores.people)
+    if scores.following is not None:
+        print_following(scores.following)
+    for path in sorted(options.out.iterdir()):
+        click.echo(path)
+
+
+@cli.command()
+@click.argument("runs", nargs=-1, type=click.Path(path_type=Path))
+@click.option(
+    "--truth", type=click.Path(path_type=Path), help="MOTChallenge truth, such as RUN/truth/gt.txt."
+)
+@click.option(
+    "--tracks", type=click.Path(path_type=Path), help="MOTChallenge results, such as RUN/tracks.txt."
+)
+def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None) -> None:
+    """Score tracks against truth: one pair of files, or the folders of any number of runs.
+
+    Several runs give mean and standard deviation over them, beside the figure of all their frames.
+    """
+    from scenarios.evaluate_runs import evaluate_files, evaluate_runs
+
+    if bool(runs) == (truth is not None or tracks is not None):
+        raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
+    if runs:
+        print_spread(evaluate_runs(runs))
+    elif truth is None or tracks is None:
+        raise BadInput("evaluate: --truth and --tracks go together")
+    else:
+        print_scores(evaluate_files(truth, tracks))
+
+
+@cli.command()
+@click.argument("scenario")
+@click.option(
+    "--seeds", type=click.IntRange(min=1), default=10, show_default=True, help="How many, from 0 on."
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("runs"),
+    show_default=True,
+    help="Where the runs' folders go.",
+)
+@click.option("--tracker", default="peopleboy", show_default=True, help="peopleboy, thesis or paper.")
+@click.option(
+    "--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Runs at the same time."
+)
+@click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
+def sweep(scenario: str, seeds: int, out: Path, tracker: str, jobs: int, overwrite: bool) -> None:
+    """Run a scenario with many seeds, without recordings, and score them together."""
+    from scenarios.evaluate_runs import evaluate_runs
+    from scenarios.sweep import run_seeds
+
+    folders = run_seeds(scenario, range(seeds), out, tracker, jobs, overwrite=overwrite)
+    print_spread(evaluate_runs(folders))
+
+
+@cli.command()
+@click.argument("folder", metavar="RUN", type=click.Path(path_type=Path))
+def view(folder: Path) -> None:
+    """Open the recording of a run in the rerun viewer."""
+    from scenarios.record import open_viewer
+
+    open_viewer(folder / "recording.rrd")
+
+
+def main(arguments: Sequence[str] | None = None) -> Any:
+    """Run the command line; a user's mistake is one line on standard error and exit code 2."""
+    try:
+        code = cli.main(args=arguments, prog_name="peopleboy", standalone_mode=False)
+    except click.ClickException as error:
+        code = _complain(error.format_message())
+    except click.Abort:
+        code = 130
+    except BadInput as error:
+        code = _complain(str(error))
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _complain(message: str) -> int:
+    click.echo(f"peopleboy: {' '.join(message.split())}", err=True)
+    return BAD_INPUT

@@ -1,0 +1,47 @@
+"""Scores of finished runs, from the files in their folders."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from bad_input import BadInput
+from tracker.evaluation.evaluate import Scores, evaluate
+from tracker.evaluation.mot_files import read_tracks, read_truth
+
+
+def evaluate_files(truth: Path, tracks: Path, frames: int | None = None) -> Scores:
+    """Score one pair of MOTChallenge files."""
+    return evaluate(read_truth(truth), read_tracks(tracks), frames=frames)
+
+
+def evaluate_runs(folders: Sequence[Path]) -> list[Scores]:
+    """Score the runs in these folders, one by one.
+
+    Raises:
+        BadInput: a folder holds no run, or one that was cut off.
+    """
+    return [
+        evaluate_files(folder / "truth" / "gt.txt", folder / "tracks.txt", read_run(folder)["frames"])
+        for folder in folders
+    ]
+
+
+def read_run(folder: Path) -> dict[str, Any]:
+    """Read what run.json says of a complete run.
+
+    Raises:
+        BadInput: there is no run, or it is not complete.
+    """
+    path = folder / "run.json"
+    try:
+        about = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read as a run; give the folder of a finished run") from error
+    if not isinstance(about, dict) or about.get("status") != "complete":
+        raise BadInput(
+            f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
+        )
+    return about

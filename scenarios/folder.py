@@ -1,0 +1,150 @@
+"""A run's folder: every file that a run leaves, written so that a cut-off run says so and stays readable."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TextIO
+
+import cv2
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from bad_input import BadInput
+from scenarios.loop import Tick
+from scenarios.tables import ROBOT, TRACKS, TRUTH, Row, robot_row, track_rows, truth_rows, write_table
+from sim.thermal import encode_16bit
+from tracker.track import Status
+
+_IMAGES = ("thermal", "thermal16", "colour")
+_VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet", "scipy")
+
+
+class RunFolder:
+    """Writes one run; use it as a context manager.
+
+    `run.json` says "running" from the first moment on, "complete" after `complete`, and "cut off" when the
+    block is left by an error or an interrupt. The text files grow line by line, the tables are written at
+    the end, also of a run that was cut off.
+    """
+
+    def __init__(
+        self, path: Path, scenario: Mapping[str, Any], about: Mapping[str, Any], *, frames: bool
+    ) -> None:
+        self.path = path
+        self._about = dict(about) | {"versions": {name: version(name) for name in _VERSIONED}}
+        self._writes_frames = frames
+        self._truth: list[Row] = []
+        self._tracks: list[Row] = []
+        self._robot: list[Row] = []
+        self._is_complete = False
+        self._write_json("run.json", {"status": "running", **self._about})
+        (path / "scenario.yaml").write_text(
+            yaml.safe_dump(dict(scenario), sort_keys=False, allow_unicode=True), encoding="utf-8"
+        )
+        for name in ("truth", *(_IMAGES if frames else ())):
+            (path / name).mkdir()
+        self._gt = self._open("truth/gt.txt")
+        self._results = self._open("tracks.txt")
+        self._events = self._open("events.jsonl")
+
+    def __enter__(self) -> RunFolder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for file in (self._gt, self._results, self._events):
+            file.close()
+        write_table(self.path / "truth.parquet", self._truth, TRUTH)
+        write_table(self.path / "tracks.parquet", self._tracks, TRACKS)
+        write_table(self.path / "robot.parquet", self._robot, ROBOT)
+        status = "complete" if self._is_complete and kind is None else "cut off"
+        self._write_json("run.json", {"status": status, "frames": len(self._robot), **self._about})
+
+    def write(self, tick: Tick, events: Sequence[Mapping[str, Any]]) -> None:
+        """Write one tick and what happened at it."""
+        self._truth += truth_rows(tick)
+        self._tracks += track_rows(tick)
+        self._robot.append(robot_row(tick))
+        self._gt.writelines(gt_lines(tick))
+        self._results.writelines(result_lines(tick))
+        self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
+        if self._writes_frames:
+            self._write_images(tick)
+
+    def complete(self, metrics: Mapping[str, Any]) -> None:
+        """Write the metrics; the run is whole."""
+        self._write_json("metrics.json", metrics)
+        self._is_complete = True
+
+    def flush(self) -> None:
+        """Bring the text files to disk, so that they can be read while the run goes on."""
+        for file in (self._gt, self._results, self._events):
+            file.flush()
+
+    def _write_images(self, tick: Tick) -> None:
+        name = f"{tick.frame:06d}.png"
+        senses = tick.observation
+        _write_png(self.path / "thermal" / name, senses.thermal)
+        _write_png(self.path / "thermal16" / name, encode_16bit(senses.thermal_c))
+        _write_png(self.path / "colour" / name, cv2.cvtColor(senses.colour, cv2.COLOR_RGB2BGR))
+
+    def _open(self, name: str) -> TextIO:
+        return (self.path / name).open("w", encoding="utf-8", newline="\n")
+
+    def _write_json(self, name: str, content: Mapping[str, Any]) -> None:
+        (self.path / name).write_text(json.dumps(dict(content), indent=2) + "\n", encoding="utf-8")
+
+
+def claim_folder(path: Path, *, overwrite: bool) -> None:
+    """Make the folder of a new run.
+
+    Raises:
+        BadInput: there is something at this path that must not be replaced, or the folder cannot be written.
+    """
+    try:
+        if path.exists() and (not path.is_dir() or any(path.iterdir())):
+            if not overwrite:
+                raise BadInput(
+                    f"{path}: exists already; give --overwrite to replace this run, or another --out"
+                )
+            if not (path / "run.json").is_file():
+                raise BadInput(f"{path}: is no run's folder and will not be replaced; give another --out")
+            shutil.rmtree(path)
+        path.mkdir(parents=True, exist_ok=True)
+        (path / "run.json").touch()
+    except OSError as error:
+        raise BadInput(f"{path}: cannot write here: {error.strerror}; give another --out") from error
+
+
+def gt_lines(tick: Tick) -> list[str]:
+    """MOTChallenge truth of everybody whose silhouette reaches into the image: one line a person."""
+    return [
+        f"{tick.frame},{person.id},{_box(person.box)},{person.is_counted:d},1,{person.visible_fraction:.4f}\n"
+        for person in tick.truth.people
+        if person.box is not None and person.is_in_image
+    ]
+
+
+def result_lines(tick: Tick) -> list[str]:
+    """MOTChallenge results: one line per confirmed track."""
+    return [
+        f"{tick.frame},{track.id},{_box(track.box)},{track.confidence:.4f},-1,-1,-1\n"
+        for track in tick.tracks
+        if track.status is not Status.TENTATIVE
+    ]
+
+
+def _box(box: tuple[float, float, float, float]) -> str:
+    return ",".join(f"{edge:z.2f}" for edge in box)
+
+
+def _write_png(path: Path, image: NDArray[np.generic]) -> None:
+    if not cv2.imwrite(str(path), image, [cv2.IMWRITE_PNG_COMPRESSION, 2]):
+        raise BadInput(f"{path}: cannot write this image; is the disk full?")

@@ -1,0 +1,85 @@
+"""One run: build the world of a scenario, close the loop, and leave a folder behind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from bad_input import BadInput
+from scenarios.folder import RunFolder, claim_folder
+from scenarios.loop import Tick, closed_loop
+from scenarios.schema import Scenario
+from scenarios.score import RunScores, score_run
+from scenarios.watchers import Watchers
+from sim.random_streams import stream
+from sim.world import World
+from tracker.people import make_tracker
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """How to run a scenario.
+
+    Attributes:
+        seed: 0 or more; everything random follows from it.
+        out: the run's folder.
+        frames: whether to write every image.
+        tracker: name of the tracker.
+        renderer: "raycast" or "bullet".
+        record: whether to write recording.rrd.
+        overwrite: whether an earlier run in that folder may be replaced.
+    """
+
+    seed: int
+    out: Path
+    frames: bool = False
+    tracker: str = "peopleboy"
+    renderer: str = "raycast"
+    record: bool = True
+    overwrite: bool = False
+
+
+def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick], None]) -> RunScores:
+    """Run a scenario from start to end and write its folder.
+
+    Args:
+        scenario: what to run.
+        options: how.
+        report: called after every tick, such as by a progress bar.
+
+    Raises:
+        BadInput: an option cannot be used; nothing is written then.
+    """
+    if options.seed < 0:
+        raise BadInput(f"--seed {options.seed}: must be 0 or more")
+    tracker = make_tracker(options.tracker, stream(options.seed, "tracker"))
+    config = scenario.world(options.seed, options.renderer)
+    about = {
+        "scenario": scenario.name,
+        "seed": options.seed,
+        "tracker": options.tracker,
+        "renderer": options.renderer,
+        "rate_hz": config.control_hz,
+    }
+    with ExitStack() as stack:
+        world = stack.enter_context(World(config))
+        claim_folder(options.out, overwrite=options.overwrite)
+        folder = stack.enter_context(
+            RunFolder(options.out, scenario.resolved(options.seed), about, frames=options.frames)
+        )
+        title = f"{scenario.name}, seed {options.seed}, tracker {options.tracker}"
+        recording = options.out / "recording.rrd" if options.record else None
+        watchers = Watchers(stack, config, title, recording)
+        frames = round(scenario.duration_s * config.control_hz)
+        for tick in closed_loop(world, tracker, scenario.make_behaviour(), frames):
+            events = watchers.update(tick)
+            folder.write(tick, [event.to_json() for event in events])
+            report(tick)
+        folder.flush()
+        follows = scenario.robot.behaviour == "follow_person"
+        scores = score_run(options.out, frames, watchers.following.score() if follows else None)
+        watchers.save(options.out)
+        folder.complete(scores.to_json())
+    return scores

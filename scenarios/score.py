@@ -1,0 +1,77 @@
+"""The scores of a run: how well people were found, and how well one was followed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenarios.following_metrics import FollowingScore, score_following
+from scenarios.loop import Tick
+from tracker.evaluation.boxes import iou
+from tracker.evaluation.evaluate import Scores, evaluate
+from tracker.evaluation.mot_files import read_tracks, read_truth
+from tracker.evaluation.table import to_json
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RunScores:
+    """Scores of one run.
+
+    Attributes:
+        people: detection, localisation and identity; from the files of the run.
+        following: of the first person in the scenario; None if the robot was not to follow anybody.
+    """
+
+    people: Scores
+    following: FollowingScore | None
+
+    def to_json(self) -> dict[str, Any]:
+        """Give all figures as JSON can hold them: None for what is undefined."""
+        groups: dict[str, Any] = dict(to_json(self.people))
+        if self.following is not None:
+            groups["following"] = {
+                name: None if isinstance(value, float) and math.isnan(value) else value
+                for name, value in asdict(self.following).items()
+            }
+        return groups
+
+
+class FollowingLog:
+    """Keeps what the scores of following need, tick by tick."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[float, ...]] = []
+
+    def add(self, tick: Tick) -> None:
+        """Take in one tick; the person followed is the scenario's first."""
+        truth = tick.truth
+        target = next((person for person in truth.people if person.id == 1), None)
+        position = (math.nan, math.nan) if target is None else target.position_m
+        boxes = np.array([track.box for track in tick.tracks if track.status != "tentative"]).reshape(-1, 4)
+        has_box = target is not None and target.box is not None and len(boxes) > 0
+        is_tracked = has_box and bool(iou(np.array([target.box]), boxes).max() > 0.5)  # type: ignore[union-attr]
+        robot = truth.robot
+        self._rows.append(
+            (truth.time_s, robot.x, robot.y, robot.heading, *position, is_tracked, bool(truth.contacts))
+        )
+
+    def score(self) -> FollowingScore:
+        """Score the run so far."""
+        table = np.array(self._rows, dtype=np.float64)
+        return score_following(
+            time_s=table[:, 0],
+            robot=table[:, 1:4],
+            person=table[:, 4:6],
+            is_tracked=table[:, 6] > 0.0,
+            is_contact=table[:, 7] > 0.0,
+        )
+
+
+def score_run(folder: Path, frames: int, following: FollowingScore | None) -> RunScores:
+    """Score a run from the truth and tracks in its folder."""
+    truth, tracks = read_truth(folder / "truth" / "gt.txt"), read_tracks(folder / "tracks.txt")
+    return RunScores(evaluate(truth, tracks, frames=frames), following)

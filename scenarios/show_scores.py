@@ -1,0 +1,62 @@
+"""Tables of scores for the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.table import Table
+
+from scenarios.following_metrics import FollowingScore
+from tracker.evaluation.evaluate import Scores, combine
+from tracker.evaluation.table import rows, spread
+
+
+def print_scores(scores: Scores) -> None:
+    """Print every figure of one run, or of several taken together."""
+    table = _table("people", "figure", "value", "meaning")
+    for row in rows(scores):
+        table.add_row(row.figure.name, _number(row.value, row.figure.unit), row.figure.meaning)
+    _print(table)
+
+
+def print_following(score: FollowingScore) -> None:
+    """Print how well one person was followed."""
+    table = _table("following", "figure", "value", "meaning")
+    for name, value, unit, meaning in score.rows():
+        table.add_row(name, _number(value, unit), meaning)
+    _print(table)
+
+
+def print_spread(sequences: Sequence[Scores]) -> None:
+    """Print every figure over several runs: of all frames together, and mean and deviation over runs."""
+    table = _table(
+        f"people, {len(sequences)} runs", "figure", "all frames", "mean of runs", "deviation", "meaning"
+    )
+    together = rows(combine(sequences))
+    for row, over in zip(together, spread(sequences), strict=True):
+        unit = row.figure.unit
+        numbers = [_number(value, unit) for value in (row.value, over.mean, over.sd)]
+        table.add_row(row.figure.name, *numbers, row.figure.meaning)
+    _print(table)
+
+
+def _table(title: str, *columns: str) -> Table:
+    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    for column in columns:
+        table.add_column(column, justify="left" if column in ("figure", "meaning") else "right")
+    return table
+
+
+def _number(value: float, unit: str) -> str:
+    if math.isnan(value):
+        return "-"
+    digits = 2 if unit else 0 if value == int(value) else 2
+    return f"{value:.{digits}f} {unit}".rstrip()
+
+
+def _print(table: Table) -> None:
+    console = Console()
+    console.print(table)
+    console.print()

@@ -1,0 +1,38 @@
+"""Everything that looks on while a run goes: event log, scores of following, contact sheet, recording."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+
+from scenarios.contact_sheet import ContactSheet
+from scenarios.loop import Tick
+from scenarios.record import Recorder
+from scenarios.run_events import LogLine, RunEvents
+from scenarios.score import FollowingLog
+from sim.config import WorldConfig
+
+
+class Watchers:
+    """Hands each tick to all who look on."""
+
+    def __init__(self, stack: ExitStack, config: WorldConfig, title: str, recording: Path | None) -> None:
+        self.following = FollowingLog()
+        self._events = RunEvents()
+        self._sheet = ContactSheet(title)
+        self._recorder = (
+            None if recording is None else stack.enter_context(Recorder(recording, config, title=title))
+        )
+
+    def update(self, tick: Tick) -> list[LogLine]:
+        """Look at one tick and return what happened at it."""
+        events = self._events.update(tick)
+        self.following.add(tick)
+        self._sheet.add(tick, events)
+        if self._recorder is not None:
+            self._recorder.log(tick, events)
+        return events
+
+    def save(self, folder: Path) -> None:
+        """Save what is drawn at the end."""
+        self._sheet.save(folder / "contact_sheet.png")
