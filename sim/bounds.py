@@ -14,13 +14,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from sim.shapes import ShapeKind
+from sim.vectors import Point, map_point
 
 # The planes between which renderers draw [m].
 NEAR_M = 0.05
 FAR_M = 100.0
 
 Bounds = tuple[float, float, float, float]
-Point = tuple[float, float, float]
 Array = NDArray[np.float64]
 
 EMPTY: Bounds = (math.inf, math.inf, -math.inf, -math.inf)
@@ -33,16 +33,6 @@ _BOX = int(ShapeKind.BOX)
 _PLANE = int(ShapeKind.PLANE)
 # Spheres that stand for a capsule which reaches through the near plane.
 _BEADS = 16
-
-
-@njit(cache=True)
-def map_point(pose: Array, x: float, y: float, z: float) -> Point:
-    """Map one point by a pose."""
-    return (
-        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z + pose[0, 3],
-        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3],
-        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z + pose[2, 3],
-    )
 
 
 @njit(cache=True)

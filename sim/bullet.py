@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -13,10 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from bad_input import BadInput
 from sim.bounds import FAR_M, NEAR_M
+from sim.bullet_shapes import shape_arguments, visual_shape
 from sim.camera import Camera, Matrix
 from sim.opengl import metric_depth, projection_matrix, view_matrix
 from sim.quiet import quiet
 from sim.rotations import pose_matrices
+from sim.shape_table import VisualShape
 from sim.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 try:
@@ -37,16 +40,6 @@ _STATIC_MASK = -3  # collides with everything but other static bodies
 _FIRST_FREE_GROUP = 6
 _LAST_GROUP = 30
 
-_GEOMETRY = {
-    ShapeKind.SPHERE: pybullet.GEOM_SPHERE,
-    ShapeKind.CAPSULE: pybullet.GEOM_CAPSULE,
-    ShapeKind.CYLINDER: pybullet.GEOM_CYLINDER,
-    ShapeKind.BOX: pybullet.GEOM_BOX,
-    ShapeKind.PLANE: pybullet.GEOM_PLANE,
-    ShapeKind.MESH: pybullet.GEOM_MESH,
-}
-_KIND = {geometry: kind for kind, geometry in _GEOMETRY.items()}
-
 
 @dataclass(frozen=True, slots=True)
 class PartKey:
@@ -55,23 +48,6 @@ class PartKey:
     name: str
     link: int
     link_name: str
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class VisualShape:
-    """One visible shape as PyBullet reports it.
-
-    Attributes:
-        part: index into `Bullet.parts()`.
-        kind, size, mesh: as in `Shape`.
-        part_from_shape: (4, 4) pose of the shape in its part's frame.
-    """
-
-    part: int
-    kind: ShapeKind
-    size: Vector
-    part_from_shape: Matrix
-    mesh: Path | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +76,27 @@ class _Body:
     joints: Mapping[str, int]
     base_from_inertia: Place
     moves_by_itself: bool
+    visible_links: Sequence[tuple[int, int]]
     group: int | None = None
     hidden_at: Place | None = None
+
+
+class _Client:
+    """PyBullet's functions, bound to one physics server."""
+
+    def __init__(self) -> None:
+        with quiet():
+            self._number: int | None = pybullet.connect(pybullet.DIRECT)
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        function = partial(getattr(pybullet, name), physicsClientId=self._number)
+        setattr(self, name, function)
+        return function
+
+    def close(self) -> None:
+        if self._number is not None:
+            pybullet.disconnect(physicsClientId=self._number)
+            self._number = None
 
 
 class Bullet:
@@ -113,18 +108,17 @@ class Bullet:
     """
 
     def __init__(self, *, physics_hz: int = 240, gravity: bool = True) -> None:
-        with quiet():
-            self._client: int = pybullet.connect(pybullet.DIRECT)
+        self._client = _Client()
         self._bodies: dict[str, _Body] = {}
         self._names: dict[int, str] = {}
         self._parts: list[PartKey] = []
         self._part_of_link: dict[tuple[int, int], int] = {}
         self._poses = np.zeros((0, 4, 4))
         self._moved: set[str] = set()
-        pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1, physicsClientId=self._client
+        self._client.setPhysicsEngineParameter(
+            fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1
         )
-        pybullet.setGravity(0.0, 0.0, -GRAVITY_M_S2 if gravity else 0.0, physicsClientId=self._client)
+        self._client.setGravity(0.0, 0.0, -GRAVITY_M_S2 if gravity else 0.0)
 
     def __enter__(self) -> Bullet:
         return self
@@ -136,9 +130,7 @@ class Bullet:
 
     def close(self) -> None:
         """Free the world; closing twice is harmless."""
-        if self._client >= 0:
-            pybullet.disconnect(physicsClientId=self._client)
-            self._client = -1
+        self._client.close()
 
     # Bodies
 
@@ -247,20 +239,19 @@ class Bullet:
     ) -> None:
         """Set the friction coefficients of one link, -1 being the base."""
         for body in self._body(name).ids:
-            pybullet.changeDynamics(
+            self._client.changeDynamics(
                 body,
                 link,
                 lateralFriction=lateral,
                 rollingFriction=rolling,
                 spinningFriction=spinning,
-                physicsClientId=self._client,
             )
 
     # Motion
 
     def step(self) -> None:
         """Advance the world by one physics step."""
-        pybullet.stepSimulation(physicsClientId=self._client)
+        self._client.stepSimulation()
         self._moved.update(name for name, body in self._bodies.items() if body.moves_by_itself)
 
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
@@ -269,25 +260,24 @@ class Bullet:
         Zero torque lets the joints run free.
         """
         body = self._body(name)
-        pybullet.setJointMotorControlArray(
+        self._client.setJointMotorControlArray(
             body.ids[0],
             [_joint(name, body, joint) for joint in speeds],
             pybullet.VELOCITY_CONTROL,
             targetVelocities=list(speeds.values()),
             forces=[max_torque_nm] * len(speeds),
-            physicsClientId=self._client,
         )
 
     def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
         """Positions (J,) [rad or m] and speeds (J,) [rad/s or m/s] of the named joints."""
         body = self._body(name)
         numbers = [_joint(name, body, joint) for joint in joints]
-        states = pybullet.getJointStates(body.ids[0], numbers, physicsClientId=self._client)
+        states = self._client.getJointStates(body.ids[0], numbers)
         return np.array([state[0] for state in states]), np.array([state[1] for state in states])
 
     def velocity(self, name: str) -> tuple[Matrix, Matrix]:
         """Linear (3,) [m/s] velocity of the base's centre of mass and angular (3,) [rad/s], world frame."""
-        linear, angular = pybullet.getBaseVelocity(self._body(name).ids[0], physicsClientId=self._client)
+        linear, angular = self._client.getBaseVelocity(self._body(name).ids[0])
         return np.array(linear), np.array(angular)
 
     # Poses and shapes
@@ -314,11 +304,9 @@ class Bullet:
     def visual_shapes(self) -> list[VisualShape]:
         """Every shape that a renderer should draw, read back from PyBullet, in the order of the parts."""
         return [
-            _visual_shape(row, self._part_of_link[row[0], row[1]])
+            visual_shape(row, self._part_of_link[row[0], row[1]])
             for body in self._bodies.values()
-            for number in body.ids
-            for row in pybullet.getVisualShapeData(number, physicsClientId=self._client)
-            if row[7][3] > 0.0
+            for row in self._visual_rows(body.ids)
         ]
 
     # Senses
@@ -339,9 +327,7 @@ class Bullet:
         """
         mask = -1 if ignore is None else ~self._group_of(ignore)
         starts, ends = np.asarray(from_m, np.float64).tolist(), np.asarray(to_m, np.float64).tolist()
-        hits = pybullet.rayTestBatch(
-            starts, ends, numThreads=1, collisionFilterMask=mask, physicsClientId=self._client
-        )
+        hits = self._client.rayTestBatch(starts, ends, numThreads=1, collisionFilterMask=mask)
         fractions = np.array([hit[2] for hit in hits])
         parts = np.array([self._part_of_link.get((hit[0], hit[1]), -1) for hit in hits], np.int64)
         return fractions, parts
@@ -351,14 +337,14 @@ class Bullet:
         return [
             Contact(self._names[row[2]], row[6], row[7], row[9])
             for body in self._body(name).ids
-            for row in pybullet.getContactPoints(bodyA=body, physicsClientId=self._client)
+            for row in self._client.getContactPoints(bodyA=body)
             if self._names[row[2]] != name
         ]
 
     def camera_image(
-        self, camera: Camera, world_from_camera: Matrix
+        self, camera: Camera, world_from_camera: Matrix, only: Collection[str] | None = None
     ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-        """Draw the world with TinyRenderer, without shadows.
+        """Draw the world, or only the bodies of some names, with TinyRenderer, without shadows.
 
         TinyRenderer replaces spheres and capsules by polyhedra of 42 corners and an infinite plane by a large
         square, so that outlines of large round things lie some pixels inside the true ones.
@@ -367,7 +353,9 @@ class Bullet:
             part: (H, W) number of the part seen at each pixel centre, -1 where none.
             depth: (H, W) [m] along the optical axis, inf where none.
         """
-        image = pybullet.getCameraImage(
+        absent = [] if only is None else [body for name, body in self._bodies.items() if name not in only]
+        self._set_opacity(absent, 0.0)
+        image = self._client.getCameraImage(
             camera.width,
             camera.height,
             view_matrix(world_from_camera),
@@ -375,8 +363,8 @@ class Bullet:
             shadow=0,
             flags=pybullet.ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX,
             renderer=pybullet.ER_TINY_RENDERER,
-            physicsClientId=self._client,
         )
+        self._set_opacity(absent, 1.0)
         shape = (camera.height, camera.width)
         part = self._part_numbers(np.reshape(image[4], shape))
         depth = metric_depth(np.reshape(image[3], shape), NEAR_M, FAR_M)
@@ -399,30 +387,24 @@ class Bullet:
         """Make one PyBullet body of at most 16 shapes."""
         try:
             with quiet():
-                visual = pybullet.createVisualShapeArray(
-                    **_shape_arguments(shapes, "visual"),
+                visual = self._client.createVisualShapeArray(
+                    **shape_arguments(shapes, "visual"),
                     # A body without visual shapes is drawn by its collision shapes: transparency prevents it.
                     rgbaColors=[[1.0, 1.0, 1.0, float(visible)]] * len(shapes),
-                    physicsClientId=self._client,
                 )
                 collision = -1
                 if solid:
-                    collision = pybullet.createCollisionShapeArray(
-                        **_shape_arguments(shapes, "collision"), physicsClientId=self._client
-                    )
-                body: int = pybullet.createMultiBody(
-                    0.0, collision, visual, *place, physicsClientId=self._client
-                )
+                    collision = self._client.createCollisionShapeArray(**shape_arguments(shapes, "collision"))
+                body: int = self._client.createMultiBody(0.0, collision, visual, *place)
         except pybullet.error as error:
             raise BadInput(f"body {name!r}: PyBullet refuses its shapes: {error}") from error
         return body
 
     def _register(self, name: str, ids: tuple[int, ...], *, moves_by_itself: bool) -> None:
         joints = [
-            pybullet.getJointInfo(ids[0], link, physicsClientId=self._client)
-            for link in range(pybullet.getNumJoints(ids[0], physicsClientId=self._client))
+            self._client.getJointInfo(ids[0], link) for link in range(self._client.getNumJoints(ids[0]))
         ]
-        base_name = pybullet.getBodyInfo(ids[0], physicsClientId=self._client)[0].decode()
+        base_name = self._client.getBodyInfo(ids[0])[0].decode()
         first = len(self._parts)
         self._parts.append(PartKey(name, -1, base_name))
         self._parts.extend(PartKey(name, joint[0], joint[12].decode()) for joint in joints)
@@ -433,51 +415,46 @@ class Bullet:
             ids=ids,
             parts=range(first, len(self._parts)),
             joints={joint[1].decode(): joint[0] for joint in joints},
-            base_from_inertia=pybullet.getDynamicsInfo(ids[0], -1, physicsClientId=self._client)[3:5],
+            base_from_inertia=self._client.getDynamicsInfo(ids[0], -1)[3:5],
             moves_by_itself=moves_by_itself,
+            visible_links=[(row[0], row[1]) for row in self._visual_rows(ids)],
         )
         self._poses = np.concatenate([self._poses, np.zeros((1 + len(joints), 4, 4))])
         self._moved.add(name)
 
     def _load_urdf(self, file: Path, fixed: bool, scale: float) -> int:
-        body: int = pybullet.loadURDF(
-            str(file), useFixedBase=fixed, globalScaling=scale, physicsClientId=self._client
-        )
+        body: int = self._client.loadURDF(str(file), useFixedBase=fixed, globalScaling=scale)
         return body
 
     def _load_sdf(self, file: Path, fixed: bool, scale: float) -> int:
-        first, *others = pybullet.loadSDF(str(file), globalScaling=scale, physicsClientId=self._client)
+        first, *others = self._client.loadSDF(str(file), globalScaling=scale)
         for other in others:
-            pybullet.removeBody(other, physicsClientId=self._client)
+            self._client.removeBody(other)
         if fixed:
-            pybullet.changeDynamics(first, -1, mass=0.0, physicsClientId=self._client)
+            self._client.changeDynamics(first, -1, mass=0.0)
         number: int = first
         return number
 
     def _place(self, name: str, body: _Body, position: Vector, orientation: Quaternion) -> None:
         if body.base_from_inertia != _HERE:
-            position, orientation = pybullet.multiplyTransforms(
+            position, orientation = self._client.multiplyTransforms(
                 position, orientation, *body.base_from_inertia
             )
         for number in body.ids:
-            pybullet.resetBasePositionAndOrientation(
-                number, position, orientation, physicsClientId=self._client
-            )
+            self._client.resetBasePositionAndOrientation(number, position, orientation)
         self._moved.add(name)
 
     def _base_place(self, body: _Body) -> Place:
-        place: Place = pybullet.getBasePositionAndOrientation(body.ids[0], physicsClientId=self._client)
+        place: Place = self._client.getBasePositionAndOrientation(body.ids[0])
         if body.base_from_inertia == _HERE:
             return place
-        inertia_from_base = pybullet.invertTransform(*body.base_from_inertia)
-        base: Place = pybullet.multiplyTransforms(*place, *inertia_from_base)
+        inertia_from_base = self._client.invertTransform(*body.base_from_inertia)
+        base: Place = self._client.multiplyTransforms(*place, *inertia_from_base)
         return base
 
     def _link_places(self, body: _Body) -> list[Place]:
         links = range(len(body.parts) - 1)
-        states = pybullet.getLinkStates(
-            body.ids[0], links, computeForwardKinematics=1, physicsClientId=self._client
-        )
+        states = self._client.getLinkStates(body.ids[0], links, computeForwardKinematics=1)
         return [state[4:6] for state in states or ()]
 
     def _group_of(self, name: str) -> int:
@@ -491,10 +468,17 @@ class Bullet:
             mask = -1 if body.moves_by_itself else _STATIC_MASK
             for number in body.ids:
                 for link in range(-1, len(body.parts) - 1):
-                    pybullet.setCollisionFilterGroupMask(
-                        number, link, body.group, mask, physicsClientId=self._client
-                    )
+                    self._client.setCollisionFilterGroupMask(number, link, body.group, mask)
         return body.group
+
+    def _visual_rows(self, ids: Sequence[int]) -> list[Sequence[Any]]:
+        rows = [row for number in ids for row in self._client.getVisualShapeData(number)]
+        return [row for row in rows if row[7][3] > 0.0]
+
+    def _set_opacity(self, bodies: Sequence[_Body], alpha: float) -> None:
+        for body in bodies:
+            for number, link in body.visible_links:
+                self._client.changeVisualShape(number, link, rgbaColor=[1.0, 1.0, 1.0, alpha])
 
     def _part_numbers(self, mask: NDArray[Any]) -> NDArray[np.int32]:
         """TinyRenderer's mask of body and link to part numbers."""
@@ -521,29 +505,3 @@ def _joint(name: str, body: _Body, joint: str) -> int:
     if joint not in body.joints:
         raise BadInput(f"body {name!r} has no joint {joint!r}; it has: {', '.join(body.joints) or 'none'}")
     return body.joints[joint]
-
-
-def _shape_arguments(shapes: Sequence[Shape], prefix: str) -> dict[str, list[Any]]:
-    """Arguments of PyBullet's createVisualShapeArray and createCollisionShapeArray."""
-    round_along_z = (ShapeKind.CAPSULE, ShapeKind.CYLINDER)
-    arguments = {
-        "shapeTypes": [_GEOMETRY[shape.kind] for shape in shapes],
-        "radii": [shape.size[shape.kind in round_along_z] for shape in shapes],
-        "lengths": [shape.size[0] for shape in shapes],
-        "halfExtents": [[extent / 2.0 for extent in shape.size] for shape in shapes],
-        "fileNames": [str(shape.mesh) if shape.mesh else "" for shape in shapes],
-        "meshScales": [shape.size for shape in shapes],
-        f"{prefix}FramePositions": [shape.position for shape in shapes],
-        f"{prefix}FrameOrientations": [shape.orientation for shape in shapes],
-    }
-    if prefix == "collision":
-        # Without this a mesh would be solid in all its hollows, such as a table's between the legs.
-        hollow = pybullet.GEOM_FORCE_CONCAVE_TRIMESH
-        arguments["flags"] = [hollow if shape.kind == ShapeKind.MESH else 0 for shape in shapes]
-    return arguments
-
-
-def _visual_shape(row: Sequence[Any], part: int) -> VisualShape:
-    kind = _KIND[row[2]]
-    mesh = Path(row[4].decode()) if kind == ShapeKind.MESH else None
-    return VisualShape(part, kind, tuple(row[3]), pose_matrices(row[5], row[6]), mesh)

@@ -15,7 +15,7 @@ from bad_input import BadInput
 
 @cache
 def load_triangles(path: Path) -> NDArray[np.float64]:
-    """Read all triangles of an OBJ, STL or DAE file as (T, 3, 3) corners in the file's frame; do not write to them.
+    """Read an OBJ, STL or DAE file: (T, 3, 3) corners of its triangles, in the file's frame, read-only.
 
     Raises:
         BadInput: there is no such file, it cannot be read, or it holds no triangle.

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
+from sim.bounds import FAR_M
 from sim.bullet import Bullet
 from sim.camera import Camera, Matrix, invert_pose
-from sim.raycast import Lens, draw, make_canvas, shade
+from sim.canvas import Lens, make_canvas, shade
+from sim.raycast import draw
 from sim.shape_table import ShapeTable
 
 NOBODY = -1
@@ -76,25 +78,20 @@ def cast(
     """Draw by the ray caster; arguments as in `render`."""
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
     canvas = make_canvas(lens, len(table.surface_part))
-    draw(
-        table,
-        invert_pose(world_from_camera) @ world_from_part,
-        hidden,
-        person_bits(person_of_part),
-        lens,
-        canvas,
-    )
+    camera_from_part = invert_pose(world_from_camera) @ world_from_part
+    draw(table, camera_from_part, hidden, person_bits(person_of_part), lens, canvas)
     shape = (camera.height, camera.width)
     part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)
     normal = np.empty((*shape, 3), np.float32)
-    shade(table, lens, canvas, np.ascontiguousarray(world_from_camera[:3, :3]), part, depth, normal)
+    rotation = np.ascontiguousarray(world_from_camera[:3, :3])
+    shade(table.surface_part, lens, canvas, rotation, part, depth, normal)
     return View(part, depth, normal, canvas.cover)
 
 
 def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:
     """(P,) the bit of the person that a part belongs to, 0 for none."""
     bits = np.uint64(1) << np.maximum(person_of_part, 0).astype(np.uint64)
-    return np.where(person_of_part < 0, np.uint64(0), bits)
+    return np.where(person_of_part == NOBODY, np.uint64(0), bits)
 
 
 def rasterise(
@@ -102,7 +99,39 @@ def rasterise(
 ) -> View:
     """Draw by TinyRenderer: everything at once, then each person alone for the cover.
 
-    Normals come from differences of depth and are rough where surfaces meet.
+    Normals come from differences of depth, and are rough on small parts.
     """
     part, depth = bullet.camera_image(camera, world_from_camera)
-    raise NotImplementedError
+    cover = np.zeros(part.shape, np.uint64)
+    names = np.array([key.name for key in bullet.parts()])
+    for person in np.unique(person_of_part[person_of_part != NOBODY]):
+        alone = set(names[person_of_part == person].tolist())
+        silhouette, _ = bullet.camera_image(camera, world_from_camera, only=alone)
+        cover |= np.where(silhouette >= 0, np.uint64(1) << np.uint64(person), np.uint64(0))
+    normal = _normals(camera, depth) @ world_from_camera[:3, :3].T
+    return View(part, depth, np.where(part[..., None] >= 0, normal, 0.0).astype(np.float32), cover)
+
+
+def _normals(camera: Camera, depth: NDArray[np.float32]) -> Matrix:
+    """(H, W, 3) unit normals in the optical frame from the differences of neighbouring depths."""
+    v, u = np.indices(depth.shape)
+    centre_u, centre_v = camera.centre_px
+    rays = np.stack(
+        [(u - centre_u) / camera.focal_px, (v - centre_v) / camera.focal_px, np.ones(u.shape)], -1
+    )
+    points = rays * np.where(np.isfinite(depth), depth, FAR_M)[..., None].astype(np.float64)
+    normals = np.cross(_flatter_difference(points, 0), _flatter_difference(points, 1))
+    normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
+    return np.where(np.sum(normals * points, axis=-1, keepdims=True) > 0.0, -normals, normals)
+
+
+def _flatter_difference(points: Matrix, axis: int) -> Matrix:
+    """(H, W, 3) difference to the neighbour before or after along an axis, whichever is nearer in depth."""
+    steps = np.diff(points, axis=axis)
+    pad = [(0, 0)] * 3
+    pad[axis] = (1, 1)
+    padded = np.pad(steps, pad, mode="edge")
+    count = points.shape[axis]
+    before = np.take(padded, range(count), axis=axis)
+    after = np.take(padded, range(1, count + 1), axis=axis)
+    return np.where(np.abs(before[..., 2:]) < np.abs(after[..., 2:]), before, after)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.bullet import VisualShape
-from sim.camera import transform
+from sim.camera import Matrix, transform
 from sim.meshes import load_triangles
-from sim.shapes import ShapeKind
+from sim.shapes import ShapeKind, Vector
 
 # How many surfaces a shape has, each a piece of a plane or of a quadric: a mesh has one a triangle.
 _SURFACES = {
@@ -21,6 +22,23 @@ _SURFACES = {
     ShapeKind.BOX: 6,
     ShapeKind.PLANE: 1,
 }
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VisualShape:
+    """One visible shape as PyBullet reports it.
+
+    Attributes:
+        part: index into `Bullet.parts()`.
+        kind, size, mesh: as in `Shape`.
+        part_from_shape: (4, 4) pose of the shape in its part's frame.
+    """
+
+    part: int
+    kind: ShapeKind
+    size: Vector
+    part_from_shape: Matrix
+    mesh: Path | None
 
 
 class ShapeTable(NamedTuple):
