@@ -1,0 +1,95 @@
+"""The last word on any command: limits of the drive, and what the sonars see in the way."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from behaviours.command import STOP, Command
+from behaviours.echoes import Points, echoes
+from behaviours.sight import Sight
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SafetyConfig:
+    """The robot's limits and outline, and the room that it leaves to obstacles.
+
+    Frame: x forward, y left, origin between the wheels.
+
+    Attributes:
+        max_linear_m_s: [m/s] forward speed limit, also backwards.
+        max_angular_rad_s: [rad/s] turn rate limit.
+        braking_m_s2: [m/s2] deceleration to count on; less than the drive's 0.6, in reserve.
+        reaction_s: [s] from an echo until the brakes act: the median over readings, one frame of latency.
+        margin_m: [m] room left between the hull and an obstacle straight ahead or behind.
+        front_m, rear_m: [m] from the origin to the hull's front and rear edge.
+        half_width_m: [m] half of the lane that must be free: half the hull plus a hand's breadth.
+        corner_m: [m] from the origin to the farthest corner of the hull, which sweeps round in a turn.
+        free_turn_m: [m] an obstacle farther from the origin than this does not limit turning.
+        tight_turn_rad_s: [rad/s] turn rate with an obstacle at the corner's distance.
+    """
+
+    max_linear_m_s: float = 0.8
+    max_angular_rad_s: float = math.radians(150.0)
+    braking_m_s2: float = 0.5
+    reaction_s: float = 0.25
+    margin_m: float = 0.45
+    front_m: float = 0.24
+    rear_m: float = 0.28
+    half_width_m: float = 0.27
+    corner_m: float = 0.32
+    free_turn_m: float = 0.5
+    tight_turn_rad_s: float = 0.3
+
+
+def limit(command: Command, sight: Sight, config: SafetyConfig) -> Command:
+    """Change a command as little as needed so that the robot can always stop before what its sonars see.
+
+    The result is within the drive's limits; its parts keep their sign or are zero. Senseless input stops the
+    robot; a sonar that reads no number counts as an obstacle at the sonar itself.
+    """
+    if not sight.is_sound:
+        return STOP
+    points = echoes(sight)
+    ahead, behind = _free_way(points, config)
+    backwards, forwards = -safe_speed(behind, config), safe_speed(ahead, config)
+    turn = _safe_turn(command.angular_rad_s, points, config)
+    return Command(
+        linear_m_s=min(max(command.linear_m_s, backwards), forwards),
+        angular_rad_s=min(max(command.angular_rad_s, -turn), turn),
+    )
+
+
+def safe_speed(room_m: float, config: SafetyConfig) -> float:
+    """Give the highest speed [m/s] from which the robot stops within a way of room_m [m].
+
+    The larger root of reaction * v + v^2 / (2 a) = room, at most the drive's limit.
+    """
+    if room_m <= 0.0:
+        return 0.0
+    lost = config.braking_m_s2 * config.reaction_s
+    return min(math.sqrt(lost**2 + 2.0 * config.braking_m_s2 * room_m) - lost, config.max_linear_m_s)
+
+
+def _free_way(points: Points, config: SafetyConfig) -> tuple[float, float]:
+    """Give the room [m] ahead and behind, in the lane of the hull, less the margin."""
+    x = points[np.abs(points[:, 1]) < config.half_width_m, 0]
+    ahead = np.min(x[x > 0.0], initial=np.inf) - config.front_m
+    behind = np.min(-x[x <= 0.0], initial=np.inf) - config.rear_m
+    return float(ahead) - config.margin_m, float(behind) - config.margin_m
+
+
+def _safe_turn(wanted_rad_s: float, points: Points, config: SafetyConfig) -> float:
+    """Give the highest turn rate [rad/s] in the wanted direction, with obstacles beside the hull."""
+    distance = np.hypot(points[:, 0], points[:, 1])
+    room_m = float(np.min(distance)) - config.corner_m
+    if room_m > 0.0:
+        share = min(room_m / (config.free_turn_m - config.corner_m), 1.0)
+        return config.tight_turn_rad_s + share * (config.max_angular_rad_s - config.tight_turn_rad_s)
+    x, y = points[distance <= config.corner_m].T
+    # Turning left, the corners swing towards what is ahead-left and behind-right; abreast it is all the same,
+    # and a robot beside a wall must be able to turn off it.
+    is_swept = (wanted_rad_s * x * y > 0.0) & (np.abs(x) > 0.5 * np.abs(y))
+    return 0.0 if is_swept.any() else config.tight_turn_rad_s

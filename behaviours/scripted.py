@@ -1,0 +1,43 @@
+"""Commands given in advance, each from its time on."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from collections.abc import Sequence
+
+from bad_input import BadInput
+from behaviours.command import STOP, Command
+from behaviours.sight import Sight
+
+
+class Scripted:
+    """Drives by the clock and looks at nothing.
+
+    Raises:
+        BadInput: the times are not finite or not rising.
+    """
+
+    mode = "scripted"
+
+    def __init__(self, script: Sequence[tuple[float, Command]]) -> None:
+        self._from_s = [from_s for from_s, _ in script]
+        self._commands = [command for _, command in script]
+        pairs = zip(self._from_s, self._from_s[1:], strict=False)
+        if not (all(map(math.isfinite, self._from_s)) and all(a < b for a, b in pairs)):
+            raise BadInput(f"script: times must be finite and rise, got {self._from_s}")
+
+    def command(self, sight: Sight) -> Command:
+        """Give the last command whose time has come; before the first the robot stands."""
+        index = bisect.bisect_right(self._from_s, sight.time_s)
+        return self._commands[index - 1] if index else STOP
+
+
+class Stand:
+    """Stays where it is."""
+
+    mode = "stand"
+
+    def command(self, sight: Sight) -> Command:  # noqa: ARG002
+        """Stop, whatever there is to see."""
+        return STOP

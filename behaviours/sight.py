@@ -1,0 +1,83 @@
+"""What a behaviour knows at one instant: people in the image, sonar ranges, its own speed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bad_input import BadInput
+
+Ranges = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeenPerson:
+    """One tracked person in the thermal image.
+
+    Attributes:
+        id: the track's number; it stays with the person.
+        x: [half image widths] column of the body's middle, -1 at the left border, +1 at the right one.
+        height: [image heights] apparent height from head to feet; above 1 the image shows only a part.
+        top, bottom: [image heights] rows of head and feet, 0 at the upper border, 1 at the lower one.
+        confidence: 0..1, that this is a person.
+        is_visible: whether the track rests on this very image, and not on a prediction.
+    """
+
+    id: int
+    x: float
+    height: float
+    top: float
+    bottom: float
+    confidence: float
+    is_visible: bool
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether every number is finite and the height positive."""
+        numbers = (self.x, self.height, self.top, self.bottom, self.confidence)
+        return all(map(math.isfinite, numbers)) and self.height > 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Sight:
+    """All that a behaviour is told at one control step.
+
+    Attributes:
+        time_s: [s] of the image.
+        people: the tracker's people.
+        sonar_m: (N,) [m] range in front of each sonar.
+        sonar_angle_rad: (N,) [rad] direction of each sonar in the robot's frame, positive to the left.
+        linear_m_s: [m/s] forward speed from the wheels.
+        angular_rad_s: [rad/s] turn rate from the wheels, positive to the left.
+
+    Raises:
+        BadInput: there is not one angle for each range.
+    """
+
+    time_s: float
+    people: tuple[SeenPerson, ...]
+    sonar_m: Ranges
+    sonar_angle_rad: Ranges
+    linear_m_s: float
+    angular_rad_s: float
+
+    def __post_init__(self) -> None:
+        """Keep own, read-only copies of the arrays."""
+        for name in ("sonar_m", "sonar_angle_rad"):
+            array = np.array(getattr(self, name), dtype=np.float64)
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        if self.sonar_m.ndim != 1 or self.sonar_m.shape != self.sonar_angle_rad.shape:
+            raise BadInput(
+                f"sonar ranges and angles must be two (N,) arrays, "
+                f"got {self.sonar_m.shape} and {self.sonar_angle_rad.shape}"
+            )
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether time and speeds are finite and there is at least one sonar."""
+        numbers = (self.time_s, self.linear_m_s, self.angular_rad_s)
+        return all(map(math.isfinite, numbers)) and self.sonar_m.size > 0
