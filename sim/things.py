@@ -55,6 +55,7 @@ class Kind:
         build: size [m] and main temperature [degC] and colour to pieces, the main one first.
         is_hung: whether it hangs on a wall, its back against it.
         is_from_ceiling: whether it hangs under the ceiling.
+        is_to_ceiling: whether its usual height is that of the place.
         is_seat: whether a person may sit on it, and so be where it is.
         base_m: [m] usual height of its foot.
     """
@@ -66,6 +67,7 @@ class Kind:
     base_m: float = 0.0
     is_hung: bool = False
     is_from_ceiling: bool = False
+    is_to_ceiling: bool = False
     is_seat: bool = False
 
 
@@ -135,7 +137,12 @@ KINDS: dict[str, Kind] = {
         is_hung=True,
     ),
     "pipe": Kind(
-        build=warm_things.pipe, size_m=(0.06, 0.06, 2.7), temperature_c=44.0, rgb=WHITE, is_hung=True
+        build=warm_things.pipe,
+        size_m=(0.06, 0.06, 2.7),
+        temperature_c=44.0,
+        rgb=WHITE,
+        is_hung=True,
+        is_to_ceiling=True,
     ),
     "ceiling_lamp": Kind(
         build=warm_things.ceiling_lamp,
@@ -181,9 +188,19 @@ KINDS: dict[str, Kind] = {
         build=furniture.block, size_m=(0.42, 0.8, 1.9), temperature_c=21.3, rgb=(0.5, 0.42, 0.32)
     ),
     "block": Kind(build=furniture.block, size_m=(0.5, 0.5, 0.5), temperature_c=21.5, rgb=(0.5, 0.5, 0.5)),
-    "pillar": Kind(build=furniture.block, size_m=(0.4, 0.4, 2.75), temperature_c=21.5, rgb=(0.6, 0.58, 0.54)),
+    "pillar": Kind(
+        build=furniture.block,
+        size_m=(0.4, 0.4, 2.7),
+        temperature_c=21.5,
+        rgb=(0.6, 0.58, 0.54),
+        is_to_ceiling=True,
+    ),
     "round_pillar": Kind(
-        build=furniture.column, size_m=(0.4, 0.4, 2.75), temperature_c=21.5, rgb=(0.6, 0.58, 0.54)
+        build=furniture.column,
+        size_m=(0.4, 0.4, 2.7),
+        temperature_c=21.5,
+        rgb=(0.6, 0.58, 0.54),
+        is_to_ceiling=True,
     ),
     "plant": Kind(build=furniture.plant, size_m=(0.6, 0.6, 1.4), temperature_c=20.5, rgb=(0.05, 0.22, 0.06)),
 }

@@ -1,0 +1,95 @@
+"""Read YAML files as plain data: no tags, no aliases, no key twice, and one-line errors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from bad_input import BadInput
+
+_LARGEST_BYTES = 1_000_000
+
+
+class _Loader(yaml.SafeLoader):
+    """Reads YAML as a person expects it: only true and false are booleans; nothing is repeated or shared."""
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        """Refuse aliases, which a short file can use to stand for endless data."""
+        if self.check_event(yaml.AliasEvent):
+            event = self.peek_event()  # type: ignore[no-untyped-call]
+            raise yaml.MarkedYAMLError(
+                problem=f"alias '*{event.anchor}' is not allowed; write the value out",
+                problem_mark=event.start_mark,
+            )
+        return super().compose_node(parent, index)
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """Refuse a key that is given twice, of which plain YAML would keep the last."""
+        seen: set[str] = set()
+        for key, _ in node.value:
+            if not isinstance(key, yaml.ScalarNode):
+                raise yaml.MarkedYAMLError(problem="a key must be a word", problem_mark=key.start_mark)
+            if key.value in seen:
+                raise yaml.MarkedYAMLError(
+                    problem=f"key {key.value!r} is given twice; keep one", problem_mark=key.start_mark
+                )
+            seen.add(key.value)
+        return super().construct_mapping(node, deep=deep)
+
+
+def _is_plain(tag: str, letter: str) -> bool:
+    """Whether a word that starts so may become a value of this tag; other words stay text."""
+    kind = tag.rsplit(":", 1)[-1]
+    return kind not in ("timestamp", "merge") and not (kind == "bool" and letter not in "tTfF")
+
+
+_Loader.yaml_implicit_resolvers = {
+    letter: [(tag, pattern) for tag, pattern in resolvers if _is_plain(tag, letter)]
+    for letter, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+}
+
+
+def read_yaml(path: Path) -> dict[Any, Any]:
+    """Read a file that holds one YAML mapping.
+
+    Raises:
+        BadInput: the file cannot be read, is not YAML, or holds something else.
+    """
+    text = _read_text(path)
+    try:
+        data = yaml.load(text, Loader=_Loader)
+    except yaml.MarkedYAMLError as error:
+        line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
+        raise BadInput(f"{path}: {line}{_one_line(str(error.problem))}") from error
+    except RecursionError as error:
+        raise BadInput(f"{path}: it is nested too deeply to be a scenario") from error
+    except (yaml.YAMLError, ValueError, OverflowError) as error:
+        raise BadInput(f"{path}: not YAML: {_one_line(str(error))}") from error
+    if data is None:
+        raise BadInput(f"{path}: the file is empty; it must hold keys such as 'name' and 'place'")
+    if not isinstance(data, dict):
+        raise BadInput(f"{path}: it holds a {type(data).__name__}, not keys such as 'name' and 'place'")
+    return data
+
+
+def _read_text(path: Path) -> str:
+    if path.is_dir():
+        raise BadInput(f"{path}: it is a folder; give a scenario file that ends in .yaml")
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError as error:
+        raise BadInput(f"{path}: there is no such file") from error
+    except OSError as error:
+        raise BadInput(f"{path}: it cannot be read: {error.strerror}") from error
+    if len(data) > _LARGEST_BYTES:
+        raise BadInput(f"{path}: it has {len(data)} bytes; a scenario file has at most {_LARGEST_BYTES}")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise BadInput(f"{path}: it is not UTF-8 text (byte {error.start})") from error
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())

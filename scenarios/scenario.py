@@ -1,0 +1,144 @@
+"""A scenario that was read and checked, ready to be played with any seed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from bad_input import BadInput
+from behaviours.arbitrate import Guarded
+from behaviours.command import Command
+from behaviours.follow_person import FollowConfig
+from behaviours.make import make_behaviour
+from scenarios.build_place import make_floor_plan, make_place
+from scenarios.cast_people import cast, make_config, members
+from scenarios.check import Ground, check_scenario, make_ground
+from scenarios.equip_robot import equip_robot
+from scenarios.schema import DrawnSpec, PersonSpec, RobotSpec, ScenarioSpec
+from sim.config import WorldConfig
+from sim.floor_plan import FloorPlan
+from sim.place import Place
+
+RENDERERS = ("raycast", "bullet")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scenario:
+    """What is to be played: a place, things, people, and a robot that does something.
+
+    Attributes:
+        spec: what the file says.
+        plan: the floor.
+        place: everything that stands still.
+        ground: where people can walk.
+    """
+
+    spec: ScenarioSpec
+    plan: FloorPlan
+    place: Place
+    ground: Ground
+
+    @property
+    def name(self) -> str:
+        """One word, for folders."""
+        return self.spec.name
+
+    @property
+    def description(self) -> str:
+        """What happens, in a sentence or two."""
+        return " ".join(self.spec.description.split())
+
+    @property
+    def duration_s(self) -> float:
+        """Seconds from start to end."""
+        return self.spec.duration_s
+
+    @property
+    def robot(self) -> RobotSpec:
+        """What the file says about the robot."""
+        return self.spec.robot
+
+    def people(self, seed: int) -> tuple[PersonSpec, ...]:
+        """Everybody, groups included, with all that the seed decides.
+
+        Raises:
+            BadInput: a negative seed.
+        """
+        if seed < 0:
+            raise BadInput(f"seed {seed} must be 0 or more")
+        return tuple(
+            cast(person, seed, lambda path: self.ground.fault(path) is None)
+            for _, person in _everybody(self.spec)
+        )
+
+    def world(self, seed: int, renderer: str = "raycast") -> WorldConfig:
+        """Settings of the world; the same seed gives equal settings.
+
+        Raises:
+            BadInput: a negative seed or an unknown renderer.
+        """
+        if renderer not in RENDERERS:
+            raise BadInput(f"unknown renderer {renderer!r}; choose from {', '.join(RENDERERS)}")
+        return WorldConfig(
+            place=self.place,
+            people=tuple(make_config(person) for person in self.people(seed)),
+            robot=equip_robot(self.spec.robot),
+            seed=seed,
+            renderer=renderer,
+        )
+
+    def make_behaviour(self) -> Guarded:
+        """What drives the robot, fresh from the start."""
+        script = [
+            (c.from_s, Command(linear_m_s=c.linear_m_s, angular_rad_s=math.radians(c.angular_deg_s)))
+            for c in self.robot.commands
+        ]
+        follow = FollowConfig()
+        if self.robot.keep_height is not None:
+            follow = replace(follow, keep_height=self.robot.keep_height)
+        return make_behaviour(self.robot.behaviour, script=script, follow=follow)
+
+    def resolved(self, seed: int, versions: dict[str, str] | None = None) -> dict[str, Any]:
+        """The scenario as plain data with everything drawn; reading it again gives the same world.
+
+        Args:
+            seed: of the run.
+            versions: of the packages, by name, to be kept beside the seed.
+        """
+        resolved = self.spec.model_copy(
+            update={
+                "people": self.people(seed),
+                "groups": (),
+                "drawn": DrawnSpec(seed=seed, versions={} if versions is None else versions),
+            }
+        )
+        data: dict[str, Any] = resolved.model_dump(mode="json", exclude_none=True)
+        return data
+
+
+def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
+    """Build and check everything that does not depend on the seed.
+
+    Args:
+        spec: what the file says.
+        folder: where the file lies.
+
+    Raises:
+        BadInput: something cannot be; the message begins with the key.
+    """
+    plan = make_floor_plan(spec.place)
+    place = make_place(spec, folder)
+    ground = make_ground(spec, plan, place)
+    check_scenario(spec, _everybody(spec), ground)
+    return Scenario(spec=spec, plan=plan, place=place, ground=ground)
+
+
+def _everybody(spec: ScenarioSpec) -> tuple[tuple[str, PersonSpec], ...]:
+    """All people with the keys that stand for them in the file."""
+    single = tuple((f"people[{index}]", person) for index, person in enumerate(spec.people))
+    grouped = tuple(
+        (f"groups[{index}]", person) for index, group in enumerate(spec.groups) for person in members(group)
+    )
+    return (*single, *grouped)
