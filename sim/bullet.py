@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bad_input import BadInput
+from sim.bodies import Bodies, Body, PartKey, Place
 from sim.bounds import FAR_M, NEAR_M
 from sim.bullet_shapes import shape_arguments, visual_shape
 from sim.camera import Camera, Matrix
@@ -32,22 +33,11 @@ except ImportError as error:
     ) from error
 
 GRAVITY_M_S2 = 9.81
-_SHAPES_A_BODY = 16  # PyBullet drops whatever a createVisualShapeArray call holds beyond these
-Place = tuple[Vector, Quaternion]
+_SHAPES_A_BODY = 16  # PyBullet silently drops the rest
 _HERE: Place = ((0.0, 0.0, 0.0), UPRIGHT)
-_PARKED: Vector = (0.0, 0.0, -500.0)
-_STATIC_MASK = -3  # collides with everything but other static bodies
-_FIRST_FREE_GROUP = 6
-_LAST_GROUP = 30
-
-
-@dataclass(frozen=True, slots=True)
-class PartKey:
-    """One part of the world: a link of a body, -1 being the body's base."""
-
-    name: str
-    link: int
-    link_name: str
+_PARKED: Place = ((0.0, 0.0, -500.0), UPRIGHT)
+_ALL = -1
+_ALL_BUT_STATIC = -3
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,20 +55,6 @@ class Contact:
     position: Vector
     normal: Vector
     normal_force_n: float
-
-
-@dataclass(slots=True, eq=False)
-class _Body:
-    """What PyBullet calls a named body: one id, or several for one part of more than 16 shapes."""
-
-    ids: tuple[int, ...]
-    parts: range
-    joints: Mapping[str, int]
-    base_from_inertia: Place
-    moves_by_itself: bool
-    visible_links: Sequence[tuple[int, int]]
-    group: int | None = None
-    hidden_at: Place | None = None
 
 
 class _Client:
@@ -104,17 +80,15 @@ class Bullet:
 
     Parts are numbered in the order in which they were created; the number never changes. The frame of a
     part is the frame in which its shapes were given: for a link of a URDF the link's own frame, not that
-    of its centre of mass. Use it as a context manager; several may be open at once.
+    of its centre of mass. Use it as a context manager; several may be open at once. Every method that takes
+    a name raises BadInput if no body has it.
     """
 
     def __init__(self, *, physics_hz: int = 240, gravity: bool = True) -> None:
         self._client = _Client()
-        self._bodies: dict[str, _Body] = {}
-        self._names: dict[int, str] = {}
-        self._parts: list[PartKey] = []
-        self._part_of_link: dict[tuple[int, int], int] = {}
+        self._bodies = Bodies()
         self._poses = np.zeros((0, 4, 4))
-        self._moved: set[str] = set()
+        self._moved: dict[str, Body] = {}
         self._client.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1
         )
@@ -132,8 +106,6 @@ class Bullet:
         """Free the world; closing twice is harmless."""
         self._client.close()
 
-    # Bodies
-
     def add_part(
         self,
         name: str,
@@ -149,23 +121,22 @@ class Bullet:
         An invisible part is drawn by no renderer; one that is not solid is passed by rays and bodies.
 
         Raises:
-            BadInput: the name is taken, there are no shapes, or a mesh file cannot be read.
+            BadInput: the name is taken, there are no shapes, or a mesh is missing or cannot be read.
         """
-        self._check_new(name)
+        self._bodies.check_new(name)
         if not shapes:
             raise BadInput(f"body {name!r}: it has no shapes; give at least one")
         for shape in shapes:
             if shape.kind == ShapeKind.MESH and not (shape.mesh and shape.mesh.is_file()):
-                raise BadInput(
-                    f"body {name!r}: mesh {shape.mesh} is not a file; give an OBJ, STL or DAE file"
-                )
-        ids = tuple(
-            self._create(
-                name, shapes[start : start + _SHAPES_A_BODY], (position, orientation), visible, solid
-            )
-            for start in range(0, len(shapes), _SHAPES_A_BODY)
-        )
+                raise BadInput(f"body {name!r}: there is no mesh {shape.mesh}; give an OBJ, STL or DAE file")
+        starts = range(0, len(shapes), _SHAPES_A_BODY)
+        try:
+            with quiet():
+                ids = [self._create(shapes[at : at + _SHAPES_A_BODY], visible, solid) for at in starts]
+        except pybullet.error as error:
+            raise BadInput(f"body {name!r}: PyBullet refuses its shapes ({error})") from error
         self._register(name, ids, moves_by_itself=False)
+        self.set_pose(name, position, orientation)
 
     def add_urdf(
         self,
@@ -190,110 +161,103 @@ class Bullet:
         Raises:
             BadInput: the name is taken, or the file is missing or broken.
         """
-        self._check_new(name)
+        self._bodies.check_new(name)
         file = find_model(path)
         load = self._load_sdf if file.suffix == ".sdf" else self._load_urdf
         try:
             with quiet():
-                body = load(file, fixed, scale)
+                number = load(str(file), fixed, scale)
         except pybullet.error as error:
-            raise BadInput(f"body {name!r}: PyBullet cannot load {file}; give a valid URDF or SDF") from error
-        self._register(name, (body,), moves_by_itself=not fixed)
+            raise BadInput(f"body {name!r}: PyBullet cannot load {file} ({error})") from error
+        self._register(name, [number], moves_by_itself=not fixed)
         self.set_pose(name, position, orientation)
 
     def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
         """Put a body's base frame at `position` [m] and `orientation` in the world, at rest."""
-        body = self._body(name)
+        body = self._bodies[name]
         if body.hidden_at is not None:
             body.hidden_at = (position, orientation)
         else:
-            self._place(name, body, position, orientation)
+            self._put(body, (position, orientation))
 
     def set_hidden(self, name: str, hidden: bool) -> None:
         """Take a body out of images, rays and contacts, or put it back where it was last placed.
 
         Raises:
-            BadInput: the body moves by itself, so that there is no place to put it back to.
+            BadInput: physics moves the body, so that there is no place to put it back to.
         """
-        body = self._body(name)
+        body = self._bodies[name]
         if body.moves_by_itself:
-            raise BadInput(f"body {name!r} moves by itself and cannot be hidden; fix it")
+            raise BadInput(f"body {name!r} is not fixed: it cannot be hidden")
         if hidden and body.hidden_at is None:
             place = self._base_place(body)
-            self._place(name, body, _PARKED, UPRIGHT)
+            self._put(body, _PARKED)
             body.hidden_at = place
         elif not hidden and body.hidden_at is not None:
-            place, body.hidden_at = body.hidden_at, None
-            self._place(name, body, *place)
+            self._put(body, body.hidden_at)
+            body.hidden_at = None
 
     def hidden_parts(self) -> NDArray[np.bool_]:
         """(P,) which parts are hidden now."""
-        hidden = np.zeros(len(self._parts), np.bool_)
-        for body in self._bodies.values():
-            if body.hidden_at is not None:
-                hidden[body.parts] = True
-        return hidden
+        return self._bodies.hidden_parts()
 
     def set_friction(
         self, name: str, link: int, *, lateral: float, rolling: float = 0.0, spinning: float = 0.0
     ) -> None:
         """Set the friction coefficients of one link, -1 being the base."""
-        for body in self._body(name).ids:
-            self._client.changeDynamics(
-                body,
-                link,
-                lateralFriction=lateral,
-                rollingFriction=rolling,
-                spinningFriction=spinning,
-            )
-
-    # Motion
+        coefficients = {"lateralFriction": lateral, "rollingFriction": rolling, "spinningFriction": spinning}
+        for number in self._bodies[name].ids:
+            self._client.changeDynamics(number, link, **coefficients)
 
     def step(self) -> None:
         """Advance the world by one physics step."""
         self._client.stepSimulation()
-        self._moved.update(name for name, body in self._bodies.items() if body.moves_by_itself)
+        self._moved.update({body.name: body for body in self._bodies if body.moves_by_itself})
 
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
         """Drive joints at speeds [rad/s, or m/s if they slide] with at most this torque [N m, or N] each.
 
         Zero torque lets the joints run free.
+
+        Raises:
+            BadInput: the body has no such joint.
         """
-        body = self._body(name)
+        body = self._bodies[name]
         self._client.setJointMotorControlArray(
             body.ids[0],
-            [_joint(name, body, joint) for joint in speeds],
+            body.links_of(list(speeds)),
             pybullet.VELOCITY_CONTROL,
             targetVelocities=list(speeds.values()),
             forces=[max_torque_nm] * len(speeds),
         )
 
     def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
-        """Positions (J,) [rad or m] and speeds (J,) [rad/s or m/s] of the named joints."""
-        body = self._body(name)
-        numbers = [_joint(name, body, joint) for joint in joints]
-        states = self._client.getJointStates(body.ids[0], numbers)
+        """Positions (J,) [rad or m] and speeds (J,) [rad/s or m/s] of the named joints.
+
+        Raises:
+            BadInput: the body has no such joint.
+        """
+        body = self._bodies[name]
+        states = self._client.getJointStates(body.ids[0], body.links_of(joints))
         return np.array([state[0] for state in states]), np.array([state[1] for state in states])
 
     def velocity(self, name: str) -> tuple[Matrix, Matrix]:
         """Linear (3,) [m/s] velocity of the base's centre of mass and angular (3,) [rad/s], world frame."""
-        linear, angular = self._client.getBaseVelocity(self._body(name).ids[0])
+        linear, angular = self._client.getBaseVelocity(self._bodies[name].ids[0])
         return np.array(linear), np.array(angular)
-
-    # Poses and shapes
 
     def parts(self) -> tuple[PartKey, ...]:
         """All parts, in the order of their numbers."""
-        return tuple(self._parts)
+        return tuple(self._bodies.parts)
 
     def pose(self, name: str) -> Matrix:
         """(4, 4) world from the frame of the body's base; where it will reappear if it is hidden."""
-        body = self._body(name)
+        body = self._bodies[name]
         return pose_matrices(*(body.hidden_at or self._base_place(body)))
 
     def part_poses(self) -> Matrix:
         """(P, 4, 4) world from part, a copy; hidden parts are far below the floor."""
-        moved = [self._bodies[name] for name in self._moved]
+        moved = list(self._moved.values())
         if moved:
             places = [place for body in moved for place in (self._base_place(body), *self._link_places(body))]
             numbers = [part for body in moved for part in body.parts]
@@ -303,13 +267,8 @@ class Bullet:
 
     def visual_shapes(self) -> list[VisualShape]:
         """Every shape that a renderer should draw, read back from PyBullet, in the order of the parts."""
-        return [
-            visual_shape(row, self._part_of_link[row[0], row[1]])
-            for body in self._bodies.values()
-            for row in self._visual_rows(body.ids)
-        ]
-
-    # Senses
+        rows = [row for body in self._bodies for row in self._visual_rows(body.ids)]
+        return [visual_shape(row, self._bodies.part_of(row[0], row[1])) for row in rows]
 
     def cast_rays(
         self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
@@ -325,21 +284,17 @@ class Bullet:
             fraction: (R,) of the way at which a ray hits, 1 where it hits nothing.
             part: (R,) part that is hit, -1 where none.
         """
-        mask = -1 if ignore is None else ~self._group_of(ignore)
+        mask = _ALL if ignore is None else ~self._group_of(self._bodies[ignore])
         starts, ends = np.asarray(from_m, np.float64).tolist(), np.asarray(to_m, np.float64).tolist()
         hits = self._client.rayTestBatch(starts, ends, numThreads=1, collisionFilterMask=mask)
         fractions = np.array([hit[2] for hit in hits])
-        parts = np.array([self._part_of_link.get((hit[0], hit[1]), -1) for hit in hits], np.int64)
-        return fractions, parts
+        return fractions, np.array([self._bodies.part_of(hit[0], hit[1]) for hit in hits], np.int64)
 
     def contacts(self, name: str) -> list[Contact]:
         """Where the body touched others during the last step."""
-        return [
-            Contact(self._names[row[2]], row[6], row[7], row[9])
-            for body in self._body(name).ids
-            for row in self._client.getContactPoints(bodyA=body)
-            if self._names[row[2]] != name
-        ]
+        rows = [row for id_ in self._bodies[name].ids for row in self._client.getContactPoints(bodyA=id_)]
+        contacts = [Contact(self._bodies.name_of(row[2]), row[6], row[7], row[9]) for row in rows]
+        return [contact for contact in contacts if contact.other != name]
 
     def camera_image(
         self, camera: Camera, world_from_camera: Matrix, only: Collection[str] | None = None
@@ -347,13 +302,13 @@ class Bullet:
         """Draw the world, or only the bodies of some names, with TinyRenderer, without shadows.
 
         TinyRenderer replaces spheres and capsules by polyhedra of 42 corners and an infinite plane by a large
-        square, so that outlines of large round things lie some pixels inside the true ones.
+        square, so that the outline of a large round thing lies up to 5 % of its radius inside the true one.
 
         Returns:
             part: (H, W) number of the part seen at each pixel centre, -1 where none.
             depth: (H, W) [m] along the optical axis, inf where none.
         """
-        absent = [] if only is None else [body for name, body in self._bodies.items() if name not in only]
+        absent = [body for body in self._bodies if only is not None and body.name not in only]
         self._set_opacity(absent, 0.0)
         image = self._client.getCameraImage(
             camera.width,
@@ -366,127 +321,92 @@ class Bullet:
         )
         self._set_opacity(absent, 1.0)
         shape = (camera.height, camera.width)
-        part = self._part_numbers(np.reshape(image[4], shape))
+        part = self._bodies.parts_of(np.reshape(image[4], shape))
         depth = metric_depth(np.reshape(image[3], shape), NEAR_M, FAR_M)
         return part, np.where(part >= 0, depth, np.inf).astype(np.float32)
 
-    # What the methods above share
+    def _create(self, shapes: Sequence[Shape], visible: bool, solid: bool) -> int:
+        """Make one PyBullet body."""
+        # A body without visual shapes is drawn by its collision shapes: transparency prevents it.
+        colours = [[1.0, 1.0, 1.0, float(visible)]] * len(shapes)
+        visual = self._client.createVisualShapeArray(**shape_arguments(shapes, "visual"), rgbaColors=colours)
+        collision = -1
+        if solid:
+            collision = self._client.createCollisionShapeArray(**shape_arguments(shapes, "collision"))
+        number: int = self._client.createMultiBody(0.0, collision, visual)
+        return number
 
-    def _check_new(self, name: str) -> None:
-        if name in self._bodies:
-            raise BadInput(f"body {name!r}: there is one already; choose another name")
+    def _load_urdf(self, file: str, fixed: bool, scale: float) -> int:
+        number: int = self._client.loadURDF(file, useFixedBase=fixed, globalScaling=scale)
+        return number
 
-    def _body(self, name: str) -> _Body:
-        try:
-            return self._bodies[name]
-        except KeyError:
-            known = ", ".join(self._bodies) or "none"
-            raise BadInput(f"no body is called {name!r}; there are: {known}") from None
+    def _load_sdf(self, file: str, fixed: bool, scale: float) -> int:
+        number: int
+        number, *others = self._client.loadSDF(file, globalScaling=scale)
+        for other in others:
+            self._client.removeBody(other)
+        if fixed:
+            self._client.changeDynamics(number, -1, mass=0.0)
+        return number
 
-    def _create(self, name: str, shapes: Sequence[Shape], place: Place, visible: bool, solid: bool) -> int:
-        """Make one PyBullet body of at most 16 shapes."""
-        try:
-            with quiet():
-                visual = self._client.createVisualShapeArray(
-                    **shape_arguments(shapes, "visual"),
-                    # A body without visual shapes is drawn by its collision shapes: transparency prevents it.
-                    rgbaColors=[[1.0, 1.0, 1.0, float(visible)]] * len(shapes),
-                )
-                collision = -1
-                if solid:
-                    collision = self._client.createCollisionShapeArray(**shape_arguments(shapes, "collision"))
-                body: int = self._client.createMultiBody(0.0, collision, visual, *place)
-        except pybullet.error as error:
-            raise BadInput(f"body {name!r}: PyBullet refuses its shapes: {error}") from error
-        return body
-
-    def _register(self, name: str, ids: tuple[int, ...], *, moves_by_itself: bool) -> None:
+    def _register(self, name: str, ids: Sequence[int], *, moves_by_itself: bool) -> None:
         joints = [
             self._client.getJointInfo(ids[0], link) for link in range(self._client.getNumJoints(ids[0]))
         ]
-        base_name = self._client.getBodyInfo(ids[0])[0].decode()
-        first = len(self._parts)
-        self._parts.append(PartKey(name, -1, base_name))
-        self._parts.extend(PartKey(name, joint[0], joint[12].decode()) for joint in joints)
-        for number in ids:
-            self._names[number] = name
-            self._part_of_link.update({(number, link): first + 1 + link for link in range(-1, len(joints))})
-        self._bodies[name] = _Body(
-            ids=ids,
-            parts=range(first, len(self._parts)),
+        names = [self._client.getBodyInfo(ids[0])[0].decode(), *(joint[12].decode() for joint in joints)]
+        first = len(self._bodies.parts)
+        body = Body(
+            name=name,
+            ids=tuple(ids),
+            parts=range(first, first + len(names)),
             joints={joint[1].decode(): joint[0] for joint in joints},
             base_from_inertia=self._client.getDynamicsInfo(ids[0], -1)[3:5],
             moves_by_itself=moves_by_itself,
             visible_links=[(row[0], row[1]) for row in self._visual_rows(ids)],
         )
-        self._poses = np.concatenate([self._poses, np.zeros((1 + len(joints), 4, 4))])
-        self._moved.add(name)
+        self._bodies.add(body, names)
+        self._poses = np.concatenate([self._poses, np.zeros((len(names), 4, 4))])
 
-    def _load_urdf(self, file: Path, fixed: bool, scale: float) -> int:
-        body: int = self._client.loadURDF(str(file), useFixedBase=fixed, globalScaling=scale)
-        return body
-
-    def _load_sdf(self, file: Path, fixed: bool, scale: float) -> int:
-        first, *others = self._client.loadSDF(str(file), globalScaling=scale)
-        for other in others:
-            self._client.removeBody(other)
-        if fixed:
-            self._client.changeDynamics(first, -1, mass=0.0)
-        number: int = first
-        return number
-
-    def _place(self, name: str, body: _Body, position: Vector, orientation: Quaternion) -> None:
+    def _put(self, body: Body, base: Place) -> None:
+        place = base
         if body.base_from_inertia != _HERE:
-            position, orientation = self._client.multiplyTransforms(
-                position, orientation, *body.base_from_inertia
-            )
+            place = pybullet.multiplyTransforms(*base, *body.base_from_inertia)
         for number in body.ids:
-            self._client.resetBasePositionAndOrientation(number, position, orientation)
-        self._moved.add(name)
+            self._client.resetBasePositionAndOrientation(number, *place)
+        self._moved[body.name] = body
 
-    def _base_place(self, body: _Body) -> Place:
+    def _base_place(self, body: Body) -> Place:
         place: Place = self._client.getBasePositionAndOrientation(body.ids[0])
-        if body.base_from_inertia == _HERE:
-            return place
-        inertia_from_base = self._client.invertTransform(*body.base_from_inertia)
-        base: Place = self._client.multiplyTransforms(*place, *inertia_from_base)
-        return base
+        if body.base_from_inertia != _HERE:
+            place = pybullet.multiplyTransforms(*place, *pybullet.invertTransform(*body.base_from_inertia))
+        return place
 
-    def _link_places(self, body: _Body) -> list[Place]:
+    def _link_places(self, body: Body) -> list[Place]:
+        if len(body.parts) == 1:
+            return []
         links = range(len(body.parts) - 1)
         states = self._client.getLinkStates(body.ids[0], links, computeForwardKinematics=1)
-        return [state[4:6] for state in states or ()]
-
-    def _group_of(self, name: str) -> int:
-        """The collision group of one body alone, which rays can leave out."""
-        body = self._body(name)
-        if body.group is None:
-            taken = sum(other.group is not None for other in self._bodies.values())
-            if _FIRST_FREE_GROUP + taken > _LAST_GROUP:
-                raise BadInput(f"rays cannot ignore {name!r}: {taken} other bodies are ignored already")
-            body.group = 1 << (_FIRST_FREE_GROUP + taken)
-            mask = -1 if body.moves_by_itself else _STATIC_MASK
-            for number in body.ids:
-                for link in range(-1, len(body.parts) - 1):
-                    self._client.setCollisionFilterGroupMask(number, link, body.group, mask)
-        return body.group
+        return [state[4:6] for state in states]
 
     def _visual_rows(self, ids: Sequence[int]) -> list[Sequence[Any]]:
+        """What PyBullet tells of all shapes that are not transparent."""
         rows = [row for number in ids for row in self._client.getVisualShapeData(number)]
         return [row for row in rows if row[7][3] > 0.0]
 
-    def _set_opacity(self, bodies: Sequence[_Body], alpha: float) -> None:
+    def _set_opacity(self, bodies: Sequence[Body], alpha: float) -> None:
         for body in bodies:
             for number, link in body.visible_links:
                 self._client.changeVisualShape(number, link, rgbaColor=[1.0, 1.0, 1.0, alpha])
 
-    def _part_numbers(self, mask: NDArray[Any]) -> NDArray[np.int32]:
-        """TinyRenderer's mask of body and link to part numbers."""
-        values, places = np.unique(mask, return_inverse=True)
-        numbers = [
-            self._part_of_link.get((value & 0xFFFFFF, (value >> 24) - 1), -1) for value in values.tolist()
-        ]
-        return np.array(numbers, np.int32)[places].reshape(mask.shape)
+    def _group_of(self, body: Body) -> int:
+        """The collision group of one body alone, which rays can leave out."""
+        if body.group is None:
+            body.group = self._bodies.new_group()
+            mask = _ALL if body.moves_by_itself else _ALL_BUT_STATIC
+            links = range(-1, len(body.parts) - 1)
+            for number, link in [(number, link) for number in body.ids for link in links]:
+                self._client.setCollisionFilterGroupMask(number, link, body.group, mask)
+        return body.group
 
 
 def find_model(path: Path | str) -> Path:
@@ -499,9 +419,3 @@ def find_model(path: Path | str) -> Path:
         if candidate.is_file():
             return candidate.resolve()
     raise BadInput(f"model file {path}: there is no such file, neither as it stands nor in pybullet_data")
-
-
-def _joint(name: str, body: _Body, joint: str) -> int:
-    if joint not in body.joints:
-        raise BadInput(f"body {name!r} has no joint {joint!r}; it has: {', '.join(body.joints) or 'none'}")
-    return body.joints[joint]

@@ -1,0 +1,138 @@
+"""Which body has which name, which parts it has, and what PyBullet calls them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bad_input import BadInput
+from sim.shapes import Quaternion, Vector
+
+Place = tuple[Vector, Quaternion]
+
+# Bullet takes the bits below these for groups of its own.
+_FIRST_FREE_BIT = 6
+_LAST_BIT = 30
+
+
+@dataclass(frozen=True, slots=True)
+class PartKey:
+    """One part of the world: a link of a body, -1 being the body's base."""
+
+    name: str
+    link: int
+    link_name: str
+
+
+@dataclass(slots=True, eq=False)
+class Body:
+    """A named body.
+
+    Attributes:
+        name: unique.
+        ids: PyBullet's numbers, several for one part of more shapes than a PyBullet body holds.
+        parts: the numbers of its base and of its links.
+        joints: link that each joint moves, by the joint's name.
+        base_from_inertia: the frame that PyBullet places, in the base's own frame.
+        moves_by_itself: whether physics moves it.
+        visible_links: id and link of all that is to be seen.
+        group: collision group of its own, if it needed one.
+        hidden_at: where it will reappear if it is hidden.
+    """
+
+    name: str
+    ids: tuple[int, ...]
+    parts: range
+    joints: Mapping[str, int]
+    base_from_inertia: Place
+    moves_by_itself: bool
+    visible_links: Sequence[tuple[int, int]]
+    group: int | None = None
+    hidden_at: Place | None = None
+
+    def links_of(self, joints: Sequence[str]) -> list[int]:
+        """The links that the named joints move.
+
+        Raises:
+            BadInput: it has no such joint.
+        """
+        for joint in joints:
+            if joint not in self.joints:
+                known = ", ".join(self.joints) or "none"
+                raise BadInput(f"body {self.name!r} has no joint {joint!r}; it has: {known}")
+        return [self.joints[joint] for joint in joints]
+
+
+class Bodies:
+    """All bodies of one world, by name, and their parts in the order of creation."""
+
+    def __init__(self) -> None:
+        self.parts: list[PartKey] = []
+        self._bodies: dict[str, Body] = {}
+        self._body_of_id: dict[int, Body] = {}
+        self._part_of_link: dict[tuple[int, int], int] = {}
+        self._groups = 0
+
+    def __iter__(self) -> Iterator[Body]:
+        return iter(self._bodies.values())
+
+    def __getitem__(self, name: str) -> Body:
+        try:
+            return self._bodies[name]
+        except KeyError:
+            known = ", ".join(self._bodies) or "none"
+            raise BadInput(f"no body is called {name!r}; there are: {known}") from None
+
+    def check_new(self, name: str) -> None:
+        """Refuse a name that is taken.
+
+        Raises:
+            BadInput: it is.
+        """
+        if name in self._bodies:
+            raise BadInput(f"body {name!r}: there is one already; choose another name")
+
+    def add(self, body: Body, link_names: Sequence[str]) -> None:
+        """Take in a body whose base and links have these names."""
+        self._bodies[body.name] = body
+        self.parts.extend(PartKey(body.name, link - 1, name) for link, name in enumerate(link_names))
+        for number in body.ids:
+            self._body_of_id[number] = body
+            self._part_of_link.update({(number, link - 1): part for link, part in enumerate(body.parts)})
+
+    def name_of(self, number: int) -> str:
+        """Name of the body that PyBullet gave this number."""
+        return self._body_of_id[number].name
+
+    def part_of(self, number: int, link: int) -> int:
+        """Number of the part that is this link of PyBullet's body of this number, -1 if there is none."""
+        return self._part_of_link.get((number, link), -1)
+
+    def parts_of(self, mask: NDArray[Any]) -> NDArray[np.int32]:
+        """Part numbers in place of PyBullet's combined numbers of body and link, of any shape."""
+        values, places = np.unique(mask, return_inverse=True)
+        parts = [self.part_of(value & 0xFFFFFF, (value >> 24) - 1) for value in values.tolist()]
+        return np.array(parts, np.int32)[places].reshape(mask.shape)
+
+    def hidden_parts(self) -> NDArray[np.bool_]:
+        """(P,) which parts are hidden now."""
+        hidden = np.zeros(len(self.parts), np.bool_)
+        for body in self:
+            hidden[body.parts] = body.hidden_at is not None
+        return hidden
+
+    def new_group(self) -> int:
+        """A collision group that no body has.
+
+        Raises:
+            BadInput: all are taken.
+        """
+        bit = _FIRST_FREE_BIT + self._groups
+        if bit > _LAST_BIT:
+            raise BadInput(f"rays can ignore at most {self._groups} different bodies in one world")
+        self._groups += 1
+        return 1 << bit
