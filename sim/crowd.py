@@ -11,10 +11,12 @@ from scipy.spatial.transform import Rotation
 from sim.bullet import Bullet
 from sim.looks import Look
 from sim.peoplebot import PeopleBot
-from sim.person import Person, PersonConfig, PlanarState
+from sim.person import Person
+from sim.person_config import PersonConfig
 from sim.place import Place
 from sim.random_streams import stream
 from sim.shapes import UPRIGHT, Shape, ShapeKind
+from sim.social_force import PlanarState
 
 # What robots bump into and sonars hear: an upright capsule, which no camera sees.
 _SOLID = "solid"
@@ -38,7 +40,7 @@ class Crowd:
             self._add(person)
 
     def step(self, time_s: float, dt_s: float, robot: PeopleBot) -> None:
-        """Let everybody walk on for one control step, knowing where the others were at its start."""
+        """Let everybody walk on until time_s, knowing where the others were dt_s before."""
         states = {person.name: _state(person) for person in self.people if person.present}
         pose, (speed, _) = robot.pose(), robot.velocity()
         heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])

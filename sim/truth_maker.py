@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
@@ -14,8 +15,9 @@ from sim.crowd import Crowd
 from sim.looks import Look
 from sim.peoplebot import Planar
 from sim.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
-from sim.render import View, silhouette_area, silhouette_bounds
+from sim.render import View
 from sim.shape_table import ShapeTable
+from sim.silhouette import silhouette_area, silhouette_bounds
 from sim.truth import BORDER, Box, Cover, PersonTruth, Truth, box_from_bounds, count_cover, is_counted
 
 _Scene = tuple[ShapeTable, Matrix, Camera, Matrix]
@@ -50,7 +52,8 @@ class TruthMaker:
         )
         self._outlines = [_Outline(k, parts, self.person_of_part) for k in range(len(names))]
         self._temperatures = [
-            {parts[p]: looks[p].temperature_c for p in outline.whole} for outline in self._outlines
+            {parts[p]: looks[p].temperature_c for p in np.flatnonzero(outline.whole)}
+            for outline in self._outlines
         ]
 
     def make(
@@ -121,16 +124,18 @@ class TruthMaker:
             joint_is_visible=_frozen(is_visible),
         )
 
-    def _whole_area(self, k: int, cover: Cover, scene: _Scene, whole: _Bounds | None) -> int:
+    def _whole_area(self, k: int, cover: Cover, scene: _Scene, whole: _Bounds) -> int:
         """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
-        if whole is None or self._is_inside(whole):
+        if self._is_inside(whole):
             return int(cover.seen[k].sum())
         return silhouette_area(*scene, self._outlines[k].whole)
 
     def _is_inside(self, bounds: _Bounds) -> bool:
         left, top, right, bottom = bounds
         width, height = self._camera.width, self._camera.height
-        return left > -0.5 and top > -0.5 and right < width - 0.5 and bottom < height - 0.5
+        return math.isnan(left) or (
+            left > -0.5 and top > -0.5 and right < width - 0.5 and bottom < height - 0.5
+        )
 
     def _hidden_by(self, k: int, cover: Cover, area: int) -> dict[str, float]:
         """Share of the whole silhouette that each other owner, or the border, hides."""
@@ -158,28 +163,27 @@ class TruthMaker:
 
 
 class _Outline:
-    """The part numbers of one person that make up each edge of the boxes."""
+    """The parts of one person that make up each edge of the boxes, as (P,) masks."""
 
     def __init__(self, person: int, parts: Sequence[str], person_of_part: NDArray[np.int64]) -> None:
-        own = [p for p in np.flatnonzero(person_of_part == person).tolist() if parts[p] in PART_CLASSES]
-        self.whole = np.array(own, np.int64)
-        self.height = np.array([p for p in own if parts[p] not in ARM_PARTS], np.int64)
-        self.torso = np.array([p for p in own if parts[p] in TORSO_PARTS], np.int64)
+        is_arm, is_torso, is_body = (
+            np.isin(parts, names) for names in (ARM_PARTS, TORSO_PARTS, list(PART_CLASSES))
+        )
+        self.whole = (person_of_part == person) & is_body
+        self.height = self.whole & ~is_arm
+        self.torso = self.whole & is_torso
 
 
 def _thesis_box(scene: _Scene, outline: _Outline) -> Box | None:
     """Head to feet, as wide as the torso without arms (T 3.3)."""
     height, torso = silhouette_bounds(*scene, outline.height), silhouette_bounds(*scene, outline.torso)
-    if height is None or torso is None:
-        return None
     return _box((torso[0], height[1], torso[2], height[3]))
 
 
-def _box(bounds: _Bounds | None) -> Box | None:
-    if bounds is None:
-        return None
+def _box(bounds: _Bounds) -> Box | None:
+    """Return left, top, width, height; None where nothing is before the camera."""
     left, top, right, bottom = bounds
-    return (left, top, right - left, bottom - top)
+    return None if math.isnan(left + top) else (left, top, right - left, bottom - top)
 
 
 def _frozen(array: A) -> A:

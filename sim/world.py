@@ -117,6 +117,7 @@ class World:
             raise BadInput(f"velocity command ({linear_m_s}, {angular_rad_s}) must be finite")
         steps = self.config.physics_hz // self.config.control_hz
         self._robot.command(linear_m_s, angular_rad_s)
+        self._tick += 1
         self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot)
         self._touching.clear()
         for k in range(steps):
@@ -126,7 +127,6 @@ class World:
             self._touching |= {contact.other.split("/")[0] for contact in self._robot.contacts()}
         self._touching -= {"floor"}
         self._robot.update_odometry()
-        self._tick += 1
         self._settle()
 
     def _build(self) -> None:
@@ -143,6 +143,7 @@ class World:
             keys, self._table, self._crowd, part_looks, config.robot.thermal.camera
         )
         self._detector = make_detector(config.robot.thermal, stream(config.seed, "thermal.detector"))
+        self._crowd.step(0.0, 1.0 / config.control_hz, self._robot)
         self._thermal_noise = stream(config.seed, "thermal.noise")
         self._colour_noise = stream(config.seed, "colour.noise")
         self._settle()
