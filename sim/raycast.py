@@ -1,7 +1,7 @@
 """The ray caster: takes every shape of a table apart into pieces of planes and quadrics (numba kernels).
 
 Nothing is clipped: the formulas of `canvas` hold for corners behind the camera too. Shapes are solid and
-seen from outside only: a camera within one does not see it. Meshes are seen from both sides.
+seen from outside only: a camera within one does not see it. TinyRenderer leaves out the same sides.
 """
 
 from __future__ import annotations
@@ -209,7 +209,7 @@ def _draw_face(
 def _draw_triangle(
     corners: Array, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
 ) -> None:
-    """Draw both sides of a triangle."""
+    """Draw the side of a triangle from which its corners run counterclockwise."""
     pose = canvas.pose
     a = map_point(pose, corners[0, 0], corners[0, 1], corners[0, 2])
     b = map_point(pose, corners[1, 0], corners[1, 1], corners[1, 2])
@@ -224,7 +224,7 @@ def _draw_triangle(
     length = math.sqrt(dot(normal, normal))
     if length == 0.0:
         return
-    normal = scaled(normal, (-1.0 if dot(normal, a) > 0.0 else 1.0) / length)
+    normal = scaled(normal, 1.0 / length)
     centre = scaled(plus(plus(a, b), c), 1.0 / 3.0)
     set_edge(canvas, 0, cross(a, b), centre)
     set_edge(canvas, 1, cross(b, c), centre)
