@@ -37,7 +37,7 @@ class RunFolder:
         self, path: Path, scenario: Mapping[str, Any], about: Mapping[str, Any], *, frames: bool
     ) -> None:
         self.path = path
-        self._about = dict(about) | {"versions": {name: version(name) for name in _VERSIONED}}
+        self._about = dict(about) | {"versions": versions()}
         self._writes_frames = frames
         self._truth: list[Row] = []
         self._tracks: list[Row] = []
@@ -102,6 +102,11 @@ class RunFolder:
         (self.path / name).write_text(json.dumps(dict(content), indent=2) + "\n", encoding="utf-8")
 
 
+def versions() -> dict[str, str]:
+    """Return the versions of the packages on which the bytes of a run depend."""
+    return {name: version(name) for name in _VERSIONED}
+
+
 def claim_folder(path: Path, *, overwrite: bool) -> None:
     """Make the folder of a new run.
 
@@ -145,6 +150,6 @@ def _box(box: tuple[float, float, float, float]) -> str:
     return ",".join(f"{edge:z.2f}" for edge in box)
 
 
-def _write_png(path: Path, image: NDArray[np.generic]) -> None:
+def _write_png(path: Path, image: NDArray[np.uint8] | NDArray[np.uint16]) -> None:
     if not cv2.imwrite(str(path), image, [cv2.IMWRITE_PNG_COMPRESSION, 2]):
         raise BadInput(f"{path}: cannot write this image; is the disk full?")

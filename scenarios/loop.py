@@ -1,4 +1,4 @@
-"""The closed loop: what the robot senses becomes tracks, tracks become a command, the command moves the world."""
+"""The closed loop: senses become tracks, tracks become a command, and the command moves the world."""
 
 from __future__ import annotations
 

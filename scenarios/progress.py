@@ -7,7 +7,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from scenarios.loop import Tick
 from scenarios.run import RunOptions, run
-from scenarios.schema import Scenario
+from scenarios.scenario import Scenario
 from scenarios.score import RunScores
 
 
@@ -22,12 +22,11 @@ def run_with_progress(scenario: Scenario, options: RunOptions) -> RunScores:
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), refresh_per_second=5) as progress:
-        total = round(scenario.duration_s * 15)
-        task = progress.add_task(scenario.name, total=total, rate="", mode="preparing")
+        task = progress.add_task(scenario.name, total=None, rate="", mode="preparing")
 
-        def report(tick: Tick) -> None:
+        def report(tick: Tick, frames: int) -> None:
             speed = progress.tasks[0].speed
             rate = "" if speed is None else f"{speed:.0f} frames/s"
-            progress.update(task, advance=1, rate=rate, mode=tick.mode)
+            progress.update(task, total=frames, completed=tick.frame, rate=rate, mode=tick.mode)
 
         return run(scenario, options, report)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bad_input import BadInput
-from scenarios.folder import RunFolder, claim_folder
+from scenarios.folder import RunFolder, claim_folder, versions
 from scenarios.loop import Tick, closed_loop
-from scenarios.schema import Scenario
+from scenarios.scenario import Scenario
 from scenarios.score import RunScores, score_run
 from scenarios.watchers import Watchers
 from sim.random_streams import stream
@@ -41,13 +41,13 @@ class RunOptions:
     overwrite: bool = False
 
 
-def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick], None]) -> RunScores:
+def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], None]) -> RunScores:
     """Run a scenario from start to end and write its folder.
 
     Args:
         scenario: what to run.
         options: how.
-        report: called after every tick, such as by a progress bar.
+        report: called after every tick with the number of all ticks, such as by a progress bar.
 
     Raises:
         BadInput: an option cannot be used; nothing is written then.
@@ -67,7 +67,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick], None])
         world = stack.enter_context(World(config))
         claim_folder(options.out, overwrite=options.overwrite)
         folder = stack.enter_context(
-            RunFolder(options.out, scenario.resolved(options.seed), about, frames=options.frames)
+            RunFolder(options.out, scenario.resolved(options.seed, versions()), about, frames=options.frames)
         )
         title = f"{scenario.name}, seed {options.seed}, tracker {options.tracker}"
         recording = options.out / "recording.rrd" if options.record else None
@@ -76,7 +76,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick], None])
         for tick in closed_loop(world, tracker, scenario.make_behaviour(), frames):
             events = watchers.update(tick)
             folder.write(tick, [event.to_json() for event in events])
-            report(tick)
+            report(tick, frames)
         folder.flush()
         follows = scenario.robot.behaviour == "follow_person"
         scores = score_run(options.out, frames, watchers.following.score() if follows else None)

@@ -38,4 +38,4 @@ def run_seeds(
 
 
 def _run_one(scenario: str, options: RunOptions) -> None:
-    run(load_scenario(scenario), options, lambda _: None)
+    run(load_scenario(scenario), options, lambda _tick, _frames: None)
