@@ -38,7 +38,9 @@ class FollowConfig:
         search_rad_s: [rad/s] turn rate while nobody is seen.
         wait_turn_rad_s: [rad/s] highest turn rate while waiting for a lost person.
         max_age_s: [s] an older track stops the robot.
-        wait_s: [s] from the last sight of the person until the search begins.
+        wait_s: [s] from the last sight of a person who left the image until the search begins.
+        patience_s: [s] the same for one lost in the middle of the image: hidden, or missed by the tracker.
+        leaving_rad: [rad] a person seen farther off the nose, or about to be, has left the image.
         min_confidence: people of lower confidence are not followed.
         target: smoothing of what is seen.
         avoid: steering along walls.
@@ -62,6 +64,8 @@ class FollowConfig:
     wait_turn_rad_s: float = 0.5
     max_age_s: float = 0.3
     wait_s: float = 1.2
+    patience_s: float = 3.0
+    leaving_rad: float = math.radians(19.0)
     min_confidence: float = 0.5
     target: TargetConfig = field(default_factory=TargetConfig)
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
@@ -76,7 +80,8 @@ class FollowState:
         time_s: [s] of the last sound sight.
         target: the followed person, None while searching.
         walking_m_s: [m/s] learnt speed at which the person walks away.
-        side: +1 or -1, the side to which to search: where the person was last seen to go.
+        side: +1 (left) or -1, to which to search: where the person was last seen to go.
+        patience_s: [s] how long to wait for the person before searching.
     """
 
     mode: str = "search"
@@ -84,6 +89,7 @@ class FollowState:
     target: Target | None = None
     walking_m_s: float = 0.0
     side: int = 1
+    patience_s: float = 0.0
 
 
 class FollowPerson:
@@ -154,8 +160,8 @@ def _update_target(state: FollowState, sight: Sight, step_s: float, config: Foll
         else:
             moved = carry_on(known, sight.angular_rad_s, step_s)
             seen = look_again(moved, person, sight.time_s, step_s, config.target)
-        return replace(state, target=seen, side=_side(seen, config))
-    if known is None or sight.time_s - known.seen_s > config.wait_s:
+        return replace(state, target=seen, side=_side(seen, config), patience_s=_patience(seen, config))
+    if known is None or sight.time_s - known.seen_s > state.patience_s:
         return replace(state, target=None)
     moved = carry_on(known, sight.angular_rad_s, step_s)
     return replace(state, target=forget_drift(moved, step_s, config.target))
@@ -164,6 +170,14 @@ def _update_target(state: FollowState, sight: Sight, step_s: float, config: Foll
 def _side(target: Target, config: FollowConfig) -> int:
     """Tell on which side the person will be when the search begins: +1 left, -1 right."""
     return 1 if target.bearing_rad + target.drift_rad_s * config.wait_s >= 0.0 else -1
+
+
+def _patience(target: Target, config: FollowConfig) -> float:
+    """Tell how long [s] to wait for the person, should this be the last sight."""
+    soon = target.bearing_rad + target.drift_rad_s * config.max_age_s
+    return (
+        config.wait_s if max(abs(target.bearing_rad), abs(soon)) > config.leaving_rad else config.patience_s
+    )
 
 
 def _search(state: FollowState, config: FollowConfig) -> tuple[FollowState, Command]:

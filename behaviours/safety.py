@@ -36,11 +36,11 @@ class SafetyConfig:
     braking_m_s2: float = 0.5
     reaction_s: float = 0.25
     margin_m: float = 0.45
-    front_m: float = 0.24
-    rear_m: float = 0.28
+    front_m: float = 0.23
+    rear_m: float = 0.32
     half_width_m: float = 0.27
-    corner_m: float = 0.32
-    free_turn_m: float = 0.5
+    corner_m: float = 0.36
+    free_turn_m: float = 0.55
     tight_turn_rad_s: float = 0.3
 
 

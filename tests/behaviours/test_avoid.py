@@ -1,0 +1,48 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from behaviours.avoid import AvoidConfig, swerve
+
+CONFIG = AvoidConfig()
+points = st.lists(st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)), max_size=16).map(
+    lambda rows: np.array(rows, float).reshape(-1, 2)
+)
+bearings = st.floats(-0.6, 0.6)
+
+
+def polar(distance, angle):
+    return np.array([[distance * math.cos(angle), distance * math.sin(angle)]])
+
+
+@given(bearings, points)
+def test_left_and_right_are_mirror_images_and_no_swerve_is_wider_than_allowed(bearing, echoes):
+    aside = swerve(bearing, echoes, CONFIG)
+    assert abs(aside) <= CONFIG.widest_rad
+    on_line = np.isclose(np.arctan2(echoes[:, 1], echoes[:, 0]), bearing)
+    if not on_line.any():
+        assert swerve(-bearing, echoes * (1.0, -1.0), CONFIG) == pytest.approx(-aside, abs=1e-9)
+
+
+@pytest.mark.parametrize("distance", [0.9 * CONFIG.reach_m, 0.7, 0.5])
+def test_an_echo_on_the_left_moves_the_aim_right(distance):
+    assert swerve(0.0, polar(distance, 0.2), CONFIG) < 0.0
+
+
+def test_the_swerve_clears_the_echo_by_half_the_lane():
+    config = AvoidConfig(widest_rad=math.pi)
+    aside = swerve(0.0, polar(0.7, 0.3), config)
+    assert 0.7 * math.sin(0.3 - aside) == pytest.approx(config.half_width_m)
+
+
+@pytest.mark.parametrize("echo", [polar(1.3, 0.05), polar(0.8, 1.0), polar(0.3, math.pi), np.zeros((0, 2))])
+def test_far_wide_or_rear_echoes_do_not_matter(echo):
+    assert swerve(0.0, echo, CONFIG) == 0.0
+
+
+def test_between_equal_door_posts_the_aim_stays():
+    posts = np.array([[0.6, 0.3], [0.6, -0.3]])
+    assert swerve(0.0, posts, CONFIG) == pytest.approx(0.0)

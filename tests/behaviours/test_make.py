@@ -1,0 +1,71 @@
+import dataclasses
+import math
+
+import pytest
+from test_safety import free
+
+from bad_input import BadInput
+from behaviours.command import STOP, Command
+from behaviours.make import make_behaviour
+from behaviours.scripted import Scripted
+
+SCRIPT = (
+    (1.0, Command(linear_m_s=0.3, angular_rad_s=0.0)),
+    (2.0, Command(linear_m_s=0.0, angular_rad_s=-1.0)),
+)
+
+
+def at(time_s, sight):
+    return dataclasses.replace(sight, time_s=time_s)
+
+
+@pytest.mark.parametrize(
+    ("time_s", "expected"),
+    [
+        (0.0, STOP),
+        (0.999, STOP),
+        (1.0, SCRIPT[0][1]),
+        (1.5, SCRIPT[0][1]),
+        (2.0, SCRIPT[1][1]),
+        (99.0, SCRIPT[1][1]),
+    ],
+)
+def test_scripted_commands_are_given_from_their_times_on(time_s, expected):
+    behaviour = make_behaviour("scripted", script=SCRIPT)
+    assert behaviour.command(at(time_s, free())) == expected
+    assert behaviour.mode == "scripted"
+
+
+@pytest.mark.parametrize("times", [(1.0, 1.0), (2.0, 1.0), (math.nan,), (0.0, math.inf)])
+def test_a_script_whose_times_do_not_rise_is_refused(times):
+    with pytest.raises(BadInput, match="rise"):
+        Scripted([(time_s, STOP) for time_s in times])
+
+
+def test_an_empty_script_stands():
+    assert make_behaviour("scripted").command(free()) == STOP
+
+
+def test_standing_stands():
+    behaviour = make_behaviour("stand")
+    assert behaviour.command(free()) == STOP
+    assert behaviour.mode == "stand"
+
+
+def test_an_unknown_name_is_refused_with_the_names_there_are():
+    with pytest.raises(BadInput, match="'dance'; there are follow_person, scripted, stand"):
+        make_behaviour("dance")
+
+
+def test_the_guard_stops_a_script_before_a_wall_and_says_so():
+    behaviour = make_behaviour("scripted", script=((0.0, Command(linear_m_s=0.8, angular_rad_s=0.0)),))
+    behaviour.command(free())
+    assert not behaviour.is_limited
+    assert behaviour.command(free(i3=0.3)).linear_m_s == 0.0
+    assert behaviour.is_limited
+
+
+def test_one_lost_echo_does_not_set_a_stopped_robot_going():
+    behaviour = make_behaviour("scripted", script=((0.0, Command(linear_m_s=0.8, angular_rad_s=0.0)),))
+    for reading in (0.3, 0.3, 5.0):
+        assert behaviour.command(free(i3=reading)).linear_m_s == 0.0

@@ -1,0 +1,121 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bad_input import BadInput
+from scenarios.following_metrics import FollowingTask, score_following
+
+STEP_S = 0.5
+
+
+def score(distance, *, bearing=0.0, tracked=None, contact=None, heading=0.7, task=None):
+    """A robot at (1, 2) with a person at these distances and bearings from its nose."""
+    distance = np.array(distance, float)
+    frames = len(distance)
+    angle = heading + np.broadcast_to(bearing, frames)
+    person = np.stack([1.0 + distance * np.cos(angle), 2.0 + distance * np.sin(angle)], axis=1)
+    return score_following(
+        time_s=10.0 + STEP_S * np.arange(frames),
+        robot=np.tile([1.0, 2.0, heading], (frames, 1)),
+        person=person,
+        is_tracked=np.array([True] * frames if tracked is None else tracked),
+        is_contact=np.array([False] * frames if contact is None else contact),
+        task=task,
+    )
+
+
+def test_a_run_without_fault_scores_full():
+    task = FollowingTask(keep_m=3.0)
+    result = score([3.0] * 8, task=task)
+    assert result.found
+    assert result.time_to_find_s == 0.0
+    assert (result.followed, result.in_band, result.facing, result.in_band_and_facing) == (1.0,) * 4
+    assert result.rms_distance_error_m == pytest.approx(0.0, abs=1e-9)
+    assert (result.collisions, result.times_lost, result.longest_lost_s) == (0, 0, 0.0)
+
+
+def test_nothing_before_the_encounter_counts_but_the_nearest_distance():
+    result = score([1.0, 9.0, 3.0, 3.0], tracked=[False, False, True, True])
+    assert result.time_to_find_s == 2 * STEP_S
+    assert (result.followed, result.in_band) == (1.0, 1.0)
+    assert result.min_distance_m == pytest.approx(1.0)
+
+
+def test_distance_errors_are_mean_and_root_mean_square():
+    result = score([2.0, 4.0, 3.0, 6.0], task=FollowingTask(keep_m=3.0))
+    assert result.mean_distance_error_m == pytest.approx(5.0 / 4.0)
+    assert result.rms_distance_error_m == pytest.approx(math.sqrt(11.0 / 4.0))
+
+
+def test_band_and_facing_are_shares_of_frames():
+    task = FollowingTask(band_m=(1.2, 3.5), facing_rad=0.2)
+    result = score([1.0, 2.0, 3.0, 4.0], bearing=[0.1, -0.1, 0.3, 6.4], task=task)
+    assert result.in_band == 0.5
+    assert result.facing == 0.75  # 6.4 is 0.12 past a full turn
+    assert result.in_band_and_facing == 0.25
+
+
+def test_the_heading_in_which_everything_happens_does_not_matter():
+    one, other = (score([2.0, 3.0], bearing=3.1, heading=h) for h in (0.0, 3.0))
+    assert (one.facing, one.in_band) == (other.facing, other.in_band)
+
+
+def test_contacts_are_counted_when_they_begin():
+    assert score([3.0] * 7, contact=[True, True, False, True, False, False, True]).collisions == 3
+
+
+def test_lost_periods_are_counted_from_their_length_on():
+    tracked = [True, False, True, False, False, False, True, False]
+    result = score([3.0] * 8, tracked=tracked, task=FollowingTask(lost_s=1.0))
+    assert result.times_lost == 1
+    assert result.longest_lost_s == 3 * STEP_S
+    assert result.followed == 3 / 8
+
+
+def test_whoever_is_never_tracked_was_not_found():
+    result = score([3.0] * 4, tracked=[False] * 4)
+    assert not result.found
+    assert math.isnan(result.time_to_find_s)
+    assert math.isnan(result.followed)
+    assert result.times_lost == 0
+    assert len(result.rows()) == 12
+
+
+def test_frames_without_the_person_do_not_count():
+    result = score([3.0, math.nan, math.nan, 3.0], tracked=[True, False, False, True])
+    assert result.followed == 1.0
+    assert result.in_band == 1.0
+
+
+@given(st.lists(st.floats(0.1, 9.0), min_size=1, max_size=20), st.data())
+def test_every_share_is_within_its_bounds_and_both_is_no_more_than_each(distances, data):
+    tracked = data.draw(st.lists(st.booleans(), min_size=len(distances), max_size=len(distances)))
+    result = score(distances, tracked=tracked, bearing=data.draw(st.floats(-4.0, 4.0)))
+    if result.found:
+        assert 0.0 <= result.in_band_and_facing <= min(result.in_band, result.facing) <= 1.0
+        assert 0.0 < result.followed <= 1.0
+        assert result.mean_distance_error_m <= result.rms_distance_error_m + 1e-9
+        assert result.longest_lost_s <= STEP_S * (len(distances) - 1) + 1e-9
+
+
+def test_a_person_who_is_away_is_not_lost_meanwhile():
+    away = [3.0, 3.0] + [math.nan] * 9 + [3.0]
+    result = score(away, tracked=[True] + [False] * 10 + [True])
+    assert result.longest_lost_s == STEP_S
+
+
+def test_arrays_of_different_lengths_and_standing_time_are_refused():
+    good = {
+        "time_s": np.arange(3.0),
+        "robot": np.zeros((3, 3)),
+        "person": np.ones((3, 2)),
+        "is_tracked": np.ones(3, bool),
+        "is_contact": np.zeros(3, bool),
+    }
+    with pytest.raises(BadInput, match="shapes"):
+        score_following(**{**good, "person": np.ones((2, 2))})
+    with pytest.raises(BadInput, match="rise"):
+        score_following(**{**good, "time_s": np.zeros(3)})
