@@ -158,7 +158,7 @@ def _check_order(key: str, unit_key: str, times: Sequence[float]) -> None:
     for index in range(1, len(times)):
         if times[index] <= times[index - 1]:
             raise BadInput(
-                f"{key}[{index}].{unit_key}: {times[index]:g} must be after {times[index - 1]:g}, the one before"
+                f"{key}[{index}].{unit_key}: {times[index]:g} must be after the one before, {times[index - 1]:g}"
             )
 
 
