@@ -41,8 +41,9 @@ def _refuse_unless(is_right: bool, config: object, name: str, rule: str) -> None
 class ContourConfig:
     """Where a contour is looked at, and how a difference of grey counts.
 
-    The thesis says that inner and outer pixels along the ellipses are compared; how far from the contour, at how many
-    points, and how wide the head is, it leaves open: `reach_px`, `points`, `head_aspect` and the angles are readings.
+    The thesis says that inner and outer pixels along the ellipses are compared; how far from the contour, at
+    how many points, and how wide the head is, it leaves open: `reach_px`, `points`, `head_aspect` and the
+    angles are readings.
     """
 
     head_divisor: float = 4.4  # body semi-height / head semi-height
@@ -57,18 +58,10 @@ class ContourConfig:
     head_reach: tuple[float, ...] = (0.0,)  # plus this share of the head's semi-width
     far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 is none
     saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
-    cold_response: float = (
-        1.0  # what a colder inside of the body counts: 1 against, 0 nothing, -1 for a person
-    )
-    weights: tuple[float, ...] = (
-        0.18,
-        0.18,
-        0.18,
-        0.07,
-        0.07,
-        0.16,
-        0.16,
-    )  # alpha_1..7: head 3, shoulders 2, sides 2
+    # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
+    cold_response: float = 1.0
+    # alpha_1..7 of the sections: head left, top, right, shoulders, sides.
+    weights: tuple[float, ...] = (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16)
     feet_weight: float = 0.0  # weight of an eighth section, the line under the feet
     feet_line: float = 2.05  # its distance below the body's centre, in body semi-heights
     feet_span: float = 0.6  # how far it reaches to both sides, in body semi-heights
@@ -93,7 +86,8 @@ class LimitsConfig:
     y: tuple[float, float] = (0.2, 0.8)  # [image heights]
     h: tuple[float, float] = (0.02, 0.5)  # [image heights]; the sources name no largest
     horizon: float = 0.5  # row of the horizon [image heights]; the middle for a level camera
-    y_below_horizon: tuple[float, float] = (-math.inf, math.inf)  # [body semi-heights]: where people who stand on the floor are
+    # [body semi-heights]: where people who stand on the floor are.
+    y_below_horizon: tuple[float, float] = (-math.inf, math.inf)
     outside_weight: float = 1e-6  # factor on the weight of a sample outside: "a very low chance"
 
     def __post_init__(self) -> None:

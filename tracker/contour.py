@@ -1,7 +1,8 @@
 """The contour of a person: a body and a head ellipse, looked at in sections.
 
-Every point on or beside the contour is the body's centre plus a fixed mix of d, w and h. A whole contour model is
-therefore a table of coefficients (`Probes`), and all variants share the one kernel that reads the image with it.
+Every point on or beside the contour is the body's centre plus a fixed mix of d, w and h. A whole contour
+model is therefore a table of coefficients (`Probes`), and all variants share the one kernel that reads the
+image with it.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from tracker.particles import D, Floats, H, W, X, Y
 HEAD_LEFT, HEAD_TOP, HEAD_RIGHT, SHOULDER_LEFT, SHOULDER_RIGHT, SIDE_LEFT, SIDE_RIGHT, FEET = range(8)
 SECTIONS = 8
 GREYS = 256
+FEET_COLUMNS = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,8 +103,10 @@ def body_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: 
     return points
 
 
-def head_points(angle: NDArray[np.float64], config: ContourConfig, grow: NDArray[np.float64], grow_px: float) -> Floats:
-    """Give points (K, 2, 4) of the head ellipse, both semi-axes longer by `grow` times its semi-width + `grow_px`."""
+def head_points(
+    angle: NDArray[np.float64], config: ContourConfig, grow: NDArray[np.float64], grow_px: float
+) -> Floats:
+    """Give points (K, 2, 4) of the head ellipse, both semi-axes longer by `grow` semi-widths + `grow_px`."""
     points = np.zeros((len(angle), 2, 4), dtype=np.float32)
     right, down = np.sin(angle), -np.cos(angle)
     tall = 1 / config.head_divisor
@@ -116,12 +120,14 @@ def head_points(angle: NDArray[np.float64], config: ContourConfig, grow: NDArray
 
 
 def _feet_points(config: ContourConfig) -> tuple[Floats, Floats]:
-    """Give points (K, 2, 4) above and below the line under the feet."""
-    points = np.zeros((2, 12, 2, 4), dtype=np.float32)
-    points[:, :, 0, 2] = np.linspace(-config.feet_span, config.feet_span, 12)
-    points[0, :, 1, 2] = config.feet_line - 0.12
-    points[1, :, 1, 2] = config.feet_line + 0.12
-    return points[0], points[1]
+    """Give points (K, 2, 4) above the line under the feet, and below it at two depths, where floor is."""
+    across = np.linspace(-config.feet_span, config.feet_span, FEET_COLUMNS)
+    points = np.zeros((2, 2, FEET_COLUMNS, 2, 4), dtype=np.float32)
+    points[..., 0, 2] = across
+    points[0, ..., 1, 2] = config.feet_line - 0.1
+    points[1, 0, :, 1, 2] = config.feet_line + 0.1
+    points[1, 1, :, 1, 2] = config.feet_line + 0.4
+    return points[0].reshape(-1, 2, 4), points[1].reshape(-1, 2, 4)
 
 
 def build_response(config: ContourConfig) -> Floats:
@@ -129,15 +135,16 @@ def build_response(config: ContourConfig) -> Floats:
     difference = np.arange(1 - GREYS, GREYS, dtype=np.float64)
     response = np.tanh(difference / config.saturation_grey) if config.saturation_grey > 0 else difference
     table = np.tile(response, (SECTIONS, 1))
-    # A garment may be colder than what is behind it; a head never is.
-    table[SHOULDER_LEFT:] = np.where(difference < 0, config.cold_response * response, response)
+    # A garment may be colder than what is behind it; head and feet on the floor hardly ever are.
+    table[SHOULDER_LEFT:FEET] = np.where(difference < 0, config.cold_response * response, response)
     return table.astype(np.float32)
 
 
 def section_weights(config: ContourConfig) -> NDArray[np.float64]:
     """Give the weights (8,) of the sections, which sum to 1."""
     weights = np.array([*config.weights, config.feet_weight])
-    return weights / weights.sum()
+    shares: NDArray[np.float64] = weights / weights.sum()
+    return shares
 
 
 def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np.uint8]:
@@ -181,31 +188,34 @@ def _differences(
     response: Floats,
     unseen: np.float32,
 ) -> Floats:
-    total = np.zeros((len(state), SECTIONS), dtype=np.float32)
-    count = np.zeros(SECTIONS, dtype=np.float32)
+    share = np.zeros(SECTIONS, dtype=np.float32)
     for j in section:
-        count[j] += 1
+        share[j] += np.float32(1)
+    result = np.zeros((len(state), SECTIONS), dtype=np.float32)
     for i in range(len(state)):
+        x, y, d, w, h = state[i, X], state[i, Y], state[i, D], state[i, W], state[i, H]
         for p in range(len(section)):
-            inside = _grey(image, state[i], inner[p])
-            outside = _grey(image, state[i], outer[p])
+            inside = _grey(image, x, y, d, w, h, inner, p)
+            outside = _grey(image, x, y, d, w, h, outer, p)
             j = section[p]
             if inside < 0 or outside < 0:
-                total[i, j] += unseen
+                result[i, j] += unseen
             else:
-                total[i, j] += response[j, 255 + inside - outside]
+                result[i, j] += response[j, GREYS - 1 + inside - outside]
         for j in range(SECTIONS):
-            if count[j] > 0:
-                total[i, j] /= count[j]
-    return total
+            if share[j] > 0:
+                result[i, j] /= share[j]
+    return result
 
 
 @njit(cache=True, fastmath=True, nogil=True, inline="always")
-def _grey(image: NDArray[np.uint8], state: Floats, mix: Floats) -> int:
-    """Read the pixel nearest to a point of the contour; -1 outside the image."""
-    u = state[X] + mix[0, 0] * state[D] + mix[0, 1] * state[W] + mix[0, 2] * state[H] + mix[0, 3]
-    v = state[Y] + mix[1, 1] * state[W] + mix[1, 2] * state[H] + mix[1, 3]
-    column, row = int(np.floor(u + 0.5)), int(np.floor(v + 0.5))
-    if column < 0 or row < 0 or column >= image.shape[1] or row >= image.shape[0]:
+def _grey(
+    image: NDArray[np.uint8], x: float, y: float, d: float, w: float, h: float, mix: Floats, p: int
+) -> int:
+    """Read the pixel nearest to point p of the contour; -1 outside the image."""
+    half = np.float32(0.5)
+    u = x + mix[p, 0, 0] * d + mix[p, 0, 1] * w + mix[p, 0, 2] * h + mix[p, 0, 3] + half
+    v = y + mix[p, 1, 1] * w + mix[p, 1, 2] * h + mix[p, 1, 3] + half
+    if u < 0 or v < 0 or u >= image.shape[1] or v >= image.shape[0]:
         return -1
-    return int(image[row, column])
+    return np.int32(image[np.int32(v), np.int32(u)])

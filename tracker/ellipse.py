@@ -32,4 +32,6 @@ def outline(
     nothing = np.zeros(count)
     mix = np.array([ellipse.d, ellipse.w, ellipse.h, 1.0])
     centre = np.array([ellipse.x, ellipse.y])
-    return centre + body_points(angle, nothing, 0.0) @ mix, centre + head_points(angle, config, nothing, 0.0) @ mix
+    return centre + body_points(angle, nothing, 0.0) @ mix, centre + head_points(
+        angle, config, nothing, 0.0
+    ) @ mix

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from tracker.config import REFERENCE_HEIGHT_PX, FilterConfig, TrackerConfig
 from tracker.frame import Frame
 from tracker.measure import ContourModel, fitness, is_within, probability, sample_weights
-from tracker.motion import predict
+from tracker.motion import Pixels, predict, turned
 from tracker.particles import (
     Floats,
     Particles,
+    X,
     core_rows,
     mean_state,
     resample,
@@ -32,31 +33,32 @@ class View:
         image: (H, W) prepared grey image.
         model: the contour laid out for its size.
         dt_s: time since the last frame [s].
-        shift_px: how far the camera's turn moved the image to the right since then [px].
+        turn_rad: how the camera turned since then, left positive [rad]; 0 if unknown.
+        focal_px: focal length [px].
     """
 
     image: NDArray[np.uint8]
     model: ContourModel
     dt_s: float
-    shift_px: float
+    turn_rad: float
+    focal_px: float
 
     @property
     def size(self) -> float:
         """Image height / 240."""
-        return self.image.shape[0] / REFERENCE_HEIGHT_PX
+        return int(self.image.shape[0]) / REFERENCE_HEIGHT_PX
+
+    def after_turn(self, x: Pixels) -> Pixels:
+        """Tell where columns x [px] of the last frame lie in this one but for people's own motion."""
+        return turned(x, self.turn_rad, self.focal_px, (self.image.shape[1] - 1) / 2)
 
 
 def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig) -> View:
-    """Prepare a frame for all filters; a left turn moves the image to the right."""
-    shift = 0.0
-    if config.motion.uses_odometry and frame.turn_rad is not None:
-        shift = focal_px(frame.height_px, config.motion.view_angle_deg) * math.tan(frame.turn_rad)
-    return View(model.prepare(frame.thermal), model, dt_s, shift)
-
-
-def focal_px(height_px: int, view_angle_deg: float) -> float:
-    """Give the focal length [px] of a camera with that many rows and vertical field of view."""
-    return height_px / 2 / math.tan(math.radians(view_angle_deg) / 2)
+    """Prepare a frame for all filters."""
+    motion = config.motion
+    turn = frame.turn_rad if motion.uses_odometry and frame.turn_rad is not None else 0.0
+    focal = frame.height_px / 2 / math.tan(math.radians(motion.view_angle_deg) / 2)
+    return View(model.prepare(frame.thermal), model, dt_s, turn, focal)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,14 +110,15 @@ def step(
 ) -> Belief:
     """Carry a filter from the last frame to this one.
 
-    The weighted samples of the last frame are resampled first instead of last, which is the same cycle, cut at
-    another place: what a caller holds between two frames are the weighted samples, before any is lost.
+    The weighted samples of the last frame are resampled first instead of last, which is the same cycle, cut
+    at another place: what a caller holds between two frames are the weighted samples, before any is lost.
 
     Source: thesis, algorithm 3.
     """
     fresh = round(filter_config.fresh_share * filter_config.count)
     kept = resample(particles, filter_config.count - fresh, rng)
-    moved = predict(kept, view.dt_s, view.shift_px, view.size, config.motion, rng)
+    moved = predict(kept, view.dt_s, view.size, config.motion, rng)
+    moved[:, X] = view.after_turn(moved[:, X])
     return weigh(
         np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)]),
         view,

@@ -18,7 +18,8 @@ class Frame:
     Attributes:
         thermal: (H, W) uint8 grey, linear over 24..36 degC by default.
         time_s: when both images were taken [s].
-        colour: (H, W, 3) uint8 RGB, or None without a colour camera; its size may differ from the thermal one.
+        colour: (H, W, 3) uint8 RGB, or None without a colour camera; its size may differ from the thermal
+            one.
         turn_rad: how the robot turned since the last frame, left positive [rad]; None if unknown.
         advance_m: how far it drove forward since the last frame [m]; None if unknown.
 

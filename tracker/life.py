@@ -17,11 +17,12 @@ def is_born(belief: Belief, view: View, config: LifeConfig) -> bool:
 def is_kept(belief: Belief, view: View, config: LifeConfig) -> bool:
     """Tell whether a tracked person is still seen.
 
-    Source: thesis, section 5.1: a filter is deleted when its mean is smaller than 0.5 or its uncertainty too large.
+    Source: thesis, section 5.1: a filter is deleted when its mean is smaller than 0.5 or its uncertainty too
+    large.
     """
     return belief.confidence >= config.death_confidence and _agrees(belief, view, config)
 
 
 def _agrees(belief: Belief, view: View, config: LifeConfig) -> bool:
-    """Compare the spread with its threshold, which is an area and grows with the square of the image's size."""
+    """Compare the spread with its threshold, an area, which grows with the square of the image's size."""
     return belief.uncertainty_px2 < config.uncertainty_px2 * view.size**2

@@ -59,19 +59,19 @@ class ContourModel:
 def fitness(differences: Floats, weights: NDArray[np.float64], config: LikelihoodConfig) -> Floats:
     """Sum up how well each sample fits the image, (N,), from its section differences (N, 8).
 
-    Source: thesis, equation 4.3; paper, equations 3 and 4, where the plain sum of the differences is multiplied by the
-    weight of those sections that reach a threshold. The paper's sum is divided by the number of sections here, so that
-    both fitnesses are grey levels and share one threshold.
+    Source: thesis, equation 4.3; paper, equations 3 and 4, where the plain sum of the differences is
+    multiplied by the weight of those sections that reach a threshold. The paper's sum is divided by the
+    number of sections here, so that both fitnesses are grey levels and share one threshold.
     """
     if config.model == "thesis":
-        total = differences @ weights.astype(np.float32)
-        if config.weakest_share == 0:
-            return total
-        weakest = differences[:, :FEET].min(axis=1)
-        return (1 - config.weakest_share) * total + config.weakest_share * weakest
-    is_strong = differences >= config.section_threshold
+        total: Floats = differences @ weights.astype(np.float32)
+        if config.weakest_share > 0:
+            total += np.float32(config.weakest_share) * (differences[:, :FEET].min(axis=1) - total)
+        return total
+    strong = (differences >= config.section_threshold) @ weights.astype(np.float32)
     used = int((weights > 0).sum())
-    return ((is_strong @ weights) * (differences.sum(axis=1) / used)).astype(np.float32)
+    product: Floats = strong * (differences.sum(axis=1) / np.float32(used))
+    return product
 
 
 def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
@@ -80,8 +80,9 @@ def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
     Source: thesis, equation 4.4, which equals the logistic function of 2 kappa (f - theta).
     """
     # Beyond +-40 the result no longer changes, and exp would overflow.
-    exponent = np.clip(2 * config.slope * (fit - config.threshold), -40.0, 40.0)
-    return (1 / (1 + np.exp(-exponent))).astype(np.float32)
+    exponent = np.clip(np.float32(2 * config.slope) * (fit - np.float32(config.threshold)), -40, 40)
+    result: Floats = 1 / (1 + np.exp(-exponent))
+    return result
 
 
 def sample_weights(
@@ -109,6 +110,7 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
     Source: thesis, section 4.2 and the table of section 4.4.
     """
     w, h = state[:, W], state[:, H]
+    below_horizon = state[:, Y] - limits.horizon * height_px
     return (
         (w > limits.ratio_wh[0] * h)
         & (w < limits.ratio_wh[1] * h)
@@ -116,8 +118,8 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
         & (state[:, D] < limits.ratio_dw[1] * w)
         & (state[:, Y] > limits.y[0] * height_px)
         & (state[:, Y] < limits.y[1] * height_px)
-        & (state[:, Y] - limits.horizon * height_px > limits.y_below_horizon[0] * h)
-        & (state[:, Y] - limits.horizon * height_px < limits.y_below_horizon[1] * h)
+        & (below_horizon > limits.y_below_horizon[0] * h)
+        & (below_horizon < limits.y_below_horizon[1] * h)
         & (h > limits.h[0] * height_px)
         & (h < limits.h[1] * height_px)
     )

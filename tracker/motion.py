@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+import math
+from typing import TypeVar
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from tracker.config import MotionConfig
-from tracker.particles import VX, D, Floats, H, X
+from tracker.particles import VX, D, Floats, H
+
+Pixels = TypeVar("Pixels", float, Floats)
 
 
 def predict(
-    state: Floats, dt_s: float, shift_px: float, size: float, config: MotionConfig, rng: np.random.Generator
+    state: Floats, dt_s: float, size: float, config: MotionConfig, rng: np.random.Generator
 ) -> Floats:
     """Draw the (N, 9) states one time step later.
 
-    Constant velocity in (x, y, w, h), a random walk in d and in the velocities. The thesis has no `shift_px`: the
-    robot's own turn moves everything in the image by it, known from odometry and therefore no matter of chance.
+    Constant velocity in (x, y, w, h), a random walk in d and in the velocities.
 
     Args:
         state: (N, 9) particles now.
         dt_s: time step [s].
-        shift_px: how far the camera's turn moved the image to the right [px].
         size: image height / 240; the amplitudes are given for an image of 240 rows.
         config: amplitudes of the random walk.
         rng: source of chance.
@@ -31,14 +34,25 @@ def predict(
     noise = rng.standard_normal((len(state), 5), dtype=np.float32)
     amplitude = noise_per_step(dt_s, size, config)
     memory = np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
-    return _predicted(state, noise, amplitude, dt_s, shift_px, size * config.noise_by_height, memory)
+    moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, memory)
+    return moved
+
+
+def turned(x: Pixels, turn_rad: float, focal_px: float, centre_px: float) -> Pixels:
+    """Tell where columns x [px] lie after the camera has turned to the left, which moves them to the right.
+
+    The thesis leaves the robot's motion to chance; its turn is known from odometry and need not be.
+    """
+    tangent, slope = math.tan(turn_rad), (x - centre_px) / focal_px
+    moved: Pixels = centre_px + focal_px * (slope + tangent) / (1 - slope * tangent)
+    return moved
 
 
 def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
     """Give the amplitudes (5,) of the random walk in d, vx, vy, vw, vh over one step, the last entries of B.
 
-    The sources mean magnitudes a second: the velocities' entries reach the position times dt by way of A, so d's entry
-    is multiplied by dt here.
+    The sources mean magnitudes a second: the velocities' entries reach the position times dt by way of A, so
+    d's entry is multiplied by dt here.
     """
     amplitude = np.array(
         [config.noise_d * dt_s, config.noise_x, config.noise_y, config.noise_w, config.noise_h]
@@ -47,7 +61,7 @@ def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
 
 
 def transition(dt_s: float) -> NDArray[np.float64]:
-    """Build the matrix A (9, 9) of equation 4.8, whose product with the state is the noise-free prediction."""
+    """Build the matrix A (9, 9) of equation 4.8; A times a state is its prediction without noise."""
     matrix = np.eye(9)
     matrix[:4, VX:] = dt_s * np.eye(4)
     return matrix
@@ -59,7 +73,6 @@ def _predicted(
     noise: Floats,
     amplitude: Floats,
     dt_s: float,
-    shift_px: float,
     by_height: float,
     memory: Floats,
 ) -> Floats:
@@ -71,5 +84,4 @@ def _predicted(
             result[i, k] = state[i, k] + dt_s * state[i, VX + k]
             result[i, VX + k] = memory[k] * state[i, VX + k] + scale * amplitude[1 + k] * noise[i, 1 + k]
         result[i, D] = state[i, D] + scale * amplitude[0] * noise[i, 0]
-        result[i, X] += shift_px
     return result

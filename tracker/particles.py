@@ -100,7 +100,8 @@ def mean_state(particles: Particles) -> NDArray[np.float64]:
 def uncertainty_px2(particles: Particles) -> float:
     """Measure the weighted squared distance of the particles from their mean, over x and y [px^2].
 
-    Source: thesis, equation 4.6; read over the position alone, since the sources' threshold of 400 counts pixels.
+    Source: thesis, equation 4.6; read over the position alone, since the sources' threshold of 400 counts
+    pixels.
     """
     weight = particles.weight.astype(np.float64)
     away = particles.state[:, :2].astype(np.float64)
@@ -116,24 +117,24 @@ def select(particles: Particles, rows: NDArray[np.int64]) -> Particles:
 def core_rows(particles: Particles, share: float, reach: float) -> NDArray[np.int64]:
     """Choose the particles that make the estimate: of the best ones, those near the very best.
 
-    With several people in view the mean over all particles lies between them (thesis, figure 4.5); the mean over
-    those near the best lies on one of them.
+    With several people in view the mean over all particles lies between them (thesis, figure 4.5); the mean
+    over those near the best lies on one of them.
 
     Args:
         particles: the weighted samples.
-        share: ceil(share N) heaviest particles are kept (paper, section 4: the best 30 %).
+        share: the ceil(share N) heaviest particles are kept, and their equals (paper: the best 30 %).
         reach: largest distance from the heaviest one, in its semi-axes; infinite for all.
     """
     count = math.ceil(share * len(particles))
-    rows = np.arange(len(particles))
-    if count < len(particles):
-        # A stable sort makes the choice among equals the same on every machine.
-        rows = np.argsort(-particles.weight, kind="stable")[:count]
+    # The count-th heaviest weight: those equal to it stay, so that no sorting order decides.
+    least = np.partition(particles.weight, len(particles) - count)[len(particles) - count]
+    rows = np.flatnonzero(particles.weight >= least)
     if math.isinf(reach):
         return rows
     best = particles.state[np.argmax(particles.weight)]
     away = (particles.state[rows, :2] - best[:2]) / best[W : H + 1]
-    return rows[(away * away).sum(axis=1) <= reach * reach]
+    near: NDArray[np.int64] = rows[(away * away).sum(axis=1) <= reach * reach]
+    return near
 
 
 def ellipse_of(state: NDArray[np.floating]) -> Ellipse:

@@ -37,10 +37,11 @@ def draw_prior(
 
 
 def _heights(limits: tuple[float, float], chance: Floats, is_log_uniform: bool) -> Floats:
-    """Draw h in image heights: far and small people are as many as near and large ones where it is log-uniform."""
+    """Draw h in image heights; log-uniform, small and far people are as many as large and near ones."""
     if not is_log_uniform:
         return _between(limits, chance)
-    return np.exp(_between((math.log(limits[0]), math.log(limits[1])), chance))
+    h: Floats = np.exp(_between((math.log(limits[0]), math.log(limits[1])), chance))
+    return h
 
 
 def _rows(height: int, h: Floats, limits: LimitsConfig, chance: Floats) -> Floats:
@@ -51,4 +52,4 @@ def _rows(height: int, h: Floats, limits: LimitsConfig, chance: Floats) -> Float
 
 
 def _between(limits: tuple[float, float], chance: Floats) -> Floats:
-    return (limits[0] + (limits[1] - limits[0]) * chance).astype(np.float32)
+    return np.float32(limits[0]) + np.float32(limits[1] - limits[0]) * chance

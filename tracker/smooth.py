@@ -17,12 +17,12 @@ def smoothed(
 ) -> NDArray[np.float64]:
     """Blend the estimate (9,) of this frame into the one shown before, first-order low pass.
 
-    The place shown before moves on with the estimated velocity and the camera's turn, so that a steady walk is not
-    shown late. A person's size changes slowly, and may be smoothed for longer than the place.
+    The place shown before moves on with the estimated velocity and the camera's turn, so that a steady walk
+    is not shown late. A person's size changes slowly, and may be smoothed for longer than the place.
     """
     expected = before.copy()
     expected[:4] += view.dt_s * before[VX:]
-    expected[X] += view.shift_px
+    expected[X] = view.after_turn(float(expected[X]))
     gain = np.ones(STATE_SIZE)
     gain[[X, Y]] = _gain(view.dt_s, config.place_s)
     gain[[W, H, D]] = _gain(view.dt_s, config.size_s)

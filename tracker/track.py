@@ -52,7 +52,8 @@ class Track:
         confidence: 0..1, how well the contour fits the image.
         status: whether the person is confirmed, and how much of it is hidden.
         age_s: time since the track was born [s].
-        uncertainty_px2: spread of the particles about the estimate, over x and y [px^2] (thesis, equation 4.6).
+        uncertainty_px2: spread of the particles about the estimate, over x and y [px^2] (thesis, equation
+            4.6).
     """
 
     id: int

@@ -34,8 +34,8 @@ PEOPLEBOY = TrackerConfig(
     contour=ContourConfig(
         points=5,
         reach_px=0.0,
-        body_reach=(0.2,),
-        head_reach=(0.35,),
+        body_reach=(0.08, 0.3),
+        head_reach=(0.15, 0.5),
         far_head_reach=1.2,
         saturation_grey=18.0,
         side_end_deg=140.0,
@@ -65,7 +65,9 @@ PEOPLEBOY = TrackerConfig(
         estimate_reach=0.7,
     ),
     person=FilterConfig(fresh_share=0.0, limits=_LIMITS, estimate_share=0.3),
-    life=LifeConfig(birth_confidence=0.6, birth_frames=3, death_confidence=0.3, death_frames=5, uncertainty_px2=100.0),
+    life=LifeConfig(
+        birth_confidence=0.6, birth_frames=3, death_confidence=0.3, death_frames=5, uncertainty_px2=100.0
+    ),
     smoothing=SmoothingConfig(place_s=0.05, size_s=0.2),
 )
 """What works: the default."""
