@@ -91,7 +91,7 @@ def _head(size: BodySize, hair: str) -> dict[str, PartGeometry]:
         capsule((0.0155 * h, 0.0, (crown - 0.060) * h), (0.0155 * h, 0.0, 0.020 * h), (front - 0.0155) * h),
         _sphere((0.021 * h, 0.0, (table.CHIN_HEIGHT - ATLAS_HEIGHT + jaw) * h), jaw * h),
         capsule((front * h, 0.0, 0.030 * h), ((front + 0.006) * h, 0.0, 0.022 * h), 0.006 * h),
-        *(_sphere((-0.002 * h, lateral(s) * breadth * h, 0.030 * h), 0.011 * h) for s in SIDES),
+        *(_sphere((-0.004 * h, lateral(s) * breadth * 0.92 * h, 0.030 * h), 0.0115 * h) for s in SIDES),
     )
     neck_radius = size.radius_of(g.neck_circumference) * 0.98
     neck_rise = ATLAS_HEIGHT - NECK_HEIGHT
@@ -106,22 +106,22 @@ def _head(size: BodySize, hair: str) -> dict[str, PartGeometry]:
 def _hair(h: float, breadth: float, front: float, crown: float, hair: str) -> tuple[Shape, ...]:
     """Skull cap, and what grows or sits on it."""
     z = crown - breadth
-    skull = capsule(((breadth - front) * h, 0.0, z * h), (0.0035 * h, 0.0, z * h), breadth * h)
+    rim = front - breadth + 0.001 if hair == "cap" else 0.0035
+    skull = capsule(((breadth - front) * h, 0.0, z * h), (rim * h, 0.0, z * h), breadth * h)
     nape = capsule((-0.017 * h, 0.0, z * h), (-0.017 * h, 0.0, 0.018 * h), (breadth - 0.007) * h)
     if hair == "long":
-        strands = tuple(
-            capsule(
-                (-0.024 * h, lateral(s) * 0.018 * h, z * h),
-                (-0.036 * h, lateral(s) * 0.020 * h, -0.062 * h),
-                0.030 * h,
-            )
-            for s in SIDES
-        )
-        return (skull, nape, *strands)
+        return (skull, nape, *(_strand(h, z, lateral(side)) for side in SIDES))
     if hair == "cap":
-        peak = _box(((front + 0.012) * h, 0.0, (z + 0.004) * h), (0.062 * h, 0.072 * h, 0.006 * h))
+        peak = _box(((front + 0.012) * h, 0.0, (z - 0.002) * h), (0.062 * h, 0.072 * h, 0.006 * h))
         return (skull, nape, peak)
     return (skull, nape)
+
+
+def _strand(h: float, z: float, side: float) -> Shape:
+    """One of two locks that fall on the shoulders from the height of the skull's middle."""
+    return capsule(
+        (-0.020 * h, side * 0.018 * h, z * h), (-0.030 * h, side * 0.022 * h, -0.062 * h), 0.033 * h
+    )
 
 
 def _torso(size: BodySize, thickness_m: Mapping[str, float]) -> dict[str, PartGeometry]:
@@ -133,43 +133,46 @@ def _torso(size: BodySize, thickness_m: Mapping[str, float]) -> dict[str, PartGe
 
 
 def _chest(size: BodySize, cloth: float) -> PartGeometry:
-    """Two upright capsules side by side, a yoke across the shoulders and the slopes up to the neck."""
+    """Ribs, the edges of the back, and the slopes from neck to shoulder with the joints at their ends."""
     h, g = size.stature_m, size.girths
-    arm = g.biceps_circumference / (2.0 * math.pi)
-    joint_y = g.bideltoid_breadth / 2.0 - arm
-    shoulder_z = table.SHOULDER_HEIGHT - 0.9 * arm - _CHEST_CENTRE
+    joint_y = g.bideltoid_breadth / 2.0 - g.biceps_circumference / (2.0 * math.pi)
+    shoulder_z = table.SHOULDER_HEIGHT - _CHEST_CENTRE
     radius = g.chest_depth / 2.0
-    half = max(g.chest_breadth / 2.0 - radius, 0.004) + 0.006
-    shapes = [
-        capsule((0.0, -joint_y * h, shoulder_z * h), (0.0, joint_y * h, shoulder_z * h), arm * h + cloth)
-    ]
+    rib_y = max(g.chest_breadth / 2.0 - radius, 0.004) + 0.006
+    low, high = THORAX_HEIGHT - 0.005 - _CHEST_CENTRE, 0.800 - radius - _CHEST_CENTRE
+    shapes: list[Shape] = []
     for side in SIDES:
         y = lateral(side)
-        slope = ((-0.008 * h, y * 0.020 * h, 0.095 * h), (-0.004 * h, y * 0.085 * h, 0.058 * h))
-        shapes.append(capsule(*slope, 0.024 * h + cloth * 0.5))
-        low, high = THORAX_HEIGHT - 0.005 - _CHEST_CENTRE, 0.808 - radius - _CHEST_CENTRE
-        shapes.append(
-            capsule((0.0, y * half * h, low * h), (0.0, y * half * h, high * h), radius * h + cloth)
-        )
-        lat = ((-0.01 * h, y * 0.062 * h, -0.055 * h), (-0.004 * h, y * 0.078 * h, 0.030 * h))
-        shapes.append(capsule(*lat, 0.036 * h + cloth))
+        slope = ((-0.008, y * 0.018, 0.084), (-0.002, y * (joint_y - 0.012), shoulder_z - 0.031))
+        edge = ((-0.008, y * 0.058, -0.055), (-0.004, y * 0.078, 0.025))
+        ribs = ((0.0, y * rib_y, low), (0.0, y * rib_y, high))
+        for ends, thickness in ((slope, 0.028), (edge, 0.038), (ribs, radius)):
+            shapes.append(capsule(_times(h, ends[0]), _times(h, ends[1]), thickness * h + cloth))
+        joint = (0.0, y * joint_y, shoulder_z - 0.022)
+        shapes.append(_sphere(_times(h, joint), 0.024 * h + cloth))
         if size.sex == "female":
-            shapes.append(_sphere(((radius - 0.030) * h, y * 0.042 * h, -0.012 * h), 0.043 * h + cloth))
+            shapes.append(_sphere(_times(h, (radius - 0.030, y * 0.040, -0.012)), 0.043 * h + cloth))
     return PartGeometry(
         bone="chest", shapes=tuple(shapes), offset_m=(0.0, 0.0, (_CHEST_CENTRE - THORAX_HEIGHT) * h)
     )
 
 
+def _times(scale: float, vector: Vector) -> Vector:
+    return (scale * vector[0], scale * vector[1], scale * vector[2])
+
+
 def _abdomen(size: BodySize, cloth: float) -> PartGeometry:
+    """Two upright capsules side by side, and one across where a top ends over the trousers."""
     h, g = size.stature_m, size.girths
     radius = g.waist_depth / 2.0
-    half = max(g.waist_breadth / 2.0 - radius, 0.0)
-    low, high = 0.59 - LUMBAR_HEIGHT, 0.665 - LUMBAR_HEIGHT
-    shapes = tuple(
-        capsule((0.004 * h, y * half * h, low * h), (0.004 * h, y * half * h, high * h), radius * h + cloth)
+    half = max(g.waist_breadth / 2.0 - radius, 0.004)
+    low, high, hem = 0.61 - LUMBAR_HEIGHT, 0.665 - LUMBAR_HEIGHT, 0.597 - LUMBAR_HEIGHT
+    sides = tuple(
+        capsule((0.003 * h, y * half * h, low * h), (0.003 * h, y * half * h, high * h), radius * h + cloth)
         for y in (1.0, -1.0)
     )
-    return PartGeometry(bone="abdomen", shapes=shapes)
+    across = ((0.001 * h, -half * 1.02 * h, hem * h), (0.001 * h, half * 1.02 * h, hem * h))
+    return PartGeometry(bone="abdomen", shapes=(*sides, capsule(*across, radius * 1.03 * h + cloth)))
 
 
 def _pelvis(size: BodySize, cloth: float) -> PartGeometry:
@@ -177,17 +180,13 @@ def _pelvis(size: BodySize, cloth: float) -> PartGeometry:
     h, g = size.stature_m, size.girths
     radius = g.buttock_depth / 2.0 * 0.96
     half = g.hip_breadth / 2.0 - radius
-    rim_radius = (g.waist_depth + g.buttock_depth) / 4.0 * 0.95
-    rim_half = (g.hip_breadth * 0.6 + g.waist_breadth * 0.4) / 2.0 - rim_radius
-    shapes = (
-        capsule((-0.006 * h, -half * h, 0.016 * h), (-0.006 * h, half * h, 0.016 * h), radius * h + cloth),
-        capsule(
-            (-0.003 * h, -rim_half * h, 0.060 * h),
-            (-0.003 * h, rim_half * h, 0.060 * h),
-            rim_radius * h + cloth,
-        ),
+    rim_radius = min(g.waist_depth, g.buttock_depth) / 2.0 * 0.94
+    rim_half = (g.hip_breadth * 0.5 + g.waist_breadth * 0.5) / 2.0 - rim_radius
+    hips = ((-0.006 * h, -half * h, 0.016 * h), (-0.006 * h, half * h, 0.016 * h))
+    rim = ((-0.002 * h, -rim_half * h, 0.050 * h), (-0.002 * h, rim_half * h, 0.050 * h))
+    return PartGeometry(
+        bone="pelvis", shapes=(capsule(*hips, radius * h + cloth), capsule(*rim, rim_radius * h + cloth))
     )
-    return PartGeometry(bone="pelvis", shapes=shapes)
 
 
 def _arm(size: BodySize, side: str, thickness_m: Mapping[str, float]) -> dict[str, PartGeometry]:
@@ -203,7 +202,7 @@ def _arm(size: BodySize, side: str, thickness_m: Mapping[str, float]) -> dict[st
         upper: PartGeometry(
             bone=upper,
             shapes=(
-                capsule((0.0, 0.0, -0.9 * biceps), (0.0, 0.0, -0.55 * length), biceps + cloth),
+                capsule((0.0, 0.0, -biceps), (0.0, 0.0, -0.55 * length), biceps + cloth),
                 capsule((0.0, 0.0, -0.4 * length), (0.0, 0.0, -length), elbow + cloth),
             ),
         ),
@@ -217,8 +216,8 @@ def _arm(size: BodySize, side: str, thickness_m: Mapping[str, float]) -> dict[st
         hand: PartGeometry(
             bone=hand,
             shapes=(
-                capsule((0.009 * h, 0.0, -0.005 * h), (0.009 * h, 0.0, -0.078 * h), 0.0145 * h),
-                capsule((-0.009 * h, 0.0, -0.005 * h), (-0.007 * h, 0.0, -0.088 * h), 0.0140 * h),
+                capsule((0.009 * h, 0.0, -0.005 * h), (0.008 * h, 0.0, -0.072 * h), 0.0145 * h),
+                capsule((-0.008 * h, 0.0, -0.005 * h), (-0.005 * h, 0.0, -0.094 * h), 0.0140 * h),
             ),
         ),
     }

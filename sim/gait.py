@@ -22,10 +22,15 @@ _FULL_SPEED_M_S = 1.1  # a stride as long as the clip's, for a leg as long as th
 _HEEL_STRIKE, _TOE_OFF = 0.485, 1.085
 _TOE_OUT_RAD = math.radians(7.0)
 _FLAT_RAD = math.radians(3.0)
-_MAX_REACH = 0.997  # [leg lengths] a knee is never quite straight
-_BOB = 0.6  # people rise and fall less in each step than stiff legs would make them
-# Arms of the clip stand off; these are the shoulders' share of it and the rest of the trunk's.
+_MAX_REACH = 0.998  # [leg lengths] a walking knee is never quite straight
+_STANDING_REACH = 0.9998
+_LEAD = (
+    0.055  # [cycles] how far the body is ahead of the middle of its feet, which makes the most of the legs
+)
+_BOB = 0.7  # people rise and fall less in each step than stiff legs would make them
+# The clip's figure holds its arms far off and leans forward; people take less of both.
 _ARM_SPREAD = 0.35
+_LEAN = 0.5
 
 
 class Gait:
@@ -88,7 +93,9 @@ class Gait:
         rotations = self._clip_rotations(phases, amplitude)
         sway = fourier_basis(phases) @ load_walking_clip().sway * self._scale * min(amplitude, 1.0)
         feet = {side: self._foot_path(side, phases, amplitude) for side in SIDES}
-        pelvis = np.column_stack([sway[:, :2], self._hip_height(rotations, sway, feet)])
+        share = min(amplitude / 0.3, 1.0)
+        reach = _STANDING_REACH + share * (_MAX_REACH - _STANDING_REACH)
+        pelvis = np.column_stack([sway[:, :2], self._hip_height(rotations, sway, feet, reach)])
         for side in SIDES:
             self._bend_leg(side, rotations, pelvis, *feet[side])
         return rotations, pelvis
@@ -99,6 +106,7 @@ class Gait:
         swing = np.tensordot(fourier_basis(phases)[:, 1:], coefficients[1:], axes=1)
         mean = coefficients[0].copy()
         mean[ARM_BONES, 0::2] *= _ARM_SPREAD
+        mean[BONE_INDEX["pelvis"]] *= _LEAN
         share = min(amplitude / 0.5, 1.0)
         standing = standing_rotations()
         rotations: Array = standing + share * (mean - standing) + min(amplitude, 1.1) * swing
@@ -148,7 +156,7 @@ class Gait:
 
     def _roll(self, since_strike: Array, pitch: Array, amplitude: float) -> tuple[Array, Array]:
         """Ankle x, z [m] of a foot that rolls on the floor, in the frame of the steadily moving person."""
-        middle = (_TOE_OFF - _HEEL_STRIKE) / 2.0
+        middle = (_TOE_OFF - _HEEL_STRIKE) / 2.0 - _LEAD
         anchor = self.stride_m(amplitude) * (middle - since_strike)
         height = -self._soles[0, 2] * np.cos(pitch) + self._pivot(pitch) * np.sin(pitch)
         return anchor + math.cos(_TOE_OUT_RAD) * self._rolled(pitch), height
@@ -165,10 +173,12 @@ class Gait:
         curve: Array = ends + leave * t * rest**2 - arrive * t**2 * rest
         return curve
 
-    def _hip_height(self, rotations: Array, sway: Array, feet: dict[str, tuple[Array, Array]]) -> Array:
+    def _hip_height(
+        self, rotations: Array, sway: Array, feet: dict[str, tuple[Array, Array]], reach: float
+    ) -> Array:
         """(P,) [m] heights of the pelvis at which both legs reach their feet: a smooth curve."""
         limits = []
-        reach = _MAX_REACH * self._leg_lengths().sum()
+        reach = reach * self._leg_lengths().sum()
         for side in SIDES:
             hips = Rotation.from_rotvec(rotations[:, 0]).apply(self._offsets[BONE_INDEX[f"{side}_thigh"]])
             gap = feet[side][0] - hips - sway * [1.0, 1.0, 0.0]

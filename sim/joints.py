@@ -50,4 +50,4 @@ def _face_point(size: BodySize, joint: str, side: str) -> tuple[float, float, fl
         return (front + 0.004, 0.0, 0.023)
     if joint == "eye":
         return (front - 0.007, lateral(side) * 0.018, table.EYE_HEIGHT - ATLAS_HEIGHT)
-    return (-0.002, lateral(side) * size.girths.head_breadth / 2.0, 0.030)
+    return (-0.002, lateral(side) * size.girths.head_breadth / 2.0 * 0.96, 0.030)

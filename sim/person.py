@@ -58,7 +58,7 @@ class Person:
     def __init__(self, config: PersonConfig, rng: np.random.Generator) -> None:
         self.config = config
         self.name = config.name
-        self.present = False
+        self.present = config.enter_s <= 0.0
         self._size = measure(config.height_m, config.sex, config.build)
         geometry = _geometry(config, self._size)
         looks = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
@@ -122,7 +122,7 @@ class Person:
         """Move on.
 
         Args:
-            time_s: [s] at the end of the step.
+            time_s: [s] at the start of the step.
             dt_s: [s] length of the step.
             others: the other people who are present, by name.
             robot: None if there is none.
@@ -130,8 +130,9 @@ class Person:
         """
         config = self.config
         was_present = self.present
-        self.present = config.enter_s <= time_s + 1e-9 and (config.leave_s is None or time_s < config.leave_s)
-        self._time_s = time_s
+        self._time_s = time_s + dt_s
+        has_left = config.leave_s is not None and self._time_s > config.leave_s - 1e-9
+        self.present = config.enter_s <= self._time_s + 1e-9 and not has_left
         if not (self.present and was_present):
             return
         self._walker.step(dt_s, Surroundings(others=others, robot=robot, walls=walls))

@@ -60,7 +60,7 @@ _CHANGES: dict[Posture, dict[str, Vector]] = {
         "left_forearm": point_along((0.25, -0.05, -1.0)),
     },
     Posture.ARMS_CROSSED: {
-        "left_upper_arm": point_along((0.42, 0.16, -1.0)),
+        "left_upper_arm": point_along((0.40, 0.14, -1.0)),
         "right_upper_arm": point_along((0.34, -0.16, -1.0)),
     },
 }
@@ -98,7 +98,7 @@ def posture_rotations(posture: Posture) -> Array:
 
 def _cross_forearms(rotations: Array) -> None:
     """Lay the forearms across the chest, the left one above the right."""
-    for side, direction in (("left", (0.42, -0.95, 0.22)), ("right", (0.50, 0.95, 0.02))):
+    for side, direction in (("left", (0.26, -0.95, 0.24)), ("right", (0.26, 0.95, 0.02))):
         upper = Rotation.from_rotvec(rotations[BONE_INDEX[f"{side}_upper_arm"]])
         in_arm = upper.inv().apply(np.array(direction))
         rotations[BONE_INDEX[f"{side}_forearm"]] = point_along((in_arm[0], in_arm[1], in_arm[2]))

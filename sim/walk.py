@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sim.path import Piece, is_about_turn, route, turn_between
 from sim.postures import Posture
-from sim.social_force import PlanarState, social_force
+from sim.social_force import KEEP_RIGHT_RAD, PlanarState, social_force
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,8 @@ _BRAKE_M_S2 = 2.0
 _KEEP_CLEAR_M = 0.25  # of the robot, where a person that waits for it comes to stand
 _STEER_GAIN = 8.0  # [1/s]
 _START_WITHIN_RAD = math.radians(25.0)
-_GIVING_WAY_M_S2 = 2.5
+_GIVING_WAY_M_S2 = 4.0
+_TRY_SIDE_S = 2.0  # how long one tries to pass on one side
 _HURRY = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
 
 
@@ -98,6 +99,7 @@ class Walker:
         self._pieces: tuple[Piece, ...] = ()
         self._along = 0.0
         self._on_feet_in = 0.0
+        self._blocked_s = 0.0
 
     @property
     def is_walking(self) -> bool:
@@ -237,20 +239,27 @@ class Walker:
         wanted = min(speed, _braking_speed(distance, 0.0, ACCELERATION_M_S2, dt_s)) if is_last else speed
         desired = gap / max(distance, 1e-9) * wanted
         others = [*around.others.values(), *([around.robot] if around.robot is not None else [])]
-        force = social_force(self.position, self.velocity, desired, others, around.walls)
+        force = social_force(self.position, self.velocity, desired, others, around.walls, self._bend())
         self.velocity = _shorten(self.velocity + _shorten(force, _GIVING_WAY_M_S2) * dt_s, _HURRY * speed)
         self.position = self.position + self.velocity * dt_s
         self._speed = float(np.hypot(*self.velocity))
+        is_blocked = self._speed < 0.5 * wanted
+        self._blocked_s = self._blocked_s + dt_s if is_blocked else max(self._blocked_s - dt_s, 0.0)
         if self._speed > 0.15:
             self._turn(dt_s, math.atan2(self.velocity[1], self.velocity[0]))
         self._pass_waypoint(target, is_last, others)
+
+    def _bend(self) -> float:
+        """To which side to give way [rad]: to the right; if that does not help, left and right in turn."""
+        side = 1.0 if int(self._blocked_s / _TRY_SIDE_S) % 2 == 0 else -1.0
+        return side * KEEP_RIGHT_RAD * (1.0 + min(self._blocked_s / _TRY_SIDE_S, 4.0))
 
     def _pass_waypoint(self, target: Array, is_last: bool, others: Sequence[PlanarState]) -> None:
         """Go on to the next waypoint where this one is reached, or where others stand on it."""
         distance = float(np.hypot(*(target - self.position)))
         is_taken = any(np.hypot(*(other.position - target)) < 0.6 for other in others)
         if is_last:
-            if distance < 0.04 or (is_taken and distance < 1.0 and self._speed < 0.1):
+            if distance < 0.04 or (is_taken and distance < 1.0 and self._speed < 0.4):
                 self._arrive()
         elif distance < (0.9 if is_taken else 0.35):
             goal = self._pieces[0].goal
