@@ -296,6 +296,11 @@ class Bullet:
         contacts = [Contact(self._bodies.name_of(row[2]), row[6], row[7], row[9]) for row in rows]
         return [contact for contact in contacts if contact.other != name]
 
+    def touching(self, name: str) -> set[str]:
+        """Names of all that the body touched during the last step."""
+        rows = [row for id_ in self._bodies[name].ids for row in self._client.getContactPoints(bodyA=id_)]
+        return {self._bodies.name_of(number) for number in {row[2] for row in rows}} - {name}
+
     def camera_image(
         self, camera: Camera, world_from_camera: Matrix, only: Collection[str] | None = None
     ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
@@ -337,7 +342,9 @@ class Bullet:
         return number
 
     def _load_urdf(self, file: str, fixed: bool, scale: float) -> int:
-        number: int = self._client.loadURDF(file, useFixedBase=fixed, globalScaling=scale)
+        # Without these, cylinders collide as prisms, on which no wheel runs true, and inertia is guessed.
+        flags = pybullet.URDF_USE_IMPLICIT_CYLINDER | pybullet.URDF_USE_INERTIA_FROM_FILE
+        number: int = self._client.loadURDF(file, useFixedBase=fixed, globalScaling=scale, flags=flags)
         return number
 
     def _load_sdf(self, file: str, fixed: bool, scale: float) -> int:

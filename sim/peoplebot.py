@@ -70,10 +70,6 @@ class PeopleBot:
             orientation=(0.0, 0.0, math.sin(half), math.cos(half)),
             fixed=False,
         )
-        for wheel in (_LEFT, _RIGHT):
-            bullet.set_friction(NAME, wheel, lateral=1.0)
-        bullet.set_friction(NAME, _CASTER, lateral=0.0)
-        bullet.set_friction(NAME, _BASE, lateral=0.3)
         self._sonar = SonarRing(bullet, config.sonar, stream(seed, "sonar.noise"), NAME)
         self._turned = self._wheel_angles()
         self.odometry = Planar(x, y, config.heading_rad)
