@@ -218,4 +218,4 @@ def _grey(
     v = y + mix[p, 1, 1] * w + mix[p, 1, 2] * h + mix[p, 1, 3] + half
     if u < 0 or v < 0 or u >= image.shape[1] or v >= image.shape[0]:
         return -1
-    return np.int32(image[np.int32(v), np.int32(u)])
+    return int(image[int(v), int(u)])

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tracker.config import REFERENCE_HEIGHT_PX, FilterConfig, TrackerConfig
 from tracker.frame import Frame
 from tracker.measure import ContourModel, fitness, is_within, probability, sample_weights
-from tracker.motion import Pixels, predict, turned
+from tracker.motion import Columns, predict, turned
 from tracker.particles import (
     Floats,
     Particles,
@@ -48,7 +48,7 @@ class View:
         """Image height / 240."""
         return int(self.image.shape[0]) / REFERENCE_HEIGHT_PX
 
-    def after_turn(self, x: Pixels) -> Pixels:
+    def after_turn(self, x: Columns) -> Columns:
         """Tell where columns x [px] of the last frame lie in this one but for people's own motion."""
         return turned(x, self.turn_rad, self.focal_px, (self.image.shape[1] - 1) / 2)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tracker.config import MotionConfig
 from tracker.particles import VX, D, Floats, H
 
-Pixels = TypeVar("Pixels", float, Floats)
+Columns = NDArray[np.floating[Any]]
 
 
 def predict(
@@ -38,13 +38,13 @@ def predict(
     return moved
 
 
-def turned(x: Pixels, turn_rad: float, focal_px: float, centre_px: float) -> Pixels:
+def turned(x: Columns, turn_rad: float, focal_px: float, centre_px: float) -> Columns:
     """Tell where columns x [px] lie after the camera has turned to the left, which moves them to the right.
 
     The thesis leaves the robot's motion to chance; its turn is known from odometry and need not be.
     """
     tangent, slope = math.tan(turn_rad), (x - centre_px) / focal_px
-    moved: Pixels = centre_px + focal_px * (slope + tangent) / (1 - slope * tangent)
+    moved: Columns = centre_px + focal_px * (slope + tangent) / (1 - slope * tangent)
     return moved
 
 

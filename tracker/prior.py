@@ -48,8 +48,10 @@ def _rows(height: int, h: Floats, limits: LimitsConfig, chance: Floats) -> Float
     """Draw y [px] between the limits, those of the floor included."""
     low = np.maximum(limits.y[0] * height, limits.horizon * height + limits.y_below_horizon[0] * h)
     high = np.minimum(limits.y[1] * height, limits.horizon * height + limits.y_below_horizon[1] * h)
-    return (low + (high - low) * chance).astype(np.float32)
+    y: Floats = low + (high - low) * chance
+    return y
 
 
 def _between(limits: tuple[float, float], chance: Floats) -> Floats:
-    return np.float32(limits[0]) + np.float32(limits[1] - limits[0]) * chance
+    drawn: Floats = np.float32(limits[0]) + np.float32(limits[1] - limits[0]) * chance
+    return drawn

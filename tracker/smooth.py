@@ -22,7 +22,7 @@ def smoothed(
     """
     expected = before.copy()
     expected[:4] += view.dt_s * before[VX:]
-    expected[X] = view.after_turn(float(expected[X]))
+    expected[[X]] = view.after_turn(expected[[X]])
     gain = np.ones(STATE_SIZE)
     gain[[X, Y]] = _gain(view.dt_s, config.place_s)
     gain[[W, H, D]] = _gain(view.dt_s, config.size_s)
