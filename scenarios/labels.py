@@ -1,0 +1,110 @@
+"""Words on a plan, each beside its point and clear of the others."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
+
+_LETTER = 0.62  # width of a letter in font sizes
+_LINE = 1.25  # height of a line in font sizes
+_POINTS_PER_INCH = 72.0
+
+Box = tuple[float, float, float, float]  # min x, min y, max x, max y [m]
+
+
+@dataclass(slots=True)
+class Labels:
+    """Finds a free place for one word after another.
+
+    Attributes:
+        axes: where to write; its limits and the figure's size must be final.
+        taken: boxes [m] that are written or drawn on.
+    """
+
+    axes: Axes
+    taken: list[Box] = field(default_factory=list)
+
+    def block(self, x: float, y: float, radius_m: float) -> None:
+        """Keep words off a disc."""
+        self.taken.append((x - radius_m, y - radius_m, x + radius_m, y + radius_m))
+
+    def write(self, x: float, y: float, text: str, *, size: float = 7.0, **style: Any) -> None:
+        """Write a word beside a point, where it covers least of what is there."""
+        self.write_at((x, y, x, y), text, size=size, **style)
+
+    def write_at(self, box: Box, text: str, *, size: float = 7.0, **style: Any) -> None:
+        """Write a word in a box if it fits, else beside it, where it covers least of what is there."""
+        unit = self._metres_per_point() * size
+        lines = text.split("\n")
+        extent = (_LETTER * unit * max(map(len, lines)), _LINE * unit * len(lines))
+        places = _inside(box, extent) + [
+            _beside(box, extent, gap, angle)
+            for gap in (0.4 * unit, 1.0 * unit, 2.0 * unit)
+            for angle in range(0, 360, 30)
+        ]
+        best = min(places, key=lambda place: self._cost(place, *_middle(box)))
+        self.taken.append(best)
+        self.axes.text(
+            *_middle(best),
+            text,
+            fontsize=size,
+            ha="center",
+            va="center",
+            zorder=9,
+            path_effects=[withStroke(linewidth=2.0, foreground="white")],
+            **style,
+        )
+
+    def _metres_per_point(self) -> float:
+        figure = self.axes.get_figure()
+        assert figure is not None
+        inches = self.axes.get_window_extent().width / figure.get_dpi()
+        low, high = self.axes.get_xlim()
+        return (high - low) / (inches * _POINTS_PER_INCH)
+
+    def _cost(self, place: Box, x: float, y: float) -> float:
+        covered = sum(_shared(place, other) for other in self.taken)
+        outside = _area(place) - _shared(place, self._view())
+        return 20.0 * covered + 50.0 * outside + 0.02 * math.dist(_middle(place), (x, y))
+
+    def _view(self) -> Box:
+        (left, right), (low, high) = self.axes.get_xlim(), self.axes.get_ylim()
+        return left, low, right, high
+
+
+def _inside(box: Box, extent: tuple[float, float]) -> list[Box]:
+    """Places in the middle, at the top and at the bottom of a box; none if it is too small."""
+    room = box[3] - box[1] - extent[1]
+    if box[2] - box[0] < extent[0] or room < 0.0:
+        return []
+    x, y = _middle(box)
+    return [_around(x, y + 0.4 * share * room, extent) for share in (0.0, 1.0, -1.0)]
+
+
+def _beside(box: Box, extent: tuple[float, float], gap: float, degrees: float) -> Box:
+    """A place in a direction from a box, clear of it by a gap."""
+    x, y = _middle(box)
+    u = x + math.cos(math.radians(degrees)) * (gap + (box[2] - box[0] + extent[0]) / 2.0)
+    v = y + math.sin(math.radians(degrees)) * (gap + (box[3] - box[1] + extent[1]) / 2.0)
+    return _around(u, v, extent)
+
+
+def _around(x: float, y: float, extent: tuple[float, float]) -> Box:
+    return x - extent[0] / 2.0, y - extent[1] / 2.0, x + extent[0] / 2.0, y + extent[1] / 2.0
+
+
+def _middle(box: Box) -> tuple[float, float]:
+    return (box[0] + box[2]) / 2.0, (box[1] + box[3]) / 2.0
+
+
+def _area(box: Box) -> float:
+    return max(box[2] - box[0], 0.0) * max(box[3] - box[1], 0.0)
+
+
+def _shared(a: Box, b: Box) -> float:
+    across, along = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+    return across * along if across > 0.0 and along > 0.0 else 0.0
