@@ -1,8 +1,10 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from drawn_people import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
 
 from bad_input import BadInput
-from tests.tracker.drawing import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
 from tracker.config import ContourConfig
 from tracker.contour import (
     FEET,
@@ -32,7 +34,7 @@ def test_the_body_sections_cover_the_whole_ellipse_without_gap_or_overlap():
     arcs = [angles[s] for s in (SIDE_LEFT, SHOULDER_LEFT, SHOULDER_RIGHT, SIDE_RIGHT)]
     assert arcs[0][0] == pytest.approx(-np.pi)
     assert arcs[-1][1] == pytest.approx(np.pi)
-    assert all(one[1] == pytest.approx(next_one[0]) for one, next_one in zip(arcs, arcs[1:], strict=False))
+    assert all(one[1] == pytest.approx(next_one[0]) for one, next_one in pairwise(arcs))
 
 
 def test_the_head_sections_cover_its_ellipse_but_for_the_neck():

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from drawn_people import RADIATOR, blank, draw_person, person_frame
 
 from bad_input import BadInput
-from tests.tracker.drawing import RADIATOR, blank, draw_person, person_frame
 from tracker.frame import Frame
 from tracker.people import TRACKERS, make_tracker
 from tracker.single import SinglePersonTracker
@@ -130,7 +130,7 @@ def test_the_same_seed_gives_the_same_tracks_and_another_seed_does_not(name):
 
 def test_a_fresh_process_gives_the_same_tracks():
     code = (
-        "import numpy as np; from tests.tracker.drawing import person_frame; "
+        "import numpy as np; from drawn_people import person_frame; "
         "from tracker.people import make_tracker; t = make_tracker('peopleboy', np.random.default_rng(5)); "
         "print([t.update(person_frame(i / 15, 60 + i)) for i in range(20)])"
     )
