@@ -273,6 +273,14 @@ def test_the_robot_touches_no_wall_wherever_the_person_goes(start, speed, course
         assert not toy.is_in_wall()
 
 
+def test_behind_a_steady_walker_the_lag_is_learnt_away():
+    toy = Toy(path=straight((4.0, 0.0), (0.6, 0.0)))
+    log = drive(toy, make_behaviour("follow_person"), 30.0)
+    apparent = toy.people()[0].height
+    assert apparent == pytest.approx(CONFIG.keep_height, rel=0.05)
+    assert log.commands[-1].linear_m_s == pytest.approx(0.6, abs=0.03)
+
+
 def test_drop_outs_of_the_track_are_bridged_and_longer_ones_searched_for():
     toy = Toy(path=straight((4.0, 0.0), (0.5, 0.0)), hidden=lambda t: 5.0 < t < 5.2 or 10.0 < t < 14.0)
     log = drive(toy, make_behaviour("follow_person"), 28.0)

@@ -1,8 +1,12 @@
 import dataclasses
 import math
 
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from test_safety import free
+from toy_world import FRONT, HALF_WIDTH, Toy, drive, wall
 
 from bad_input import BadInput
 from behaviours.command import STOP, Command
@@ -69,3 +73,25 @@ def test_one_lost_echo_does_not_set_a_stopped_robot_going():
     behaviour = make_behaviour("scripted", script=((0.0, Command(linear_m_s=0.8, angular_rad_s=0.0)),))
     for reading in (0.3, 0.3, 5.0):
         assert behaviour.command(free(i3=reading)).linear_m_s == 0.0
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    speed=st.floats(0.1, 2.0),
+    slant=st.floats(-0.7, 0.7),
+    aside=st.floats(-1.0, 1.0),
+    seed=st.integers(0, 99),
+)
+def test_a_robot_sent_into_a_wall_stops_before_it(speed, slant, aside, seed):
+    across = 3.0 * math.tan(slant)
+    toy = Toy(
+        path=lambda _: (0.0, 50.0),
+        walls=wall((4.0 + across, -3.0 + aside), (4.0 - across, 3.0 + aside)),
+        rng=np.random.default_rng(seed),
+    )
+    script = ((0.0, Command(linear_m_s=speed, angular_rad_s=0.0)),)
+    log = drive(toy, make_behaviour("scripted", script=script), 4.0 / min(speed, 0.8) + 5.0)
+    ahead, beside = toy.local(toy.walls).T
+    assert not log.is_contact.any()
+    assert toy.speed < 0.02
+    assert 0.2 < np.min(ahead[np.abs(beside) < HALF_WIDTH]) - FRONT < 1.2
