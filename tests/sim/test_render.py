@@ -2,8 +2,8 @@
 
 TinyRenderer replaces spheres and capsules by polyhedra whose faces lie up to 5 % of the radius within the
 true surface. Radii are kept below a fiftieth of the distance (6 pixels), so that its outlines are off by less
-than a pixel and its depths by less than 1 %; boxes, meshes and walls, which it draws as they are, may be of any
-size.
+than a pixel and its depths by less than 1 %. Boxes, meshes and walls, which it draws as they are, may be of
+any size.
 """
 
 from pathlib import Path
