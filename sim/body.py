@@ -12,7 +12,15 @@ from numpy.typing import NDArray
 from sim import anthropometry as table
 from sim.anthropometry import BodySize
 from sim.shapes import Quaternion, Shape, ShapeKind, Vector
-from sim.skeleton import ATLAS_HEIGHT, BONE_INDEX, LUMBAR_HEIGHT, NECK_HEIGHT, THORAX_HEIGHT, lateral
+from sim.skeleton import (
+    ATLAS_HEIGHT,
+    BONE_INDEX,
+    LUMBAR_HEIGHT,
+    NECK_HEIGHT,
+    THORAX_HEIGHT,
+    lateral,
+    shoulder_half_breadth,
+)
 
 SIDES = ("left", "right")
 ARM_PARTS = tuple(f"{side}_{part}" for side in SIDES for part in ("upper_arm", "forearm", "hand"))
@@ -135,7 +143,7 @@ def _torso(size: BodySize, thickness_m: Mapping[str, float]) -> dict[str, PartGe
 def _chest(size: BodySize, cloth: float) -> PartGeometry:
     """Ribs, the edges of the back, and the slopes from neck to shoulder with the joints at their ends."""
     h, g = size.stature_m, size.girths
-    joint_y = g.bideltoid_breadth / 2.0 - g.biceps_circumference / (2.0 * math.pi)
+    joint_y = shoulder_half_breadth(size)
     shoulder_z = table.SHOULDER_HEIGHT - _CHEST_CENTRE
     radius = g.chest_depth / 2.0
     rib_y = max(g.chest_breadth / 2.0 - radius, 0.004) + 0.006

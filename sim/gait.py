@@ -125,11 +125,11 @@ class Gait:
         x, z = self._roll(since_strike, pitch, amplitude)
         swinging = since_strike > stance
         time = (since_strike[swinging] - stance) / (1.0 - stance)
-        lift = np.sin(np.pi * time) ** 2 * self._scale
+        lift = np.sin(np.pi * time) * self._scale
         x[swinging] = self._swing(time, amplitude, axis=0)
         z[swinging] = np.maximum(
-            self._swing(time, amplitude, axis=1) + 0.035 * min(amplitude, 1.2) * lift,
-            z[swinging] + 0.02 * min(amplitude, 1.0) * lift,
+            self._swing(time, amplitude, axis=1) + 0.035 * min(amplitude, 1.2) * np.sin(np.pi * time) * lift,
+            z[swinging] + 0.02 * min(amplitude / 0.5, 1.0) * lift,
         )
         hip_y = self._offsets[BONE_INDEX["left_thigh"], 1] * (1.0 - 0.45 * min(amplitude / 0.5, 1.0))
         y = lateral(side) * (hip_y + math.sin(_TOE_OUT_RAD) * self._rolled(pitch))

@@ -32,7 +32,7 @@ def _pitch(degrees: float) -> Vector:
 
 # Left limbs only: the right ones mirror them, unless given.
 _STANDING: dict[str, Vector] = {
-    "left_upper_arm": point_along((0.02, 0.14, -1.0)),
+    "left_upper_arm": point_along((0.02, 0.11, -1.0)),
     "left_forearm": point_along((0.16, -0.05, -1.0)),
 }
 _CHANGES: dict[Posture, dict[str, Vector]] = {

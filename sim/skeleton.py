@@ -59,10 +59,19 @@ def mirror(rotations: Array) -> Array:
     return mirrored
 
 
+def shoulder_half_breadth(size: BodySize) -> float:
+    """Distance of a shoulder joint from the middle, as a fraction of stature.
+
+    Upper arms that hang a little outwards are as far apart, outside, as the survey's deltoids.
+    """
+    girths = size.girths
+    return girths.bideltoid_breadth / 2.0 - girths.biceps_circumference / (2.0 * math.pi) - 0.005
+
+
 def joint_offsets(size: BodySize) -> Array:
     """(17, 3) [m] each bone's joint in its parent's frame, upright; the pelvis at the origin."""
     girths = size.girths
-    shoulder_y = girths.bideltoid_breadth / 2.0 - girths.biceps_circumference / (2.0 * math.pi)
+    shoulder_y = shoulder_half_breadth(size)
     hip_y = girths.hip_breadth / 2.0 - girths.thigh_circumference / (2.0 * math.pi) * 0.96
     offsets = {
         "pelvis": (0.0, 0.0, 0.0),

@@ -35,7 +35,8 @@ def timetable(config: PersonConfig) -> list[Entry]:
         if walker.reached > reached:
             is_stop = not walker.is_walking
             entries.append(_entry(time_s, walker, f"{'reaches' if is_stop else 'passes'} {walker.reached}"))
-        if walker.is_walking and not was_walking and len(entries) > 1:
+        has_stood = len(entries) > 1 or config.path[0].pause_s > 0.0
+        if walker.is_walking and not was_walking and has_stood:
             entries.append(_entry(time_s, walker, f"leaves {walker.reached}"))
         if time_s > _LONGEST_S:
             break

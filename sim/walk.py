@@ -176,6 +176,9 @@ class Walker:
         return is_about_turn(before, corner, after)
 
     def _arrive(self) -> None:
+        """Stop at the end of the planned way."""
+        self._speed = 0.0
+        self.velocity = np.zeros(2)
         self.reached = self._pieces[-1].goal
         self._pieces = ()
         self._pause_left = self._pause_of(self.reached)
