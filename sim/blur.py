@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import cv2
 import numpy as np
 from numba import njit
@@ -32,35 +34,50 @@ def rotation_blur(image: Image, camera: Camera, turned_rad: float) -> Image:
         turned_rad: [rad] angle turned while the shutter was open; its sign does not matter.
 
     Returns:
-        An image of the same shape, each pixel the mean over its sweep, centred on the pixel.
+        An image of the same shape, each pixel the mean over its sweep, which is centred on the pixel.
     """
     x = (np.arange(camera.width) - camera.centre_px[0]) / camera.focal_px
     sweep = camera.focal_px * (1.0 + x * x) * abs(turned_rad)
     if sweep.max() < 0.05:
         return image
-    smeared: Image = _smear(image.reshape(image.shape[0], image.shape[1], -1), sweep)
-    return smeared.reshape(image.shape)
+    lines = image.reshape(image.shape[0], -1)
+    channels = lines.shape[1] // camera.width
+    weights = np.repeat(_sweep_weights(sweep), channels, axis=1)
+    return _weighted_sum(lines, weights, channels).reshape(image.shape)
+
+
+def _sweep_weights(sweep: NDArray[np.float64]) -> Image:
+    """(2 K + 1, W) weight of the pixels -K..K columns away in the mean of each column over its sweep [px].
+
+    Between pixels the image is taken as linear, so a weight is the mean of a hat function over the sweep.
+    Pixels beyond the border have none.
+    """
+    farthest = math.ceil(sweep.max() / 2.0)
+    away = np.arange(-farthest, farthest + 1)[:, None]
+    weights = (_hat_integral(sweep / 2.0 - away) - _hat_integral(-sweep / 2.0 - away)) / sweep
+    column = np.arange(len(sweep)) + away
+    weights[(column < 0) | (column >= len(sweep))] = 0.0
+    return (weights / weights.sum(axis=0)).astype(np.float32)
+
+
+def _hat_integral(end: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Integral up to `end` of the function that falls from 1 at 0 to 0 at -1 and 1."""
+    end = np.clip(end, -1.0, 1.0)
+    return 0.5 + end - 0.5 * end * np.abs(end)
 
 
 @njit(cache=True, fastmath=True)
-def _smear(image: NDArray[np.float32], sweep: NDArray[np.float64]) -> NDArray[np.float32]:
-    height, width, channels = image.shape
-    result = np.empty_like(image)
-    total = np.zeros(width + 1)
+def _weighted_sum(lines: Image, weights: Image, channels: int) -> Image:
+    """Sum each value of the (H, W C) lines and its neighbours, weighted by (2 K + 1, W C)."""
+    height, length = lines.shape
+    farthest = weights.shape[0] // 2
+    result = np.zeros_like(lines)
     for row in range(height):
-        for channel in range(channels):
-            for u in range(width):
-                total[u + 1] = total[u] + image[row, u, channel]
-            for u in range(width):
-                half = 0.5 * (1.0 + sweep[u])
-                left, right = max(u + 0.5 - half, 0.0), min(u + 0.5 + half, float(width))
-                area = _integral(total, right) - _integral(total, left)
-                result[row, u, channel] = area / (right - left)
+        for k in range(weights.shape[0]):
+            shift = (k - farthest) * channels
+            first, end = max(0, -shift), min(length, length - shift)
+            total, weight = result[row, first:end], weights[k, first:end]
+            neighbour = lines[row, first + shift : end + shift]
+            for i in range(end - first):
+                total[i] += weight[i] * neighbour[i]
     return result
-
-
-@njit(cache=True, fastmath=True)
-def _integral(total: NDArray[np.float64], at: float) -> float:
-    """Interpolate a running sum (W + 1,) at a fractional position."""
-    index = min(int(at), total.shape[0] - 2)
-    return total[index] + (at - index) * (total[index + 1] - total[index])

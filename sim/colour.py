@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from sim.blur import rotation_blur
 from sim.camera import Matrix
 from sim.config import ColourConfig
+from sim.noise import gaussian
 from sim.render import View
 from sim.surfaces import LookTable, part_from_pixel, pattern_value, surface_point
 
@@ -37,8 +38,8 @@ def _radiance_image(
             p = part[v, u]
             if p < 0:
                 continue
-            x, y, z = surface_point(matrices[p], float(u), float(v), float(depth[v, u]))
-            second = int(pattern_value(kind[p, 1], period[p, 1], x, y, z, phase[p])) * 3
+            x, y, z = surface_point(matrices, p, u, v, depth[v, u])
+            second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             facing = normal[v, u, 0] * light[0] + normal[v, u, 1] * light[1] + normal[v, u, 2] * light[2]
             shade = level * (_AMBIENT + (1.0 - _AMBIENT) * max(facing, 0.0)) + colour[p, 6]
             for c in range(3):
@@ -89,8 +90,8 @@ def colour_image(
 
 def expose(linear: NDArray[np.float32], config: ColourConfig, rng: np.random.Generator) -> NDArray[np.uint8]:
     """Add read and shot noise to an (H, W, 3) linear image and encode it as 8-bit sRGB."""
-    noise = rng.standard_normal(linear.shape, np.float32)
-    return _encode(linear, noise, _GAMMA, config.read_noise, config.shot_noise)
+    noise = gaussian(linear.shape, rng)
+    return _encode(linear, noise, _GAMMA, np.float32(config.read_noise), np.float32(config.shot_noise))
 
 
 @njit(cache=True, fastmath=True)
@@ -98,14 +99,15 @@ def _encode(
     linear: NDArray[np.float32],
     noise: NDArray[np.float32],
     gamma: NDArray[np.uint8],
-    read: float,
-    shot: float,
+    read: np.float32,
+    shot: np.float32,
 ) -> NDArray[np.uint8]:
     image = np.empty(linear.shape, np.uint8)
     source, random, target = linear.reshape(-1), noise.reshape(-1), image.reshape(-1)
-    last = gamma.shape[0] - 1
+    last = np.float32(gamma.shape[0] - 1)
+    half, none, full = np.float32(0.5), np.float32(0.0), np.float32(1.0)
     for i in range(source.shape[0]):
         sigma = np.sqrt(read * read + shot * shot * source[i])
-        level = min(max(source[i] + sigma * random[i], 0.0), 1.0)
-        target[i] = gamma[int(level * last + 0.5)]
+        level = min(max(source[i] + sigma * random[i], none), full)
+        target[i] = gamma[np.int32(level * last + half)]
     return image

@@ -13,7 +13,7 @@ class PatternKind(IntEnum):
 
     PLAIN = 0
     STRIPES = 1  # horizontal bands across the part's z axis
-    CHECKS = 2  # a chessboard in y and z
+    CHECKS = 2  # cubes of two colours, a chessboard on each flat side
     PATCH = 3  # an upright ellipse on the side that faces +x, like a print on a chest
     SPECKLE = 4  # irregular blotches
 

@@ -14,10 +14,15 @@ from numba import njit
 from numpy.typing import NDArray
 
 from sim.camera import Camera, Matrix
-from sim.looks import Look
+from sim.looks import Look, PatternKind
 
 # Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
 _OFFSET = 0.137
+
+_STRIPES = int(PatternKind.STRIPES)
+_CHECKS = int(PatternKind.CHECKS)
+_PATCH = int(PatternKind.PATCH)
+_SPECKLE = int(PatternKind.SPECKLE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,11 +30,11 @@ class LookTable:
     """The looks of all P parts as arrays; row i belongs to part i.
 
     Attributes:
-        thermal: (P, 5) temperature [degC], emissivity, variation [K], wave number [rad/m], contrast [K].
+        thermal: (P, 5) temperature [degC], emissivity, variation [K], waves per metre [1/m], contrast [K].
         colour: (P, 7) first and second reflectance, glow.
         kind: (P, 2) PatternKind of the thermal and of the colour pattern.
         period: (P, 2) [m] of the same.
-        phase: (P, 3) [rad] offsets of the smooth variation.
+        phase: (P, 3) [waves] offsets of the smooth variation.
     """
 
     thermal: NDArray[np.float64]
@@ -43,10 +48,7 @@ def make_look_table(looks: Sequence[Look], rng: np.random.Generator) -> LookTabl
     """Put the looks of all parts into arrays; the generator draws each part's phase of variation."""
     return LookTable(
         thermal=np.array(
-            [
-                (k.temperature_c, k.emissivity, k.variation_k, 2.0 * math.pi / k.variation_m, k.contrast_k)
-                for k in looks
-            ]
+            [(k.temperature_c, k.emissivity, k.variation_k, 1.0 / k.variation_m, k.contrast_k) for k in looks]
         ).reshape(-1, 5),
         colour=np.array([(*k.rgb, *k.second_rgb, k.glow) for k in looks]).reshape(-1, 7),
         kind=np.array([(k.thermal_pattern.kind, k.colour_pattern.kind) for k in looks], np.int64).reshape(
@@ -55,7 +57,7 @@ def make_look_table(looks: Sequence[Look], rng: np.random.Generator) -> LookTabl
         period=np.array([(k.thermal_pattern.period_m, k.colour_pattern.period_m) for k in looks]).reshape(
             -1, 2
         ),
-        phase=rng.uniform(0.0, 2.0 * math.pi, (len(looks), 3)),
+        phase=rng.uniform(0.0, 1.0, (len(looks), 3)),
     )
 
 
@@ -79,44 +81,61 @@ def part_from_pixel(camera: Camera, world_from_camera: Matrix, world_from_part: 
     return matrices
 
 
-@njit(cache=True, fastmath=True, inline="always")
+@njit(cache=True, fastmath=True)
 def surface_point(
-    matrix: NDArray[np.float64], u: float, v: float, z: float
-) -> tuple[float, float, float]:  # pragma: no cover
+    matrices: NDArray[np.float64], part: int, u: float, v: float, z: float
+) -> tuple[float, float, float]:
     """Return the point [m] in the part's frame that pixel (u, v) sees at depth z."""
-    a, b = u * z, v * z
-    x = matrix[0, 0] * a + matrix[0, 1] * b + matrix[0, 2] * z + matrix[0, 3]
-    y = matrix[1, 0] * a + matrix[1, 1] * b + matrix[1, 2] * z + matrix[1, 3]
-    w = matrix[2, 0] * a + matrix[2, 1] * b + matrix[2, 2] * z + matrix[2, 3]
-    return x, y, w
+    m, a, b = matrices, u * z, v * z
+    return (
+        m[part, 0, 0] * a + m[part, 0, 1] * b + m[part, 0, 2] * z + m[part, 0, 3],
+        m[part, 1, 0] * a + m[part, 1, 1] * b + m[part, 1, 2] * z + m[part, 1, 3],
+        m[part, 2, 0] * a + m[part, 2, 1] * b + m[part, 2, 2] * z + m[part, 2, 3],
+    )
 
 
 @njit(cache=True, fastmath=True)
-def smooth_variation(x: float, y: float, z: float, wave: float, phase: NDArray[np.float64]) -> float:
-    """Return a smooth function of the point, within -1..1: three crossed waves."""
-    a = math.sin(wave * (x + 0.6 * z) + phase[0])
-    b = math.sin(wave * (y - 0.8 * x) + phase[1])
-    c = math.sin(wave * 0.7 * (z + 0.5 * y) + phase[2])
+def _wave(at: float) -> float:
+    """Return a wave of period 1 within -1..1, made of parabolas: as smooth to the eye as a sine, and quick."""
+    t = at - math.floor(at) - 0.5
+    return 8.0 * t * (1.0 - 2.0 * abs(t))
+
+
+@njit(cache=True, fastmath=True)
+def smooth_variation(
+    x: float, y: float, z: float, waves: float, phase: NDArray[np.float64], part: int
+) -> float:
+    """Return a smooth function of a point of a part, within -1..1: three crossed waves.
+
+    Args:
+        x, y, z: [m] the point in the part's frame.
+        waves: [1/m] waves per metre.
+        phase: (P, 3) of all parts.
+        part: which part.
+    """
+    a = _wave(waves * (x + 0.6 * z) + phase[part, 0])
+    b = _wave(waves * (y - 0.8 * x) + phase[part, 1])
+    c = _wave(waves * 0.7 * (z + 0.5 * y) + phase[part, 2])
     return (a + b + c) / 3.0
 
 
 @njit(cache=True, fastmath=True)
 def pattern_value(
-    kind: int, period: float, x: float, y: float, z: float, phase: NDArray[np.float64]
-) -> float:
-    """Return 1 where the pattern's second value applies at a point of the part's frame, else 0."""
-    if kind == 0:
-        return 0.0
-    if kind == 1:
-        cell = z / period + _OFFSET
-        return 1.0 if cell - math.floor(cell) < 0.5 else 0.0
-    if kind == 2:
+    kind: int, period: float, x: float, y: float, z: float, phase: NDArray[np.float64], part: int
+) -> int:
+    """Return 1 where the pattern's second value applies at a point of a part, else 0; see `smooth_variation`."""
+    if kind == _STRIPES:
+        return int(math.floor(2.0 * z / period + _OFFSET)) & 1
+    if kind == _CHECKS:
         half = 2.0 / period
-        cells = (
-            math.floor(x * half + _OFFSET) + math.floor(y * half + _OFFSET) + math.floor(z * half + _OFFSET)
-        )
-        return cells % 2.0
-    if kind == 3:
+        return (
+            int(math.floor(x * half + _OFFSET))
+            + int(math.floor(y * half + _OFFSET))
+            + int(math.floor(z * half + _OFFSET))
+        ) & 1
+    if kind == _PATCH:
         across, along = y / (0.35 * period), z / (0.5 * period)
-        return 1.0 if x > 0.0 and across * across + along * along < 1.0 else 0.0
-    return 1.0 if smooth_variation(x, y, z, 2.0 * math.pi / period, phase) > 0.15 else 0.0
+        return int(x > 0.0 and across * across + along * along < 1.0)
+    if kind == _SPECKLE:
+        return int(smooth_variation(x, y, z, 1.0 / period, phase, part) > 0.15)
+    return 0

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sim.blur import optics_blur, rotation_blur
 from sim.camera import Matrix
 from sim.config import ThermalConfig
+from sim.noise import gaussian
 from sim.render import View
 from sim.surfaces import LookTable, part_from_pixel, pattern_value, smooth_variation, surface_point
 
@@ -78,9 +79,11 @@ def _radiance_image(
             if p < 0:
                 image[v, u] = surroundings
                 continue
-            x, y, z = surface_point(matrices[p], float(u), float(v), float(depth[v, u]))
-            temperature = thermal[p, 0] + thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase[p])
-            temperature += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase[p])
+            temperature = thermal[p, 0]
+            if thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
+                x, y, z = surface_point(matrices, p, u, v, depth[v, u])
+                temperature += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
+                temperature += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
             emitted = _look_up(table, span[0], span[1], temperature)
             image[v, u] = thermal[p, 1] * emitted + (1.0 - thermal[p, 1]) * surroundings
     return image
@@ -158,7 +161,7 @@ def detect(
     apparent_c: NDArray[np.float32], detector: Detector, config: ThermalConfig, rng: np.random.Generator
 ) -> NDArray[np.float32]:
     """Add the detector's noise to an (H, W) image of apparent temperature [degC]; returns a new image."""
-    noise = rng.standard_normal(apparent_c.shape, np.float32)
+    noise = gaussian(apparent_c.shape, rng)
     noise *= np.float32(config.netd_k)
     noise += apparent_c
     noise += detector.offset_k
