@@ -114,15 +114,18 @@ class Bodies:
 
     def parts_of(self, mask: NDArray[Any]) -> NDArray[np.int32]:
         """Part numbers in place of PyBullet's combined numbers of body and link, of any shape."""
-        values, places = np.unique(mask, return_inverse=True)
-        parts = [self.part_of(value & 0xFFFFFF, (value >> 24) - 1) for value in values.tolist()]
-        return np.array(parts, np.int32)[places].reshape(mask.shape)
+        numbers, links = np.array(list(self._part_of_link)).reshape(-1, 2).T
+        parts = np.full((numbers.max(initial=0) + 1, links.max(initial=0) + 2), -1, np.int32)
+        parts[numbers, links + 1] = list(self._part_of_link.values())
+        found = mask >= 0
+        return np.where(found, parts[np.where(found, mask & 0xFFFFFF, 0), np.where(found, mask >> 24, 0)], -1)
 
     def hidden_parts(self) -> NDArray[np.bool_]:
         """(P,) which parts are hidden now."""
         hidden = np.zeros(len(self.parts), np.bool_)
         for body in self:
-            hidden[body.parts] = body.hidden_at is not None
+            if body.hidden_at is not None:
+                hidden[body.parts.start : body.parts.stop] = True
         return hidden
 
     def new_group(self) -> int:

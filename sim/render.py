@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
-from sim.bounds import FAR_M
 from sim.bullet import Bullet
 from sim.camera import Camera, Matrix, invert_pose
 from sim.canvas import Lens, make_canvas, shade
+from sim.depth_normals import normals_from_depth
 from sim.raycast import draw
 from sim.shape_table import ShapeTable
 
@@ -108,30 +108,6 @@ def rasterise(
         alone = set(names[person_of_part == person].tolist())
         silhouette, _ = bullet.camera_image(camera, world_from_camera, only=alone)
         cover |= np.where(silhouette >= 0, np.uint64(1) << np.uint64(person), np.uint64(0))
-    normal = _normals(camera, depth) @ world_from_camera[:3, :3].T
-    return View(part, depth, np.where(part[..., None] >= 0, normal, 0.0).astype(np.float32), cover)
-
-
-def _normals(camera: Camera, depth: NDArray[np.float32]) -> Matrix:
-    """(H, W, 3) unit normals in the optical frame from the differences of neighbouring depths."""
-    v, u = np.indices(depth.shape)
-    centre_u, centre_v = camera.centre_px
-    rays = np.stack(
-        [(u - centre_u) / camera.focal_px, (v - centre_v) / camera.focal_px, np.ones(u.shape)], -1
-    )
-    points = rays * np.where(np.isfinite(depth), depth, FAR_M)[..., None].astype(np.float64)
-    normals = np.cross(_flatter_difference(points, 0), _flatter_difference(points, 1))
-    normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
-    return np.where(np.sum(normals * points, axis=-1, keepdims=True) > 0.0, -normals, normals)
-
-
-def _flatter_difference(points: Matrix, axis: int) -> Matrix:
-    """(H, W, 3) difference to the neighbour before or after along an axis, whichever is nearer in depth."""
-    steps = np.diff(points, axis=axis)
-    pad = [(0, 0)] * 3
-    pad[axis] = (1, 1)
-    padded = np.pad(steps, pad, mode="edge")
-    count = points.shape[axis]
-    before = np.take(padded, range(count), axis=axis)
-    after = np.take(padded, range(1, count + 1), axis=axis)
-    return np.where(np.abs(before[..., 2:]) < np.abs(after[..., 2:]), before, after)
+    rotation = np.ascontiguousarray(world_from_camera[:3, :3])
+    lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
+    return View(part, depth, normals_from_depth(depth, lens, rotation), cover)
