@@ -47,9 +47,10 @@ class TruthMaker:
         self.person_of_part = np.where(self._owner_of_part < len(names), self._owner_of_part, -1)
         parts = [key.name.split("/")[-1] for key in keys]
         is_person = self.person_of_part >= 0
-        self._class_of_part = np.array(
-            [PART_CLASSES.get(p, 0) if own else 0 for p, own in zip(parts, is_person, strict=True)], np.uint8
-        )
+        classes = [PART_CLASSES.get(p, 0) if own else 0 for p, own in zip(parts, is_person, strict=True)]
+        # The last entry is for part -1, where nothing is seen.
+        self._class_of_part = np.array([*classes, 0], np.uint8)
+        self._id_of_part = np.array([*(self.person_of_part + 1), 0], np.uint8)
         self._outlines = [_Outline(k, parts, self.person_of_part) for k in range(len(names))]
         self._temperatures = [
             {parts[p]: looks[p].temperature_c for p in np.flatnonzero(outline.whole)}
@@ -76,14 +77,11 @@ class TruthMaker:
             for k, person in enumerate(self._people)
             if person.present
         )
-        seen = np.where(view.part >= 0, view.part, 0)
-        instance = np.where(view.part >= 0, self.person_of_part[seen] + 1, 0).astype(np.uint8)
-        body_part = np.where(view.part >= 0, self._class_of_part[seen], 0).astype(np.uint8)
         return Truth(
             time_s=time_s,
             people=people,
-            instance=_frozen(instance),
-            body_part=_frozen(body_part),
+            instance=_frozen(self._id_of_part[view.part]),
+            body_part=_frozen(self._class_of_part[view.part]),
             depth_m=_frozen(view.depth),
             camera=self._camera,
             world_from_camera=_frozen(world_from_camera),
@@ -187,5 +185,7 @@ def _box(bounds: _Bounds) -> Box | None:
 
 
 def _frozen(array: A) -> A:
-    array.setflags(write=False)
-    return array
+    """Give a view of an array that cannot be written to."""
+    view = array.view()
+    view.setflags(write=False)
+    return view
