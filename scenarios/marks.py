@@ -1,0 +1,161 @@
+"""What one tick puts on images, into the world and on plots, as plain arrays.
+
+Pixels are those of the camera's image: the centre of the top-left one is (0, 0).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenarios.loop import Tick
+from scenarios.overlay import map_box
+from scenarios.palette import ROBOT, TRUTH, Rgb, person_colour, track_colour
+from sim.camera import Matrix
+from sim.truth import PersonTruth
+from tracker.config import ContourConfig
+from tracker.ellipse import outline
+from tracker.particles import Particles
+from tracker.track import Status, Track
+
+PARTICLES_A_FILTER = 60
+PARTICLES_AT_MOST = 120
+
+Floats = NDArray[np.float32]
+Colours = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Boxes:
+    """K boxes with a colour and a label each.
+
+    Attributes:
+        box: (K, 4) [px] left, top, width, height.
+        colour: (K, 3).
+        label: K texts.
+    """
+
+    box: Floats
+    colour: Colours
+    label: list[str]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lines:
+    """K lines with a colour each.
+
+    Attributes:
+        line: K arrays of (n, 2) [px] or (n, 3) [m].
+        colour: (K, 3).
+    """
+
+    line: list[Floats]
+    colour: Colours
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Points:
+    """K points with a colour each.
+
+    Attributes:
+        place: (K, 2) [px].
+        colour: (K, 3).
+    """
+
+    place: Floats
+    colour: Colours
+
+
+def track_boxes(tracks: Sequence[Track], affine: Matrix | None = None) -> Boxes:
+    """Give the boxes of tracks, mapped to the other camera's image if (2, 3) `affine` says how."""
+    boxes = [track.box if affine is None else map_box(track.box, affine) for track in tracks]
+    return Boxes(
+        _boxes(boxes), _colours(track_colour(t.id) for t in tracks), [track_label(t) for t in tracks]
+    )
+
+
+def track_label(track: Track) -> str:
+    """Say id and confidence, and the status if there is more to it than being tracked."""
+    status = "" if track.status is Status.TRACKED else f" {track.status}"
+    return f"{track.id}: {track.confidence:.2f}{status}"
+
+
+def track_contours(tracks: Sequence[Track], contour: ContourConfig) -> Lines:
+    """Give the outlines of body and head of every track."""
+    lines = [
+        line.astype(np.float32) for track in tracks for line in outline(track.ellipse, contour, count=24)
+    ]
+    return Lines(lines, _colours(track_colour(track.id) for track in tracks for _ in range(2)))
+
+
+def truth_boxes(people: Iterable[PersonTruth], affine_at: Callable[[float], Matrix] | None = None) -> Boxes:
+    """Give the true boxes of people, with name and visible share.
+
+    Args:
+        people: those behind the camera are left out.
+        affine_at: how to map to the other camera's image at a distance [m]; None for the thermal image.
+    """
+    seen = [(person, person.box) for person in people if person.box is not None]
+    boxes = [box if affine_at is None else map_box(box, affine_at(person.distance_m)) for person, box in seen]
+    labels = [f"{person.name} {person.visible_fraction:.0%}" for person, _ in seen]
+    return Boxes(_boxes(boxes), _colours(TRUTH for _ in seen), labels)
+
+
+def particle_points(particles: Mapping[int, Particles]) -> Points:
+    """Choose particles of each filter to show: the strongest half, and the rest evenly from all others.
+
+    They have the colour of their track, white for the detector's (id 0), darker the weaker they are.
+    """
+    if not particles:
+        return Points(np.zeros((0, 2), np.float32), np.zeros((0, 3), np.uint8))
+    count = min(PARTICLES_A_FILTER, PARTICLES_AT_MOST // len(particles))
+    clouds = [_sample(cloud, number, count) for number, cloud in particles.items()]
+    return Points(np.concatenate([c.place for c in clouds]), np.concatenate([c.colour for c in clouds]))
+
+
+def _sample(cloud: Particles, number: int, count: int) -> Points:
+    order = np.argsort(-cloud.weight, kind="stable")
+    strongest = min(count // 2, len(order))
+    others = np.linspace(strongest, len(order) - 1, min(count, len(order)) - strongest)
+    rows = np.concatenate([order[:strongest], order[others.astype(np.int64)]])
+    strength = 0.25 + 0.75 * cloud.weight[rows] / max(float(cloud.weight.max()), 1e-12)
+    colour = np.array(track_colour(number) if number > 0 else (255, 255, 255))
+    return Points(cloud.state[rows, :2], np.rint(strength[:, None] * colour).astype(np.uint8))
+
+
+class Trails:
+    """Turns places frame by frame into the pieces of the trails that lead to them."""
+
+    def __init__(self) -> None:
+        self._last: dict[int, tuple[float, float]] = {}
+
+    def update(self, tick: Tick) -> Lines:
+        """Give the pieces (2, 3) [m] since the last tick: the robot's, and of all who were and are there."""
+        robot = tick.truth.robot
+        places = {0: (robot.x, robot.y)} | {p.id: p.position_m for p in tick.truth.people}
+        moved = [number for number in places if number in self._last]
+        lines = [np.array([[*self._last[n], 0.02], [*places[n], 0.02]], np.float32) for n in moved]
+        self._last = places
+        return Lines(lines, _colours(person_colour(n) if n > 0 else ROBOT for n in moved))
+
+
+def visible_fractions(tick: Tick, names: Iterable[str]) -> list[float]:
+    """Give each person's visible fraction in the order of names; who is not there is not visible."""
+    visible = {person.name: person.visible_fraction for person in tick.truth.people}
+    return [visible.get(name, 0.0) for name in names]
+
+
+def track_offset(track: Track, width_px: int) -> float:
+    """Give how far the middle of a track's box lies right of the image's [half image widths]."""
+    return (track.box[0] + track.box[2] / 2.0 - (width_px - 1) / 2.0) / (width_px / 2.0)
+
+
+def _boxes(boxes: Sequence[tuple[float, float, float, float]]) -> Floats:
+    return np.reshape(np.array(boxes, np.float32), (-1, 4))
+
+
+def _colours(colours: Iterable[Rgb]) -> Colours:
+    return np.reshape(np.array(list(colours), np.uint8), (-1, 3))

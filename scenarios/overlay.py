@@ -1,0 +1,141 @@
+"""Draw tracks and truth on images.
+
+Everything is given in pixels of the camera's own image and drawn on an enlarged one, so that lines stay thin
+against people.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scenarios.palette import TRUTH, Rgb, faded, track_colour
+from sim.camera import Matrix
+from sim.truth import PersonTruth
+from tracker.config import ContourConfig
+from tracker.ellipse import outline
+from tracker.track import Status, Track
+
+Picture = NDArray[np.uint8]  # (H, W, 3) RGB
+Box = tuple[float, float, float, float]
+
+SCALE = 2
+
+PALETTES = {"grey": None, "inferno": cv2.COLORMAP_INFERNO}
+
+_SUBPIXEL_BITS = 4
+_FONT = cv2.FONT_HERSHEY_SIMPLEX
+_DASH_PX = 8.0
+_UNTURNED = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+
+
+def enlarge(image: Picture, scale: int = SCALE) -> Picture:
+    """Make an (H, W, 3) image `scale` times as large, smoothly."""
+    return np.asarray(cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC), np.uint8)
+
+
+def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
+    """Turn an (H, W) thermal image into an RGB picture of the same size, in one of `PALETTES`."""
+    colours = PALETTES[palette]
+    if colours is None:
+        return np.asarray(cv2.cvtColor(thermal, cv2.COLOR_GRAY2RGB), np.uint8)
+    return np.asarray(cv2.cvtColor(cv2.applyColorMap(thermal, colours), cv2.COLOR_BGR2RGB), np.uint8)
+
+
+def draw_tracks(
+    picture: Picture,
+    tracks: Iterable[Track],
+    scale: int = SCALE,
+    contour: ContourConfig | None = None,
+    affine: Matrix | None = None,
+) -> Picture:
+    """Draw ellipses, boxes, ids and status of tracks; tentative ones are dim and have no label.
+
+    Args:
+        picture: the camera's image, `scale` times enlarged; it stays as it is.
+        tracks: what to draw.
+        scale: how much the picture is enlarged.
+        contour: whose outline to draw; the default proportions if None.
+        affine: (2, 3) thermal pixels to the picture's, before enlarging; None for the thermal image itself.
+    """
+    canvas = picture.copy()
+    mapping = _UNTURNED if affine is None else affine
+    for track in tracks:
+        is_sure = track.status is not Status.TENTATIVE
+        colour = track_colour(track.id) if is_sure else faded(track_colour(track.id), 0.6)
+        for line in outline(track.ellipse, ContourConfig() if contour is None else contour):
+            draw_line(canvas, line @ mapping[:, :2].T + mapping[:, 2], colour, scale, thickness=2)
+        box = map_box(track.box, mapping)
+        draw_line(canvas, box_corners(box), colour, scale, thickness=1)
+        if is_sure:
+            _label(canvas, _track_text(track), box, colour, scale)
+    return canvas
+
+
+def draw_truth(
+    picture: Picture, people: Iterable[PersonTruth], scale: int = SCALE, affine: Matrix | None = None
+) -> Picture:
+    """Draw thin dashed boxes, with name and visible share under them; arguments as in `draw_tracks`."""
+    canvas = picture.copy()
+    for person in people:
+        if person.box is None:
+            continue
+        box = map_box(person.box, _UNTURNED if affine is None else affine)
+        for dash in _dashes(box_corners(box), _DASH_PX / scale):
+            draw_line(canvas, dash, TRUTH, scale, thickness=1)
+        _label(canvas, f"{person.name} {person.visible_fraction:.0%}", box, TRUTH, scale, is_below=True)
+    return canvas
+
+
+def map_box(box: Box, affine: Matrix) -> Box:
+    """Map a box by a (2, 3) affine that does not turn it, or take the upright box around the turned one."""
+    corners = box_corners(box) @ affine[:, :2].T + affine[:, 2]
+    (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
+    return float(left), float(top), float(right - left), float(bottom - top)
+
+
+def box_corners(box: Box) -> NDArray[np.float64]:
+    """Give the closed line (5, 2) around a box."""
+    left, top, width, height = box
+    right, bottom = left + width, top + height
+    return np.array([[left, top], [right, top], [right, bottom], [left, bottom], [left, top]])
+
+
+def draw_line(
+    canvas: Picture, points: NDArray[np.float64], colour: Rgb, scale: int = 1, thickness: int = 1
+) -> None:
+    """Draw a smooth line through points (K, 2) of the camera's image onto its enlarged picture, in place."""
+    # Pixel (0, 0) spans -0.5..0.5, so its enlarged copy does not begin at scale * 0.
+    enlarged = (points + 0.5) * scale - 0.5
+    fixed = np.round(np.clip(enlarged, -1e4, 1e4) * (1 << _SUBPIXEL_BITS)).astype(np.int32)
+    cv2.polylines(canvas, [fixed], False, colour, thickness, cv2.LINE_AA, _SUBPIXEL_BITS)
+
+
+def _track_text(track: Track) -> str:
+    status = "" if track.status is Status.TRACKED else f" {track.status}"
+    return f"{track.id}: {track.confidence:.2f}{status}"
+
+
+def _dashes(line: NDArray[np.float64], length: float) -> Iterable[NDArray[np.float64]]:
+    for start, end in pairwise(line):
+        count = max(int(np.linalg.norm(end - start) / length) // 2 * 2 + 1, 1)
+        marks = start + (end - start) * np.linspace(0.0, 1.0, count + 1)[:, None]
+        yield from (marks[k : k + 2] for k in range(0, count, 2))
+
+
+def _label(canvas: Picture, text: str, box: Box, colour: Rgb, scale: int, is_below: bool = False) -> None:
+    """Write on a dark plate above or below a box, moved as far as it must to be inside the picture."""
+    size = 0.2 * scale
+    (width, height), descent = cv2.getTextSize(text, _FONT, size, 1)
+    left, top = box[0] * scale, box[1] * scale
+    bottom = (box[1] + box[3]) * scale + height + descent + 4 if is_below else top - 4
+    rows, columns = canvas.shape[:2]
+    x = round(min(max(left, 2.0), max(columns - width - 2.0, 2.0)))
+    y = round(min(max(bottom, height + 3.0), rows - descent - 2.0))
+    plate = canvas[max(y - height - 2, 0) : y + descent + 1, max(x - 2, 0) : x + width + 2]
+    plate[:] = plate // 3
+    cv2.putText(canvas, text, (x, y), _FONT, size, colour, 1, cv2.LINE_AA)

@@ -1,0 +1,46 @@
+"""Colours that people with any colour vision tell apart, on grey images and on dark plots."""
+
+from __future__ import annotations
+
+from typing import Final
+
+Rgb = tuple[int, int, int]
+
+# Okabe and Ito, "Color Universal Design" (2008), without black and without blue, which drown on dark images.
+_TRACKS: Final[tuple[Rgb, ...]] = (
+    (230, 159, 0),
+    (86, 180, 233),
+    (0, 158, 115),
+    (240, 228, 66),
+    (213, 94, 0),
+    (204, 121, 167),
+)
+# Paul Tol, "Colour Schemes" (2021), light: paler than the tracks', so that nobody takes one for the other.
+_PEOPLE: Final[tuple[Rgb, ...]] = (
+    (153, 221, 255),
+    (238, 221, 136),
+    (255, 170, 187),
+    (187, 204, 51),
+    (119, 170, 221),
+    (238, 136, 102),
+    (68, 187, 153),
+)
+
+TRUTH: Final[Rgb] = (150, 240, 130)
+ROBOT: Final[Rgb] = (214, 69, 65)
+
+
+def track_colour(number: int) -> Rgb:
+    """The colour of a track, by its id; they repeat after six."""
+    return _TRACKS[(number - 1) % len(_TRACKS)]
+
+
+def person_colour(number: int) -> Rgb:
+    """The colour of a person, by id; they repeat after seven."""
+    return _PEOPLE[(number - 1) % len(_PEOPLE)]
+
+
+def faded(colour: Rgb, share: float) -> Rgb:
+    """Mix a colour with black: 1 leaves it, 0 is black."""
+    red, green, blue = colour
+    return round(red * share), round(green * share), round(blue * share)
