@@ -42,7 +42,9 @@ _BAG_LOOK = Look(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
 _BAG_HAND = "right"
 _BAG_SWING = 0.25
 _SWAY_RAD, _SWAY_HZ = 0.006, 0.23
-_TURNING_RADIUS_M = 0.15
+# Who turns on the spot takes small steps: as if the feet went round a circle, and so many cycles a turn.
+_TURNING_RADIUS_M = 0.04
+_CYCLES_PER_RAD = 0.4
 
 
 class Person:
@@ -145,8 +147,9 @@ class Person:
         change = 3.0 * dt_s
         self._speed += min(max(speed - self._speed, -change), change)
         amplitude = self._gait.amplitude(self._speed)
-        if amplitude > 1e-3:
-            self._phase = (self._phase + self._speed * dt_s / self._gait.stride_m(amplitude)) % 1.0
+        walking_hz = self._speed / self._gait.stride_m(amplitude) if amplitude > 1e-3 else 0.0
+        turning_hz = 0.0 if walker.is_walking else _CYCLES_PER_RAD * abs(walker.turn_rate)
+        self._phase = (self._phase + max(walking_hz, turning_hz) * dt_s) % 1.0
         for posture in Posture:
             wanted = float(posture is walker.posture)
             step = dt_s / RISE_S

@@ -92,7 +92,7 @@ class Walker:
         self.velocity = np.zeros(2)
         self.turn_rate = 0.0
         self.reached = 0
-        self.posture = path[0].posture if self._has_pause(0) else Posture.STANDING
+        self.posture = Posture(path[0].posture) if self._has_pause(0) else Posture.STANDING
         self.heading = self._first_heading()
         self._pause_left = self._pause_of(0)
         self._speed = 0.0
@@ -183,7 +183,7 @@ class Walker:
         self._pieces = ()
         self._pause_left = self._pause_of(self.reached)
         if self._has_pause(self.reached):
-            self.posture = self._path[self.reached].posture
+            self.posture = Posture(self._path[self.reached].posture)
 
     def _follow(self, dt_s: float, around: Surroundings) -> None:
         """Move along the planned way, exactly."""
