@@ -107,13 +107,12 @@ class LikelihoodConfig:
     threshold: float = 22.0  # theta, in the unit of the section differences
     section_threshold: float = 10.0  # t_h of the paper: a section below it loses its weight
     weakest_share: float = 0.0  # share of the weakest of the seven sections in the fitness
-    sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0 weighs with the probability itself
 
     def __post_init__(self) -> None:
         if self.model not in ("thesis", "paper"):
             raise BadInput(f"LikelihoodConfig: model must be thesis or paper, got {self.model!r}")
         check_positive(self, "slope")
-        check_not_negative(self, "sharpness")
+        check_share(self, "weakest_share")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,12 +146,14 @@ class FilterConfig:
     fresh_share: float = 0.2  # share drawn anew from the prior in every step
     limits: LimitsConfig = field(default_factory=LimitsConfig)
     log_uniform_h: bool = False  # prior of h: uniform, or uniform in log h
+    sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0: the probability, or the paper's fitness
     estimate_share: float = 1.0  # share of the samples, the best ones, that makes the estimate
     estimate_reach: float = math.inf  # only those within so many semi-axes of the best
 
     def __post_init__(self) -> None:
         check_positive(self, "count", "estimate_share", "estimate_reach")
         check_share(self, "fresh_share", "estimate_share")
+        check_not_negative(self, "sharpness")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -88,7 +88,7 @@ def weigh(state: Floats, view: View, filter_config: FilterConfig, config: Tracke
     fit = fitness(view.model.differences(view.image, state), view.model.weights, config.likelihood)
     chance = probability(fit, config.likelihood)
     inside = is_within(state, view.image.shape[0], filter_config.limits)
-    weight = sample_weights(fit, chance, inside, config.likelihood, filter_config.limits.outside_weight)
+    weight = sample_weights(fit, chance, inside, config.likelihood.model, filter_config)
     particles = Particles(state, weight)
     rows = core_rows(particles, filter_config.estimate_share, filter_config.estimate_reach)
     core = select(particles, rows)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.config import REFERENCE_HEIGHT_PX, ContourConfig, LikelihoodConfig, LimitsConfig
+from tracker.config import REFERENCE_HEIGHT_PX, ContourConfig, FilterConfig, LikelihoodConfig, LimitsConfig
 from tracker.contour import (
     FEET,
     Probes,
@@ -86,7 +86,7 @@ def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
 
 
 def sample_weights(
-    fit: Floats, chance: Floats, is_inside: NDArray[np.bool_], config: LikelihoodConfig, outside: float
+    fit: Floats, chance: Floats, is_inside: NDArray[np.bool_], model: str, config: FilterConfig
 ) -> Floats:
     """Weigh the samples (N,), to sum to 1.
 
@@ -97,11 +97,13 @@ def sample_weights(
     """
     if config.sharpness > 0:
         weight = np.exp(config.sharpness * (fit - fit.max()))
-    elif config.model == "paper":
+    elif model == "paper":
         weight = np.maximum(fit, 1e-6)
     else:
         weight = chance
-    return normalised(np.where(is_inside, weight, outside * weight).astype(np.float32))
+    return normalised(
+        np.where(is_inside, weight, np.float32(config.limits.outside_weight) * weight).astype(np.float32)
+    )
 
 
 def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np.bool_]:

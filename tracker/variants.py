@@ -45,7 +45,7 @@ PEOPLEBOY = TrackerConfig(
         hottest_grey=250,
         hot_margin_px=2,
     ),
-    likelihood=LikelihoodConfig(slope=6.0, threshold=0.5, weakest_share=0.25, sharpness=20.0),
+    likelihood=LikelihoodConfig(slope=6.0, threshold=0.5, weakest_share=0.25),
     motion=MotionConfig(
         noise_x=30.0,
         noise_y=15.0,
@@ -62,9 +62,10 @@ PEOPLEBOY = TrackerConfig(
         limits=replace(_LIMITS, y_below_horizon=(-0.1, 0.9)),
         log_uniform_h=True,
         estimate_share=0.3,
+        sharpness=20.0,
         estimate_reach=0.7,
     ),
-    person=FilterConfig(fresh_share=0.0, limits=_LIMITS, estimate_share=0.3),
+    person=FilterConfig(fresh_share=0.0, limits=_LIMITS, sharpness=20.0, estimate_share=0.3),
     life=LifeConfig(
         birth_confidence=0.6, birth_frames=3, death_confidence=0.3, death_frames=5, uncertainty_px2=100.0
     ),

@@ -49,10 +49,11 @@ def test_the_weakest_section_pulls_the_fitness_down():
     )
 
 
-@pytest.mark.parametrize("config", [THESIS, LikelihoodConfig(sharpness=3.0), LikelihoodConfig(model="paper")])
-def test_weights_sum_to_one_and_grow_with_the_fitness(config):
+@pytest.mark.parametrize(("model", "sharpness"), [("thesis", 0.0), ("thesis", 3.0), ("paper", 0.0)])
+def test_weights_sum_to_one_and_grow_with_the_fitness(model, sharpness):
     fit = np.linspace(1, 40, 50).astype(np.float32)
-    weight = sample_weights(fit, probability(fit, config), np.ones(50, bool), config, 1e-6)
+    config = FilterConfig(sharpness=sharpness)
+    weight = sample_weights(fit, probability(fit, THESIS), np.ones(50, bool), model, config)
     assert weight.sum() == pytest.approx(1, abs=1e-5)
     assert np.all(np.diff(weight) >= 0)
 
@@ -60,7 +61,7 @@ def test_weights_sum_to_one_and_grow_with_the_fitness(config):
 def test_a_sample_outside_the_limits_is_hardly_ever_chosen():
     fit = np.full(10, 30, np.float32)
     inside = np.arange(10) != 4
-    weight = sample_weights(fit, probability(fit, THESIS), inside, THESIS, 1e-6)
+    weight = sample_weights(fit, probability(fit, THESIS), inside, "thesis", FilterConfig())
     assert weight[4] == pytest.approx(1e-6 / 9, rel=0.01)
 
 
