@@ -118,7 +118,8 @@ class Bullet:
     ) -> None:
         """Add a body of one part that stays where it is put, however hard it is hit.
 
-        An invisible part is drawn by no renderer; one that is not solid is passed by rays and bodies.
+        An invisible part is drawn by no renderer; one that is not solid is passed by rays and bodies. Shapes
+        beyond the 16 that a PyBullet body holds go into further bodies under the same name.
 
         Raises:
             BadInput: the name is taken, there are no shapes, or a mesh is missing or cannot be read.

@@ -81,7 +81,8 @@ def pixels(lens: Lens, bounds: Bounds) -> Rectangle:
     top = max(lens.centre_v + lens.focal * bounds[1] - _SLACK, 0.0)
     right = min(lens.centre_u + lens.focal * bounds[2] + _SLACK, lens.width - 1.0)
     bottom = min(lens.centre_v + lens.focal * bounds[3] + _SLACK, lens.height - 1.0)
-    if left > right or top > bottom:
+    # Written so that NaN, from a pose that is none, means no pixel.
+    if not (left <= right and top <= bottom):
         return 0, 0, -1, -1
     return math.ceil(left), math.ceil(top), math.floor(right), math.floor(bottom)
 
@@ -120,7 +121,7 @@ def fill_polygon(
                 high = min(high, lens.centre_u - lens.focal * c / a + _SLACK)
             elif c < 0.0:
                 high = -1.0
-        if low > high:
+        if not low <= high:
             continue
         base = g[1] * y + g[2] - lens.centre_u * slope
         nearness, surfaces, cover = canvas.nearness[v], canvas.surface[v], canvas.cover[v]
@@ -194,7 +195,7 @@ def _outline(a: float, b: float, c: float, lens: Lens, area: Rectangle) -> tuple
     width = math.sqrt(square)
     low = max(lens.centre_u + lens.focal * (width - b) / a - _SLACK, float(area[0]))
     high = min(lens.centre_u - lens.focal * (width + b) / a + _SLACK, float(area[2]))
-    if low > high:
+    if not low <= high:
         return 0, -1
     return math.ceil(low), math.floor(high)
 

@@ -16,6 +16,7 @@ from sim.raycast import draw
 from sim.shape_table import ShapeTable
 
 NOBODY = -1
+_MOST_PEOPLE = 64
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,12 +59,16 @@ def render(
         hidden: (P,) parts that are not there.
 
     Raises:
-        BadInput: no renderer has that name.
+        BadInput: no renderer has that name, or a person's number is above 63.
     """
+    if person_of_part.max(initial=0) >= _MOST_PEOPLE:
+        raise BadInput(
+            f"person number {person_of_part.max()}: a view tells at most {_MOST_PEOPLE} people apart"
+        )
     if name == "raycast":
         return cast(table, camera, world_from_camera, world_from_part, person_of_part, hidden)
     if name == "bullet":
-        return rasterise(bullet, camera, world_from_camera, person_of_part)
+        return rasterise(bullet, camera, world_from_camera, np.where(hidden, NOBODY, person_of_part))
     raise BadInput(f"renderer {name!r}: there is none of that name; choose raycast or bullet")
 
 

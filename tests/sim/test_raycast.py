@@ -173,6 +173,12 @@ def test_pieces_of_one_shape_leave_no_crack_between_them() -> None:
                 )
 
 
+def test_a_pose_that_is_not_a_number_draws_nothing() -> None:
+    for kind in (ShapeKind.SPHERE, ShapeKind.CAPSULE, ShapeKind.CYLINDER, ShapeKind.BOX, ShapeKind.PLANE):
+        broken = one(kind, (1, 1, 1), np.full((4, 4), np.nan))
+        assert np.all(draw(broken, camera=Camera()).part == -1)
+
+
 def test_the_arrays_of_a_table_cannot_be_written_to() -> None:
     with Bullet() as bullet:
         bullet.add_part("ball", [Shape(kind=ShapeKind.SPHERE, size=(1.0, 0.0, 0.0))])

@@ -1,0 +1,81 @@
+"""The ray caster against PyBullet's TinyRenderer: both camera images of a corridor, with full truth."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.config import WorldConfig
+from sim.person_config import PersonConfig
+from sim.rooms import build_place, straight_corridor
+from sim.walk import Waypoint
+from sim.world import World
+
+# (x, y) [m] of the people in front of the robot, who walk on at the same pace.
+STARTS_M = ((3.0, 0.4), (4.2, -0.5), (5.5, 0.5), (7.5, -0.2))
+RENDERERS = ("raycast", "bullet")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderTimes:
+    """Medians over the instants of one run.
+
+    Attributes:
+        raycast_ms: [ms] thermal image, colour image and full truth by the ray caster.
+        bullet_ms: [ms] the same by TinyRenderer.
+        raycast_truth_ms: [ms] of these, one camera's view and its truth by the ray caster.
+        bullet_truth_ms: [ms] the same by TinyRenderer.
+    """
+
+    raycast_ms: float
+    bullet_ms: float
+    raycast_truth_ms: float
+    bullet_truth_ms: float
+
+    @property
+    def ratio(self) -> float:
+        """How many times faster the ray caster gives both images and the truth."""
+        return self.bullet_ms / self.raycast_ms
+
+
+def render_times(instants: int = 40) -> RenderTimes:
+    """Draw the same instants by both renderers in turn, and time each."""
+    times: dict[str, list[tuple[float, float]]] = {name: [] for name in RENDERERS}
+    with World(_corridor("raycast")) as cast, World(_corridor("bullet")) as drawn:
+        worlds = dict(zip(RENDERERS, (cast, drawn), strict=True))
+        for _ in range(instants + 2):
+            for name, world in worlds.items():
+                world.step(0.5, 0.0)
+                start = time.perf_counter()
+                world.truth()
+                middle = time.perf_counter()
+                world.observe()
+                times[name].append((time.perf_counter() - start, middle - start))
+    # The first instants compile the kernels.
+    raycast, bullet = (1000.0 * np.median(times[name][2:], axis=0) for name in RENDERERS)
+    return RenderTimes(
+        raycast_ms=float(raycast[0]),
+        bullet_ms=float(bullet[0]),
+        raycast_truth_ms=float(raycast[1]),
+        bullet_truth_ms=float(bullet[1]),
+    )
+
+
+def _corridor(renderer: str) -> WorldConfig:
+    people = tuple(
+        PersonConfig(name=f"person {i}", path=(Waypoint(at_m=(x, y)), Waypoint(at_m=(x + 10.0, y))))
+        for i, (x, y) in enumerate(STARTS_M)
+    )
+    place = build_place(straight_corridor(20.0, 2.4))
+    return WorldConfig(place=place, people=people, renderer=renderer)
+
+
+if __name__ == "__main__":
+    found = render_times()
+    print(f"two images and truth: raycast {found.raycast_ms:.2f} ms, bullet {found.bullet_ms:.1f} ms")
+    print(
+        f"one view and truth: raycast {found.raycast_truth_ms:.2f} ms, bullet {found.bullet_truth_ms:.1f} ms"
+    )
+    print(f"ratio of the two images {found.ratio:.1f}")
