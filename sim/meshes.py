@@ -29,7 +29,8 @@ def load_triangles(path: Path) -> NDArray[np.float64]:
         triangles = np.array(mesh.triangles, np.float64) * _unit_m(path)
     # Each of the parsers behind trimesh fails in ways of its own.
     except Exception as error:
-        raise BadInput(f"mesh {path}: it cannot be read ({error}); give an OBJ, STL or DAE file") from error
+        reason = " ".join(str(error).split())
+        raise BadInput(f"mesh {path}: it cannot be read ({reason}); give an OBJ, STL or DAE file") from error
     if len(triangles) == 0 or not np.isfinite(triangles).all():
         raise BadInput(f"mesh {path}: it holds no triangles, or not finite ones")
     triangles.setflags(write=False)

@@ -214,17 +214,15 @@ def _draw_triangle(
     a = map_point(pose, corners[0, 0], corners[0, 1], corners[0, 2])
     b = map_point(pose, corners[1, 0], corners[1, 1], corners[1, 2])
     c = map_point(pose, corners[2, 0], corners[2, 1], corners[2, 2])
+    # Half of all triangles face away and most others of a fine mesh lie between pixels: these go first.
+    normal = cross(minus(b, a), minus(c, a))
+    if dot(normal, a) >= 0.0 or max(a[2], b[2], c[2]) < NEAR_M:
+        return
     if min(a[2], b[2], c[2]) >= NEAR_M:
         area = _narrowed(area, a, b, c, lens)
         if area[0] > area[2] or area[1] > area[3]:
             return
-    elif max(a[2], b[2], c[2]) < NEAR_M:
-        return
-    normal = cross(minus(b, a), minus(c, a))
-    length = math.sqrt(dot(normal, normal))
-    if length == 0.0:
-        return
-    normal = scaled(normal, 1.0 / length)
+    normal = scaled(normal, 1.0 / math.sqrt(dot(normal, normal)))
     centre = scaled(plus(plus(a, b), c), 1.0 / 3.0)
     set_edge(canvas, 0, cross(a, b), centre)
     set_edge(canvas, 1, cross(b, c), centre)

@@ -94,6 +94,9 @@ def test_poses_follow_what_is_set_and_what_physics_does() -> None:
         for _ in range(24):
             bullet.step()
         poses = bullet.part_poses()
+        linear, angular = bullet.velocity("free")
+    np.testing.assert_allclose(linear, (0.0, 0.0, -0.981), atol=5e-3)  # PyBullet adds a little drag
+    np.testing.assert_allclose(angular, 0.0, atol=1e-9)
     np.testing.assert_allclose(poses[0], pose_matrices((0.0, 0.0, 0.5), TILTED), atol=1e-9)
     # PyBullet adds g dt to the velocity before each of n steps: z falls by g dt^2 n (n + 1) / 2.
     assert poses[1, 2, 3] == pytest.approx(5.0 - 9.81 / 240**2 * 24 * 25 / 2, abs=1e-3)

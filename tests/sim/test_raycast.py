@@ -49,13 +49,14 @@ def distance(kind: ShapeKind, size: tuple[float, float, float], p: Array) -> Arr
 def march(
     kind: ShapeKind, size: tuple[float, float, float], rays: Array, origin: Array
 ) -> tuple[Array, Array]:
-    """Way along unit rays to the shape (inf where they miss it), and how near each ray came to it."""
+    """Way along unit rays to the shape (inf where they miss it), and which rays do more than graze it."""
     way, nearest = np.zeros(rays.shape[:-1]), np.full(rays.shape[:-1], np.inf)
     for _ in range(400):
         gap = distance(kind, size, origin + way[..., None] * rays)
         nearest = np.minimum(nearest, gap)
         way += gap
-    return np.where(gap < 1e-7, way, np.inf), nearest
+    hit, missed = gap < 1e-7, way > 30.0
+    return np.where(hit, way, np.inf), (hit & (gap < 1e-9)) | (missed & (nearest > 1e-3))
 
 
 @settings(max_examples=60, deadline=None)
@@ -79,14 +80,13 @@ def test_depth_and_normal_are_those_found_by_marching_along_the_rays(seed: int, 
     optical = np.stack([u, v, np.ones(u.shape)], -1) @ np.linalg.inv(camera.intrinsics).T
     length = np.linalg.norm(optical, axis=-1)
     rays = optical / length[..., None] @ AHEAD[:3, :3].T
-    way, nearest = march(
+    way, clear = march(
         kind, size, rays @ shape_from_world[:3, :3].T, transform(shape_from_world, np.zeros(3))
     )
     depth = way / length
-    clear = np.abs(nearest - 1e-4) > 1e-4
-    hit = np.isfinite(depth) & (nearest < 1e-6)
+    hit = np.isfinite(depth) & clear
+    assert np.mean(clear) > 0.95
     assert np.array_equal(view.part[clear] == 0, hit[clear])
-    hit &= view.part == 0
     np.testing.assert_allclose(view.depth[hit], depth[hit], rtol=2e-4)
     points = transform(shape_from_world, view.depth[hit, None] * optical[hit] @ AHEAD[:3, :3].T)
     steps = 1e-4 * np.eye(3)

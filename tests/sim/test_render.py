@@ -168,19 +168,15 @@ def test_what_is_hidden_or_invisible_is_drawn_by_neither(kind: str) -> None:
             assert set(np.unique(view.cover)) == {0, 1}
 
 
-def test_an_unknown_renderer_is_refused() -> None:
+@pytest.mark.parametrize(
+    ("name", "person", "message"),
+    [("opengl", 0, "choose raycast or bullet"), ("raycast", 64, "at most 64 people")],
+)
+def test_an_unknown_renderer_and_too_many_people_are_refused(name: str, person: int, message: str) -> None:
     with Bullet() as bullet:
         bullet.add_part("ball", [Shape(kind=ShapeKind.SPHERE, size=(0.5, 0.0, 0.0))])
         table = make_shape_table(bullet.visual_shapes())
-        camera = Camera()
-        with pytest.raises(BadInput, match=r"renderer 'opengl'.*choose raycast or bullet"):
-            render(
-                "opengl",
-                bullet,
-                table,
-                camera,
-                camera.robot_from_camera,
-                bullet.part_poses(),
-                np.array([-1]),
-                bullet.hidden_parts(),
-            )
+        camera, people = Camera(), np.array([person])
+        pose, poses, hidden = camera.robot_from_camera, bullet.part_poses(), bullet.hidden_parts()
+        with pytest.raises(BadInput, match=message):
+            render(name, bullet, table, camera, pose, poses, people, hidden)
