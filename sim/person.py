@@ -135,10 +135,13 @@ class Person:
         self._time_s = time_s + dt_s
         has_left = config.leave_s is not None and self._time_s > config.leave_s - 1e-9
         self.present = config.enter_s <= self._time_s + 1e-9 and not has_left
-        if not (self.present and was_present):
-            return
-        self._walker.step(dt_s, Surroundings(others=others, robot=robot, walls=walls))
-        self._move_limbs(dt_s)
+        around = Surroundings(others=others, robot=robot, walls=walls)
+        if self.present and was_present:
+            self._walker.step(dt_s, around)
+            self._move_limbs(dt_s)
+        elif self.present:
+            self._walker.enter(around)
+            self._bones = None
 
     def _move_limbs(self, dt_s: float) -> None:
         """Advance gait and postures by a time step."""

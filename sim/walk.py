@@ -106,6 +106,13 @@ class Walker:
         """Whether it is on its way to a waypoint."""
         return bool(self._pieces)
 
+    def enter(self, around: Surroundings) -> None:
+        """Face at once what the first waypoint says, if it is there."""
+        face = self._path[0].face
+        target = around.find(face) if face is not None and self._has_pause(0) else None
+        if target is not None:
+            self.heading = self._bearing(target)
+
     def step(self, dt_s: float, around: Surroundings) -> None:
         """Move on by a time step; long ones are divided."""
         count = max(math.ceil(dt_s / _LONGEST_STEP_S - 1e-9), 1)

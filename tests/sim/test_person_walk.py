@@ -147,6 +147,15 @@ def test_a_person_is_there_from_entering_to_leaving():
     assert make_person().present
 
 
+def test_who_enters_later_faces_the_robot_at_once():
+    robot = PlanarState(position=np.array([0.0, -5.0]), velocity=np.zeros(2))
+    way = (Waypoint(at_m=(0.0, 0.0), pause_s=5.0, face="robot"), Waypoint(at_m=(5.0, 0.0)))
+    person = make_person(path=way, enter_s=1.0)
+    settle(person, 1.0, robot=robot)
+    assert person.present
+    assert person.heading == pytest.approx(-math.pi / 2)
+
+
 def test_a_script_waits_for_a_robot_that_stands_in_the_way():
     robot = PlanarState(position=np.array([3.0, 0.1]), velocity=np.zeros(2))
     person = make_person(path=path((0.0, 0.0), (6.0, 0.0)))
