@@ -16,7 +16,7 @@ from sim.gait import Gait, lowest_sole
 from sim.joints import joint_points
 from sim.looks import Look
 from sim.person_config import Arms, PersonConfig
-from sim.postures import Posture, pelvis_shift, posture_rotations, standing_rotations
+from sim.postures import Posture, pelvis_shift, posture_rotations
 from sim.shapes import Part
 from sim.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
 from sim.social_force import PlanarState
@@ -196,7 +196,7 @@ class Person:
         """(17, 3) [rad] rotation vectors and the pelvis' offset [m] to the front and to the left."""
         amplitude = self._gait.amplitude(self._speed)
         rotations, sway = self._gait.pose(self._phase, amplitude)
-        standing = standing_rotations()
+        standing = _POSTURES[Posture.STANDING]
         weights = {posture: _ease(share) for posture, share in self._blend.items()}
         arms = sum(weights[p] for p in Posture if p is not Posture.STANDING)
         if self._arms is not None:
@@ -226,7 +226,7 @@ class Person:
             rotations[BONE_INDEX[f"{side}_foot"]] -= lean
 
 
-_POSTURES = {posture: posture_rotations(posture) for posture in Posture}
+_POSTURES = {posture: posture_rotations(posture) for posture in Posture}  # (17, 3) each
 
 
 def _ease(share: float) -> float:
