@@ -239,11 +239,14 @@ def _join_stubs(blocks: list[tuple[Wall, Rectangle]]) -> tuple[tuple[Wall, Recta
     """Give each lone corner to a block that it lengthens, so that no seam crosses a straight wall."""
     joined = list(blocks)
     for stub in [item for item in blocks if _longer_side(item[1]) <= WALL_M + _LONGEST_GAP_M]:
-        for index, (wall, block) in enumerate(joined):
+        if stub not in joined:
+            continue  # another corner made it longer
+        others = [item for item in joined if item != stub]
+        for index, (wall, block) in enumerate(others):
             union = _lengthened(block, stub[1])
-            if union is not None and joined[index] != stub:
-                joined[index] = (wall, union)
-                joined.remove(stub)
+            if union is not None:
+                others[index] = (wall, union)
+                joined = others
                 break
     return tuple(joined)
 

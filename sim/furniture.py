@@ -20,13 +20,14 @@ def window(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     pane = standing_box(
         depth / 2.0 + SINK_M, width - rail, 0.5 * rail, height - 0.5 * rail, x=(depth / 2.0 - SINK_M) / 2.0
     )
+    side = (width - rail) / 2.0 - 0.002  # no face of a post lies in a rail's
     deep, middle = depth + SINK_M, (depth - SINK_M) / 2.0
     frame = (
         standing_box(deep, width, 0.0, rail, x=middle),
         standing_box(deep, width, height - rail, height, x=middle),
         *(
             standing_box(deep - 0.004, rail, 0.5 * rail, height - 0.5 * rail, x=middle - 0.002, y=y)
-            for y in (-(width - rail) / 2.0, 0.0, (width - rail) / 2.0)
+            for y in (-side, 0.0, side)
         ),
     )
     return (
@@ -93,7 +94,7 @@ def plant(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """Balls of leaves in a pot."""
     depth, width, height = size
     pot = tube(0.3 + SINK_M, 0.3 * depth, (0.0, 0.0, (0.3 - SINK_M) / 2.0))
-    radius = 0.28 * (depth + width) / 2.0
+    radius = (depth + width) / 6.0
     leaves = tuple(
         ball(radius * share, (radius * x, radius * y, 0.3 + (height - 0.3 - radius) * z))
         for x, y, z, share in (
