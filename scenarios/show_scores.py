@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Sequence
 
 from rich.console import Console
@@ -57,6 +58,6 @@ def _number(value: float, unit: str) -> str:
 
 
 def _print(table: Table) -> None:
-    console = Console()
+    console = Console() if sys.stdout.isatty() else Console(width=120)
     console.print(table)
     console.print()

@@ -1,0 +1,57 @@
+"""The whole closed loop in multiples of real time, and the memory it takes."""
+
+from __future__ import annotations
+
+import resource
+import tempfile
+import time
+from pathlib import Path
+from statistics import median
+
+from scenarios.load import load_scenario
+from scenarios.loop import Tick, closed_loop
+from scenarios.run import RunOptions, run
+from sim.random_streams import stream
+from sim.world import World
+from tracker.people import make_tracker
+
+RATE_HZ = 15
+
+
+def loop_speed(scenario: str, frames: int = 300) -> float:
+    """Return how many times faster than real time the loop runs: world, images, truth, tracker, behaviour."""
+    loaded = load_scenario(scenario)
+    times = []
+    with World(loaded.world(0)) as world:
+        ticks = closed_loop(
+            world, make_tracker("peopleboy", stream(0, "tracker")), loaded.make_behaviour(), frames
+        )
+        next(ticks)
+        last = time.perf_counter()
+        for _ in ticks:
+            now = time.perf_counter()
+            times.append(now - last)
+            last = now
+    return 1.0 / RATE_HZ / median(times)
+
+
+def run_speed(scenario: str) -> float:
+    """Return the same for a whole `peopleboy run`, with its tables, contact sheet and recording."""
+    times = []
+    last = time.perf_counter()
+
+    def report(_tick: Tick, _frames: int) -> None:
+        nonlocal last
+        now = time.perf_counter()
+        times.append(now - last)
+        last = now
+
+    with tempfile.TemporaryDirectory() as folder:
+        run(load_scenario(scenario), RunOptions(seed=0, out=Path(folder) / "run"), report)
+    # The mean, not the median: the recording writes once a second, and that counts.
+    return (len(times) - 1) / RATE_HZ / sum(times[1:])
+
+
+def peak_memory_mb() -> float:
+    """Return the most memory [MB] that this process has held so far."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0

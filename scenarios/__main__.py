@@ -1,0 +1,5 @@
+"""Lets `python -m scenarios` do what `peopleboy` does."""
+
+from scenarios.cli import main
+
+main()
