@@ -18,8 +18,7 @@ def optics_blur(image: Image, sigma_px: float) -> Image:
     """Spread each point of an (H, W) image over a Gaussian; the sum over the image's inside is kept."""
     if sigma_px <= 0.0:
         return image
-    blurred: Image = cv2.GaussianBlur(image, (0, 0), sigma_px, borderType=cv2.BORDER_REPLICATE)
-    return blurred
+    return np.asarray(cv2.GaussianBlur(image, (0, 0), sigma_px, borderType=cv2.BORDER_REPLICATE), np.float32)
 
 
 def rotation_blur(image: Image, camera: Camera, turned_rad: float) -> Image:
@@ -57,7 +56,7 @@ def _sweep_weights(sweep: NDArray[np.float64]) -> Image:
     weights = (_hat_integral(sweep / 2.0 - away) - _hat_integral(-sweep / 2.0 - away)) / sweep
     column = np.arange(len(sweep)) + away
     weights[(column < 0) | (column >= len(sweep))] = 0.0
-    return (weights / weights.sum(axis=0)).astype(np.float32)
+    return np.asarray(weights / weights.sum(axis=0), np.float32)
 
 
 def _hat_integral(end: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -96,14 +96,15 @@ class DriveConfig:
         max_angular_rad_s: [rad/s] turn rate limit.
         linear_acceleration_m_s2: [m/s2] rate at which the forward speed changes.
         angular_acceleration_rad_s2: [rad/s2] rate at which the turn rate changes.
-        encoder_noise: standard deviation of a wheel's travelled distance, as a share of that distance.
+        encoder_noise_m: [m] standard deviation of the way that a wheel's encoder counts on 1 m; it grows with
+            the square root of the way.
     """
 
     max_linear_m_s: float = 0.8
     max_angular_rad_s: float = math.radians(150.0)
     linear_acceleration_m_s2: float = 0.6
     angular_acceleration_rad_s2: float = math.radians(200.0)
-    encoder_noise: float = 0.01
+    encoder_noise_m: float = 0.002
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -137,7 +138,7 @@ class WorldConfig:
         renderer: "raycast" or "bullet".
 
     Raises:
-        BadInput: a control step is not a whole number of physics steps.
+        BadInput: a control step is not a whole number of physics steps, or the seed is negative.
     """
 
     place: Place
@@ -149,9 +150,11 @@ class WorldConfig:
     renderer: str = "raycast"
 
     def __post_init__(self) -> None:
-        """Refuse rates that do not divide."""
+        """Refuse rates that do not divide, and seeds that are none."""
         if self.control_hz <= 0 or self.physics_hz % self.control_hz:
             raise BadInput(
                 f"control rate {self.control_hz} Hz must divide the physics rate {self.physics_hz} Hz: "
                 "a control step is a whole number of physics steps"
             )
+        if self.seed < 0:
+            raise BadInput(f"seed {self.seed} must be 0 or more")

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from sim.bullet import Bullet
 from sim.looks import Look
-from sim.peoplebot import PeopleBot
+from sim.peoplebot import RADIUS_M, PeopleBot
 from sim.person import Person
 from sim.person_config import PersonConfig
 from sim.place import Place
@@ -40,11 +40,12 @@ class Crowd:
             self._add(person)
 
     def step(self, time_s: float, dt_s: float, robot: PeopleBot) -> None:
-        """Let everybody walk on until time_s, knowing where the others were dt_s before."""
+        """Let everybody walk on for dt_s from time_s, knowing where the others are now."""
         states = {person.name: _state(person) for person in self.people if person.present}
         pose, (speed, _) = robot.pose(), robot.velocity()
         heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
-        robot_state = PlanarState(position=np.array([pose.x, pose.y]), velocity=speed * heading)
+        place = np.array([pose.x, pose.y])
+        robot_state = PlanarState(position=place, velocity=speed * heading, radius_m=RADIUS_M)
         for person in self.people:
             self._before[person.name] = person.position.copy()
             others = {name: state for name, state in states.items() if name != person.name}

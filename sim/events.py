@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sim.truth import PersonTruth, Truth
 
-# An occlusion starts when more than the first share of what is inside the image is hidden, and ends when less
-# than the second is; a total one has less than the third left to see.
+# Somebody enters the view when more than this share of the whole silhouette is seen, and leaves it when less
+# than the second lies inside the image, hidden or not.
+ENTERS_SEEN = 0.05
+LEAVES_INSIDE = 0.02
+# An occlusion starts when more than this share of what lies inside the image is hidden. Each ends at a lower
+# share than it starts at, and a contact after some time apart: swinging arms and bounces are no news.
 OCCLUSION_STARTS = 0.15
 OCCLUSION_ENDS = 0.05
-TOTAL_LEAVES = 0.02
+TOTAL_STARTS = 0.98
+TOTAL_ENDS = 0.90
+CONTACT_ENDS_S = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,13 +39,16 @@ class Event:
 
 
 class EventLog:
-    """Turns a sequence of truths into events, each told once, when it happens."""
+    """Turns a sequence of truths into events, each told once, when it happens.
+
+    A person that leaves the view takes its occlusions along: their ends are not told.
+    """
 
     def __init__(self) -> None:
         self._in_view: set[str] = set()
         self._hidden_by: dict[str, str] = {}
         self._total: set[str] = set()
-        self._touched: set[str] = set()
+        self._last_touch_s: dict[str, float] = {}
 
     def update(self, truth: Truth) -> list[Event]:
         """Compare with the truth before, and return what is new."""
@@ -48,18 +58,17 @@ class EventLog:
             found += self._leave(name)
         for person in truth.people:
             found += self._look_at(person)
-        found += self._touch(set(truth.contacts))
+        found += self._touch(truth.time_s, truth.contacts)
         return [Event(time_s=truth.time_s, kind=kind, person=who, other=other) for kind, who, other in found]
 
     def _look_at(self, person: PersonTruth) -> list[tuple[str, str, str]]:
         name = person.name
-        if not person.is_in_image:
-            return self._leave(name) if name in self._in_view else []
-        found = []
-        if name not in self._in_view:
-            self._in_view.add(name)
-            found.append(("enters view", name, ""))
-        return found + self._occlusion(person)
+        if name in self._in_view:
+            return self._leave(name) if person.inside_fraction < LEAVES_INSIDE else self._occlusion(person)
+        if person.visible_fraction <= ENTERS_SEEN:
+            return []
+        self._in_view.add(name)
+        return [("enters view", name, ""), *self._occlusion(person)]
 
     def _occlusion(self, person: PersonTruth) -> list[tuple[str, str, str]]:
         name, hidden, occluder = person.name, person.occluded_fraction, person.occluder or ""
@@ -67,10 +76,10 @@ class EventLog:
         if name not in self._hidden_by and hidden > OCCLUSION_STARTS:
             self._hidden_by[name] = occluder
             found.append(("occlusion starts", name, occluder))
-        if name not in self._total and hidden > 1.0 - TOTAL_LEAVES:
+        if name not in self._total and hidden > TOTAL_STARTS:
             self._total.add(name)
             found.append(("total occlusion starts", name, occluder))
-        if name in self._total and hidden < 1.0 - 2.0 * TOTAL_LEAVES:
+        if name in self._total and hidden < TOTAL_ENDS:
             self._total.remove(name)
             found.append(("total occlusion ends", name, self._hidden_by[name]))
         if name in self._hidden_by and hidden < OCCLUSION_ENDS:
@@ -83,8 +92,11 @@ class EventLog:
         self._total.discard(name)
         return [("leaves view", name, "")]
 
-    def _touch(self, touched: set[str]) -> list[tuple[str, str, str]]:
-        found = [("contact starts", "robot", other) for other in sorted(touched - self._touched)]
-        found += [("contact ends", "robot", other) for other in sorted(self._touched - touched)]
-        self._touched = touched
+    def _touch(self, time_s: float, contacts: Sequence[str]) -> list[tuple[str, str, str]]:
+        last = self._last_touch_s
+        found = [("contact starts", "robot", other) for other in contacts if other not in last]
+        last.update(dict.fromkeys(contacts, time_s))
+        for other in [name for name, touched_s in last.items() if time_s - touched_s >= CONTACT_ENDS_S]:
+            del last[other]
+            found.append(("contact ends", "robot", other))
         return found

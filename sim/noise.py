@@ -15,7 +15,7 @@ _LEVELS = 4096
 def _quantiles() -> NDArray[np.float32]:
     """Return the middles of equally likely slices of the normal distribution, scaled to variance 1."""
     values = ndtri((np.arange(_LEVELS) + 0.5) / _LEVELS)
-    return (values / values.std()).astype(np.float32)
+    return np.asarray(values / values.std(), np.float32)
 
 
 _QUANTILES = _quantiles()

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.bullet import Bullet, Contact
+from bad_input import BadInput
+from sim.bullet import Bullet
 from sim.camera import Matrix
 from sim.config import DriveConfig, RobotConfig
 from sim.random_streams import stream
@@ -20,8 +21,8 @@ URDF = Path(__file__).with_name("peoplebot.urdf")
 
 WHEEL_RADIUS_M = 0.0825
 WHEEL_DISTANCE_M = 0.333
+RADIUS_M = 0.355  # of the circle about the middle between the wheels in which the robot turns on the spot
 _JOINTS = ("left_wheel_joint", "right_wheel_joint")
-_BASE, _LEFT, _RIGHT, _CASTER = -1, 0, 1, 2
 _MOTOR_TORQUE_NM = 4.0
 
 
@@ -70,32 +71,38 @@ class PeopleBot:
             orientation=(0.0, 0.0, math.sin(half), math.cos(half)),
             fixed=False,
         )
+        self._turn_wheels()
         self._sonar = SonarRing(bullet, config.sonar, stream(seed, "sonar.noise"), NAME)
         self._turned = self._wheel_angles()
         self.odometry = Planar(x, y, config.heading_rad)
 
     def command(self, linear: float, angular: float) -> None:
-        """Ask for a velocity [m/s, rad/s], clipped to the robot's limits; it is approached, not jumped to."""
+        """Ask for a velocity [m/s, rad/s], clipped to the robot's limits; it is approached, not jumped to.
+
+        Raises:
+            BadInput: the command is not finite.
+        """
+        if not (math.isfinite(linear) and math.isfinite(angular)):
+            raise BadInput(f"velocity command ({linear}, {angular}) must be finite")
         self._target = limit_command(linear, angular, self._limits)
 
     def drive(self, dt_s: float) -> None:
         """Move the wheel speeds towards the command, as far as the acceleration limits allow in dt_s."""
+        if self._command == self._target:
+            return
         self._command = (
             _approach(self._command[0], self._target[0], self._limits.linear_acceleration_m_s2 * dt_s),
             _approach(self._command[1], self._target[1], self._limits.angular_acceleration_rad_s2 * dt_s),
         )
-        speeds = wheel_speeds(*self._command)
-        self._bullet.set_joint_speeds(
-            NAME, {j: s / WHEEL_RADIUS_M for j, s in zip(_JOINTS, speeds, strict=True)}, _MOTOR_TORQUE_NM
-        )
+        self._turn_wheels()
 
     def update_odometry(self) -> None:
         """Integrate what the wheel encoders counted since the last call, with their noise."""
         angles = self._wheel_angles()
         travelled = (angles - self._turned) * WHEEL_RADIUS_M
         self._turned = angles
-        noise = self._encoder_noise.standard_normal(2) * self._limits.encoder_noise
-        left, right = travelled * (1.0 + noise)
+        noise = self._encoder_noise.standard_normal(2) * self._limits.encoder_noise_m
+        left, right = (travelled + noise * np.sqrt(np.abs(travelled))).tolist()
         turn = (right - left) / WHEEL_DISTANCE_M
         middle = self.odometry.heading + turn / 2.0
         advance = (left + right) / 2.0
@@ -128,9 +135,14 @@ class PeopleBot:
         linear, angular = self._bullet.velocity(NAME)
         return float(linear @ self.world_from_robot()[:3, 0]), float(angular[2])
 
-    def contacts(self) -> list[Contact]:
-        """Where the robot touched something else during the last physics step, the floor included."""
-        return self._bullet.contacts(NAME)
+    def touching(self) -> set[str]:
+        """Names of the bodies that the robot touched during the last physics step, the floor included."""
+        return self._bullet.touching(NAME)
+
+    def _turn_wheels(self) -> None:
+        """Set the motors to the speeds that give the present command."""
+        speeds = [speed / WHEEL_RADIUS_M for speed in wheel_speeds(*self._command)]
+        self._bullet.set_joint_speeds(NAME, dict(zip(_JOINTS, speeds, strict=True)), _MOTOR_TORQUE_NM)
 
     def _wheel_angles(self) -> NDArray[np.float64]:
         angles, _ = self._bullet.joint_states(NAME, _JOINTS)

@@ -34,24 +34,27 @@ _UNITS = np.array(
 )
 SONAR_POSITION_M = _UNITS[:, :2].copy()
 SONAR_ANGLE_RAD = np.radians(_UNITS[:, 2])
-_RAYS_ACROSS, _RAYS_HIGH = 5, 3
+# Rings of rays about a cone's axis: share of its half angle, and number of rays.
+_RINGS = ((0.0, 1), (0.5, 6), (1.0, 8))
+# Rays end this far above the floor, which throws sound away from a sonar and is not heard itself.
+_CLEAR_OF_FLOOR_M = 0.03
 
 
 def cone_rays(cone_rad: float) -> NDArray[np.float64]:
-    """(16, 15, 3) unit vectors that fill each sonar's cone, robot frame."""
-    across = np.linspace(-0.5, 0.5, _RAYS_ACROSS) * cone_rad
-    high = np.linspace(-0.5, 0.5, _RAYS_HIGH) * cone_rad * math.sqrt(0.5)
-    yaw = (SONAR_ANGLE_RAD[:, None, None] + across[None, :, None]).repeat(_RAYS_HIGH, axis=2)
-    pitch = np.broadcast_to(high, yaw.shape)
-    rays = np.stack([np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch)], axis=-1)
-    return rays.reshape(len(_UNITS), -1, 3)
+    """(16, 15, 3) unit vectors, robot frame, that fill each sonar's cone: its axis, and two rings around."""
+    around = [(share, math.tau * k / count) for share, count in _RINGS for k in range(count)]
+    off, turn = np.array(around).T * [[cone_rad / 2.0], [1.0]]
+    ahead, left, up = np.cos(off), np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn)
+    cos, sin = np.cos(SONAR_ANGLE_RAD)[:, None], np.sin(SONAR_ANGLE_RAD)[:, None]
+    return np.stack([ahead * cos - left * sin, ahead * sin + left * cos, np.tile(up, (len(_UNITS), 1))], -1)
 
 
 class SonarRing:
     """A ring of 16 sonars on a body, which they do not see.
 
-    Each reads the distance to the nearest solid along 15 rays in its cone. Mirror-like reflection off walls
-    at a slant, and echoes between sonars, are not modelled; drop-outs stand in for lost echoes.
+    Each reads the distance to the nearest solid along 15 rays in its cone, the floor aside. Mirror-like
+    reflection off walls at a slant, and echoes between sonars, are not modelled; drop-outs stand in for lost
+    echoes.
     """
 
     def __init__(self, bullet: Bullet, config: SonarConfig, rng: np.random.Generator, owner: str) -> None:
@@ -63,7 +66,10 @@ class SonarRing:
         self._starts = np.concatenate([SONAR_POSITION_M, np.full((len(_UNITS), 1), config.height_m)], axis=1)[
             :, None, :
         ].repeat(rays.shape[1], axis=1)
-        self._ends = self._starts + rays * config.farthest_m
+        with np.errstate(divide="ignore"):
+            to_floor = (config.height_m - _CLEAR_OF_FLOOR_M) / np.maximum(-rays[..., 2], 0.0)
+        self._reach = np.minimum(config.farthest_m, to_floor)
+        self._ends = self._starts + rays * self._reach[..., None]
 
     def read(self, world_from_robot: Matrix) -> NDArray[np.float64]:
         """Read all sonars once.
@@ -77,8 +83,9 @@ class SonarRing:
         starts = transform(world_from_robot, self._starts).reshape(-1, 3)
         ends = transform(world_from_robot, self._ends).reshape(-1, 3)
         fraction, _ = self._bullet.cast_rays(starts, ends, ignore=self._owner)
-        nearest = fraction.reshape(len(_UNITS), -1).min(axis=1)
-        reading = nearest * self._config.farthest_m + self._rng.normal(0.0, self._config.noise_m, len(_UNITS))
-        lost = (nearest >= 1.0) | (self._rng.random(len(_UNITS)) < self._config.drop_out)
-        reading[lost] = self._config.farthest_m
+        fraction = fraction.reshape(self._reach.shape)
+        nearest = np.where(fraction < 1.0, fraction * self._reach, np.inf).min(axis=1)
+        noise = self._rng.normal(0.0, self._config.noise_m, len(_UNITS))
+        is_lost = self._rng.random(len(_UNITS)) < self._config.drop_out
+        reading = np.where(is_lost, np.inf, nearest + noise)
         return np.clip(reading, self._config.nearest_m, self._config.farthest_m)

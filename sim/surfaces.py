@@ -125,13 +125,11 @@ def pattern_value(
 ) -> int:
     """Return 1 where the pattern's second value applies at a point of a part, else 0; see `smooth_variation`."""
     if kind == _STRIPES:
-        return int(math.floor(2.0 * z / period + _OFFSET)) & 1
+        return math.floor(2.0 * z / period + _OFFSET) & 1
     if kind == _CHECKS:
         half = 2.0 / period
         return (
-            int(math.floor(x * half + _OFFSET))
-            + int(math.floor(y * half + _OFFSET))
-            + int(math.floor(z * half + _OFFSET))
+            math.floor(x * half + _OFFSET) + math.floor(y * half + _OFFSET) + math.floor(z * half + _OFFSET)
         ) & 1
     if kind == _PATCH:
         across, along = y / (0.35 * period), z / (0.5 * period)

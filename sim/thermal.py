@@ -35,7 +35,7 @@ def band_radiance(temperature_c: NDArray[np.float64]) -> NDArray[np.float64]:
     kelvin = temperature_c[:, None] + 273.15
     first, second = 1.191042972e-16, 1.438776877e-2  # 2 h c^2 [W m2], h c / k [m K], CODATA 2018
     spectral = first / wavelength**5 / np.expm1(second / (wavelength * kelvin))
-    return np.trapezoid(spectral, wavelength, axis=1)
+    return np.asarray(np.trapezoid(spectral, wavelength, axis=1))
 
 
 def _tables() -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
@@ -55,7 +55,8 @@ def _look_up(table: NDArray[np.float64], low: float, high: float, value: float) 
     last = table.shape[0] - 1
     position = min(max((value - low) / (high - low) * last, 0.0), last - 1e-9)
     index = int(position)
-    return table[index] + (position - index) * (table[index + 1] - table[index])
+    result: float = table[index] + (position - index) * (table[index + 1] - table[index])
+    return result
 
 
 @njit(cache=True, fastmath=True)
@@ -174,7 +175,7 @@ def encode_8bit(
 ) -> NDArray[np.uint8]:
     """Encode [degC] as grey: round((T - lowest) / (highest - lowest) * 255), clipped (T ch. 3)."""
     grey = (temperature_c - np.float32(lowest_c)) * np.float32(255.0 / (highest_c - lowest_c))
-    return np.clip(np.rint(grey), 0.0, 255.0).astype(np.uint8)
+    return np.asarray(np.clip(np.rint(grey), 0.0, 255.0), np.uint8)
 
 
 def encode_16bit(temperature_c: NDArray[np.float32]) -> NDArray[np.uint16]:

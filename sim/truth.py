@@ -37,8 +37,8 @@ class PersonTruth:
         posture: such as "standing".
         distance_m: [m] on the floor from the thermal camera.
         is_counted: whether that distance is one at which the sources count persons (T 3.3).
-        box: head to feet, and as wide as the torso without arms, as if nothing hid it (T 3.3); None when it
-            reaches behind the camera.
+        box: head to feet, and as wide as the torso without arms, as if nothing hid it (T 3.3); None when
+            nothing of it is in front of the camera.
         whole_box: the whole silhouette as if nothing hid it, also outside the image; None as above.
         visible_box: the visible pixels; None when there are none.
         whole_px: pixels of the whole silhouette, those outside the image included, as far as one image size
@@ -47,6 +47,7 @@ class PersonTruth:
         visible_fraction: visible_px / whole_px; 0 when whole_px is 0.
         hidden_by: share of the whole silhouette hidden by each thing or person, by name, "border" being what
             lies outside the image; with visible_fraction they sum to 1. A pixel counts for the foremost.
+            Empty when whole_px is 0.
         part_temperature_c: [degC] mean surface temperature by part name.
         joints_m: (17, 3) [m] COCO keypoints, world frame.
         joints_px: (17, 2) [px] u, v of the same; NaN behind the camera.
@@ -74,14 +75,19 @@ class PersonTruth:
     joint_is_visible: NDArray[np.bool_]
 
     @property
+    def inside_fraction(self) -> float:
+        """Share of the whole silhouette that lies inside the image, hidden or not."""
+        return 1.0 - self.hidden_by.get(BORDER, 0.0) if self.whole_px else 0.0
+
+    @property
     def is_in_image(self) -> bool:
         """Whether any of the silhouette lies inside the image, hidden or not."""
-        return self.whole_px > 0 and self.hidden_by.get(BORDER, 0.0) < 1.0
+        return self.inside_fraction > 0.0
 
     @property
     def occluded_fraction(self) -> float:
         """Share of the silhouette inside the image that others hide; 1 when none of it is in the image."""
-        inside = 1.0 - self.hidden_by.get(BORDER, 0.0)
+        inside = self.inside_fraction
         return 1.0 - self.visible_fraction / inside if inside > 0.0 else 1.0
 
     @property

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.bullet import PartKey
+from sim.bodies import PartKey
 from sim.camera import Camera, Matrix, invert_pose, transform
 from sim.crowd import Crowd
 from sim.looks import Look
@@ -53,7 +53,7 @@ class TruthMaker:
         self._id_of_part = np.array([*(self.person_of_part + 1), 0], np.uint8)
         self._outlines = [_Outline(k, parts, self.person_of_part) for k in range(len(names))]
         self._temperatures = [
-            {parts[p]: looks[p].temperature_c for p in np.flatnonzero(outline.whole)}
+            {parts[p]: looks[p].temperature_c for p in np.flatnonzero(outline.whole).tolist()}
             for outline in self._outlines
         ]
 
@@ -124,9 +124,11 @@ class TruthMaker:
 
     def _whole_area(self, k: int, cover: Cover, scene: _Scene, whole: _Bounds) -> int:
         """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
+        inside = int(cover.seen[k].sum())
         if self._is_inside(whole):
-            return int(cover.seen[k].sum())
-        return silhouette_area(*scene, self._outlines[k].whole)
+            return inside
+        # TinyRenderer's silhouettes may be a few pixels larger.
+        return max(inside, silhouette_area(*scene, self._outlines[k].whole))
 
     def _is_inside(self, bounds: _Bounds) -> bool:
         left, top, right, bottom = bounds

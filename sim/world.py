@@ -25,8 +25,10 @@ from sim.robot_looks import robot_look
 from sim.shape_table import make_shape_table
 from sim.surfaces import make_look_table
 from sim.thermal import detect, encode_8bit, make_detector, surface_image
-from sim.truth import Truth
+from sim.truth import BORDER, Truth
 from sim.truth_maker import TruthMaker
+
+_MOST_PEOPLE = 64  # a view's cover has a bit for each
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,12 +44,16 @@ class World:
 
     `observe` tells what the robot senses now; `truth` what is true at the same instant; `step` moves the
     world on by one control step. The same configuration gives the same bytes in every process.
+
+    Raises:
+        BadInput: names clash, or something cannot be built.
     """
 
     def __init__(self, config: WorldConfig) -> None:
         self.config = config
         self._tick = 0
         self._touching: set[str] = set()
+        _check_names(config)
         self._bullet = Bullet(physics_hz=config.physics_hz)
         try:
             self._build()
@@ -113,19 +119,17 @@ class World:
         Raises:
             BadInput: the command is not finite.
         """
-        if not (np.isfinite(linear_m_s) and np.isfinite(angular_rad_s)):
-            raise BadInput(f"velocity command ({linear_m_s}, {angular_rad_s}) must be finite")
-        steps = self.config.physics_hz // self.config.control_hz
         self._robot.command(linear_m_s, angular_rad_s)
-        self._tick += 1
         self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot)
-        self._touching.clear()
+        self._tick += 1
+        touched = set()
+        steps = self.config.physics_hz // self.config.control_hz
         for k in range(steps):
             self._robot.drive(1.0 / self.config.physics_hz)
             self._crowd.move_bodies((k + 1) / steps)
             self._bullet.step()
-            self._touching |= {contact.other.split("/")[0] for contact in self._robot.contacts()}
-        self._touching -= {"floor"}
+            touched |= self._robot.touching()
+        self._touching = {name.split("/")[0] for name in touched} - {"floor"}
         self._robot.update_odometry()
         self._settle()
 
@@ -143,7 +147,6 @@ class World:
             keys, self._table, self._crowd, part_looks, config.robot.thermal.camera
         )
         self._detector = make_detector(config.robot.thermal, stream(config.seed, "thermal.detector"))
-        self._crowd.step(0.0, 1.0 / config.control_hz, self._robot)
         self._thermal_noise = stream(config.seed, "thermal.noise")
         self._colour_noise = stream(config.seed, "colour.noise")
         self._settle()
@@ -192,16 +195,35 @@ def light_level(place: Place, time_s: float) -> float:
     return [level for start, level in place.light if start <= time_s][-1]
 
 
+def _check_names(config: WorldConfig) -> None:
+    """Refuse people whose names the truth could not tell from other names, and more than it has room for."""
+    names = [person.name for person in config.people]
+    things = {fixture.name.split("/")[0] for fixture in config.place.fixtures}
+    for k, name in enumerate(names):
+        if "/" in name or name in {ROBOT, BORDER, *things, *names[:k]}:
+            raise BadInput(f"person {name!r}: the name is taken or has a '/' in it; choose another")
+    if len(names) > _MOST_PEOPLE:
+        raise BadInput(f"{len(names)} people are too many: a world holds {_MOST_PEOPLE}")
+
+
 def _add_fixtures(bullet: Bullet, place: Place) -> dict[str, Look]:
     """Put everything that stands still into the physics world; returns the looks by body name."""
     looks = {}
     for fixture in place.fixtures:
-        at = {"position": fixture.position, "orientation": fixture.orientation}
+        position, orientation = fixture.position, fixture.orientation
         if fixture.part is not None:
-            bullet.add_part(fixture.name, fixture.part.shapes, solid=fixture.is_solid, **at)
+            bullet.add_part(
+                fixture.name,
+                fixture.part.shapes,
+                position=position,
+                orientation=orientation,
+                solid=fixture.is_solid,
+            )
             looks[fixture.name] = fixture.part.look
         elif fixture.urdf is not None and fixture.look is not None:
-            bullet.add_urdf(fixture.name, fixture.urdf, scale=fixture.scale, **at)
+            bullet.add_urdf(
+                fixture.name, fixture.urdf, position=position, orientation=orientation, scale=fixture.scale
+            )
             looks[fixture.name] = fixture.look
         else:
             raise BadInput(f"fixture {fixture.name!r}: needs either a part, or a URDF with a look")
