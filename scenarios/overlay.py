@@ -30,10 +30,11 @@ PALETTES = {"grey": None, "inferno": cv2.COLORMAP_INFERNO}
 _SUBPIXEL_BITS = 4
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 _DASH_PX = 8.0
+_EDGE: Rgb = (20, 20, 20)
 _UNTURNED = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
-def enlarge(image: Picture, scale: int = SCALE) -> Picture:
+def enlarge(image: Picture, scale: float = SCALE) -> Picture:
     """Make an (H, W, 3) image `scale` times as large, smoothly."""
     return np.asarray(cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC), np.uint8)
 
@@ -46,10 +47,17 @@ def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
     return np.asarray(cv2.cvtColor(cv2.applyColorMap(thermal, colours), cv2.COLOR_BGR2RGB), np.uint8)
 
 
+def encode_jpeg(image: NDArray[np.uint8], quality: int) -> bytes:
+    """Encode an (H, W) grey or (H, W, 3) RGB image; quality 0..100."""
+    stored = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
+    options = [cv2.IMWRITE_JPEG_QUALITY, quality, cv2.IMWRITE_JPEG_OPTIMIZE, 1]
+    return cv2.imencode(".jpg", stored, options)[1].tobytes()
+
+
 def draw_tracks(
     picture: Picture,
     tracks: Iterable[Track],
-    scale: int = SCALE,
+    scale: float = SCALE,
     contour: ContourConfig | None = None,
     affine: Matrix | None = None,
 ) -> Picture:
@@ -64,20 +72,24 @@ def draw_tracks(
     """
     canvas = picture.copy()
     mapping = _UNTURNED if affine is None else affine
+    body = max(round(scale), 1)
     for track in tracks:
         is_sure = track.status is not Status.TENTATIVE
         colour = track_colour(track.id) if is_sure else faded(track_colour(track.id), 0.6)
-        for line in outline(track.ellipse, ContourConfig() if contour is None else contour):
-            draw_line(canvas, line @ mapping[:, :2].T + mapping[:, 2], colour, scale, thickness=2)
         box = map_box(track.box, mapping)
-        draw_line(canvas, box_corners(box), colour, scale, thickness=1)
+        outlines = outline(track.ellipse, ContourConfig() if contour is None else contour)
+        lines = [box_corners(box), *(line @ mapping[:, :2].T + mapping[:, 2] for line in outlines)]
+        # Dark edges set the lines off from garments of their own colour.
+        for shade, extra in ((_EDGE, 1), (colour, 0)):
+            for line, thickness in zip(lines, (1, body, body), strict=True):
+                draw_line(canvas, line, shade, scale, thickness + extra)
         if is_sure:
             _label(canvas, _track_text(track), box, colour, scale)
     return canvas
 
 
 def draw_truth(
-    picture: Picture, people: Iterable[PersonTruth], scale: int = SCALE, affine: Matrix | None = None
+    picture: Picture, people: Iterable[PersonTruth], scale: float = SCALE, affine: Matrix | None = None
 ) -> Picture:
     """Draw thin dashed boxes, with name and visible share under them; arguments as in `draw_tracks`."""
     canvas = picture.copy()
@@ -85,6 +97,8 @@ def draw_truth(
         if person.box is None:
             continue
         box = map_box(person.box, _UNTURNED if affine is None else affine)
+        if not _is_inside(box, canvas, scale):
+            continue
         for dash in _dashes(box_corners(box), _DASH_PX / scale):
             draw_line(canvas, dash, TRUTH, scale, thickness=1)
         _label(canvas, f"{person.name} {person.visible_fraction:.0%}", box, TRUTH, scale, is_below=True)
@@ -106,13 +120,19 @@ def box_corners(box: Box) -> NDArray[np.float64]:
 
 
 def draw_line(
-    canvas: Picture, points: NDArray[np.float64], colour: Rgb, scale: int = 1, thickness: int = 1
+    canvas: Picture, points: NDArray[np.float64], colour: Rgb, scale: float = 1, thickness: int = 1
 ) -> None:
     """Draw a smooth line through points (K, 2) of the camera's image onto its enlarged picture, in place."""
     # Pixel (0, 0) spans -0.5..0.5, so its enlarged copy does not begin at scale * 0.
     enlarged = (points + 0.5) * scale - 0.5
     fixed = np.round(np.clip(enlarged, -1e4, 1e4) * (1 << _SUBPIXEL_BITS)).astype(np.int32)
     cv2.polylines(canvas, [fixed], False, colour, thickness, cv2.LINE_AA, _SUBPIXEL_BITS)
+
+
+def _is_inside(box: Box, canvas: Picture, scale: float) -> bool:
+    left, top, width, height = box
+    rows, columns = canvas.shape[0] / scale, canvas.shape[1] / scale
+    return left < columns and top < rows and left + width > 0.0 and top + height > 0.0
 
 
 def _track_text(track: Track) -> str:
@@ -127,9 +147,9 @@ def _dashes(line: NDArray[np.float64], length: float) -> Iterable[NDArray[np.flo
         yield from (marks[k : k + 2] for k in range(0, count, 2))
 
 
-def _label(canvas: Picture, text: str, box: Box, colour: Rgb, scale: int, is_below: bool = False) -> None:
+def _label(canvas: Picture, text: str, box: Box, colour: Rgb, scale: float, is_below: bool = False) -> None:
     """Write on a dark plate above or below a box, moved as far as it must to be inside the picture."""
-    size = 0.2 * scale
+    size = max(0.2 * scale, 0.4)
     (width, height), descent = cv2.getTextSize(text, _FONT, size, 1)
     left, top = box[0] * scale, box[1] * scale
     bottom = (box[1] + box[3]) * scale + height + descent + 4 if is_below else top - 4

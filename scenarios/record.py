@@ -20,7 +20,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import cv2
 import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
@@ -31,6 +30,7 @@ from bad_input import BadInput
 from scenarios import marks
 from scenarios.figures import NOBODY, body_capsules, stick_figure
 from scenarios.loop import Tick
+from scenarios.overlay import encode_jpeg
 from scenarios.palette import person_colour, track_colour
 from scenarios.rows import Rows
 from scenarios.run_events import LogLine
@@ -50,7 +50,6 @@ APPLICATION = "peopleboy"
 TYPICAL_DEPTH_M = 4.0
 
 _FRAMES_SENT_TOGETHER = 30
-_JPEG_QUALITY = {"thermal": 80, "colour": 65}
 _NAME_HEIGHT_PX = 16.0
 _THERMAL, _COLOUR = "world/robot/thermal", "world/robot/colour"
 _LAYERS: dict[str, tuple[Any, float]] = {  # and the radius of what is drawn there, in points of the screen
@@ -179,11 +178,9 @@ class Recorder:
             self._log_once(f"{path}/{layer}", archetype.from_fields(radii=rr.Radius.ui_points([radius])))
 
     def _log_images(self, tick: Tick) -> None:
-        bgr = cv2.cvtColor(tick.observation.colour, cv2.COLOR_RGB2BGR)
-        thermal = _jpeg(tick.observation.thermal, _JPEG_QUALITY["thermal"])
-        self._rows.add(f"{_THERMAL}/image", rr.EncodedImage, blob=[thermal])
-        colour = _jpeg(np.asarray(bgr, np.uint8), _JPEG_QUALITY["colour"])
-        self._rows.add(f"{_COLOUR}/image", rr.EncodedImage, blob=[colour])
+        senses = tick.observation
+        for path, image, quality in ((_THERMAL, senses.thermal, 80), (_COLOUR, senses.colour, 65)):
+            self._rows.add(f"{path}/image", rr.EncodedImage, blob=[encode_jpeg(image, quality)])
 
     def _log_tracks(self, tracks: Sequence[Track]) -> None:
         contours = marks.track_contours(tracks, self._contour)
@@ -267,12 +264,6 @@ def open_viewer(recording: Path) -> None:
         raise BadInput(f"{recording}: there is no recording; run the scenario without --no-rrd")
     if subprocess.run([sys.executable, "-m", "rerun", str(recording)], check=False).returncode != 0:
         raise BadInput(f"{recording}: rerun's viewer failed; it needs a screen")
-
-
-def _jpeg(image: NDArray[np.uint8], quality: int) -> bytes:
-    return cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality, cv2.IMWRITE_JPEG_OPTIMIZE, 1])[
-        1
-    ].tobytes()
 
 
 def _from_corner(pixels: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from scenarios.run_events import LogLine
 
-_JOINED = {"occlusion": " by ", "total": " by ", "contact": " with "}
-
 
 def describe(line: LogLine) -> str:
-    """Say what happened in a few words, such as "anna: occlusion starts by ben"."""
+    """Say what happened in a few words, such as "anna: total occlusion by ben starts"."""
     if line.kind == "mode":
         return f"{line.who}: {line.other}"
     if not line.other:
         return f"{line.who}: {line.kind}"
-    return f"{line.who}: {line.kind}{_JOINED.get(line.kind.split()[0], ', ')}{line.other}"
+    what, _, turn = line.kind.rpartition(" ")
+    return f"{line.who}: {what} {'with' if what == 'contact' else 'by'} {line.other} {turn}"

@@ -1,0 +1,144 @@
+"""One picture of a run: its key moments side by side, thermal above colour, tracks and truth drawn in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+import matplotlib
+from PIL import Image, ImageDraw, ImageFont
+
+from bad_input import BadInput
+from scenarios.key_moments import KeyMoments, Moment
+from scenarios.loop import Tick
+from scenarios.overlay import Picture, draw_tracks, draw_truth, enlarge, show_thermal
+from scenarios.palette import TRUTH, Rgb
+from scenarios.run_events import LogLine
+from sim.alignment import affine_between
+from sim.config import RobotConfig
+from tracker.config import ContourConfig
+
+WIDTH_PX: Final = 1600
+COLUMNS: Final = 4
+MOMENTS: Final = 12
+
+_MARGIN, _GAP, _TITLE, _CAPTION = 24, 14, 76, 46
+_TILE: Final = (WIDTH_PX - 2 * _MARGIN - (COLUMNS - 1) * _GAP) // COLUMNS
+_TYPICAL_DEPTH_M = 4.0
+
+_PAGE: Final[Rgb] = (22, 24, 28)
+_STRONG: Final[Rgb] = (240, 240, 240)
+_WEAK: Final[Rgb] = (165, 170, 178)
+_CHIP: Final[Rgb] = (58, 64, 74)
+
+
+class ContactSheet:
+    """Collects the key moments of a run and draws them.
+
+    Args:
+        title: what stands above them.
+        robot: whose cameras they are; the default robot's if None.
+        contour: proportions of the outlines to draw; the default ones if None.
+    """
+
+    def __init__(
+        self, title: str, robot: RobotConfig | None = None, contour: ContourConfig | None = None
+    ) -> None:
+        self._title = title
+        self._robot = RobotConfig() if robot is None else robot
+        self._contour = ContourConfig() if contour is None else contour
+        self._moments = KeyMoments()
+        self._last: Tick | None = None
+
+    def add(self, tick: Tick, events: Sequence[LogLine]) -> None:
+        """Look at one tick and what happened at it; few ticks are kept."""
+        self._moments.add(tick, events)
+        self._last = tick
+
+    def save(self, path: Path) -> None:
+        """Write the sheet as a PNG.
+
+        Raises:
+            BadInput: it cannot be written there.
+        """
+        try:
+            self.draw().save(path)
+        except OSError as error:
+            raise BadInput(f"{path}: cannot write the contact sheet: {error}") from error
+
+    def draw(self) -> Image.Image:
+        """Draw the sheet, `WIDTH_PX` wide."""
+        moments = self._moments.choose(MOMENTS)
+        tiles = [self._tile(moment) for moment in moments]
+        rows = [tiles[start : start + COLUMNS] for start in range(0, len(tiles), COLUMNS)]
+        heights = [max(tile.height for tile in row) for row in rows]
+        page = Image.new("RGB", (WIDTH_PX, _TITLE + sum(heights) + _GAP * len(rows) + _MARGIN - _GAP), _PAGE)
+        self._head(page)
+        top = _TITLE
+        for row, height in zip(rows, heights, strict=True):
+            for column, tile in enumerate(row):
+                page.paste(tile, (_MARGIN + column * (_TILE + _GAP), top))
+            top += height + _GAP
+        return page
+
+    def _head(self, page: Image.Image) -> None:
+        draw = ImageDraw.Draw(page)
+        draw.text((_MARGIN, 34), self._title, _STRONG, _font(26, is_bold=True), anchor="lm")
+        if self._last is None:
+            return
+        length = f"{self._last.frame} frames, {self._last.observation.time_s:.1f} s"
+        right = WIDTH_PX - _MARGIN
+        draw.text((right, 24), length, _WEAK, _font(15), anchor="rm")
+        draw.text((right, 46), "dashed: truth, with the share that is visible", TRUTH, _font(15), anchor="rm")
+
+    def _tile(self, moment: Moment) -> Image.Image:
+        """Draw one moment: caption, thermal, colour."""
+        thermal, colour = self._thermal_picture(moment), self._colour_picture(moment)
+        height = _CAPTION + thermal.shape[0] + 3 + colour.shape[0]
+        tile = Image.new("RGB", (_TILE, height), _PAGE)
+        _caption(tile, moment)
+        tile.paste(Image.fromarray(thermal), (0, _CAPTION))
+        tile.paste(Image.fromarray(colour), (0, _CAPTION + thermal.shape[0] + 3))
+        return tile
+
+    def _thermal_picture(self, moment: Moment) -> Picture:
+        scale = _TILE / moment.thermal.shape[1]
+        picture = draw_truth(enlarge(show_thermal(moment.thermal), scale), moment.people, scale)
+        return draw_tracks(picture, moment.tracks, scale, self._contour)
+
+    def _colour_picture(self, moment: Moment) -> Picture:
+        scale = _TILE / moment.colour.shape[1]
+        affine = affine_between(self._robot.thermal.camera, self._robot.colour.camera, _TYPICAL_DEPTH_M)
+        return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, self._contour, affine)
+
+
+def _caption(tile: Image.Image, moment: Moment) -> None:
+    """Write time, mode and what happened above the images."""
+    draw = ImageDraw.Draw(tile)
+    draw.text((0, 11), f"{moment.time_s:.1f} s", _STRONG, _font(17, is_bold=True), anchor="lm")
+    start = draw.textlength(f"{moment.time_s:.1f} s", _font(17, is_bold=True)) + 10
+    if moment.mode:
+        end = start + draw.textlength(moment.mode, _font(13)) + 14
+        draw.rounded_rectangle((start, 2, end, 20), 9, _CHIP)
+        draw.text((start + 7, 11), moment.mode, _STRONG, _font(13), anchor="lm")
+    draw.text((0, 33), _fitting(draw, moment.words, _font(14)), _WEAK, _font(14), anchor="lm")
+
+
+def _fitting(draw: ImageDraw.ImageDraw, words: Sequence[str], font: ImageFont.FreeTypeFont) -> str:
+    """Join as many texts as fit above a tile; cut the first if even that one does not fit."""
+    text = words[0]
+    for more in words[1:]:
+        if draw.textlength(f"{text}; {more}", font) > _TILE:
+            break
+        text = f"{text}; {more}"
+    while draw.textlength(text, font) > _TILE:
+        text = f"{text[:-2]}…"
+    return text
+
+
+@cache
+def _font(size: int, *, is_bold: bool = False) -> ImageFont.FreeTypeFont:
+    name = "DejaVuSans-Bold.ttf" if is_bold else "DejaVuSans.ttf"
+    return ImageFont.truetype(Path(matplotlib.get_data_path(), "fonts", "ttf", name), size)
