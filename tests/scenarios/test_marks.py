@@ -47,7 +47,7 @@ def test_every_track_has_an_outline_of_body_and_head() -> None:
 
 
 def test_the_offset_is_one_at_the_right_edge_of_the_image() -> None:
-    left, top, width, height = made.TRACK.box
+    _, top, width, height = made.TRACK.box
     at_edge = made.with_box((319.5 - width / 2.0, top, width, height))
     assert track_offset(at_edge, 320) == pytest.approx(1.0)
 
