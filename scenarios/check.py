@@ -13,8 +13,9 @@ from bad_input import BadInput
 from scenarios.explain import hint
 from scenarios.place_things import describe_floor, name_things
 from scenarios.schema import PersonSpec, RobotSpec, ScenarioSpec, WaypointSpec
-from sim.floor_plan import FloorPlan, Rectangle
+from sim.floor_plan import FloorPlan
 from sim.place import Place
+from sim.rectangle import Rectangle
 from sim.things import KINDS
 
 BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
@@ -158,7 +159,7 @@ def _check_order(key: str, unit_key: str, times: Sequence[float]) -> None:
     for index in range(1, len(times)):
         if times[index] <= times[index - 1]:
             raise BadInput(
-                f"{key}[{index}].{unit_key}: {times[index]:g} must be after the one before, {times[index - 1]:g}"
+                f"{key}[{index}].{unit_key}: {times[index]:g} must be after {times[index - 1]:g} before it"
             )
 
 
@@ -185,8 +186,8 @@ def _check_distance(key: str, person: PersonSpec, robot: RobotSpec) -> None:
     distance = math.dist(person.path[0].at_m, robot.at_m)
     if distance < ROBOT_M + BODY_M:
         raise BadInput(
-            f"{key}.path[0].at_m: {person.name!r} starts {distance:.2g} m from the robot's middle, inside it; "
-            f"keep {ROBOT_M + BODY_M:g} m"
+            f"{key}.path[0].at_m: {person.name!r} starts {distance:.2g} m from the robot's middle, "
+            f"inside it; keep {ROBOT_M + BODY_M:g} m"
         )
 
 

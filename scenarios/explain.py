@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 _MOST_FAULTS = 3
+_TAGS = ("word", "list")  # of the schema's own unions
 
 _LIMITS = {
     "greater_than": "must be greater than {gt:g}",
@@ -105,29 +106,22 @@ def _shown(value: Any) -> str:
 
 
 def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[list[str | int], list[str]]:
-    """Drop pydantic's tags of unions from a path, and list the keys known where the path's last step is."""
+    """Drop pydantic's tags of unions from a path, and list the keys that are known at its last step."""
     steps: list[str | int] = []
-    owner: list[str] = []
-    candidates: list[Any] = [model]
+    known: list[str] = []
+    types: list[Any] = [model]
     for step in loc:
-        models = [c for c in candidates if _is_model(c)]
-        owner = [key for m in models for key in m.model_fields] or owner
-        if isinstance(step, int) or not models:
-            if isinstance(step, int) or not _is_tag(step, candidates):
-                steps.append(step)
-            continue
-        tagged = [m for m in models if _tag(m) == step]
-        if tagged and len(models) > 1:
-            candidates = tagged
+        models = [candidate for candidate in types if _is_model(candidate)]
+        tagged = [candidate for candidate in models if _tag(candidate) == step]
+        if step in _TAGS or (tagged and len(models) > 1):
+            types = tagged
             continue
         steps.append(step)
-        fields = [m.model_fields[step].annotation for m in models if step in m.model_fields]
-        candidates = [inner for annotation in fields for inner in _inside(annotation)]
-    return steps, owner
-
-
-def _is_tag(step: str, candidates: Sequence[Any]) -> bool:
-    return step in ("word", "list") or step.startswith(("tuple[", "str", "float")) or not candidates
+        if isinstance(step, str) and models:
+            known = [key for candidate in models for key in candidate.model_fields]
+            fields = [c.model_fields[step].annotation for c in models if step in c.model_fields]
+            types = [inner for annotation in fields for inner in _inside(annotation)]
+    return steps, known
 
 
 def _is_model(candidate: Any) -> bool:

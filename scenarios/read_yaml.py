@@ -16,13 +16,15 @@ class _Loader(yaml.SafeLoader):
     """Reads YAML as a person expects it: only true and false are booleans; nothing is repeated or shared."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """Refuse aliases, which a short file can use to stand for endless data."""
-        if self.check_event(yaml.AliasEvent):
-            event = self.peek_event()  # type: ignore[no-untyped-call]
-            raise yaml.MarkedYAMLError(
-                problem=f"alias '*{event.anchor}' is not allowed; write the value out",
-                problem_mark=event.start_mark,
-            )
+        """Refuse aliases, which let a short file stand for endless data, and tags, which make objects."""
+        event = self.peek_event()  # type: ignore[no-untyped-call]
+        fault = None
+        if isinstance(event, yaml.AliasEvent):
+            fault = f"alias '*{event.anchor}' is not allowed; write the value out"
+        elif event.tag is not None:
+            fault = f"tag {event.tag!r} is not allowed; write the plain value"
+        if fault is not None:
+            raise yaml.MarkedYAMLError(problem=fault, problem_mark=event.start_mark)
         return super().compose_node(parent, index)
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:

@@ -7,66 +7,9 @@ from dataclasses import dataclass
 from enum import Enum
 
 from bad_input import BadInput
+from sim.rectangle import CLOSE_M, Rectangle, lengthened, subtract
 
 WALL_M = 0.1  # thickness of every wall
-
-_LONGEST_GAP_M = 1e-9  # areas that share an edge are one floor
-
-
-@dataclass(frozen=True, slots=True)
-class Rectangle:
-    """An upright rectangle on the floor [m], world frame."""
-
-    min_x: float
-    min_y: float
-    max_x: float
-    max_y: float
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether it has no inside."""
-        return self.max_x - self.min_x <= _LONGEST_GAP_M or self.max_y - self.min_y <= _LONGEST_GAP_M
-
-    @property
-    def centre(self) -> tuple[float, float]:
-        """Its middle (x, y) [m]."""
-        return (self.min_x + self.max_x) / 2.0, (self.min_y + self.max_y) / 2.0
-
-    def grown(self, margin_m: float) -> Rectangle:
-        """The rectangle with every side moved outward by margin_m; inward if it is negative."""
-        return Rectangle(
-            self.min_x - margin_m, self.min_y - margin_m, self.max_x + margin_m, self.max_y + margin_m
-        )
-
-    def meets(self, other: Rectangle) -> bool:
-        """Whether the insides of the two share a point."""
-        return not self.cut(other).is_empty
-
-    def cut(self, other: Rectangle) -> Rectangle:
-        """What the two share; empty if nothing."""
-        return Rectangle(
-            max(self.min_x, other.min_x),
-            max(self.min_y, other.min_y),
-            min(self.max_x, other.max_x),
-            min(self.max_y, other.max_y),
-        )
-
-    def without(self, hole: Rectangle) -> tuple[Rectangle, ...]:
-        """Split what is left outside a hole into at most four rectangles that do not overlap."""
-        cut = self.cut(hole)
-        if cut.is_empty:
-            return (self,)
-        pieces = (
-            Rectangle(self.min_x, self.min_y, cut.min_x, self.max_y),
-            Rectangle(cut.max_x, self.min_y, self.max_x, self.max_y),
-            Rectangle(cut.min_x, self.min_y, cut.max_x, cut.min_y),
-            Rectangle(cut.min_x, cut.max_y, cut.max_x, self.max_y),
-        )
-        return tuple(piece for piece in pieces if not piece.is_empty)
-
-    def contains(self, x: float, y: float) -> bool:
-        """Whether a point lies inside or on the edge."""
-        return self.min_x <= x <= self.max_x and self.min_y <= y <= self.max_y
 
 
 class Side(Enum):
@@ -227,48 +170,20 @@ class FloorPlan:
         return Rectangle(corners_x[0], corners_y[0], corners_x[1], corners_y[1])
 
 
-def subtract(block: Rectangle, holes: tuple[Rectangle, ...]) -> tuple[Rectangle, ...]:
-    """Cut all holes out of a rectangle; the pieces do not overlap."""
-    pieces: tuple[Rectangle, ...] = (block,)
-    for hole in holes:
-        pieces = tuple(rest for piece in pieces for rest in piece.without(hole))
-    return pieces
-
-
 def _join_stubs(blocks: list[tuple[Wall, Rectangle]]) -> tuple[tuple[Wall, Rectangle], ...]:
     """Give each lone corner to a block that it lengthens, so that no seam crosses a straight wall."""
     joined = list(blocks)
-    for stub in [item for item in blocks if _longer_side(item[1]) <= WALL_M + _LONGEST_GAP_M]:
+    for stub in [item for item in blocks if item[1].longer_side <= WALL_M + CLOSE_M]:
         if stub not in joined:
             continue  # another corner made it longer
         others = [item for item in joined if item != stub]
         for index, (wall, block) in enumerate(others):
-            union = _lengthened(block, stub[1])
+            union = lengthened(block, stub[1])
             if union is not None:
                 others[index] = (wall, union)
                 joined = others
                 break
     return tuple(joined)
-
-
-def _longer_side(block: Rectangle) -> float:
-    return max(block.max_x - block.min_x, block.max_y - block.min_y)
-
-
-def _lengthened(block: Rectangle, stub: Rectangle) -> Rectangle | None:
-    """The union of the two if it is a rectangle as thin as a wall."""
-    union = Rectangle(
-        min(block.min_x, stub.min_x),
-        min(block.min_y, stub.min_y),
-        max(block.max_x, stub.max_x),
-        max(block.max_y, stub.max_y),
-    )
-    area = _area(block) + _area(stub)
-    return union if abs(_area(union) - area) < _LONGEST_GAP_M else None
-
-
-def _area(block: Rectangle) -> float:
-    return (block.max_x - block.min_x) * (block.max_y - block.min_y)
 
 
 def check_doors(plan: FloorPlan) -> None:

@@ -44,7 +44,7 @@ class Place:
         fixtures: all of it, drawn in this order.
         obstacles: (K, 4) [m] min x, min y, max x, max y of everything solid that stands on the floor.
         obstacle_names: the K names, for messages.
-        bounds: [m] min x, min y, max x, max y of the floor.
+        bounds: [m] min x, min y, max x, max y of the floor and the walls around it.
         surroundings_c: [degC] what surfaces of low emissivity mirror.
         light: (time [s], level) steps of the room's light; level 1 is full, 0 is dark.
     """

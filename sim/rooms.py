@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.extent import fixture_extent
-from sim.floor_plan import Door, FloorPlan, Rectangle, Wall, check_doors
+from sim.floor_plan import Door, FloorPlan, Wall, check_doors
 from sim.looks import Look, Pattern, PatternKind
 from sim.place import Fixture, Place
+from sim.rectangle import Rectangle
 from sim.shapes import Part, Shape, ShapeKind
 
 # Blocks that meet run this far into each other, so that no two faces lie in one plane.
@@ -74,13 +75,8 @@ class Surfaces:
 
 
 def straight_corridor(length_m: float, width_m: float) -> FloorPlan:
-    """A corridor along x from x = 0, centred on y = 0."""
+    """A corridor or a rectangular room: length along x from x = 0, width centred on y = 0."""
     return FloorPlan(areas=(("", Rectangle(0.0, -width_m / 2.0, length_m, width_m / 2.0)),))
-
-
-def room(length_m: float, width_m: float) -> FloorPlan:
-    """A rectangular room: length along x from x = 0, centred on y = 0."""
-    return straight_corridor(length_m, width_m)
 
 
 def l_corridor(

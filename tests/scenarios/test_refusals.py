@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from bad_input import BadInput
 from scenarios.load import load_scenario, parse_scenario
@@ -178,7 +180,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "commands out of order": (
         lambda d: d["robot"].update(behaviour="scripted", commands=[{"from_s": 2.0}, {"from_s": 1.0}]),
-        ("robot.commands[1].from_s: 1 must be after the one before, 2",),
+        ("robot.commands[1].from_s: 1 must be after 2 before it",),
     ),
     "unknown behaviour": (
         lambda d: d["robot"].update(behaviour="folow_person"),
@@ -296,3 +298,40 @@ def test_a_link_that_leads_out_of_the_folder_is_refused(tmp_path: Path) -> None:
 def test_an_unknown_library_name_gets_a_hint() -> None:
     with pytest.raises(BadInput, match=r"unknown scenario 'pas_behind'; did you mean 'pass_behind'\?"):
         load_scenario("pas_behind")
+
+
+JUNK = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.floats(),
+    st.integers(-(10**400), 10**400),
+    st.text(max_size=5),
+    st.lists(st.one_of(st.none(), st.floats(), st.text(max_size=3)), max_size=3),
+    st.dictionaries(st.one_of(st.integers(), st.text(max_size=3)), st.none(), max_size=2),
+)
+
+
+def outcome(data: Data) -> str | None:
+    """What the refusal says; None if the data are read."""
+    try:
+        parse_scenario(data, source="my.yaml", folder=Path("/nowhere")).world(0)
+    except BadInput as error:
+        return str(error)
+    return None
+
+
+def places(data: Any) -> list[tuple[Any, Any]]:
+    """Every container of the data with every key or index in it."""
+    pairs = list(data.items() if isinstance(data, dict) else enumerate(data))
+    below = [pair for _, value in pairs if isinstance(value, dict | list) for pair in places(value)]
+    return [(data, key) for key, _ in pairs] + below
+
+
+@given(st.data())
+@settings(max_examples=300, deadline=None)
+def test_junk_anywhere_is_read_or_refused_on_one_line(random: st.DataObject) -> None:
+    data = copy.deepcopy(GOOD)
+    container, key = random.draw(st.sampled_from(places(data)))
+    container[key] = random.draw(JUNK)
+    message = outcome(data)
+    assert message is None or (message.startswith("my.yaml: ") and "\n" not in message)
