@@ -163,12 +163,13 @@ class LifeConfig:
     birth_confidence: float = 0.5
     birth_frames: int = 1  # frames in a row that must be above
     death_confidence: float = 0.5
-    death_frames: int = 1  # frames in a row that must be below
+    doubt_frames: int = 1  # frames in a row below it that make a person tentative again
+    death_frames: int = 1  # frames in a row below it after which the person is given up
     uncertainty_px2: float = 400.0  # largest spread of a person's particles
 
     def __post_init__(self) -> None:
         check_share(self, "birth_confidence", "death_confidence")
-        check_positive(self, "birth_frames", "death_frames", "uncertainty_px2")
+        check_positive(self, "birth_frames", "doubt_frames", "death_frames", "uncertainty_px2")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -96,7 +96,8 @@ def weigh(state: Floats, view: View, filter_config: FilterConfig, config: Tracke
         particles=particles,
         core=core,
         estimate=mean_state(core),
-        confidence=float(core.weight @ chance[rows]),
+        # A sample outside the limits is no person, however well it fits.
+        confidence=float(core.weight @ np.where(inside, chance, np.float32(0))[rows]),
         uncertainty_px2=uncertainty_px2(core),
     )
 

@@ -112,12 +112,14 @@ class SinglePersonTracker:
         config = self._config
         belief = step(person.belief.core, view, config.person, config, self._rng)
         missing = 0 if is_kept(belief, view, config.life) else person.missing + 1
-        if missing >= config.life.death_frames:
+        # Without confidence no sample is within the limits, and the estimate may be no ellipse at all.
+        if missing >= config.life.death_frames or belief.confidence == 0:
             self._person = None
-            return ()
+            return self._search(view, time_s)
         shown = smoothed(person.shown, belief.estimate, view, config.smoothing)
         self._person = Person(person.id, person.born_s, belief, missing, shown)
-        return (self._track(self._person, time_s, Status.TRACKED),)
+        is_seen = missing < config.life.doubt_frames
+        return (self._track(self._person, time_s, Status.TRACKED if is_seen else Status.TENTATIVE),)
 
     def _track(self, person: Person, time_s: float, status: Status) -> Track:
         ellipse = ellipse_of(person.shown)

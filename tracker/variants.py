@@ -67,7 +67,12 @@ PEOPLEBOY = TrackerConfig(
     ),
     person=FilterConfig(fresh_share=0.0, limits=_LIMITS, sharpness=20.0, estimate_share=0.3),
     life=LifeConfig(
-        birth_confidence=0.6, birth_frames=3, death_confidence=0.3, death_frames=5, uncertainty_px2=100.0
+        birth_confidence=0.6,
+        birth_frames=3,
+        death_confidence=0.3,
+        doubt_frames=5,
+        death_frames=5,
+        uncertainty_px2=100.0,
     ),
     smoothing=SmoothingConfig(place_s=0.05, size_s=0.2),
 )
