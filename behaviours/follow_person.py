@@ -20,8 +20,8 @@ class FollowConfig:
     that distance, whatever the person's size in metres.
 
     Attributes:
-        keep_height: [image heights] apparent height to hold; 0.68 is 3.2 m for a person of 1.75 m, who is
-            then just whole in the image of a level camera at 1.2 m.
+        keep_height: [image heights] apparent height to hold; 0.58 is 3.7 m for a person of 1.75 m. A level
+            camera at 1.2 m shows people whole from 3 m on; the rest is for those who turn back.
         stop_height: [image heights] from here on the robot does not drive forwards.
         near_height: [image heights] from here on the robot backs off.
         approach_gain: [m/s] forward speed per distance error.
@@ -46,13 +46,13 @@ class FollowConfig:
         avoid: steering along walls.
     """
 
-    keep_height: float = 0.68
-    stop_height: float = 0.85
-    near_height: float = 1.0
-    approach_gain: float = 2.2
+    keep_height: float = 0.58
+    stop_height: float = 0.74
+    near_height: float = 0.88
+    approach_gain: float = 2.5
     learn_gain: float = 0.5
     back_off_gain: float = 1.0
-    back_off_m_s: float = 0.2
+    back_off_m_s: float = 0.25
     max_linear_m_s: float = 0.8
     facing_gain: float = 2.0
     drift_share: float = 0.8

@@ -56,7 +56,9 @@ def test_a_person_in_the_right_half_turns_the_robot_right_and_in_the_left_half_l
 
 
 def test_a_small_person_is_approached_a_tall_one_not_and_a_very_tall_one_left_slowly():
-    speeds = [follow_frames([person(height=h)])[1].linear_m_s for h in (0.3, 0.5, 0.7, 0.9, 1.1, 2.0)]
+    keep, near = CONFIG.keep_height, CONFIG.near_height
+    heights = (0.5 * keep, 0.9 * keep, 1.05 * keep, 0.99 * near, 1.1 * near, 2.0 * near)
+    speeds = [follow_frames([person(height=h)])[1].linear_m_s for h in heights]
     assert speeds == sorted(speeds, reverse=True)
     assert speeds[0] == CONFIG.max_linear_m_s
     assert speeds[2] == speeds[3] == 0.0
@@ -176,7 +178,10 @@ def test_a_standing_person_is_found_anywhere_faced_and_kept_at_the_same_height(d
     place = (distance * math.cos(angle), distance * math.sin(angle))
     toy = Toy(path=lambda _: place, tall_m=tall_m, rng=np.random.default_rng(seed))
     log = drive(toy, make_behaviour("follow_person"), 35.0)
-    depth_at = [0.14 + tall_m / (h * 2.0 * math.tan(math.radians(22.0))) for h in (1.1, 0.6)]
+    depth_at = [
+        0.14 + tall_m / (h * 2.0 * math.tan(math.radians(22.0)))
+        for h in (CONFIG.near_height * 1.1, CONFIG.keep_height * 0.9)
+    ]
     assert np.max(np.abs(log.bearing[-30:])) < math.radians(3.0)
     assert depth_at[0] < log.distance[-1] < depth_at[1]
     assert not log.is_contact.any()
@@ -194,10 +199,10 @@ def test_a_person_who_walks_away_is_kept_in_view_and_in_the_band(speed, course, 
     toy = Toy(path=straight((start, 0.0), velocity, 3.0, 18.0), rng=np.random.default_rng(seed))
     log = drive(toy, make_behaviour("follow_person"), 25.0)
     assert log.is_tracked.all()
-    assert np.all(log.distance < 5.1)
+    assert np.all(log.distance < 5.5)
     assert np.max(np.abs(log.bearing[60:])) < math.radians(15.0)
     assert np.max(np.abs(log.bearing[-30:])) < math.radians(3.0)
-    assert 2.0 < log.distance[-1] < 4.0
+    assert 2.0 < log.distance[-1] < 4.6
 
 
 @settings(max_examples=8, deadline=None)
@@ -251,7 +256,7 @@ def test_through_a_door_the_person_is_followed_without_touching_the_posts(openin
     log = drive(toy, make_behaviour("follow_person"), 12.0 + 6.0 / speed)
     assert not log.is_contact.any()
     assert log.robot[-1, 0] > 4.5
-    assert 2.0 < log.distance[-1] < 4.0
+    assert 2.0 < log.distance[-1] < 4.6
 
 
 @settings(max_examples=8, deadline=None)
