@@ -96,7 +96,7 @@ def surface_point(
 
 @njit(cache=True, fastmath=True)
 def _wave(at: float) -> float:
-    """Return a wave of period 1 within -1..1, made of parabolas: as smooth to the eye as a sine, and quick."""
+    """Return a wave of period 1 within -1..1, made of parabolas: smooth as a sine to the eye, and quick."""
     t = at - math.floor(at) - 0.5
     return 8.0 * t * (1.0 - 2.0 * abs(t))
 
@@ -105,14 +105,7 @@ def _wave(at: float) -> float:
 def smooth_variation(
     x: float, y: float, z: float, waves: float, phase: NDArray[np.float64], part: int
 ) -> float:
-    """Return a smooth function of a point of a part, within -1..1: three crossed waves.
-
-    Args:
-        x, y, z: [m] the point in the part's frame.
-        waves: [1/m] waves per metre.
-        phase: (P, 3) of all parts.
-        part: which part.
-    """
+    """Return a smooth function of a point [m] of a part, within -1..1: three crossed waves, so many a m."""
     a = _wave(waves * (x + 0.6 * z) + phase[part, 0])
     b = _wave(waves * (y - 0.8 * x) + phase[part, 1])
     c = _wave(waves * 0.7 * (z + 0.5 * y) + phase[part, 2])
@@ -123,7 +116,7 @@ def smooth_variation(
 def pattern_value(
     kind: int, period: float, x: float, y: float, z: float, phase: NDArray[np.float64], part: int
 ) -> int:
-    """Return 1 where the pattern's second value applies at a point of a part, else 0; see `smooth_variation`."""
+    """Return 1 where the pattern's second value applies at a point [m] of a part, else 0."""
     if kind == _STRIPES:
         return math.floor(2.0 * z / period + _OFFSET) & 1
     if kind == _CHECKS:

@@ -8,7 +8,7 @@ from sim.config import ColourConfig, RobotConfig, SonarConfig, ThermalConfig, Wo
 from sim.looks import Look
 from sim.person_config import PersonConfig
 from sim.place import Fixture, Place
-from sim.rooms import build_place, room
+from sim.rooms import build_place, straight_corridor
 from sim.shapes import Part, Shape, ShapeKind
 from sim.walk import Waypoint
 
@@ -20,7 +20,7 @@ NO_NOISE = ThermalConfig(netd_k=0.0, fixed_pattern_k=0.0, dead_pixels=0.0)
 @cache
 def hall(*things: Fixture) -> Place:
     """A hall of 16 x 12 m, x from 0, centred on y = 0."""
-    return build_place(room(16.0, 12.0), things=things)
+    return build_place(straight_corridor(16.0, 12.0), things=things)
 
 
 def box_thing(name: str, size: tuple, position: tuple, look: Look | None = None) -> Fixture:
