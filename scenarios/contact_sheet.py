@@ -64,7 +64,7 @@ class ContactSheet:
             BadInput: it cannot be written there.
         """
         try:
-            self.draw().save(path)
+            self.draw().save(path, compress_level=3)
         except OSError as error:
             raise BadInput(f"{path}: cannot write the contact sheet: {error}") from error
 

@@ -329,9 +329,11 @@ def _world_view(bounds: tuple[float, float, float, float]) -> rrb.Spatial3DView:
     so_far = rrb.VisibleTimeRanges(
         [rr.VisibleTimeRange(timeline, start=start, end=now) for timeline in ("frame", "time")]
     )
+    # Boxes of people who are near reach far out of the image, and would cross the whole world.
+    overlays = [f"- {path}/{layer}" for path in (_THERMAL, _COLOUR) for layer in _LAYERS]
     return rrb.Spatial3DView(
         origin="world",
-        contents=["$origin/**", "- $origin/place/ceiling/**", f"- {_THERMAL}/particles/**"],
+        contents=["$origin/**", "- $origin/place/ceiling/**", *overlays],
         name="World",
         overrides={"world/trails": so_far},
         eye_controls=rrb.EyeControls3D(
