@@ -191,8 +191,8 @@ class World:
 
 
 def light_level(place: Place, time_s: float) -> float:
-    """Return the level of a place's light at a time: that of the last switch before it."""
-    return [level for start, level in place.light if start <= time_s][-1]
+    """Return the level of a place's light at a time: that of the last switch so far, full before any."""
+    return [1.0, *(level for start, level in place.light if start <= time_s + 1e-9)][-1]
 
 
 def _check_names(config: WorldConfig) -> None:
