@@ -93,7 +93,7 @@ class RunFolder:
         senses = tick.observation
         _write_png(self.path / "thermal" / name, senses.thermal)
         _write_png(self.path / "thermal16" / name, encode_16bit(senses.thermal_c))
-        _write_png(self.path / "colour" / name, cv2.cvtColor(senses.colour, cv2.COLOR_RGB2BGR))
+        _write_png(self.path / "colour" / name, senses.colour[..., ::-1])
 
     def _open(self, name: str) -> TextIO:
         return (self.path / name).open("w", encoding="utf-8", newline="\n")

@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
+from bad_input import BadInput
 from scenarios.labels import Labels
 from scenarios.plan_people import draw_person
 from scenarios.plan_place import SPAN_C, WARMTH, draw_floor, draw_things, draw_walls, label_things
@@ -42,7 +43,10 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
         draw_person(axes, labels, person, scenario.duration_s, _PEOPLE[index % len(_PEOPLE)])
     label_things(labels, scenario.place)
     _caption(figure, axes, scenario, seed)
-    figure.savefig(path, dpi=_DPI)
+    try:
+        figure.savefig(path, dpi=_DPI)
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot write the plan: {error}; give a path that ends in .png") from error
 
 
 def _paper(scenario: Scenario) -> tuple[Figure, Axes]:

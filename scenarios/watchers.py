@@ -19,7 +19,7 @@ class Watchers:
     def __init__(self, stack: ExitStack, config: WorldConfig, title: str, recording: Path | None) -> None:
         self.following = FollowingLog()
         self._events = RunEvents()
-        self._sheet = ContactSheet(title)
+        self._sheet = ContactSheet(title, config.robot)
         self._recorder = (
             None if recording is None else stack.enter_context(Recorder(recording, config, title=title))
         )
