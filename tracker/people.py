@@ -12,7 +12,7 @@ from tracker.frame import Frame
 from tracker.particles import Particles
 from tracker.single import SinglePersonTracker
 from tracker.track import Track
-from tracker.variants import PAPER, PEOPLEBOY, THESIS
+from tracker.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
 
 
 class Tracker(Protocol):
@@ -30,6 +30,7 @@ class Tracker(Protocol):
 
 TRACKERS: Mapping[str, Callable[[np.random.Generator], Tracker]] = {
     "peopleboy": lambda rng: SinglePersonTracker(PEOPLEBOY, rng),
+    "footage": lambda rng: SinglePersonTracker(FOOTAGE, rng),
     "thesis": lambda rng: SinglePersonTracker(THESIS, rng),
     "paper": lambda rng: SinglePersonTracker(PAPER, rng),
 }

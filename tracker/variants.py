@@ -39,17 +39,17 @@ PEOPLEBOY = TrackerConfig(
         far_head_reach=1.2,
         saturation_grey=18.0,
         side_end_deg=140.0,
-        cold_response=-0.3,
+        cold_response=-0.5,
         feet_weight=0.15,
         unseen_response=0.1,
         hottest_grey=250,
         hot_margin_px=2,
     ),
-    likelihood=LikelihoodConfig(slope=6.0, threshold=0.5, weakest_share=0.25),
+    likelihood=LikelihoodConfig(slope=6.0, threshold=0.45, weakest_share=0.25),
     motion=MotionConfig(
         noise_x=30.0,
         noise_y=15.0,
-        noise_w=10.0,
+        noise_w=20.0,
         noise_h=15.0,
         noise_d=60.0,
         noise_by_height=45.0,
@@ -59,21 +59,36 @@ PEOPLEBOY = TrackerConfig(
     ),
     detector=FilterConfig(
         fresh_share=0.5,
+        # A level camera 1.2 m above the floor sees the middle of whoever stands there just below the horizon.
         limits=replace(_LIMITS, y_below_horizon=(-0.1, 0.9)),
         log_uniform_h=True,
-        estimate_share=0.3,
         sharpness=20.0,
+        estimate_share=0.3,
         estimate_reach=0.7,
     ),
     person=FilterConfig(fresh_share=0.0, limits=_LIMITS, sharpness=20.0, estimate_share=0.3),
     life=LifeConfig(
         birth_confidence=0.6,
-        birth_frames=3,
+        birth_frames=4,
         death_confidence=0.3,
         doubt_frames=5,
-        death_frames=5,
+        death_frames=12,
         uncertainty_px2=100.0,
     ),
-    smoothing=SmoothingConfig(place_s=0.05, size_s=0.2),
+    # Torso and feet of the drawn and simulated people lie so, relative to the ellipse that fits them best.
+    box=BoxConfig(width_per_w=1.88, height_per_h=3.7),
+    smoothing=SmoothingConfig(place_s=0.05, size_s=0.1),
 )
-"""What works: the default."""
+"""What works on the robot: the default."""
+
+FOOTAGE = replace(
+    PEOPLEBOY,
+    contour=replace(
+        PEOPLEBOY.contour, saturation_grey=25.0, cold_response=1.0, feet_weight=0.1, hottest_grey=256
+    ),
+    motion=replace(PEOPLEBOY.motion, noise_x=20.0, noise_y=6.0, noise_w=3.0, noise_h=3.0, place_memory=0.8),
+    person=replace(PEOPLEBOY.person, sharpness=5.0, estimate_share=1.0),
+    life=replace(PEOPLEBOY.life, death_confidence=0.02, doubt_frames=20, death_frames=20),
+    box=BoxConfig(),
+)
+"""For recorded footage of a standing camera: people keep their size, and are not given up in a crowd."""

@@ -1,0 +1,199 @@
+"""What each step from the thesis to the default tracker gives: `python -m benchmarks.tracker_ablation`.
+
+Runs are recorded once, driven by the default tracker; every variant then sees the same images.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+import click
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from scenarios.load import load_scenario
+from scenarios.loop import closed_loop, make_frame
+from sim.random_streams import stream
+from sim.world import World
+from tracker.config import TrackerConfig
+from tracker.evaluation.evaluate import Scores, combine, evaluate
+from tracker.evaluation.sequence import Tracks, Truth
+from tracker.frame import Frame
+from tracker.people import make_tracker
+from tracker.single import SinglePersonTracker
+from tracker.track import Status, Track
+from tracker.variants import PAPER, PEOPLEBOY, THESIS
+
+SCENARIOS = ("single_stationary", "single_follow", "empty_room")
+
+# Every setting in which the two differ belongs to one step; a name stands for all that begin with it.
+STEPS: dict[str, tuple[str, ...]] = {
+    "differences saturated, sample by sample": (
+        "contour.saturation_grey",
+        "likelihood.slope",
+        "likelihood.threshold",
+    ),
+    "points at distances that scale with the ellipse": (
+        "contour.points",
+        "contour.reach_px",
+        "contour.body_reach",
+        "contour.head_reach",
+        "contour.side_end_deg",
+    ),
+    "a second outer point, far from the head": ("contour.far_head_reach",),
+    "people's proportions; far people as likely as near ones": (
+        "detector.limits.ratio",
+        "detector.limits.h",
+        "detector.limits.y",
+        "person.limits",
+        "detector.log_uniform_h",
+    ),
+    "people stand on the floor": ("detector.limits.y_below_horizon",),
+    "what is too hot counts as cold": ("contour.hottest_grey", "contour.hot_margin_px"),
+    "sharper weights, estimate from the best near the best": (
+        "detector.sharpness",
+        "detector.estimate",
+        "person.sharpness",
+        "person.estimate",
+    ),
+    "half of the detector's samples anew, none of the person's": (
+        "detector.fresh_share",
+        "person.fresh_share",
+    ),
+    "birth and death take several frames": ("life",),
+    "motion scaled by size; odometry": ("motion",),
+    "the weakest section counts twice": ("likelihood.weakest_share",),
+    "garments may be colder than what is behind": ("contour.cold_response",),
+    "the line under the feet": ("contour.feet", "contour.unseen_response"),
+    "box proportions": ("box",),
+    "smoothing": ("smoothing",),
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recorded:
+    """One run: what the tracker saw, and what was true."""
+
+    frames: tuple[Frame, ...]
+    truth: Truth
+
+
+def differing(one: Any, other: Any, path: str = "") -> Iterator[str]:
+    """Name the settings, such as "contour.points", in which two configurations differ."""
+    for item in fields(one):
+        name = f"{path}{item.name}"
+        mine, theirs = getattr(one, item.name), getattr(other, item.name)
+        if is_dataclass(mine):
+            yield from differing(mine, theirs, f"{name}.")
+        elif mine != theirs:
+            yield name
+
+
+def step_of(setting: str) -> str:
+    """Name the step that a setting belongs to: the one with the longest matching beginning."""
+    matching = [
+        (len(start), step) for step, starts in STEPS.items() for start in starts if setting.startswith(start)
+    ]
+    return max(matching)[1]
+
+
+def adopt(base: Any, source: Any, names: Sequence[str]) -> Any:
+    """Take the named settings of `source` into `base`."""
+    changes: dict[str, Any] = {}
+    for head in dict.fromkeys(name.split(".")[0] for name in names):
+        rest = [name.split(".", 1)[1] for name in names if name.startswith(f"{head}.")]
+        mine, theirs = getattr(base, head), getattr(source, head)
+        changes[head] = adopt(mine, theirs, rest) if rest else theirs
+    return replace(base, **changes)
+
+
+def variants() -> Iterator[tuple[str, TrackerConfig]]:
+    """Give the sources' trackers, then one step after the other, then the default without each step."""
+    yield "thesis, literal", THESIS
+    yield "paper, literal", PAPER
+    settings = list(differing(THESIS, PEOPLEBOY))
+    config = THESIS
+    for step in STEPS:
+        config = adopt(config, PEOPLEBOY, [name for name in settings if step_of(name) == step])
+        yield f"+ {step}", config
+    for step in STEPS:
+        yield (
+            f"default without: {step}",
+            adopt(PEOPLEBOY, THESIS, [name for name in settings if step_of(name) == step]),
+        )
+
+
+def record(scenario: str, seed: int) -> Recorded:
+    """Run a scenario in the closed loop and keep what its tracker saw."""
+    loaded = load_scenario(scenario)
+    config = loaded.world(seed)
+    frames, rows, before = [], [], None
+    with World(config) as world:
+        count = round(loaded.duration_s * config.control_hz)
+        tracker = make_tracker("peopleboy", stream(seed, "tracker"))
+        for tick in closed_loop(world, tracker, loaded.make_behaviour(), count):
+            frames.append(make_frame(tick.observation, before))
+            before = tick.observation.odometry
+            rows += [
+                (tick.frame, person.id, person.box, person.is_counted, person.visible_fraction)
+                for person in tick.truth.people
+                if person.box is not None
+            ]
+    columns = zip(*rows, strict=True) if rows else ((),) * 5
+    frame, identity, box, counted, visible = (list(column) for column in columns)
+    truth = Truth(
+        frame=np.array(frame),
+        id=np.array(identity),
+        box=np.array(box).reshape(-1, 4),
+        counted=np.array(counted, dtype=bool),
+        visible=np.array(visible),
+    )
+    return Recorded(tuple(frames), truth)
+
+
+def replay(run: Recorded, config: TrackerConfig, seed: int) -> Scores:
+    """Score a tracker on a recorded run."""
+    tracker = SinglePersonTracker(config, np.random.default_rng(seed))
+    found: list[tuple[int, Track]] = []
+    for number, frame in enumerate(run.frames, start=1):
+        found += [(number, track) for track in tracker.update(frame) if track.status is not Status.TENTATIVE]
+    tracks = Tracks(
+        frame=np.array([number for number, _ in found]),
+        id=np.array([track.id for _, track in found]),
+        box=np.array([track.box for _, track in found]).reshape(-1, 4),
+        confidence=np.array([track.confidence for _, track in found]),
+    )
+    return evaluate(run.truth, tracks, frames=len(run.frames))
+
+
+def score(runs: dict[str, list[Recorded]], config: TrackerConfig) -> list[str]:
+    """Give one row: CP, CR, AA of the scenarios with a person, false alarms of the one without."""
+    cells = []
+    for scenario, recorded in runs.items():
+        scores = combine([replay(run, config, seed) for seed, run in enumerate(recorded)])
+        if scenario == "empty_room":
+            cells.append(f"{100 * scores.counts.candidates / scores.counts.frames:.1f}")
+        else:
+            cells += [f"{value:.1f}" for value in (scores.thesis.cp, scores.thesis.cr, scores.thesis.aa)]
+    return cells
+
+
+@click.command()
+@click.option("--seeds", default=2, show_default=True, help="Runs of each scenario.")
+def main(seeds: int) -> None:
+    """Print what each step from the literal tracker to the default one gives."""
+    runs = {name: [record(name, seed) for seed in range(seeds)] for name in SCENARIOS}
+    table = Table(title=f"Single-person tracker, {seeds} runs each, percent")
+    for heading in ("variant", "CP", "CR", "AA", "CP", "CR", "AA", "false"):
+        table.add_column(heading, justify="left" if heading == "variant" else "right")
+    table.add_row("", "stationary", "", "", "following", "", "", "empty room")
+    for name, config in variants():
+        table.add_row(name, *score(runs, config))
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()
