@@ -48,11 +48,11 @@ def render_times(instants: int = 40) -> RenderTimes:
         for _ in range(instants + 2):
             for name, world in worlds.items():
                 world.step(0.5, 0.0)
-                start = time.perf_counter()
+                start = time.process_time()
                 world.truth()
-                middle = time.perf_counter()
+                middle = time.process_time()
                 world.observe()
-                times[name].append((time.perf_counter() - start, middle - start))
+                times[name].append((time.process_time() - start, middle - start))
     # The first instants compile the kernels.
     raycast, bullet = (1000.0 * np.median(times[name][2:], axis=0) for name in RENDERERS)
     return RenderTimes(
