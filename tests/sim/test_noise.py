@@ -13,7 +13,7 @@ def test_noise_has_the_moments_and_quantiles_of_the_normal_distribution() -> Non
     assert stats.skew(noise) == pytest.approx(0.0, abs=0.02)
     assert stats.kurtosis(noise) == pytest.approx(0.0, abs=0.05)
     for share in (0.001, 0.05, 0.3, 0.5, 0.9, 0.999):
-        assert np.quantile(noise, share) == pytest.approx(stats.norm.ppf(share), abs=0.03)
+        assert np.quantile(noise, share) == pytest.approx(stats.norm.ppf(share), abs=0.08)
 
 
 def test_values_of_one_image_and_of_two_images_are_independent() -> None:

@@ -87,6 +87,13 @@ def test_the_floor_is_not_heard_but_what_lies_on_it_is() -> None:
         assert ring(bullet, EXACT).read(np.eye(4))[3] == pytest.approx(1.5 - 0.166, rel=0.01)
 
 
+def test_the_body_that_carries_the_ring_is_not_heard() -> None:
+    with Bullet() as bullet:
+        screen = Shape(kind=ShapeKind.BOX, size=(0.05, 2.0, 1.0), position=(1.0, 0.0, 0.3))
+        bullet.add_part("robot", [screen])
+        assert np.all(ring(bullet, EXACT).read(np.eye(4)) == 5.0)
+
+
 def test_the_ring_is_that_of_the_real_robot() -> None:
     degrees = np.degrees(SONAR_ANGLE_RAD).round()
     front, rear = [90, 50, 30, 10, -10, -30, -50, -90], [-90, -130, -150, -170, 170, 150, 130, 90]
