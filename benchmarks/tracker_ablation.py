@@ -5,6 +5,7 @@ Runs are recorded once, driven by the default tracker; every variant then sees t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
@@ -53,7 +54,7 @@ STEPS: dict[str, tuple[str, ...]] = {
     ),
     "people stand on the floor": ("detector.limits.y_below_horizon",),
     "what is too hot counts as cold": ("contour.hottest_grey", "contour.hot_margin_px"),
-    "sharper weights, estimate from the best near the best": (
+    "sharper weights; the best near the best make the estimate": (
         "detector.sharpness",
         "detector.estimate",
         "person.sharpness",
@@ -177,7 +178,8 @@ def score(runs: dict[str, list[Recorded]], config: TrackerConfig) -> list[str]:
         if scenario == "empty_room":
             cells.append(f"{100 * scores.counts.candidates / scores.counts.frames:.1f}")
         else:
-            cells += [f"{value:.1f}" for value in (scores.thesis.cp, scores.thesis.cr, scores.thesis.aa)]
+            values = (scores.thesis.cp, scores.thesis.cr, scores.thesis.aa)
+            cells += ["-" if math.isnan(value) else f"{value:.1f}" for value in values]
     return cells
 
 
@@ -187,12 +189,12 @@ def main(seeds: int) -> None:
     """Print what each step from the literal tracker to the default one gives."""
     runs = {name: [record(name, seed) for seed in range(seeds)] for name in SCENARIOS}
     table = Table(title=f"Single-person tracker, {seeds} runs each, percent")
-    for heading in ("variant", "CP", "CR", "AA", "CP", "CR", "AA", "false"):
-        table.add_column(heading, justify="left" if heading == "variant" else "right")
-    table.add_row("", "stationary", "", "", "following", "", "", "empty room")
+    table.add_column("variant", no_wrap=True)
+    for heading in ("standing CP", "CR", "AA", "following CP", "CR", "AA", "empty room: false"):
+        table.add_column(heading, justify="right")
     for name, config in variants():
         table.add_row(name, *score(runs, config))
-    Console().print(table)
+    Console(width=130).print(table)
 
 
 if __name__ == "__main__":
