@@ -83,9 +83,10 @@ class Camera:
 
 def invert_pose(pose: Matrix) -> Matrix:
     """Invert a rigid (4, 4) pose: a_from_b to b_from_a."""
-    inverse = np.eye(4)
+    inverse = np.zeros((4, 4))
     inverse[:3, :3] = pose[:3, :3].T
-    inverse[:3, 3] = -pose[:3, :3].T @ pose[:3, 3]
+    inverse[:3, 3] = -inverse[:3, :3] @ pose[:3, 3]
+    inverse[3, 3] = 1.0
     return inverse
 
 

@@ -154,11 +154,10 @@ class TruthMaker:
         joints = person.joints()
         pixels = self._camera.project(transform(invert_pose(world_from_camera), joints))
         size = np.array([self._camera.width, self._camera.height])
-        at = np.rint(np.nan_to_num(pixels, nan=-1.0)).astype(np.int64)
-        inside = np.all((at >= 0) & (at < size), axis=1)
-        u, v = np.where(inside[:, None], at, 0).T
-        part = view.part[v, u]
-        is_visible = inside & (part >= 0) & (self.person_of_part[part] == k)
+        is_inside = np.all((pixels > -0.5) & (pixels < size - 0.5), axis=1)
+        u, v = np.rint(pixels[is_inside]).astype(np.int64).T
+        is_visible = np.zeros(len(joints), np.bool_)
+        is_visible[is_inside] = self._id_of_part[view.part[v, u]] == k + 1
         return joints, pixels, is_visible
 
 
