@@ -195,8 +195,25 @@ class SmoothingConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class InteractionConfig:
+    """How filters keep off each other's people, and how many samples they share."""
+
+    detector_penalty: float = 0.01  # psi_D, factor on a detector's sample that overlaps a person
+    detector_overlap: float = 0.0  # share of the sample's region above which it counts as overlapping
+    penalty: float = 2.0  # rho, towards other people
+    occluded_penalty: float = 2.0  # rho_o, towards who is in front
+    max_persons: int = 100  # with so many people, the detector rests
+    total_count: int = 0  # samples that all people share evenly; 0 gives each filter its own N
+
+    def __post_init__(self) -> None:
+        check_share(self, "detector_penalty", "detector_overlap")
+        check_not_negative(self, "penalty", "occluded_penalty", "total_count")
+        check_positive(self, "max_persons")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class TrackerConfig:
-    """A whole single-person tracker."""
+    """A whole tracker."""
 
     contour: ContourConfig = field(default_factory=ContourConfig)
     likelihood: LikelihoodConfig = field(default_factory=LikelihoodConfig)
@@ -206,3 +223,4 @@ class TrackerConfig:
     life: LifeConfig = field(default_factory=LifeConfig)
     box: BoxConfig = field(default_factory=BoxConfig)
     smoothing: SmoothingConfig = field(default_factory=SmoothingConfig)
+    interaction: InteractionConfig = field(default_factory=InteractionConfig)

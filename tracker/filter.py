@@ -18,6 +18,7 @@ from tracker.particles import (
     X,
     core_rows,
     mean_state,
+    normalised,
     resample,
     select,
     uncertainty_px2,
@@ -80,15 +81,30 @@ class Belief:
     uncertainty_px2: float
 
 
-def weigh(state: Floats, view: View, filter_config: FilterConfig, config: TrackerConfig) -> Belief:
+def weigh(
+    state: Floats,
+    view: View,
+    filter_config: FilterConfig,
+    config: TrackerConfig,
+    factor: Floats | None = None,
+) -> Belief:
     """Weigh samples (N, 9) by the image and estimate the person from them.
 
-    Source: thesis, algorithm 3 (update), equations 4.2 and 4.6.
+    Args:
+        state: (N, 9) samples.
+        view: the image.
+        filter_config: of this filter.
+        config: of the tracker.
+        factor: (N,) on the weights, what is known beside the contour; None for 1.
+
+    Source: thesis, algorithm 3 (update), equations 4.2 and 4.6; 5.1, 5.2 and 6.17 with the factor.
     """
     fit = fitness(view.model.differences(view.image, state), view.model.weights, config.likelihood)
     chance = probability(fit, config.likelihood)
     inside = is_within(state, view.image.shape[0], filter_config.limits)
     weight = sample_weights(fit, chance, inside, config.likelihood.model, filter_config)
+    if factor is not None:
+        weight = normalised(weight * factor)
     particles = Particles(state, weight)
     rows = core_rows(particles, filter_config.estimate_share, filter_config.estimate_reach)
     core = select(particles, rows)
@@ -116,16 +132,22 @@ def step(
 
     Source: thesis, algorithm 3.
     """
+    return weigh(advance(particles, view, filter_config, config, rng), view, filter_config, config)
+
+
+def advance(
+    particles: Particles,
+    view: View,
+    filter_config: FilterConfig,
+    config: TrackerConfig,
+    rng: np.random.Generator,
+) -> Floats:
+    """Draw the samples (N, 9) of this frame from those of the last one, some of them from the prior."""
     fresh = round(filter_config.fresh_share * filter_config.count)
     kept = resample(particles, filter_config.count - fresh, rng)
     moved = predict(kept, view.dt_s, view.size, config.motion, rng)
     moved[:, X] = view.after_turn(moved[:, X])
-    return weigh(
-        np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)]),
-        view,
-        filter_config,
-        config,
-    )
+    return np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)])
 
 
 def begin(view: View, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator) -> Belief:

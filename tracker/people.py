@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
 from bad_input import BadInput
+from tracker.config import InteractionConfig
 from tracker.frame import Frame
 from tracker.particles import Particles
+from tracker.several import PeopleTracker
 from tracker.single import SinglePersonTracker
 from tracker.track import Track
 from tracker.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
@@ -28,9 +31,12 @@ class Tracker(Protocol):
         ...
 
 
+_SEVERAL = replace(PEOPLEBOY, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
+
 TRACKERS: Mapping[str, Callable[[np.random.Generator], Tracker]] = {
-    "peopleboy": lambda rng: SinglePersonTracker(PEOPLEBOY, rng),
+    "peopleboy": lambda rng: PeopleTracker(_SEVERAL, rng),
     "footage": lambda rng: SinglePersonTracker(FOOTAGE, rng),
+    "thermal": lambda rng: PeopleTracker(THESIS, rng),
     "thesis": lambda rng: SinglePersonTracker(THESIS, rng),
     "paper": lambda rng: SinglePersonTracker(PAPER, rng),
 }
