@@ -85,7 +85,8 @@ class ColourView:
         bounds = self._bounds(part_rectangles(state), state[:, H])
         pixels, area = covered(bounds, *self.picture.shape[:2])
         is_seen = (pixels > 0) & (pixels >= self.config.least_seen * area)
-        return np.any(is_seen.reshape(len(state), -1), axis=1)
+        any_part: NDArray[np.bool_] = is_seen.reshape(len(state), -1).max(axis=1)
+        return any_part
 
     def _bounds(self, rectangles: Floats, height: Floats) -> Bounds:
         """Give the pixels (N P, 4) of this image that thermal rectangles (N, P, 4) cover."""
