@@ -26,7 +26,8 @@ class Crowd:
     """All people of a world and their bodies.
 
     Each visible part is a body of its own, put where the gait says it is. Contacts and sonar meet one
-    upright capsule per person instead, which moves in every physics step.
+    upright capsule per person instead, which moves in every physics step. Who appears where the robot stands
+    is passed through until they are apart, as physics would throw the robot away.
     """
 
     def __init__(self, bullet: Bullet, configs: Sequence[PersonConfig], place: Place, seed: int) -> None:
@@ -35,6 +36,7 @@ class Crowd:
         self.people = tuple(Person(config, stream(seed, f"person.{config.name}")) for config in configs)
         self.looks: dict[str, Look] = {}
         self._is_shown = dict.fromkeys((person.name for person in self.people), True)
+        self._solid: set[str] = set()
         self._before: dict[str, NDArray[np.float64]] = {}
         for person in self.people:
             self._add(person)
@@ -54,17 +56,18 @@ class Crowd:
     def move_bodies(self, share: float) -> None:
         """Move the solid capsules to where people are when this share of the control step has passed."""
         for person in self.people:
-            if self._is_shown[person.name]:
+            if person.name in self._solid:
                 before = self._before[person.name]
                 self._place_solid(person, before + share * (person.position - before))
 
-    def show(self) -> None:
+    def show(self, robot: PeopleBot) -> None:
         """Put every visible part where its person is now; those who are away are hidden."""
         for person in self.people:
             if person.present != self._is_shown[person.name]:
                 self._set_shown(person, person.present)
             if person.present:
                 self._pose(person)
+                self._make_solid(person, robot)
 
     def _add(self, person: Person) -> None:
         for part in person.parts:
@@ -74,12 +77,22 @@ class Crowd:
         radius, height = person.radius_m, person.config.height_m
         capsule = Shape(kind=ShapeKind.CAPSULE, size=(height - 2.0 * radius, radius, 0.0))
         self._bullet.add_part(f"{person.name}/{_SOLID}", [capsule], visible=False)
+        self._bullet.set_hidden(f"{person.name}/{_SOLID}", True)
         self.looks[f"{person.name}/{_SOLID}"] = person.parts[0].look
 
     def _set_shown(self, person: Person, is_shown: bool) -> None:
         self._is_shown[person.name] = is_shown
-        for name in (*(part.name for part in person.parts), _SOLID):
-            self._bullet.set_hidden(f"{person.name}/{name}", not is_shown)
+        for part in person.parts:
+            self._bullet.set_hidden(f"{person.name}/{part.name}", not is_shown)
+        if not is_shown:
+            self._solid.discard(person.name)
+            self._bullet.set_hidden(f"{person.name}/{_SOLID}", True)
+
+    def _make_solid(self, person: Person, robot: PeopleBot) -> None:
+        """Give a person who has just appeared its solid capsule, as soon as the robot is not in it."""
+        if person.name not in self._solid and robot.gap_to(*person.position.tolist()) > person.radius_m:
+            self._solid.add(person.name)
+            self._bullet.set_hidden(f"{person.name}/{_SOLID}", False)
 
     def _pose(self, person: Person) -> None:
         poses = person.poses()

@@ -22,6 +22,8 @@ URDF = Path(__file__).with_name("peoplebot.urdf")
 WHEEL_RADIUS_M = 0.0825
 WHEEL_DISTANCE_M = 0.333
 RADIUS_M = 0.355  # of the circle about the middle between the wheels in which the robot turns on the spot
+# The body's rear and front ends and its half width [m], about the same middle.
+_REAR_M, _FRONT_M, _HALF_WIDTH_M = -0.30, 0.21, 0.19
 _JOINTS = ("left_wheel_joint", "right_wheel_joint")
 _MOTOR_TORQUE_NM = 4.0
 
@@ -129,6 +131,14 @@ class PeopleBot:
         """Return the true pose on the floor."""
         matrix = self.world_from_robot()
         return Planar(float(matrix[0, 3]), float(matrix[1, 3]), math.atan2(matrix[1, 0], matrix[0, 0]))
+
+    def gap_to(self, x: float, y: float) -> float:
+        """Distance [m] on the floor between its outline and a point, world frame; 0 inside."""
+        pose = self.pose()
+        cos, sin = math.cos(pose.heading), math.sin(pose.heading)
+        ahead = cos * (x - pose.x) + sin * (y - pose.y)
+        aside = cos * (y - pose.y) - sin * (x - pose.x)
+        return math.hypot(max(_REAR_M - ahead, ahead - _FRONT_M, 0.0), max(abs(aside) - _HALF_WIDTH_M, 0.0))
 
     def velocity(self) -> tuple[float, float]:
         """Return the true forward speed [m/s] and turn rate [rad/s]."""

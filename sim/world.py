@@ -153,7 +153,7 @@ class World:
 
     def _settle(self) -> None:
         """Take over the poses of a new instant; what was seen before is forgotten."""
-        self._crowd.show()
+        self._crowd.show(self._robot)
         self._poses = self._bullet.part_poses()
         self._hidden = self._bullet.hidden_parts()
         self._seen: dict[Camera, _Sight] = {}

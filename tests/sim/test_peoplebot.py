@@ -221,6 +221,25 @@ def test_its_heading_wraps_around() -> None:
     assert np.abs(np.exp(1j * np.array(headings)) @ [1.0, -1.0]).max() < 0.03
 
 
+@pytest.mark.parametrize(
+    ("ahead", "aside", "gap"),
+    [
+        (0.0, 0.0, 0.0),
+        (0.2, -0.18, 0.0),
+        (0.51, 0.1, 0.3),
+        (-0.5, 0.0, 0.2),
+        (0.61, 0.49, 0.5),
+        (0.0, -0.29, 0.1),
+    ],
+)
+def test_the_gap_to_a_point_is_counted_from_its_outline(ahead: float, aside: float, gap: float) -> None:
+    heading = 0.7
+    with on_a_floor(at_m=(3.0, -2.0), heading_rad=heading) as (_, robot):
+        x = 3.0 + math.cos(heading) * ahead - math.sin(heading) * aside
+        y = -2.0 + math.sin(heading) * ahead + math.cos(heading) * aside
+        assert robot.gap_to(x, y) == pytest.approx(gap, abs=1e-6)
+
+
 def test_wheel_speeds_add_up_to_the_robot_s_velocity() -> None:
     left, right = wheel_speeds(0.4, 0.6)
     assert (left + right) / 2.0 == pytest.approx(0.4)

@@ -277,6 +277,22 @@ def test_a_person_who_walks_on_past_a_robot_that_comes_from_the_side_pushes_it()
     assert min(tilts) > math.cos(math.radians(3.0))
 
 
+def test_a_person_who_appears_inside_the_robot_is_solid_once_they_are_apart() -> None:
+    with World(config(person("ann", (1.1, 0.1), enter_s=0.2), robot=robot(1.0))) as world:
+        for _ in range(8):
+            world.step(0.0, 0.0)
+        assert world.truth().people[0].name == "ann"
+        assert world.truth().contacts == ()
+        assert world.robot_pose.x == pytest.approx(1.0, abs=0.01)
+        for _ in range(30):
+            world.step(-0.5, 0.0)
+        assert world.robot_pose.x < 0.5
+        for _ in range(60):
+            world.step(0.5, 0.0)
+        assert world.truth().contacts == ("ann",)
+        assert world.robot_pose.x < 1.1 - 0.2
+
+
 def test_a_robot_that_drives_into_a_person_touches_it_and_is_stopped() -> None:
     with World(config(person("ann", (3.0, 0.0)))) as world:
         contacts = []
