@@ -11,7 +11,8 @@ from sim.bullet import Bullet
 from sim.camera import Matrix, transform
 from sim.config import SonarConfig
 
-# x, y [m] and angle [deg] of each sonar: ARIA's parameter file peoplebot-sh.p, SonarUnit 0..15.
+# x, y [m] and angle [deg] of each sonar of the lower rings: ARIA's parameter file peoplebot-sh.p, SonarUnit
+# 0..15 (its 16..31, up on the deck, are left out).
 _UNITS = np.array(
     [
         (0.069, 0.136, 90.0),
