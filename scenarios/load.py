@@ -38,7 +38,7 @@ def parse_scenario(data: dict[Any, Any], *, source: str, folder: Path) -> Scenar
         BadInput: the data are wrong.
     """
     try:
-        return make_scenario(ScenarioSpec.model_validate(data), folder)
+        return make_scenario(ScenarioSpec.model_validate(_filled_in(data)), folder)
     except ValidationError as error:
         raise BadInput(f"{source}: {explain(error, ScenarioSpec)}") from error
     except BadInput as error:
@@ -51,14 +51,33 @@ def library() -> dict[str, str]:
     return {scenario.name: scenario.description for scenario in scenarios}
 
 
+def _filled_in(data: dict[Any, Any], via: tuple[str, ...] = ()) -> dict[Any, Any]:
+    """The data with the keys of the scenario that it is like; its own replace them whole.
+
+    Raises:
+        BadInput: there is no such scenario in the library, or it is in the end like itself.
+    """
+    if not isinstance(data.get("like"), str):
+        return data
+    path = _find_in_library(data["like"], "like: ")
+    if path.stem in via:
+        raise BadInput(f"like: {path.stem!r} is like itself, by way of {', '.join(via)}; leave it out of one")
+    model = _filled_in(read_yaml(path), (*via, path.stem))
+    return {key: value for key, value in (model | data).items() if key != "like"}
+
+
 def _find(name_or_path: str | Path) -> Path:
     text = str(name_or_path)
     if "/" in text or text.endswith((".yaml", ".yml")) or isinstance(name_or_path, Path):
         return Path(name_or_path)
+    return _find_in_library(text)
+
+
+def _find_in_library(name: str, key: str = "") -> Path:
     known = [path.stem for path in LIBRARY.glob("*.yaml")]
-    if text not in known:
-        raise BadInput(f"unknown scenario {text!r}; {hint(text, known)}; a file's path ends in .yaml")
-    return LIBRARY / f"{text}.yaml"
+    if name not in known:
+        raise BadInput(f"{key}unknown scenario {name!r}; {hint(name, known)}; a file's path ends in .yaml")
+    return LIBRARY / f"{name}.yaml"
 
 
 def _shown(path: Path) -> str:

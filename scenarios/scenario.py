@@ -16,10 +16,12 @@ from scenarios.build_place import make_floor_plan, make_place
 from scenarios.cast_people import cast, make_config, members
 from scenarios.check import Ground, check_scenario, make_ground
 from scenarios.equip_robot import equip_robot
+from scenarios.outfits import tell_apart
 from scenarios.schema import DrawnSpec, PersonSpec, RobotSpec, ScenarioSpec
 from sim.config import WorldConfig
 from sim.floor_plan import FloorPlan
 from sim.place import Place
+from sim.random_streams import stream
 
 RENDERERS = ("raycast", "bullet")
 
@@ -68,10 +70,10 @@ class Scenario:
         """
         if seed < 0:
             raise BadInput(f"seed {seed} must be 0 or more")
-        return tuple(
-            cast(person, seed, lambda path: self.ground.fault(path) is None)
-            for _, person in _everybody(self.spec)
-        )
+        people = tuple(person for _, person in _everybody(self.spec))
+        if self.spec.clothes_differ:
+            people = tell_apart(people, stream(seed, "scenario.colours"))
+        return tuple(cast(person, seed, lambda path: self.ground.fault(path) is None) for person in people)
 
     def world(self, seed: int, renderer: str = "raycast") -> WorldConfig:
         """Settings of the world; the same seed gives equal settings.

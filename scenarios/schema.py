@@ -295,11 +295,15 @@ class ScenarioSpec(Strict):
 
     name: Key
     description: Annotated[str, Field(min_length=1, max_length=1000)]
+    like: Key | None = None
+    """a scenario of the library, whose keys stand in for those that this file leaves out"""
     duration_s: Annotated[float, Field(gt=0.0, le=36000.0)]
     place: PlaceSpec
     things: Annotated[tuple[ThingSpec, ...], Field(strict=False, max_length=300)] = ()
     people: Annotated[tuple[PersonSpec, ...], Field(strict=False, max_length=60)] = ()
     groups: Annotated[tuple[GroupSpec, ...], Field(strict=False, max_length=20)] = ()
+    clothes_differ: bool = False
+    """whether the seed draws clearly different colours for those whose colours the file leaves out"""
     lights: Annotated[tuple[LightSpec, ...], Field(strict=False)] = ()
     """steps of the room's light, in the order of time; left out, it is full light"""
     robot: RobotSpec
@@ -307,5 +311,7 @@ class ScenarioSpec(Strict):
 
 
 def json_schema() -> dict[str, Any]:
-    """The JSON schema of scenario files, for editors."""
-    return ScenarioSpec.model_json_schema()
+    """The JSON schema of scenario files, for editors; a file that is like another may leave keys out."""
+    schema = ScenarioSpec.model_json_schema()
+    required = schema.pop("required")
+    return schema | {"anyOf": [{"required": required}, {"required": ["name", "description", "like"]}]}

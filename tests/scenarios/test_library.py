@@ -82,12 +82,12 @@ def test_people_get_to_the_end_of_their_paths_in_time(name: str) -> None:
 @every_scenario
 def test_every_seed_keeps_people_clear_of_walls_and_things(name: str) -> None:
     scenario = load_scenario(name)
-    for seed in range(20):
+    for seed in range(10):
         for person in scenario.people(seed):
             assert scenario.ground.fault(person.path) is None
 
 
-@every_scenario
+@pytest.mark.parametrize("name", NAMES[::4])
 def test_a_plan_is_drawn(name: str, tmp_path: Path) -> None:
     draw_plan(load_scenario(name), 0, tmp_path / "plan.png")
     assert (tmp_path / "plan.png").read_bytes()[:4] == b"\x89PNG"
@@ -150,3 +150,24 @@ def test_the_json_schema_knows_the_keys_and_says_what_they_mean() -> None:
     assert {"name", "place", "people", "robot", "things"} <= set(schema["properties"])
     assert "waypoint" in str(schema).lower()
     assert schema["additionalProperties"] is False
+
+
+def test_people_whose_clothes_differ_share_no_colour() -> None:
+    for seed in range(5):
+        clothes = [person.clothes for person in load_scenario("crowd_8").people(seed)]
+        tops = {c.top_colour for c in clothes if c is not None}
+        bottoms = {c.bottom_colour for c in clothes if c is not None}
+        assert (len(tops), len(bottoms)) == (8, 8)
+
+
+def test_a_file_that_is_like_another_replaces_whole_keys_and_keeps_the_rest() -> None:
+    dark, model = load_scenario("dark_crossing"), load_scenario("crossing_2")
+    assert dark.spec.people == model.spec.people
+    assert (dark.name, len(dark.spec.lights)) == ("dark_crossing", 3)
+    assert dark.spec.like is None
+
+
+def test_a_file_that_is_like_nothing_known_is_refused() -> None:
+    data = {"name": "x", "description": "x", "like": "crosing_2"}
+    with pytest.raises(BadInput, match=r"x\.yaml: like: unknown scenario 'crosing_2'; did you mean"):
+        parse_scenario(data, source="x.yaml", folder=LIBRARY)
