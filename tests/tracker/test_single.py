@@ -13,17 +13,22 @@ from tracker.frame import Frame
 from tracker.people import TRACKERS, make_tracker
 from tracker.single import SinglePersonTracker
 from tracker.track import Status
-from tracker.variants import PEOPLEBOY
+from tracker.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
 
 SEEDS = range(3)
+VARIANTS = {"default": PEOPLEBOY, "footage": FOOTAGE, "thesis": THESIS, "paper": PAPER}
 
 
 def confirmed(tracks):
     return [track for track in tracks if track.status is Status.TRACKED]
 
 
-def follow(frames, seed=0, name="peopleboy"):
-    tracker = make_tracker(name, np.random.default_rng(seed))
+def make(name="default", seed=0):
+    return SinglePersonTracker(VARIANTS[name], np.random.default_rng(seed))
+
+
+def follow(frames, seed=0, name="default"):
+    tracker = make(name, seed)
     return [tracker.update(frame) for frame in frames]
 
 
@@ -47,7 +52,7 @@ def test_a_person_is_confirmed_within_a_second(seed):
     assert confirmed(tracks[-1])
 
 
-@pytest.mark.parametrize("name", TRACKERS)
+@pytest.mark.parametrize("name", VARIANTS)
 @pytest.mark.parametrize("grey", [0, 20, 255])
 def test_nobody_is_found_in_a_uniform_image(name, grey):
     frames = [Frame(thermal=np.full((240, 320), grey, np.uint8), time_s=i / 15) for i in range(30)]
@@ -117,13 +122,13 @@ def test_an_image_of_twice_the_size_gives_a_person_of_twice_the_size():
     assert confirmed(tracks)[0].ellipse.h == pytest.approx(56, rel=0.2)
 
 
-@pytest.mark.parametrize("name", TRACKERS)
+@pytest.mark.parametrize("name", VARIANTS)
 def test_the_same_seed_gives_the_same_tracks_and_another_seed_does_not(name):
     frames = [person_frame(i / 15, 60 + i) for i in range(30)]
     assert follow(frames, 5, name) == follow(frames, 5, name)
     clouds = []
     for seed in (5, 6):
-        tracker = make_tracker(name, np.random.default_rng(seed))
+        tracker = make(name, seed)
         for frame in frames:
             tracker.update(frame)
         clouds.append(next(iter(tracker.particles.values())).state)
@@ -133,7 +138,8 @@ def test_the_same_seed_gives_the_same_tracks_and_another_seed_does_not(name):
 def test_a_fresh_process_gives_the_same_tracks():
     code = (
         "import numpy as np; from drawn_people import person_frame; "
-        "from tracker.people import make_tracker; t = make_tracker('peopleboy', np.random.default_rng(5)); "
+        "from tracker.single import SinglePersonTracker; from tracker.variants import PEOPLEBOY; "
+        "t = SinglePersonTracker(PEOPLEBOY, np.random.default_rng(5)); "
         "print([t.update(person_frame(i / 15, 60 + i)) for i in range(20)])"
     )
     here = Path(__file__).parent
@@ -144,7 +150,7 @@ def test_a_fresh_process_gives_the_same_tracks():
 
 
 def test_particles_are_those_of_the_detector_first_and_of_the_person_then():
-    tracker = make_tracker("peopleboy", np.random.default_rng(0))
+    tracker = make()
     tracker.update(Frame(thermal=blank(), time_s=0.0))
     assert set(tracker.particles) == {0}
     for i in range(1, 20):
@@ -159,14 +165,14 @@ def test_particles_are_those_of_the_detector_first_and_of_the_person_then():
 
 @pytest.mark.parametrize("second", [1.0, 0.5])
 def test_time_that_does_not_go_forward_is_refused(second):
-    tracker = make_tracker("thesis", np.random.default_rng(0))
+    tracker = make("thesis")
     tracker.update(Frame(thermal=blank(), time_s=1.0))
     with pytest.raises(BadInput, match="time_s must go forward"):
         tracker.update(Frame(thermal=blank(), time_s=second))
 
 
 def test_an_unknown_tracker_is_refused_with_the_names_of_those_that_exist():
-    with pytest.raises(BadInput, match="there are: peopleboy, footage, thesis, paper"):
+    with pytest.raises(BadInput, match=f"unknown tracker 'best'; there are: {', '.join(TRACKERS)}"):
         make_tracker("best", np.random.default_rng(0))
 
 
