@@ -46,6 +46,11 @@ class ColourView:
         alignment = Alignment.build(thermal_shape, (colour.shape[0], colour.shape[1]), config)
         return cls(picture, sums, alignment, config)
 
+    @property
+    def pixels(self) -> int:
+        """Pixels of the colour image."""
+        return int(self.picture.shape[0]) * int(self.picture.shape[1])
+
     def describe(self, state: Floats) -> Floats:
         """Describe people by the colours of head, torso and legs.
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from bad_input import BadInput
-from tracker.config import check_not_negative, check_positive, check_share
+from tracker.check_config import check_not_negative, check_positive, check_share
 
 Affine = tuple[float, float, float, float, float, float]
 
@@ -22,6 +22,9 @@ of the image's width.
 
 FAR_AFFINE: Affine = (-0.1, 1.20, 0.0, -0.1, 0.0, 1.20)
 """The same for things far away; with a `parallax` it holds for people at every distance."""
+
+ROBOT_PARALLAX = 0.147
+"""Shift of a person per semi-height h: 1.2 times 6 cm, over the 49 cm that h is of a person of 1.72 m."""
 
 REPRESENTATIONS = {"moments1": 1, "moments2": 2, "moments3": 3, "histogram": 0}
 """The ways to describe colours, and how many moments each takes."""

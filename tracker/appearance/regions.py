@@ -13,12 +13,13 @@ HEAD, TORSO, LEGS = range(3)
 PARTS = 3
 
 # Per part: share of d by which it is displaced; half its width in w and in h; its top and bottom below the
-# body's centre in h. The thesis shows the rectangles in a figure only (6.2 b).
+# body's centre in h. The thesis shows the rectangles in a figure only (6.2 b); these hold hardly anything but
+# the part they are named after, legs in mid-stride aside.
 _LAYOUT = np.array(
     [
         [1.0, 0.0, 0.12, -1.40, -1.05],
-        [0.0, 0.60, 0.0, -0.85, 0.15],
-        [0.0, 0.50, 0.0, 0.40, 1.80],
+        [0.0, 0.60, 0.0, -0.75, 0.10],
+        [0.0, 0.45, 0.0, 0.25, 1.65],
     ],
     dtype=np.float32,
 )
