@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.config import WorldConfig
-from sim.person_config import PersonConfig
-from sim.rooms import build_place, straight_corridor
-from sim.walk import Waypoint
+from sim.people.person_config import PersonConfig
+from sim.people.walk import Waypoint
+from sim.places.rooms import build_place, straight_corridor
 from sim.world import World
 
 # (x, y) [m] of the people in front of the robot, who walk on at the same pace.

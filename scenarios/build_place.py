@@ -9,10 +9,10 @@ from bad_input import BadInput
 from scenarios.explain import hint
 from scenarios.place_things import make_things, resolve_colour
 from scenarios.schema import Colour, CorridorSpec, DoorSpec, LCorridorSpec, PlaceSpec, RoomSpec, ScenarioSpec
-from sim.floor_plan import Door, FloorPlan, check_doors
 from sim.looks import Look
-from sim.place import Place
-from sim.rooms import Surfaces, build_place, l_corridor, straight_corridor, t_corridor
+from sim.places.floor_plan import Door, FloorPlan, check_doors
+from sim.places.place import Place
+from sim.places.rooms import Surfaces, build_place, l_corridor, straight_corridor, t_corridor
 
 
 def make_floor_plan(spec: PlaceSpec) -> FloorPlan:

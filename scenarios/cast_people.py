@@ -9,12 +9,12 @@ from dataclasses import asdict
 import numpy as np
 
 from scenarios.schema import ClothesSpec, GroupSpec, PersonSpec, WaypointSpec
-from sim.clothes import Clothes, random_clothes
-from sim.path import abreast
-from sim.person import PersonConfig
-from sim.postures import Posture
+from sim.people.clothes import Clothes, random_clothes
+from sim.people.path import abreast
+from sim.people.person import PersonConfig
+from sim.people.postures import Posture
+from sim.people.walk import Waypoint
 from sim.random_streams import stream
-from sim.walk import Waypoint
 
 # Stature of adults [m]: mean and standard deviation (NCD-RisC 2016, young adults of central Europe, rounded).
 _STATURE_M = {"female": (1.66, 0.06), "male": (1.79, 0.07)}

@@ -13,10 +13,10 @@ from bad_input import BadInput
 from scenarios.explain import hint
 from scenarios.place_things import describe_floor, name_things
 from scenarios.schema import PersonSpec, RobotSpec, ScenarioSpec, WaypointSpec
-from sim.floor_plan import FloorPlan
-from sim.place import Place
-from sim.rectangle import Rectangle
-from sim.things import KINDS
+from sim.places.floor_plan import FloorPlan
+from sim.places.place import Place
+from sim.places.rectangle import Rectangle
+from sim.places.things import KINDS
 
 BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
 ROBOT_M = 0.27  # radius of the circle around the robot

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from bad_input import BadInput
 from scenarios.loop import Tick
 from scenarios.tables import ROBOT, TRACKS, TRUTH, Row, robot_row, track_rows, truth_rows, write_table
-from sim.thermal import encode_16bit
+from sim.images.thermal import encode_16bit
 from tracker.track import Status
 
 _IMAGES = ("thermal", "thermal16", "colour")

@@ -10,8 +10,8 @@ from behaviours.behaviour import Behaviour
 from behaviours.command import Command
 from behaviours.sight import SeenPerson, Sight
 from sim.observation import Observation
-from sim.peoplebot import WHEEL_DISTANCE_M, Planar
-from sim.sonar import SONAR_ANGLE_RAD
+from sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
+from sim.robot.sonar import SONAR_ANGLE_RAD
 from sim.truth import Truth
 from sim.world import World
 from tracker.frame import Frame

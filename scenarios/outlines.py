@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from sim.extent import fixture_extent, shape_extent
-from sim.place import Fixture
+from sim.places.extent import fixture_extent, shape_extent
+from sim.places.place import Fixture
 from sim.rotations import pose_matrices
 from sim.shapes import Shape, ShapeKind
 

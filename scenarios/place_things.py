@@ -12,12 +12,12 @@ import numpy as np
 from bad_input import BadInput
 from scenarios.explain import hint
 from scenarios.schema import Colour, ScenarioSpec, ThingSpec
-from sim.clothes import COLOURS
-from sim.extent import Extent, find_urdf, fixture_extent, urdf_extent
-from sim.floor_plan import FloorPlan, Wall
 from sim.looks import Pattern, PatternKind, Rgb
-from sim.place import Fixture
-from sim.things import KINDS, Thing, build_thing
+from sim.people.clothes import COLOURS
+from sim.places.extent import Extent, find_urdf, fixture_extent, urdf_extent
+from sim.places.floor_plan import FloorPlan, Wall
+from sim.places.place import Fixture
+from sim.places.things import KINDS, Thing, build_thing
 
 _GAP_M = 0.01  # between a wall and what stands against it
 _SINK_M = 0.005  # furniture from a file reaches so far into what it stands on

@@ -11,8 +11,8 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from scenarios.labels import Labels
-from sim.person import PersonConfig
-from sim.walk import ALONE, Walker
+from sim.people.person import PersonConfig
+from sim.people.walk import ALONE, Walker
 
 _STEP_S = 0.05
 _MARK_EVERY_S = 5.0

@@ -10,9 +10,9 @@ from matplotlib.patches import Polygon, Rectangle
 from scenarios.labels import Box as Taken
 from scenarios.labels import Labels
 from scenarios.outlines import outlines
-from sim.extent import fixture_extent
-from sim.floor_plan import FloorPlan
-from sim.place import Fixture, Place
+from sim.places.extent import fixture_extent
+from sim.places.floor_plan import FloorPlan
+from sim.places.place import Fixture, Place
 
 WARMTH = LinearSegmentedColormap.from_list(
     "warmth",

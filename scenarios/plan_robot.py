@@ -14,7 +14,7 @@ from scenarios.labels import Labels
 from scenarios.scenario import Scenario
 from scenarios.schema import CommandSpec
 from sim.config import RobotConfig
-from sim.place import Place
+from sim.places.place import Place
 
 _COLOUR = "#c0392b"
 _COUNTED_M = (3.0, 10.0)

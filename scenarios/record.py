@@ -39,7 +39,7 @@ from scenarios.wording import describe
 from sim.alignment import affine_between
 from sim.camera import Camera, Matrix
 from sim.config import WorldConfig
-from sim.peoplebot import URDF, Planar
+from sim.robot.peoplebot import URDF, Planar
 from sim.shapes import ShapeKind
 from tracker.config import ContourConfig
 from tracker.track import Track

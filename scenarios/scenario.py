@@ -19,8 +19,8 @@ from scenarios.equip_robot import equip_robot
 from scenarios.outfits import tell_apart
 from scenarios.schema import DrawnSpec, PersonSpec, RobotSpec, ScenarioSpec
 from sim.config import WorldConfig
-from sim.floor_plan import FloorPlan
-from sim.place import Place
+from sim.places.floor_plan import FloorPlan
+from sim.places.place import Place
 from sim.random_streams import stream
 
 RENDERERS = ("raycast", "bullet")

@@ -11,9 +11,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from scenarios.palette import Rgb
-from sim.extent import fixture_extent, shape_extent
 from sim.looks import Look
-from sim.place import Fixture
+from sim.places.extent import fixture_extent, shape_extent
+from sim.places.place import Fixture
 from sim.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 from bad_input import BadInput
 from sim.camera import Camera
-from sim.person_config import PersonConfig
-from sim.place import Place
+from sim.people.person_config import PersonConfig
+from sim.places.place import Place
 
 # The colour camera sits 6 cm to the left of the thermal one and sees an angle narrower by 1.2 (T eq. 6.1).
 COLOUR_BASELINE_M = 0.06

@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from sim.camera import Camera, Matrix
-from sim.peoplebot import Planar
+from sim.robot.peoplebot import Planar
 
 Box = tuple[float, float, float, float]
 

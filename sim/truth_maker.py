@@ -9,15 +9,15 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.bodies import PartKey
 from sim.camera import Camera, Matrix, invert_pose, transform
-from sim.crowd import Crowd
 from sim.looks import Look
-from sim.peoplebot import Planar
-from sim.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
-from sim.render import View
-from sim.shape_table import ShapeTable
-from sim.silhouette import silhouette_area, silhouette_bounds
+from sim.people.crowd import Crowd
+from sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
+from sim.physics.bodies import PartKey
+from sim.rendering.render import View
+from sim.rendering.shape_table import ShapeTable
+from sim.rendering.silhouette import silhouette_area, silhouette_bounds
+from sim.robot.peoplebot import Planar
 from sim.truth import BORDER, Box, Cover, PersonTruth, Truth, box_from_bounds, count_cover, is_counted
 
 _Scene = tuple[ShapeTable, Matrix, Camera, Matrix]

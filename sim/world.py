@@ -9,22 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
-from sim.bullet import Bullet
 from sim.camera import Camera, Matrix
-from sim.colour import colour_image, expose
 from sim.config import WorldConfig
-from sim.crowd import Crowd
+from sim.images.colour import colour_image, expose
+from sim.images.surfaces import make_look_table
+from sim.images.thermal import detect, encode_8bit, make_detector, surface_image
 from sim.looks import Look
 from sim.observation import Observation
-from sim.peoplebot import NAME as ROBOT
-from sim.peoplebot import PeopleBot, Planar
-from sim.place import Place
+from sim.people.crowd import Crowd
+from sim.physics.bullet import Bullet
+from sim.places.place import Place
 from sim.random_streams import stream
-from sim.render import View, render
-from sim.robot_looks import robot_look
-from sim.shape_table import make_shape_table
-from sim.surfaces import make_look_table
-from sim.thermal import detect, encode_8bit, make_detector, surface_image
+from sim.rendering.render import View, render
+from sim.rendering.shape_table import make_shape_table
+from sim.robot.peoplebot import NAME as ROBOT
+from sim.robot.peoplebot import PeopleBot, Planar
+from sim.robot.robot_looks import robot_look
 from sim.truth import BORDER, Truth
 from sim.truth_maker import TruthMaker
 

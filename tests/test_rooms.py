@@ -37,7 +37,7 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("library", "home"), [("pybullet", "sim/bullet.py"), ("rerun", "scenarios/record.py")]
+    ("library", "home"), [("pybullet", "sim/physics/bullet.py"), ("rerun", "scenarios/record.py")]
 )
 def test_a_library_is_imported_in_one_file_only(library: str, home: str) -> None:
     users = {str(path.relative_to(ROOT)) for path in FILES if library in packages(path)}

@@ -14,11 +14,11 @@ from scenarios.run_events import LogLine
 from sim.camera import Camera
 from sim.config import WorldConfig
 from sim.observation import Observation
-from sim.peoplebot import Planar
-from sim.person_config import PersonConfig
-from sim.rooms import build_place, straight_corridor
+from sim.people.person_config import PersonConfig
+from sim.people.walk import Waypoint
+from sim.places.rooms import build_place, straight_corridor
+from sim.robot.peoplebot import Planar
 from sim.truth import PersonTruth, Truth
-from sim.walk import Waypoint
 from tracker.particles import Particles
 from tracker.track import Ellipse, Status, Track
 

@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from scenarios.figures import body_capsules, stick_figure, turn_z_to
 from scenarios.solids import fixture_solids, group_fixtures, urdf_solids
-from sim.extent import fixture_extent
-from sim.peoplebot import URDF
+from sim.places.extent import fixture_extent
+from sim.robot.peoplebot import URDF
 from sim.shapes import ShapeKind
 
 

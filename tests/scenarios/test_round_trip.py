@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from scenarios.load import parse_scenario
 from scenarios.read_yaml import read_yaml
-from sim.clothes import BOTTOMS, COLOURS, TOPS
+from sim.people.clothes import BOTTOMS, COLOURS, TOPS
 
 NOWHERE = Path("/nowhere")
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim.extent import fixture_extent
-from sim.place import Fixture
+from sim.places.extent import fixture_extent
+from sim.places.place import Fixture
 from sim.shapes import ShapeKind
 
 _CLOSE_M = 2e-4

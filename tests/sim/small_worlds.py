@@ -6,11 +6,11 @@ from functools import cache
 from sim.camera import Camera
 from sim.config import ColourConfig, RobotConfig, SonarConfig, ThermalConfig, WorldConfig
 from sim.looks import Look
-from sim.person_config import PersonConfig
-from sim.place import Fixture, Place
-from sim.rooms import build_place, straight_corridor
+from sim.people.person_config import PersonConfig
+from sim.people.walk import Waypoint
+from sim.places.place import Fixture, Place
+from sim.places.rooms import build_place, straight_corridor
 from sim.shapes import Part, Shape, ShapeKind
-from sim.walk import Waypoint
 
 SMALL = Camera(width=160, height=120)
 EXACT_SONAR = SonarConfig(noise_m=0.0, drop_out=0.0)

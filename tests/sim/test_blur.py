@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.blur import optics_blur, rotation_blur
 from sim.camera import Camera
+from sim.images.blur import optics_blur, rotation_blur
 
 CAMERA = Camera(width=64, height=16, vertical_fov_rad=0.25)
 

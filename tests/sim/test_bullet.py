@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from bad_input import BadInput
-from sim.bullet import Bullet
 from sim.camera import Camera, invert_pose, transform
+from sim.physics.bullet import Bullet
 from sim.rotations import pose_matrices
 from sim.shapes import Quaternion, Shape, ShapeKind
 
@@ -46,7 +46,7 @@ def test_shapes_and_files_that_cannot_be_used_are_refused_in_one_line(tmp_path: 
 
 def test_nothing_reaches_the_terminal() -> None:
     program = """
-from sim.bullet import Bullet
+from sim.physics.bullet import Bullet
 from sim.shapes import Shape, ShapeKind
 print("before")
 with Bullet() as bullet:
@@ -61,7 +61,8 @@ print("after")
 
 
 def test_a_process_without_standard_output_can_use_it() -> None:
-    program = "import os; os.close(1); from sim.bullet import Bullet; Bullet().add_urdf('c', 'cube.urdf')"
+    use = "from sim.physics.bullet import Bullet; Bullet().add_urdf('c', 'cube.urdf')"
+    program = f"import os; os.close(1); {use}"
     subprocess.run([sys.executable, "-c", program], check=True)
 
 

@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 
 from sim.camera import Camera
-from sim.colour import colour_image, expose
 from sim.config import ColourConfig
+from sim.images.colour import colour_image, expose
+from sim.images.surfaces import make_look_table
 from sim.looks import Look, Pattern, PatternKind
 from sim.random_streams import stream
-from sim.render import View
-from sim.surfaces import make_look_table
+from sim.rendering.render import View
 
 CONFIG = ColourConfig(camera=Camera(width=60, height=40))
 WHITE = (1.0, 1.0, 1.0)

@@ -9,9 +9,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from bad_input import BadInput
-from sim.floor_plan import LOBBY_MARGIN_M, WALL_M, Door, FloorPlan, check_doors
-from sim.rectangle import Rectangle, subtract
-from sim.rooms import build_place, l_corridor, straight_corridor, t_corridor
+from sim.places.floor_plan import LOBBY_MARGIN_M, WALL_M, Door, FloorPlan, check_doors
+from sim.places.rectangle import Rectangle, subtract
+from sim.places.rooms import build_place, l_corridor, straight_corridor, t_corridor
 
 sizes = st.floats(3.0, 12.0).map(lambda size: round(size, 2))
 widths = st.floats(1.6, 2.9).map(lambda width: round(width, 2))

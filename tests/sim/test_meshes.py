@@ -5,11 +5,11 @@ import pytest
 import trimesh
 
 from bad_input import BadInput
-from sim.bullet import Bullet, find_model
 from sim.camera import Camera
-from sim.meshes import load_triangles
-from sim.render import render
-from sim.shape_table import make_shape_table
+from sim.physics.bullet import Bullet, find_model
+from sim.rendering.meshes import load_triangles
+from sim.rendering.render import render
+from sim.rendering.shape_table import make_shape_table
 from sim.shapes import Shape, ShapeKind
 
 

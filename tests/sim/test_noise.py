@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sim.noise import gaussian
+from sim.images.noise import gaussian
 from sim.random_streams import stream
 
 

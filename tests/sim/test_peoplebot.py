@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bad_input import BadInput
-from sim.bullet import Bullet
 from sim.config import DriveConfig, RobotConfig, SonarConfig
-from sim.peoplebot import (
+from sim.physics.bullet import Bullet
+from sim.robot.peoplebot import (
     NAME,
     URDF,
     WHEEL_DISTANCE_M,

@@ -5,12 +5,12 @@ import pytest
 from person_shapes import person_depth, person_points
 from walkers import make_person, settle, walk
 
-from sim import anthropometry as table
-from sim.anthropometry import MEAN_GIRTHS, measure
-from sim.clothes import Clothes
-from sim.joints import JOINT_NAMES
-from sim.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Posture, Waypoint
-from sim.skeleton import PARENTS, joint_offsets
+from sim.people import anthropometry as table
+from sim.people.anthropometry import MEAN_GIRTHS, measure
+from sim.people.clothes import Clothes
+from sim.people.joints import JOINT_NAMES
+from sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Posture, Waypoint
+from sim.people.skeleton import PARENTS, joint_offsets
 
 BARE = Clothes(top="t_shirt", bottom="leggings")
 BODIES = list(itertools.product(("female", "male"), ("slim", "average", "stout")))

@@ -5,9 +5,9 @@ import pytest
 from walkers import make_person, settle
 
 from bad_input import BadInput
-from sim.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Clothes, dress, random_clothes
 from sim.looks import PatternKind
-from sim.person import PersonConfig, Posture, Waypoint
+from sim.people.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Clothes, dress, random_clothes
+from sim.people.person import PersonConfig, Posture, Waypoint
 from sim.random_streams import stream
 
 HERE = (Waypoint(at_m=(0.0, 0.0)),)

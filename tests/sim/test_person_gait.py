@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from walkers import make_person, settle, walk
 
-from sim.body import sole_points
-from sim.motion_capture import fourier_basis, load_walking_clip
-from sim.person import Posture, Waypoint
-from sim.skeleton import mirror
+from sim.people.body import sole_points
+from sim.people.motion_capture import fourier_basis, load_walking_clip
+from sim.people.person import Posture, Waypoint
+from sim.people.skeleton import mirror
 
 FOOT_PARTS = ("left_foot", "right_foot")
 

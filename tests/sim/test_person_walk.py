@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from walkers import make_person, settle, walk, walk_together
 
-from sim.path import CORNER_CUT_M, abreast, route
-from sim.person import PlanarState, Posture, Waypoint, timetable
-from sim.walk import ACCELERATION_M_S2, TURN_RATE_RAD_S
+from sim.people.path import CORNER_CUT_M, abreast, route
+from sim.people.person import PlanarState, Posture, Waypoint, timetable
+from sim.people.walk import ACCELERATION_M_S2, TURN_RATE_RAD_S
 
 
 def path(*points, **options):

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from sim.bullet import Bullet
 from sim.camera import Camera, invert_pose, transform
-from sim.render import View, cast
+from sim.physics.bullet import Bullet
+from sim.rendering.render import View, cast
+from sim.rendering.shape_table import VisualShape, make_shape_table
 from sim.rotations import pose_matrices
-from sim.shape_table import VisualShape, make_shape_table
 from sim.shapes import Shape, ShapeKind
 
 Array = NDArray[np.float64]

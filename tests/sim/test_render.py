@@ -14,10 +14,10 @@ import trimesh
 from numpy.typing import NDArray
 
 from bad_input import BadInput
-from sim.bullet import Bullet
 from sim.camera import Camera
-from sim.render import View, render
-from sim.shape_table import make_shape_table
+from sim.physics.bullet import Bullet
+from sim.rendering.render import View, render
+from sim.rendering.shape_table import make_shape_table
 from sim.shapes import Quaternion, Shape, ShapeKind
 
 ROOM = {

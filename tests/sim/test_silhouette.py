@@ -6,11 +6,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from sim.camera import Camera
-from sim.render import cast
+from sim.rendering.render import cast
+from sim.rendering.shape_table import ShapeTable, VisualShape, make_shape_table
+from sim.rendering.silhouette import silhouette_area, silhouette_bounds
 from sim.rotations import pose_matrices
-from sim.shape_table import ShapeTable, VisualShape, make_shape_table
 from sim.shapes import ShapeKind
-from sim.silhouette import silhouette_area, silhouette_bounds
 
 KINDS = [ShapeKind.SPHERE, ShapeKind.CAPSULE, ShapeKind.CYLINDER, ShapeKind.BOX]
 EVERYTHING = np.ones(1, np.bool_)

@@ -5,9 +5,15 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from sim.camera import Camera
+from sim.images.surfaces import (
+    make_look_table,
+    part_from_pixel,
+    pattern_value,
+    smooth_variation,
+    surface_point,
+)
 from sim.looks import Look, PatternKind
 from sim.random_streams import stream
-from sim.surfaces import make_look_table, part_from_pixel, pattern_value, smooth_variation, surface_point
 
 PHASE = stream(0, "surface.variation").uniform(0.0, 1.0, (3, 3))
 

@@ -5,11 +5,11 @@ from hypothesis import strategies as st
 
 from sim.camera import Camera
 from sim.config import ThermalConfig
+from sim.images.surfaces import make_look_table
+from sim.images.thermal import band_radiance, detect, encode_8bit, encode_16bit, make_detector, surface_image
 from sim.looks import Look
 from sim.random_streams import stream
-from sim.render import View
-from sim.surfaces import make_look_table
-from sim.thermal import band_radiance, detect, encode_8bit, encode_16bit, make_detector, surface_image
+from sim.rendering.render import View
 
 CONFIG = ThermalConfig(camera=Camera(width=40, height=30))
 

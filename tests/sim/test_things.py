@@ -8,10 +8,10 @@ from boxes import Box, fighting_faces, piece_boxes
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.extent import find_urdf, fixture_extent, urdf_extent
-from sim.pieces import SINK_M
-from sim.place import Fixture
-from sim.things import KINDS, Thing, build_thing
+from sim.places.extent import find_urdf, fixture_extent, urdf_extent
+from sim.places.pieces import SINK_M
+from sim.places.place import Fixture
+from sim.places.things import KINDS, Thing, build_thing
 
 kinds = pytest.mark.parametrize("kind", KINDS)
 

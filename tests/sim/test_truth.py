@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from small_worlds import SMALL, box_thing, config, hall, person, pillar, robot
 
-from sim.bullet import Bullet
 from sim.camera import Camera
-from sim.person import PART_CLASSES
+from sim.people.person import PART_CLASSES
+from sim.physics.bullet import Bullet
 from sim.truth import BORDER, PersonTruth, Truth, is_counted
 from sim.world import World
 

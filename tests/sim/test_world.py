@@ -12,13 +12,13 @@ from small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
 
 import sim.world
 from bad_input import BadInput
-from sim import bullet
 from sim.camera import Camera
 from sim.config import RobotConfig, WorldConfig
 from sim.looks import Look
-from sim.person_config import PersonConfig
-from sim.place import Fixture
-from sim.walk import Waypoint
+from sim.people.person_config import PersonConfig
+from sim.people.walk import Waypoint
+from sim.physics import bullet
+from sim.places.place import Fixture
 from sim.world import World, light_level
 
 QUIET = replace(NO_NOISE, camera=SMALL)

@@ -1,0 +1,1 @@
+"""Image formation: from what a pixel sees to thermal and colour images."""

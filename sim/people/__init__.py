@@ -1,0 +1,1 @@
+"""Walking people: bodies, gait, scripts, clothes."""

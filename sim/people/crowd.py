@@ -1,0 +1,111 @@
+"""The people of a world: they walk by their scripts, and their bodies in the physics world go with them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from sim.looks import Look
+from sim.people.person import Person
+from sim.people.person_config import PersonConfig
+from sim.people.social_force import PlanarState
+from sim.physics.bullet import Bullet
+from sim.places.place import Place
+from sim.random_streams import stream
+from sim.robot.peoplebot import RADIUS_M, PeopleBot
+from sim.shapes import UPRIGHT, Shape, ShapeKind
+
+# What robots bump into and sonars hear: an upright capsule, which no camera sees.
+_SOLID = "solid"
+
+
+class Crowd:
+    """All people of a world and their bodies.
+
+    Each visible part is a body of its own, put where the gait says it is. Contacts and sonar meet one
+    upright capsule per person instead, which moves in every physics step. Who appears where the robot stands
+    is passed through until they are apart, as physics would throw the robot away.
+    """
+
+    def __init__(self, bullet: Bullet, configs: Sequence[PersonConfig], place: Place, seed: int) -> None:
+        self._bullet = bullet
+        self._obstacles = place.obstacles
+        self.people = tuple(Person(config, stream(seed, f"person.{config.name}")) for config in configs)
+        self.looks: dict[str, Look] = {}
+        self._is_shown = dict.fromkeys((person.name for person in self.people), True)
+        self._solid: set[str] = set()
+        self._before: dict[str, NDArray[np.float64]] = {}
+        for person in self.people:
+            self._add(person)
+
+    def step(self, time_s: float, dt_s: float, robot: PeopleBot) -> None:
+        """Let everybody walk on for dt_s from time_s, knowing where the others are now."""
+        states = {person.name: _state(person) for person in self.people if person.present}
+        pose, (speed, _) = robot.pose(), robot.velocity()
+        heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
+        place = np.array([pose.x, pose.y])
+        robot_state = PlanarState(position=place, velocity=speed * heading, radius_m=RADIUS_M)
+        for person in self.people:
+            self._before[person.name] = person.position.copy()
+            others = {name: state for name, state in states.items() if name != person.name}
+            person.step(time_s, dt_s, others, robot_state, self._obstacles)
+
+    def move_bodies(self, share: float) -> None:
+        """Move the solid capsules to where people are when this share of the control step has passed."""
+        for person in self.people:
+            if person.name in self._solid:
+                before = self._before[person.name]
+                self._place_solid(person, before + share * (person.position - before))
+
+    def show(self, robot: PeopleBot) -> None:
+        """Put every visible part where its person is now; those who are away are hidden."""
+        for person in self.people:
+            if person.present != self._is_shown[person.name]:
+                self._set_shown(person, person.present)
+            if person.present:
+                self._pose(person)
+                self._make_solid(person, robot)
+
+    def _add(self, person: Person) -> None:
+        for part in person.parts:
+            name = f"{person.name}/{part.name}"
+            self._bullet.add_part(name, part.shapes, solid=False)
+            self.looks[name] = part.look
+        radius, height = person.radius_m, person.config.height_m
+        capsule = Shape(kind=ShapeKind.CAPSULE, size=(height - 2.0 * radius, radius, 0.0))
+        self._bullet.add_part(f"{person.name}/{_SOLID}", [capsule], visible=False)
+        self._bullet.set_hidden(f"{person.name}/{_SOLID}", True)
+        self.looks[f"{person.name}/{_SOLID}"] = person.parts[0].look
+
+    def _set_shown(self, person: Person, is_shown: bool) -> None:
+        self._is_shown[person.name] = is_shown
+        for part in person.parts:
+            self._bullet.set_hidden(f"{person.name}/{part.name}", not is_shown)
+        if not is_shown:
+            self._solid.discard(person.name)
+            self._bullet.set_hidden(f"{person.name}/{_SOLID}", True)
+
+    def _make_solid(self, person: Person, robot: PeopleBot) -> None:
+        """Give a person who has just appeared its solid capsule, as soon as the robot is not in it."""
+        if person.name not in self._solid and robot.gap_to(*person.position.tolist()) > person.radius_m:
+            self._solid.add(person.name)
+            self._bullet.set_hidden(f"{person.name}/{_SOLID}", False)
+
+    def _pose(self, person: Person) -> None:
+        poses = person.poses()
+        orientations = Rotation.from_matrix(poses[:, :3, :3]).as_quat().tolist()
+        positions = poses[:, :3, 3].tolist()
+        for part, position, orientation in zip(person.parts, positions, orientations, strict=True):
+            self._bullet.set_pose(f"{person.name}/{part.name}", tuple(position), tuple(orientation))
+        self._place_solid(person, person.position)
+
+    def _place_solid(self, person: Person, position: NDArray[np.float64]) -> None:
+        at = (float(position[0]), float(position[1]), person.config.height_m / 2.0)
+        self._bullet.set_pose(f"{person.name}/{_SOLID}", at, UPRIGHT)
+
+
+def _state(person: Person) -> PlanarState:
+    return PlanarState(position=person.position.copy(), velocity=person.velocity.copy())

@@ -1,0 +1,250 @@
+"""Walking people: what they are made of, how they move, where their parts are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.looks import Look
+from sim.people.anthropometry import BodySize, measure
+from sim.people.body import ARM_PARTS as _LIMBS
+from sim.people.body import (
+    BAG_PART,
+    BODY_PARTS,
+    TORSO_PARTS,
+    PartGeometry,
+    bag,
+    bone_index,
+    build_body,
+    sole_points,
+)
+from sim.people.clothes import dress
+from sim.people.gait import Gait, lowest_sole
+from sim.people.joints import joint_points
+from sim.people.person_config import Arms, PersonConfig
+from sim.people.postures import Posture, pelvis_shift, posture_rotations
+from sim.people.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
+from sim.people.social_force import PlanarState
+from sim.people.timetable import timetable
+from sim.people.walk import RISE_S, Surroundings, Walker, Waypoint
+from sim.shapes import Part
+
+Array = NDArray[np.float64]
+
+ARM_PARTS = (*_LIMBS, BAG_PART)
+PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, BAG_PART), start=1)}
+
+__all__ = [
+    "ARM_PARTS", "PART_CLASSES", "TORSO_PARTS", "Arms", "Person", "PersonConfig", "PlanarState", "Posture",
+    "Waypoint", "timetable",
+]  # fmt: skip
+
+_ARM_POSTURES: dict[Arms, Posture | None] = {
+    "swinging": None,
+    "crossed": Posture.ARMS_CROSSED,
+    "raised": Posture.ARMS_RAISED,
+}
+_BAG_LOOK = Look(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
+_BAG_HAND = "right"
+_BAG_SWING = 0.25
+_SWAY_RAD, _SWAY_HZ = 0.006, 0.23
+# Who turns on the spot takes small steps: as if the feet went round a circle, and so many cycles a turn.
+_TURNING_RADIUS_M = 0.04
+_CYCLES_PER_RAD = 0.4
+
+
+class Person:
+    """A person that follows its script.
+
+    Attributes:
+        config: as given.
+        name: as configured.
+        parts: what it is made of, fixed for life; `poses` is in their order.
+        present: whether it is in the world now.
+    """
+
+    def __init__(self, config: PersonConfig, rng: np.random.Generator) -> None:
+        self.config = config
+        self.name = config.name
+        self.present = config.enter_s <= 0.0
+        self._size = measure(config.height_m, config.sex, config.build)
+        geometry = _geometry(config, self._size)
+        looks = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
+        self.parts = tuple(Part(name=n, shapes=g.shapes, look=looks[n]) for n, g in geometry.items())
+        self._part_bone = bone_index(geometry)
+        self._part_offset = np.array([g.offset_m for g in geometry.values()])
+        self._joint_bone, self._joint_offset = joint_points(self._size)
+        self._offsets = joint_offsets(self._size)
+        self._soles = sole_points(config.height_m)
+        self._gait = Gait(self._offsets, config.height_m)
+        self._walker = Walker(config.path, config.yields, self.radius_m)
+        self._phase = float(rng.uniform())
+        self._sway_phase = float(rng.uniform())
+        self._time_s = 0.0
+        self._speed = 0.0
+        self._blend = dict.fromkeys(Posture, 0.0)
+        self._blend[self._walker.posture] = 1.0
+        self._arms = _ARM_POSTURES[config.arms]
+        self._bones: Array | None = None
+
+    @property
+    def position(self) -> Array:
+        """(2,) [m] in the world frame."""
+        return self._walker.position
+
+    @property
+    def heading(self) -> float:
+        """[rad] the direction that the body faces."""
+        return self._walker.heading
+
+    @property
+    def velocity(self) -> Array:
+        """(2,) [m/s] in the world frame."""
+        return self._walker.velocity
+
+    @property
+    def posture(self) -> Posture:
+        """The posture that it has or is about to take up."""
+        return self._walker.posture
+
+    @property
+    def radius_m(self) -> float:
+        """[m] of the upright capsule that stands for the person in contacts and sonar."""
+        girths = self._size.girths
+        return (girths.bideltoid_breadth + girths.chest_depth) / 4.0 * self._size.stature_m
+
+    @property
+    def torso_width_m(self) -> float:
+        """[m] breadth across the shoulders, without arms."""
+        girths = self._size.girths
+        return max(girths.bideltoid_breadth, girths.hip_breadth) * self._size.stature_m
+
+    def step(
+        self,
+        time_s: float,
+        dt_s: float,
+        others: Mapping[str, PlanarState],
+        robot: PlanarState | None,
+        walls: Array,
+    ) -> None:
+        """Move on.
+
+        Args:
+            time_s: [s] at the start of the step.
+            dt_s: [s] length of the step.
+            others: the other people who are present, by name.
+            robot: None if there is none.
+            walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
+        """
+        config = self.config
+        was_present = self.present
+        self._time_s = time_s + dt_s
+        has_left = config.leave_s is not None and self._time_s > config.leave_s - 1e-9
+        self.present = config.enter_s <= self._time_s + 1e-9 and not has_left
+        around = Surroundings(others=others, robot=robot, walls=walls)
+        if self.present and was_present:
+            self._walker.step(dt_s, around)
+            self._move_limbs(dt_s)
+        elif self.present:
+            self._walker.enter(around)
+            self._bones = None
+
+    def _move_limbs(self, dt_s: float) -> None:
+        """Advance gait and postures by a time step."""
+        walker = self._walker
+        speed = math.hypot(*walker.velocity, _TURNING_RADIUS_M * walker.turn_rate)
+        change = 3.0 * dt_s
+        self._speed += min(max(speed - self._speed, -change), change)
+        amplitude = self._gait.amplitude(self._speed)
+        walking_hz = self._speed / self._gait.stride_m(amplitude) if amplitude > 1e-3 else 0.0
+        turning_hz = 0.0 if walker.is_walking else _CYCLES_PER_RAD * abs(walker.turn_rate)
+        self._phase = (self._phase + max(walking_hz, turning_hz) * dt_s) % 1.0
+        for posture in Posture:
+            wanted = float(posture is walker.posture)
+            step = dt_s / RISE_S
+            self._blend[posture] += min(max(wanted - self._blend[posture], -step), step)
+        self._bones = None
+
+    def poses(self) -> Array:
+        """(P, 4, 4) world from part, in the order of `parts`."""
+        poses = self._world_bones()[self._part_bone]
+        poses[:, :3, 3] += np.einsum("pij,pj->pi", poses[:, :3, :3], self._part_offset)
+        return poses
+
+    def joints(self) -> Array:
+        """(17, 3) [m] world points of the joints in COCO order, each inside the person's shapes."""
+        poses = self._world_bones()[self._joint_bone]
+        points: Array = np.einsum("pij,pj->pi", poses[:, :3, :3], self._joint_offset) + poses[:, :3, 3]
+        return points
+
+    def _world_bones(self) -> Array:
+        """(17, 4, 4) world from bone."""
+        if self._bones is None:
+            self._bones = self._place()
+        return self._bones
+
+    def _place(self) -> Array:
+        """Put the bones above the floor, at the person's place and heading."""
+        rotations, (front, left) = self._pose()
+        offsets = self._offsets.copy()
+        offsets[0] = front, left, 0.0
+        bones = place_bones(rotations, offsets)
+        bones[:, 2, 3] -= lowest_sole(bones, self._soles)
+        heading = self._walker.heading
+        cos, sin = math.cos(heading), math.sin(heading)
+        world = np.eye(4)
+        world[:2, :2] = [[cos, -sin], [sin, cos]]
+        world[:2, 3] = self._walker.position
+        placed: Array = world @ bones
+        return placed
+
+    def _pose(self) -> tuple[Array, tuple[float, float]]:
+        """(17, 3) [rad] rotation vectors and the pelvis' offset [m] to the front and to the left."""
+        amplitude = self._gait.amplitude(self._speed)
+        rotations, sway = self._gait.pose(self._phase, amplitude)
+        standing = _POSTURES[Posture.STANDING]
+        weights = {posture: _ease(share) for posture, share in self._blend.items()}
+        arms = sum(weights[p] for p in Posture if p is not Posture.STANDING)
+        if self._arms is not None:
+            weights[self._arms] = max(weights[self._arms], 1.0 - arms)
+            arms = 1.0
+        rotations[ARM_BONES] += min(arms, 1.0) * (standing - rotations)[ARM_BONES]
+        if self.config.bag:
+            self._steady_bag_arm(rotations, standing)
+        front = float(sway[0])
+        for posture, weight in weights.items():
+            if weight > 0.0 and posture is not Posture.STANDING:
+                rotations += weight * (_POSTURES[posture] - standing)
+                front += weight * pelvis_shift(posture) * self.config.height_m
+        self._sway(rotations)
+        return rotations, (front, float(sway[1]))
+
+    def _steady_bag_arm(self, rotations: Array, standing: Array) -> None:
+        arm = [BONE_INDEX[f"{_BAG_HAND}_{bone}"] for bone in ("upper_arm", "forearm", "hand")]
+        rotations[arm] = standing[arm] + _BAG_SWING * (rotations - standing)[arm]
+
+    def _sway(self, rotations: Array) -> None:
+        """Lean a little about the ankles, as nobody stands quite still."""
+        angle = 2.0 * math.pi * (_SWAY_HZ * self._time_s + self._sway_phase)
+        lean = _SWAY_RAD * np.array([math.sin(angle), math.cos(0.71 * angle), 0.0])
+        rotations[BONE_INDEX["pelvis"]] += lean
+        for side in ("left", "right"):
+            rotations[BONE_INDEX[f"{side}_foot"]] -= lean
+
+
+_POSTURES = {posture: posture_rotations(posture) for posture in Posture}  # (17, 3) each
+
+
+def _ease(share: float) -> float:
+    """Smooth a share that runs from 0 to 1 in time."""
+    return share * share * (3.0 - 2.0 * share)
+
+
+def _geometry(config: PersonConfig, size: BodySize) -> dict[str, PartGeometry]:
+    parts = build_body(size, config.clothes.hair, config.clothes.thickness_m())
+    if config.bag:
+        parts[BAG_PART] = bag(_BAG_HAND, size.stature_m)
+    return parts

@@ -1,0 +1,429 @@
+"""The only caller of PyBullet: bodies by name, physics steps, rays, contacts and TinyRenderer's images."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bad_input import BadInput
+from sim.camera import Camera, Matrix
+from sim.physics.bodies import Bodies, Body, PartKey, Place
+from sim.physics.bullet_shapes import shape_arguments, visual_shape
+from sim.physics.opengl import metric_depth, projection_matrix, view_matrix
+from sim.physics.quiet import quiet
+from sim.rendering.bounds import FAR_M, NEAR_M
+from sim.rendering.shape_table import VisualShape
+from sim.rotations import pose_matrices
+from sim.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
+
+try:
+    with quiet():
+        import pybullet
+        import pybullet_data
+except ImportError as error:
+    raise BadInput(
+        "pybullet is not installed: its wheels are for Linux and Python 3.10 or 3.11; use Python 3.11"
+    ) from error
+
+GRAVITY_M_S2 = 9.81
+_SHAPES_A_BODY = 16  # PyBullet silently drops the rest
+_HERE: Place = ((0.0, 0.0, 0.0), UPRIGHT)
+_PARKED: Place = ((0.0, 0.0, -500.0), UPRIGHT)
+_ALL = -1
+_ALL_BUT_STATIC = -3
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A point at which a body touches another.
+
+    Attributes:
+        other: name of the other body.
+        position: [m] where, on the other body, world frame.
+        normal: unit vector from the other body to this one, world frame.
+        normal_force_n: [N] along that vector; 0 when they touch without pressing.
+    """
+
+    other: str
+    position: Vector
+    normal: Vector
+    normal_force_n: float
+
+
+class _Client:
+    """PyBullet's functions, bound to one physics server."""
+
+    def __init__(self) -> None:
+        with quiet():
+            self._number: int | None = pybullet.connect(pybullet.DIRECT)
+
+    def __getattr__(self, name: str) -> Callable[..., Any]:
+        function = partial(getattr(pybullet, name), physicsClientId=self._number)
+        setattr(self, name, function)
+        return function
+
+    def close(self) -> None:
+        if self._number is not None:
+            pybullet.disconnect(physicsClientId=self._number)
+            self._number = None
+
+
+class Bullet:
+    """A PyBullet world of its own, in which bodies go by name.
+
+    Parts are numbered in the order in which they were created; the number never changes. The frame of a
+    part is the frame in which its shapes were given: for a link of a URDF the link's own frame, not that
+    of its centre of mass. Use it as a context manager; several may be open at once. Every method that takes
+    a name raises BadInput if no body has it.
+    """
+
+    def __init__(self, *, physics_hz: int = 240, gravity: bool = True) -> None:
+        self._client = _Client()
+        self._bodies = Bodies()
+        self._poses = np.zeros((0, 4, 4))
+        self._moved: dict[str, Body] = {}
+        self._client.setPhysicsEngineParameter(
+            fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1
+        )
+        self._client.setGravity(0.0, 0.0, -GRAVITY_M_S2 if gravity else 0.0)
+
+    def __enter__(self) -> Bullet:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free the world; closing twice is harmless."""
+        self._client.close()
+
+    def add_part(
+        self,
+        name: str,
+        shapes: Sequence[Shape],
+        *,
+        position: Vector = (0.0, 0.0, 0.0),
+        orientation: Quaternion = UPRIGHT,
+        visible: bool = True,
+        solid: bool = True,
+    ) -> None:
+        """Add a body of one part that stays where it is put, however hard it is hit.
+
+        An invisible part is drawn by no renderer; one that is not solid is passed by rays and bodies. Shapes
+        beyond the 16 that a PyBullet body holds go into further bodies under the same name.
+
+        Raises:
+            BadInput: the name is taken, there are no shapes, or a mesh is missing or cannot be read.
+        """
+        self._bodies.check_new(name)
+        if not shapes:
+            raise BadInput(f"body {name!r}: it has no shapes; give at least one")
+        for shape in shapes:
+            if shape.kind == ShapeKind.MESH and not (shape.mesh and shape.mesh.is_file()):
+                raise BadInput(f"body {name!r}: there is no mesh {shape.mesh}; give an OBJ, STL or DAE file")
+        starts = range(0, len(shapes), _SHAPES_A_BODY)
+        try:
+            with quiet():
+                ids = [self._create(shapes[at : at + _SHAPES_A_BODY], visible, solid) for at in starts]
+        except pybullet.error as error:
+            raise BadInput(f"body {name!r}: PyBullet refuses its shapes ({error})") from error
+        self._register(name, ids, moves_by_itself=False)
+        self.set_pose(name, position, orientation)
+
+    def add_urdf(
+        self,
+        name: str,
+        path: Path | str,
+        *,
+        position: Vector = (0.0, 0.0, 0.0),
+        orientation: Quaternion = UPRIGHT,
+        fixed: bool = True,
+        scale: float = 1.0,
+    ) -> None:
+        """Add the robot or thing of a URDF file, or the first model of an SDF file.
+
+        Args:
+            name: what to call it.
+            path: the file; a relative one that does not exist is looked up in pybullet_data.
+            position: [m] of the base link's frame in the world.
+            orientation: of the base link's frame, world from base.
+            fixed: held in place for good.
+            scale: factor on all lengths.
+
+        Raises:
+            BadInput: the name is taken, or the file is missing or broken.
+        """
+        self._bodies.check_new(name)
+        file = find_model(path)
+        load = self._load_sdf if file.suffix == ".sdf" else self._load_urdf
+        try:
+            with quiet():
+                number = load(str(file), fixed, scale)
+        except pybullet.error as error:
+            raise BadInput(f"body {name!r}: PyBullet cannot load {file} ({error})") from error
+        self._register(name, [number], moves_by_itself=not fixed)
+        self.set_pose(name, position, orientation)
+
+    def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
+        """Put a body's base frame at `position` [m] and `orientation` in the world, at rest."""
+        body = self._bodies[name]
+        if body.hidden_at is not None:
+            body.hidden_at = (position, orientation)
+        else:
+            self._put(body, (position, orientation))
+
+    def set_hidden(self, name: str, hidden: bool) -> None:
+        """Take a body out of images, rays and contacts, or put it back where it was last placed.
+
+        Raises:
+            BadInput: physics moves the body, so that there is no place to put it back to.
+        """
+        body = self._bodies[name]
+        if body.moves_by_itself:
+            raise BadInput(f"body {name!r} is not fixed: it cannot be hidden")
+        if hidden and body.hidden_at is None:
+            place = self._base_place(body)
+            self._put(body, _PARKED)
+            body.hidden_at = place
+        elif not hidden and body.hidden_at is not None:
+            self._put(body, body.hidden_at)
+            body.hidden_at = None
+
+    def hidden_parts(self) -> NDArray[np.bool_]:
+        """(P,) which parts are hidden now."""
+        return self._bodies.hidden_parts()
+
+    def set_friction(
+        self, name: str, link: int, *, lateral: float, rolling: float = 0.0, spinning: float = 0.0
+    ) -> None:
+        """Set the friction coefficients of one link, -1 being the base."""
+        coefficients = {"lateralFriction": lateral, "rollingFriction": rolling, "spinningFriction": spinning}
+        for number in self._bodies[name].ids:
+            self._client.changeDynamics(number, link, **coefficients)
+
+    def step(self) -> None:
+        """Advance the world by one physics step."""
+        self._client.stepSimulation()
+        self._moved.update({body.name: body for body in self._bodies if body.moves_by_itself})
+
+    def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
+        """Drive joints at speeds [rad/s, or m/s if they slide] with at most this torque [N m, or N] each.
+
+        Zero torque lets the joints run free.
+
+        Raises:
+            BadInput: the body has no such joint.
+        """
+        body = self._bodies[name]
+        self._client.setJointMotorControlArray(
+            body.ids[0],
+            body.links_of(list(speeds)),
+            pybullet.VELOCITY_CONTROL,
+            targetVelocities=list(speeds.values()),
+            forces=[max_torque_nm] * len(speeds),
+        )
+
+    def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
+        """Positions (J,) [rad or m] and speeds (J,) [rad/s or m/s] of the named joints.
+
+        Raises:
+            BadInput: the body has no such joint.
+        """
+        body = self._bodies[name]
+        states = self._client.getJointStates(body.ids[0], body.links_of(joints))
+        return np.array([state[0] for state in states]), np.array([state[1] for state in states])
+
+    def velocity(self, name: str) -> tuple[Matrix, Matrix]:
+        """Linear (3,) [m/s] velocity of the base's centre of mass and angular (3,) [rad/s], world frame."""
+        linear, angular = self._client.getBaseVelocity(self._bodies[name].ids[0])
+        return np.array(linear), np.array(angular)
+
+    def parts(self) -> tuple[PartKey, ...]:
+        """All parts, in the order of their numbers."""
+        return tuple(self._bodies.parts)
+
+    def pose(self, name: str) -> Matrix:
+        """(4, 4) world from the frame of the body's base; where it will reappear if it is hidden."""
+        body = self._bodies[name]
+        return pose_matrices(*(body.hidden_at or self._base_place(body)))
+
+    def part_poses(self) -> Matrix:
+        """(P, 4, 4) world from part, a copy; hidden parts are far below the floor."""
+        moved = list(self._moved.values())
+        if moved:
+            places = [place for body in moved for place in (self._base_place(body), *self._link_places(body))]
+            numbers = [part for body in moved for part in body.parts]
+            self._poses[numbers] = pose_matrices(*zip(*places, strict=True))
+            self._moved.clear()
+        return self._poses.copy()
+
+    def visual_shapes(self) -> list[VisualShape]:
+        """Every shape that a renderer should draw, read back from PyBullet, in the order of the parts."""
+        rows = [row for body in self._bodies for row in self._visual_rows(body.ids)]
+        return [visual_shape(row, self._bodies.part_of(row[0], row[1])) for row in rows]
+
+    def cast_rays(
+        self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
+    ) -> tuple[Matrix, NDArray[np.int64]]:
+        """Find the nearest solid along rays, which pass through the body called `ignore`.
+
+        Args:
+            from_m: (R, 3) [m] where rays start, world frame.
+            to_m: (R, 3) [m] where they end, world frame.
+            ignore: a body that the rays do not see, such as the one that sends them out.
+
+        Returns:
+            fraction: (R,) of the way at which a ray hits, 1 where it hits nothing.
+            part: (R,) part that is hit, -1 where none.
+        """
+        mask = _ALL if ignore is None else ~self._group_of(self._bodies[ignore])
+        starts, ends = np.asarray(from_m, np.float64).tolist(), np.asarray(to_m, np.float64).tolist()
+        hits = self._client.rayTestBatch(starts, ends, numThreads=1, collisionFilterMask=mask)
+        fractions = np.array([hit[2] for hit in hits])
+        return fractions, np.array([self._bodies.part_of(hit[0], hit[1]) for hit in hits], np.int64)
+
+    def contacts(self, name: str) -> list[Contact]:
+        """Where the body touched others during the last step."""
+        rows = [row for id_ in self._bodies[name].ids for row in self._client.getContactPoints(bodyA=id_)]
+        contacts = [Contact(self._bodies.name_of(row[2]), row[6], row[7], row[9]) for row in rows]
+        return [contact for contact in contacts if contact.other != name]
+
+    def touching(self, name: str) -> set[str]:
+        """Names of all that the body touched during the last step."""
+        rows = [row for id_ in self._bodies[name].ids for row in self._client.getContactPoints(bodyA=id_)]
+        return {self._bodies.name_of(number) for number in {row[2] for row in rows}} - {name}
+
+    def camera_image(
+        self, camera: Camera, world_from_camera: Matrix, only: Collection[str] | None = None
+    ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+        """Draw the world, or only the bodies of some names, with TinyRenderer, without shadows.
+
+        TinyRenderer replaces spheres and capsules by polyhedra of 42 corners and an infinite plane by a large
+        square, so that the outline of a large round thing lies up to 5 % of its radius inside the true one.
+
+        Returns:
+            part: (H, W) number of the part seen at each pixel centre, -1 where none.
+            depth: (H, W) [m] along the optical axis, inf where none.
+        """
+        absent = [body for body in self._bodies if only is not None and body.name not in only]
+        self._set_opacity(absent, 0.0)
+        image = self._client.getCameraImage(
+            camera.width,
+            camera.height,
+            view_matrix(world_from_camera),
+            projection_matrix(camera, NEAR_M, FAR_M),
+            shadow=0,
+            flags=pybullet.ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX,
+            renderer=pybullet.ER_TINY_RENDERER,
+        )
+        self._set_opacity(absent, 1.0)
+        shape = (camera.height, camera.width)
+        part = self._bodies.parts_of(np.reshape(image[4], shape))
+        depth = metric_depth(np.reshape(image[3], shape), NEAR_M, FAR_M)
+        return part, np.where(part >= 0, depth, np.inf).astype(np.float32)
+
+    def _create(self, shapes: Sequence[Shape], visible: bool, solid: bool) -> int:
+        """Make one PyBullet body."""
+        # A body without visual shapes is drawn by its collision shapes: transparency prevents it.
+        colours = [[1.0, 1.0, 1.0, float(visible)]] * len(shapes)
+        visual = self._client.createVisualShapeArray(**shape_arguments(shapes, "visual"), rgbaColors=colours)
+        collision = -1
+        if solid:
+            collision = self._client.createCollisionShapeArray(**shape_arguments(shapes, "collision"))
+        number: int = self._client.createMultiBody(0.0, collision, visual)
+        return number
+
+    def _load_urdf(self, file: str, fixed: bool, scale: float) -> int:
+        # Without these, cylinders collide as prisms, on which no wheel runs true, and inertia is guessed.
+        flags = pybullet.URDF_USE_IMPLICIT_CYLINDER | pybullet.URDF_USE_INERTIA_FROM_FILE
+        number: int = self._client.loadURDF(file, useFixedBase=fixed, globalScaling=scale, flags=flags)
+        return number
+
+    def _load_sdf(self, file: str, fixed: bool, scale: float) -> int:
+        number: int
+        number, *others = self._client.loadSDF(file, globalScaling=scale)
+        for other in others:
+            self._client.removeBody(other)
+        if fixed:
+            self._client.changeDynamics(number, -1, mass=0.0)
+        return number
+
+    def _register(self, name: str, ids: Sequence[int], *, moves_by_itself: bool) -> None:
+        joints = [
+            self._client.getJointInfo(ids[0], link) for link in range(self._client.getNumJoints(ids[0]))
+        ]
+        names = [self._client.getBodyInfo(ids[0])[0].decode(), *(joint[12].decode() for joint in joints)]
+        first = len(self._bodies.parts)
+        body = Body(
+            name=name,
+            ids=tuple(ids),
+            parts=range(first, first + len(names)),
+            joints={joint[1].decode(): joint[0] for joint in joints},
+            base_from_inertia=self._client.getDynamicsInfo(ids[0], -1)[3:5],
+            moves_by_itself=moves_by_itself,
+            visible_links=[(row[0], row[1]) for row in self._visual_rows(ids)],
+        )
+        self._bodies.add(body, names)
+        self._poses = np.concatenate([self._poses, np.zeros((len(names), 4, 4))])
+
+    def _put(self, body: Body, base: Place) -> None:
+        place = base
+        if body.base_from_inertia != _HERE:
+            place = pybullet.multiplyTransforms(*base, *body.base_from_inertia)
+        for number in body.ids:
+            self._client.resetBasePositionAndOrientation(number, *place)
+        self._moved[body.name] = body
+
+    def _base_place(self, body: Body) -> Place:
+        place: Place = self._client.getBasePositionAndOrientation(body.ids[0])
+        if body.base_from_inertia != _HERE:
+            place = pybullet.multiplyTransforms(*place, *pybullet.invertTransform(*body.base_from_inertia))
+        return place
+
+    def _link_places(self, body: Body) -> list[Place]:
+        if len(body.parts) == 1:
+            return []
+        links = range(len(body.parts) - 1)
+        states = self._client.getLinkStates(body.ids[0], links, computeForwardKinematics=1)
+        return [state[4:6] for state in states]
+
+    def _visual_rows(self, ids: Sequence[int]) -> list[Sequence[Any]]:
+        """What PyBullet tells of all shapes that are not transparent."""
+        rows = [row for number in ids for row in self._client.getVisualShapeData(number)]
+        return [row for row in rows if row[7][3] > 0.0]
+
+    def _set_opacity(self, bodies: Sequence[Body], alpha: float) -> None:
+        for body in bodies:
+            for number, link in body.visible_links:
+                self._client.changeVisualShape(number, link, rgbaColor=[1.0, 1.0, 1.0, alpha])
+
+    def _group_of(self, body: Body) -> int:
+        """The collision group of one body alone, which rays can leave out."""
+        if body.group is None:
+            body.group = self._bodies.new_group()
+            mask = _ALL if body.moves_by_itself else _ALL_BUT_STATIC
+            links = range(-1, len(body.parts) - 1)
+            for number, link in [(number, link) for number in body.ids for link in links]:
+                self._client.setCollisionFilterGroupMask(number, link, body.group, mask)
+        return body.group
+
+
+def find_model(path: Path | str) -> Path:
+    """Find a URDF or SDF file: as it stands, else in pybullet_data.
+
+    Raises:
+        BadInput: there is no such file.
+    """
+    for candidate in (Path(path), Path(pybullet_data.getDataPath()) / path):
+        if candidate.is_file():
+            return candidate.resolve()
+    raise BadInput(f"model file {path}: there is no such file, neither as it stands nor in pybullet_data")

@@ -1,0 +1,1 @@
+"""What stands still: rooms, corridors, and the warm and cold things in them."""

@@ -1,0 +1,225 @@
+"""Where one can walk: rectangles of floor, the walls around them, and the doors in the walls."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from bad_input import BadInput
+from sim.places.rectangle import CLOSE_M, Rectangle, lengthened, subtract
+
+WALL_M = 0.1  # thickness of every wall
+
+
+class Side(Enum):
+    """A side of a rectangle of floor; the value is the outward normal."""
+
+    EAST = (1.0, 0.0)
+    WEST = (-1.0, 0.0)
+    NORTH = (0.0, 1.0)
+    SOUTH = (0.0, -1.0)
+
+    @property
+    def inward_rad(self) -> float:
+        """Heading from the wall into the room [rad]."""
+        return math.atan2(-self.value[1], -self.value[0])
+
+    def strip(self, area: Rectangle, depth_m: float) -> Rectangle:
+        """The strip of that depth outside this side; north and south strips own the corners."""
+        if self is Side.EAST:
+            return Rectangle(area.max_x, area.min_y, area.max_x + depth_m, area.max_y)
+        if self is Side.WEST:
+            return Rectangle(area.min_x - depth_m, area.min_y, area.min_x, area.max_y)
+        left, right = area.min_x - depth_m, area.max_x + depth_m
+        if self is Side.NORTH:
+            return Rectangle(left, area.max_y, right, area.max_y + depth_m)
+        return Rectangle(left, area.min_y - depth_m, right, area.min_y)
+
+    def at(self, area: Rectangle, along_m: float) -> tuple[float, float]:
+        """The point (x, y) [m] of this side of an area at a world coordinate along it."""
+        if self is Side.EAST:
+            return area.max_x, along_m
+        if self is Side.WEST:
+            return area.min_x, along_m
+        return along_m, area.max_y if self is Side.NORTH else area.min_y
+
+    def span(self, area: Rectangle) -> tuple[float, float]:
+        """Smallest and largest world coordinate along this side of an area."""
+        if self in (Side.EAST, Side.WEST):
+            return area.min_y, area.max_y
+        return area.min_x, area.max_x
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wall:
+    """One side of an area, which stands as a wall where no other area follows."""
+
+    name: str
+    area: Rectangle
+    side: Side
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Door:
+    """An opening in a wall, with a small lobby behind it in which people wait unseen.
+
+    Attributes:
+        wall: name of the wall.
+        along_m: world x of the middle in a north or south wall, world y in an east or west wall.
+        width_m, height_m: [m] of the opening.
+        is_open: a closed door is only a leaf on the wall, with nothing behind.
+        lobby_m: [m] depth of the lobby.
+    """
+
+    wall: str
+    along_m: float
+    width_m: float = 0.95
+    height_m: float = 2.05
+    is_open: bool = True
+    lobby_m: float = 1.5
+
+
+LOBBY_MARGIN_M = 0.9  # room beside the opening, enough to stand out of sight
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FloorPlan:
+    """The rectangles of a place, in metres, with its doors.
+
+    Attributes:
+        areas: name and rectangle of each room or leg of a corridor; they touch or overlap.
+        doors: in the walls around them.
+    """
+
+    areas: tuple[tuple[str, Rectangle], ...]
+    doors: tuple[Door, ...] = ()
+
+    def wall(self, name: str) -> Wall:
+        """Find a wall.
+
+        Raises:
+            BadInput: no wall has that name.
+        """
+        found = {wall.name: wall for wall in self.walls()}
+        if name not in found:
+            raise BadInput(f"unknown wall {name!r}; the walls are {', '.join(found)}")
+        return found[name]
+
+    def walls(self) -> tuple[Wall, ...]:
+        """List the sides of all areas along which at least a piece of wall stands."""
+        inside = tuple(area for _, area in self.areas)
+        named = (
+            Wall(name=f"{name}_{side.name.lower()}" if name else side.name.lower(), area=area, side=side)
+            for name, area in self.areas
+            for side in (Side.NORTH, Side.SOUTH, Side.EAST, Side.WEST)
+        )
+        return tuple(wall for wall in named if subtract(_facing(wall), inside))
+
+    def opening(self, door: Door) -> Rectangle:
+        """The floor inside the thickness of the wall, from jamb to jamb."""
+        return self._behind(door, 0.0, WALL_M, door.width_m / 2.0)
+
+    def lobby(self, door: Door) -> Rectangle:
+        """The floor of the lobby behind an open door."""
+        return self._behind(door, WALL_M, WALL_M + door.lobby_m, door.width_m / 2.0 + LOBBY_MARGIN_M)
+
+    def walkable(self) -> tuple[Rectangle, ...]:
+        """All rectangles of floor: areas, then the openings and lobbies of open doors."""
+        open_doors = [door for door in self.doors if door.is_open]
+        return (
+            *(area for _, area in self.areas),
+            *(self.opening(door) for door in open_doors),
+            *(self.lobby(door) for door in open_doors),
+        )
+
+    def wall_pieces(self) -> tuple[tuple[Wall, Rectangle], ...]:
+        """Cut all walls into upright blocks that neither overlap each other nor stand on floor."""
+        floor = self.walkable()
+        placed: list[tuple[Wall, Rectangle]] = []
+        for wall in (*self.walls(), *self._lobby_walls()):
+            taken = (*floor, *(block for _, block in placed))
+            placed += [(wall, block) for block in subtract(wall.side.strip(wall.area, WALL_M), taken)]
+        return _join_stubs(placed)
+
+    def bounds(self) -> Rectangle:
+        """The rectangle around all floor and walls."""
+        floor = self.walkable()
+        return Rectangle(
+            min(area.min_x for area in floor),
+            min(area.min_y for area in floor),
+            max(area.max_x for area in floor),
+            max(area.max_y for area in floor),
+        ).grown(WALL_M)
+
+    def _lobby_walls(self) -> tuple[Wall, ...]:
+        return tuple(
+            Wall(name=f"door_{number}_lobby", area=self.lobby(door), side=side)
+            for number, door in enumerate(self.doors, start=1)
+            if door.is_open
+            for side in Side
+        )
+
+    def _behind(self, door: Door, near_m: float, far_m: float, half_m: float) -> Rectangle:
+        """The rectangle from near_m to far_m behind a door's wall, half_m to either side of its middle."""
+        wall = self.wall(door.wall)
+        x, y = wall.side.at(wall.area, door.along_m)
+        nx, ny = wall.side.value
+        corners_x = sorted((x + nx * near_m - abs(ny) * half_m, x + nx * far_m + abs(ny) * half_m))
+        corners_y = sorted((y + ny * near_m - abs(nx) * half_m, y + ny * far_m + abs(nx) * half_m))
+        return Rectangle(corners_x[0], corners_y[0], corners_x[1], corners_y[1])
+
+
+def _join_stubs(blocks: list[tuple[Wall, Rectangle]]) -> tuple[tuple[Wall, Rectangle], ...]:
+    """Give each lone corner to a block that it lengthens, so that no seam crosses a straight wall."""
+    joined = list(blocks)
+    for stub in [item for item in blocks if item[1].longer_side <= WALL_M + CLOSE_M]:
+        if stub not in joined:
+            continue  # another corner made it longer
+        others = [item for item in joined if item != stub]
+        for index, (wall, block) in enumerate(others):
+            union = lengthened(block, stub[1])
+            if union is not None:
+                others[index] = (wall, union)
+                joined = others
+                break
+    return tuple(joined)
+
+
+def check_doors(plan: FloorPlan) -> None:
+    """Refuse doors that do not fit into their walls, or whose lobby would cut into the place.
+
+    Raises:
+        BadInput: a door is wider than its wall, overlaps another, or has no space behind.
+    """
+    for index, door in enumerate(plan.doors):
+        _check_fits(plan, index, door)
+        for other_index, other in enumerate(plan.doors[:index]):
+            if plan.opening(door).grown(WALL_M).meets(plan.opening(other)):
+                raise BadInput(f"doors[{index}]: overlaps doors[{other_index}] in wall {door.wall!r}")
+
+
+def _check_fits(plan: FloorPlan, index: int, door: Door) -> None:
+    wall = plan.wall(door.wall)
+    low, high = wall.side.span(wall.area)
+    half = door.width_m / 2.0 + WALL_M
+    if not low + half <= door.along_m <= high - half:
+        raise BadInput(
+            f"doors[{index}].along_m: {door.along_m:g} does not leave room for a door of {door.width_m:g} m "
+            f"in wall {door.wall!r}, which reaches from {low:g} to {high:g} m"
+        )
+    behind = (plan.lobby(door).grown(WALL_M), plan.opening(door)) if door.is_open else (plan.opening(door),)
+    for name, area in plan.areas:
+        if any(part.meets(area) for part in behind):
+            raise BadInput(
+                f"doors[{index}].along_m: {door.along_m:g} puts the door of wall {door.wall!r} "
+                f"into {name or 'the room'}; choose a place with {WALL_M + door.lobby_m:g} m behind the wall"
+            )
+
+
+def _facing(wall: Wall) -> Rectangle:
+    """The strip outside a wall's area without its corners."""
+    strip = wall.side.strip(wall.area, WALL_M)
+    if wall.side in (Side.NORTH, Side.SOUTH):
+        return Rectangle(wall.area.min_x, strip.min_y, wall.area.max_x, strip.max_y)
+    return strip

@@ -1,0 +1,1 @@
+"""What lies behind each pixel: the ray caster, and TinyRenderer beside it."""

@@ -1,0 +1,249 @@
+"""The image that the ray caster draws on, row by row, in pieces of planes and quadrics (numba kernels).
+
+The ray through pixel (u, v) is d = (x, y, 1) in the optical frame, so a point at depth z lies at z d. The
+canvas holds 1 / z, the nearness, which along a row of pixels is
+
+    plane g . p = 1:                   1 / z = g . d
+    quadric p'Qp + 2 q'p + k = 0:      1 / z = (-q . d + sqrt(d'(qq' - kQ)d)) / k
+
+and needs no division. Where a row enters and leaves a piece follows from its edges (linear in x) or from its
+outline (quadratic in x) before any pixel is looked at.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from sim.rendering.bounds import FAR_M, NEAR_M, Bounds
+from sim.rendering.vectors import Point, dot
+
+Array = NDArray[np.float64]
+Form = tuple[float, float, float, float, float, float]
+Rectangle = tuple[int, int, int, int]
+
+# Widens every span [px], so that rounding opens no crack between two pieces with a common edge.
+_SLACK = 1e-9
+
+
+class Lens(NamedTuple):
+    """A pinhole camera as kernels take it [px]."""
+
+    focal: float
+    centre_u: float
+    centre_v: float
+    width: int
+    height: int
+
+
+class Canvas(NamedTuple):
+    """What the kernels draw on.
+
+    Attributes:
+        nearness: (H, W) [1/m] of the nearest surface so far, 0 where none.
+        surface: (H, W) its number.
+        cover: (H, W) bits of the persons whose silhouettes lie there.
+        shading: (M, 7) what gives the normal of surface m: of a plane the normal itself and three zeros; of
+            a quadric its axis (0 for a sphere), q, and 1 / radius.
+        edges: (6, 3) space for the edges of one polygon: it lies where edge . d >= 0 for all of them.
+        pose: (3, 4) space for the pose of one shape, camera from shape.
+    """
+
+    nearness: Array
+    surface: NDArray[np.int32]
+    cover: NDArray[np.uint64]
+    shading: Array
+    edges: Array
+    pose: Array
+
+
+def make_canvas(lens: Lens, surfaces: int) -> Canvas:
+    """Give an empty canvas for a table of so many surfaces."""
+    shape = (lens.height, lens.width)
+    return Canvas(
+        nearness=np.zeros(shape),
+        surface=np.empty(shape, np.int32),
+        cover=np.zeros(shape, np.uint64),
+        shading=np.empty((surfaces, 7)),
+        edges=np.empty((6, 3)),
+        pose=np.empty((3, 4)),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def pixels(lens: Lens, bounds: Bounds) -> Rectangle:
+    """First and last column and row whose centres lie within bounds: left, top, right, bottom."""
+    left = max(lens.centre_u + lens.focal * bounds[0] - _SLACK, 0.0)
+    top = max(lens.centre_v + lens.focal * bounds[1] - _SLACK, 0.0)
+    right = min(lens.centre_u + lens.focal * bounds[2] + _SLACK, lens.width - 1.0)
+    bottom = min(lens.centre_v + lens.focal * bounds[3] + _SLACK, lens.height - 1.0)
+    # Written so that NaN, from a pose that is none, means no pixel.
+    if not (left <= right and top <= bottom):
+        return 0, 0, -1, -1
+    return math.ceil(left), math.ceil(top), math.floor(right), math.floor(bottom)
+
+
+@njit(cache=True, error_model="numpy")
+def set_shading(canvas: Canvas, surface: int, first: Point, second: Point, curvature: float) -> None:
+    """Store what gives a surface's normals; see `Canvas`."""
+    row = canvas.shading[surface]
+    for i in range(3):
+        row[i], row[3 + i] = first[i], second[i]
+    row[6] = curvature
+
+
+@njit(cache=True, error_model="numpy")
+def set_edge(canvas: Canvas, index: int, edge: Point, inside: Point) -> None:
+    """Store an edge, turned so that a point inside the polygon lies on its positive side."""
+    sign = -1.0 if dot(edge, inside) < 0.0 else 1.0
+    for i in range(3):
+        canvas.edges[index, i] = sign * edge[i]
+
+
+@njit(cache=True, error_model="numpy")
+def fill_polygon(
+    g: Point, edges: int, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
+) -> None:
+    """Fill the pixels inside all edges with the plane g . p = 1."""
+    slope = g[0] / lens.focal
+    for v in range(area[1], area[3] + 1):
+        y = (v - lens.centre_v) / lens.focal
+        low, high = float(area[0]), float(area[2])
+        for i in range(edges):
+            a, c = canvas.edges[i, 0], canvas.edges[i, 1] * y + canvas.edges[i, 2]
+            if a > 0.0:
+                low = max(low, lens.centre_u - lens.focal * c / a - _SLACK)
+            elif a < 0.0:
+                high = min(high, lens.centre_u - lens.focal * c / a + _SLACK)
+            elif c < 0.0:
+                high = -1.0
+        if not low <= high:
+            continue
+        base = g[1] * y + g[2] - lens.centre_u * slope
+        nearness, surfaces, cover = canvas.nearness[v], canvas.surface[v], canvas.cover[v]
+        for u in range(math.ceil(low), math.floor(high) + 1):
+            here = slope * u + base
+            cover[u] |= bit
+            if here > nearness[u]:
+                nearness[u] = here
+                surfaces[u] = surface
+
+
+@njit(cache=True, error_model="numpy")
+def fill_conic(
+    form: Form,
+    line: Point,
+    root: float,
+    axis: Point,
+    low: float,
+    high: float,
+    surface: int,
+    bit: np.uint64,
+    lens: Lens,
+    area: Rectangle,
+    canvas: Canvas,
+) -> None:
+    """Fill the pixels where d'Fd >= 0 with the nearness line . d + root sqrt(d'Fd).
+
+    Args:
+        form: F's entries 00, 01, 02, 11, 12, 22.
+        line: linear term.
+        root: factor of the square root.
+        axis: unit vector, or 0.
+        low: [m] only points whose height along the axis is at least this are drawn.
+        high: [m] and at most this.
+        surface: number of the surface.
+        bit: what to add to the cover.
+        lens: where pixels look.
+        area: the pixels to look at.
+        canvas: what to draw on.
+    """
+    scale = 1.0 / lens.focal
+    for v in range(area[1], area[3] + 1):
+        y = (v - lens.centre_v) * scale
+        a, b = form[0], form[1] * y + form[2]
+        c = (form[3] * y + 2.0 * form[4]) * y + form[5]
+        first, last = _outline(a, b, c, lens, area)
+        line_0, axis_0 = line[1] * y + line[2], axis[1] * y + axis[2]
+        nearness, surfaces, cover = canvas.nearness[v], canvas.surface[v], canvas.cover[v]
+        for u in range(first, last + 1):
+            x = (u - lens.centre_u) * scale
+            square = (a * x + 2.0 * b) * x + c
+            here = line[0] * x + line_0 + root * math.sqrt(max(square, 0.0))
+            along = axis[0] * x + axis_0
+            hit = (square >= 0.0) & (along >= here * low) & (along <= here * high)
+            hit &= (here >= 1.0 / FAR_M) & (here <= 1.0 / NEAR_M)
+            if hit:
+                cover[u] |= bit
+                if here > nearness[u]:
+                    nearness[u] = here
+                    surfaces[u] = surface
+
+
+@njit(cache=True, error_model="numpy")
+def _outline(a: float, b: float, c: float, lens: Lens, area: Rectangle) -> tuple[int, int]:
+    """First and last pixel of a row between the roots of a x^2 + 2 b x + c, or all if it is not bounded."""
+    if a >= 0.0:
+        return area[0], area[2]
+    square = b * b - a * c
+    if square < 0.0:
+        return 0, -1
+    width = math.sqrt(square)
+    low = max(lens.centre_u + lens.focal * (width - b) / a - _SLACK, float(area[0]))
+    high = min(lens.centre_u - lens.focal * (width + b) / a + _SLACK, float(area[2]))
+    if not low <= high:
+        return 0, -1
+    return math.ceil(low), math.floor(high)
+
+
+@njit(cache=True, error_model="numpy")
+def shade(
+    surface_part: NDArray[np.int32],
+    lens: Lens,
+    canvas: Canvas,
+    rotation: Array,
+    part: NDArray[np.int32],
+    depth: NDArray[np.float32],
+    normal: NDArray[np.float32],
+) -> None:
+    """Turn a drawn canvas into part numbers, depths and normals.
+
+    Args:
+        surface_part: (M,) number of the part that a surface belongs to.
+        lens: the same as in `draw`.
+        canvas: as `draw` left it.
+        rotation: (3, 3) world from camera.
+        part: (H, W) gets the part numbers, -1 where nothing is.
+        depth: (H, W) gets the depths [m], inf where nothing is.
+        normal: (H, W, 3) gets the unit normals, world frame, 0 where nothing is.
+    """
+    for v in range(lens.height):
+        y = (v - lens.centre_v) / lens.focal
+        for u in range(lens.width):
+            nearness = canvas.nearness[v, u]
+            if nearness == 0.0:
+                part[v, u], depth[v, u] = -1, np.inf
+                normal[v, u, 0] = normal[v, u, 1] = normal[v, u, 2] = 0.0
+                continue
+            surface, z = canvas.surface[v, u], 1.0 / nearness
+            part[v, u], depth[v, u] = surface_part[surface], z
+            nx, ny, nz = _normal(canvas.shading[surface], (u - lens.centre_u) / lens.focal * z, y * z, z)
+            for i in range(3):
+                normal[v, u, i] = rotation[i, 0] * nx + rotation[i, 1] * ny + rotation[i, 2] * nz
+
+
+@njit(cache=True, error_model="numpy")
+def _normal(shading: Array, x: float, y: float, z: float) -> Point:
+    """Unit normal at a point of a surface, optical frame."""
+    if shading[6] == 0.0:
+        return shading[0], shading[1], shading[2]
+    along = x * shading[0] + y * shading[1] + z * shading[2]
+    return (
+        (x - along * shading[0] + shading[3]) * shading[6],
+        (y - along * shading[1] + shading[4]) * shading[6],
+        (z - along * shading[2] + shading[5]) * shading[6],
+    )

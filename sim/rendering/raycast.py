@@ -1,0 +1,270 @@
+"""The ray caster: takes every shape of a table apart into pieces of planes and quadrics (numba kernels).
+
+Nothing is clipped: the formulas of `canvas` hold for corners behind the camera too. Shapes are solid and
+seen from outside only: a camera within one does not see it. TinyRenderer leaves out the same sides.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from sim.rendering.bounds import FAR_M, NEAR_M, Bounds, box_bounds, shape_bounds
+from sim.rendering.canvas import (
+    Canvas,
+    Lens,
+    Rectangle,
+    fill_conic,
+    fill_polygon,
+    pixels,
+    set_edge,
+    set_shading,
+)
+from sim.rendering.shape_table import ShapeTable
+from sim.rendering.vectors import Point, compose, cross, dot, map_point, minus, plus, scaled
+from sim.shapes import ShapeKind
+
+Array = NDArray[np.float64]
+
+_SPHERE = int(ShapeKind.SPHERE)
+_CAPSULE = int(ShapeKind.CAPSULE)
+_CYLINDER = int(ShapeKind.CYLINDER)
+_BOX = int(ShapeKind.BOX)
+_PLANE = int(ShapeKind.PLANE)
+_MESH = int(ShapeKind.MESH)
+
+_NO_AXIS: Point = (0.0, 0.0, 0.0)
+
+
+@njit(cache=True, error_model="numpy")
+def draw(
+    table: ShapeTable,
+    camera_from_part: Array,
+    skip: NDArray[np.bool_],
+    bits: NDArray[np.uint64],
+    lens: Lens,
+    canvas: Canvas,
+) -> None:
+    """Draw all shapes but those of parts to skip.
+
+    Args:
+        table: the shapes.
+        camera_from_part: (P, 4, 4).
+        skip: (P,) parts that are not drawn.
+        bits: (P,) what a part's silhouette adds to the cover.
+        lens: where pixels look.
+        canvas: what to draw on.
+    """
+    for shape in range(len(table.kind)):
+        part = table.part[shape]
+        if skip[part]:
+            continue
+        compose(camera_from_part[part], table.part_from_shape[shape], canvas.pose)
+        bounds = _quick_bounds(table, shape, canvas.pose)
+        area = pixels(lens, bounds)
+        if area[0] <= area[2] and area[1] <= area[3]:
+            _draw_shape(table, shape, bits[part], lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
+    """Bounds of a shape; of a mesh those of its box."""
+    if table.kind[shape] == _MESH:
+        low, high = table.extent[shape, 0], table.extent[shape, 1]
+        return box_bounds(pose, low[0], low[1], low[2], high[0], high[1], high[2])
+    return shape_bounds(table.kind[shape], table.size[shape], pose, table.triangles[:0])
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_shape(
+    table: ShapeTable, shape: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
+) -> None:
+    kind, size, surface = table.kind[shape], table.size[shape], table.first_surface[shape]
+    pose = canvas.pose
+    if kind == _SPHERE:
+        _draw_ball(map_point(pose, 0.0, 0.0, 0.0), size[0], surface, bit, lens, area, canvas)
+    elif kind == _CAPSULE:
+        _draw_tube(size[0] / 2.0, size[1], surface, bit, lens, area, canvas)
+        for i in range(2):
+            end = map_point(pose, 0.0, 0.0, (i - 0.5) * size[0])
+            _draw_ball(end, size[1], surface + 1 + i, bit, lens, area, canvas)
+    elif kind == _CYLINDER:
+        _draw_tube(size[0] / 2.0, size[1], surface, bit, lens, area, canvas)
+        for i in range(2):
+            _draw_lid((i - 0.5) * size[0], size[1], surface + 1 + i, bit, lens, area, canvas)
+    elif kind == _BOX:
+        for i in range(6):
+            _draw_face(size, i % 3, 1.0 if i < 3 else -1.0, surface + i, bit, lens, area, canvas)
+    elif kind == _PLANE:
+        normal = (pose[0, 2], pose[1, 2], pose[2, 2])
+        _draw_flat(normal, map_point(pose, 0.0, 0.0, 0.0), 0, surface, bit, lens, area, canvas)
+    else:
+        first, end = table.triangle_range[shape]
+        for i in range(first, end):
+            _draw_triangle(table.triangles[i], surface + i - first, bit, lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_ball(
+    centre: Point, radius: float, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
+) -> None:
+    k = dot(centre, centre) - radius * radius
+    if k > 0.0:
+        q = scaled(centre, -1.0)
+        _draw_round(q, k, radius, _NO_AXIS, -1.0, 1.0, surface, bit, lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_tube(
+    half: float, radius: float, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
+) -> None:
+    """Draw the round side of a cylinder along the pose's z axis."""
+    pose = canvas.pose
+    axis, centre = (pose[0, 2], pose[1, 2], pose[2, 2]), (pose[0, 3], pose[1, 3], pose[2, 3])
+    along = dot(axis, centre)
+    q = plus(scaled(axis, along), scaled(centre, -1.0))
+    k = dot(q, q) - radius * radius
+    if k > 0.0:
+        _draw_round(q, k, radius, axis, along - half, along + half, surface, bit, lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_round(
+    q: Point,
+    k: float,
+    radius: float,
+    axis: Point,
+    low: float,
+    high: float,
+    surface: int,
+    bit: np.uint64,
+    lens: Lens,
+    area: Rectangle,
+    canvas: Canvas,
+) -> None:
+    """Draw the quadric with Q = I - axis axis' between two heights along its axis."""
+    set_shading(canvas, surface, axis, q, 1.0 / radius)
+    form = (
+        q[0] * q[0] - k * (1.0 - axis[0] * axis[0]),
+        q[0] * q[1] + k * axis[0] * axis[1],
+        q[0] * q[2] + k * axis[0] * axis[2],
+        q[1] * q[1] - k * (1.0 - axis[1] * axis[1]),
+        q[1] * q[2] + k * axis[1] * axis[2],
+        q[2] * q[2] - k * (1.0 - axis[2] * axis[2]),
+    )
+    fill_conic(form, scaled(q, -1.0 / k), 1.0 / k, axis, low, high, surface, bit, lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_lid(
+    height: float, radius: float, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
+) -> None:
+    """Draw the flat end of a cylinder at a height along the pose's z axis.
+
+    With g . p = 1 its plane and c its centre, d lies on it where |d - (g . d) c| <= r (g . d).
+    """
+    pose = canvas.pose
+    sign = 1.0 if height > 0.0 else -1.0
+    normal = (sign * pose[0, 2], sign * pose[1, 2], sign * pose[2, 2])
+    c = map_point(pose, 0.0, 0.0, height)
+    distance = dot(normal, c)
+    if distance >= 0.0:
+        return
+    g = scaled(normal, 1.0 / distance)
+    k = radius * radius - dot(c, c)
+    form = (
+        k * g[0] * g[0] + 2.0 * c[0] * g[0] - 1.0,
+        k * g[0] * g[1] + c[0] * g[1] + c[1] * g[0],
+        k * g[0] * g[2] + c[0] * g[2] + c[2] * g[0],
+        k * g[1] * g[1] + 2.0 * c[1] * g[1] - 1.0,
+        k * g[1] * g[2] + c[1] * g[2] + c[2] * g[1],
+        k * g[2] * g[2] + 2.0 * c[2] * g[2] - 1.0,
+    )
+    set_shading(canvas, surface, normal, _NO_AXIS, 0.0)
+    fill_conic(form, g, 0.0, _NO_AXIS, -1.0, 1.0, surface, bit, lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_face(
+    size: Array,
+    axis: int,
+    sign: float,
+    surface: int,
+    bit: np.uint64,
+    lens: Lens,
+    area: Rectangle,
+    canvas: Canvas,
+) -> None:
+    """Draw one face of a box."""
+    pose, j, k = canvas.pose, (axis + 1) % 3, (axis + 2) % 3
+    normal = (sign * pose[0, axis], sign * pose[1, axis], sign * pose[2, axis])
+    across = (pose[0, j], pose[1, j], pose[2, j])
+    up = (pose[0, k], pose[1, k], pose[2, k])
+    centre = plus((pose[0, 3], pose[1, 3], pose[2, 3]), scaled(normal, size[axis] / 2.0))
+    if dot(normal, centre) >= 0.0:
+        return
+    for i in range(4):
+        side, step = (across, size[j] / 2.0) if i % 2 == 0 else (up, size[k] / 2.0)
+        direction = up if i % 2 == 0 else across
+        middle = plus(centre, scaled(side, step if i < 2 else -step))
+        set_edge(canvas, i, cross(middle, direction), centre)
+    _draw_flat(normal, centre, 4, surface, bit, lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_triangle(
+    corners: Array, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
+) -> None:
+    """Draw the side of a triangle from which its corners run counterclockwise."""
+    pose = canvas.pose
+    a = map_point(pose, corners[0, 0], corners[0, 1], corners[0, 2])
+    b = map_point(pose, corners[1, 0], corners[1, 1], corners[1, 2])
+    c = map_point(pose, corners[2, 0], corners[2, 1], corners[2, 2])
+    # Half of all triangles face away and most others of a fine mesh lie between pixels: these go first.
+    normal = cross(minus(b, a), minus(c, a))
+    if dot(normal, a) >= 0.0 or max(a[2], b[2], c[2]) < NEAR_M:
+        return
+    if min(a[2], b[2], c[2]) >= NEAR_M:
+        area = _narrowed(area, a, b, c, lens)
+        if area[0] > area[2] or area[1] > area[3]:
+            return
+    normal = scaled(normal, 1.0 / math.sqrt(dot(normal, normal)))
+    centre = scaled(plus(plus(a, b), c), 1.0 / 3.0)
+    set_edge(canvas, 0, cross(a, b), centre)
+    set_edge(canvas, 1, cross(b, c), centre)
+    set_edge(canvas, 2, cross(c, a), centre)
+    _draw_flat(normal, a, 3, surface, bit, lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _narrowed(area: Rectangle, a: Point, b: Point, c: Point, lens: Lens) -> Rectangle:
+    """The pixels of an area within the bounds of a triangle in front of the camera."""
+    ax, ay, bx, by, cx, cy = a[0] / a[2], a[1] / a[2], b[0] / b[2], b[1] / b[2], c[0] / c[2], c[1] / c[2]
+    own = pixels(lens, (min(ax, bx, cx), min(ay, by, cy), max(ax, bx, cx), max(ay, by, cy)))
+    return max(area[0], own[0]), max(area[1], own[1]), min(area[2], own[2]), min(area[3], own[3])
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_flat(
+    normal: Point,
+    point: Point,
+    edges: int,
+    surface: int,
+    bit: np.uint64,
+    lens: Lens,
+    area: Rectangle,
+    canvas: Canvas,
+) -> None:
+    """Draw the polygon of the first `edges` edges in the plane through a point, from the normal's side."""
+    distance = dot(normal, point)
+    if distance >= 0.0:
+        return
+    g = scaled(normal, 1.0 / distance)
+    near, far = canvas.edges[edges], canvas.edges[edges + 1]
+    near[0], near[1], near[2] = -g[0], -g[1], 1.0 / NEAR_M - g[2]
+    far[0], far[1], far[2] = g[0], g[1], g[2] - 1.0 / FAR_M
+    set_shading(canvas, surface, normal, _NO_AXIS, 0.0)
+    fill_polygon(g, edges + 2, surface, bit, lens, area, canvas)

@@ -1,0 +1,118 @@
+"""What a camera sees of the world, by one of two renderers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bad_input import BadInput
+from sim.camera import Camera, Matrix, invert_pose
+from sim.physics.bullet import Bullet
+from sim.rendering.canvas import Lens, make_canvas, shade
+from sim.rendering.depth_normals import normals_from_depth
+from sim.rendering.raycast import draw
+from sim.rendering.shape_table import ShapeTable
+
+NOBODY = -1
+_MOST_PEOPLE = 64
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """What lies behind each pixel's centre, from 0.05 m to 100 m.
+
+    Attributes:
+        part: (H, W) part number, -1 where nothing is.
+        depth: (H, W) [m] along the optical axis, inf where nothing is.
+        normal: (H, W, 3) unit normal that faces the camera, world frame; 0 where nothing is.
+        cover: (H, W) bit k is set where person k's silhouette lies, whether it is hidden or not.
+    """
+
+    part: NDArray[np.int32]
+    depth: NDArray[np.float32]
+    normal: NDArray[np.float32]
+    cover: NDArray[np.uint64]
+
+
+def render(
+    name: str,
+    bullet: Bullet,
+    table: ShapeTable,
+    camera: Camera,
+    world_from_camera: Matrix,
+    world_from_part: Matrix,
+    person_of_part: NDArray[np.int64],
+    hidden: NDArray[np.bool_],
+) -> View:
+    """Draw the world by the renderer of that name.
+
+    Args:
+        name: "raycast", exact and quick, or "bullet", PyBullet's TinyRenderer, an independent reference.
+        bullet: the world.
+        table: its visible shapes.
+        camera: the pinhole camera.
+        world_from_camera: (4, 4) optical frame to world.
+        world_from_part: (P, 4, 4), used by "raycast".
+        person_of_part: (P,) number of the person that a part belongs to, 0..63, -1 for none.
+        hidden: (P,) parts that are not there.
+
+    Raises:
+        BadInput: no renderer has that name, or a person's number is above 63.
+    """
+    if person_of_part.max(initial=0) >= _MOST_PEOPLE:
+        raise BadInput(
+            f"person number {person_of_part.max()}: a view tells at most {_MOST_PEOPLE} people apart"
+        )
+    if name == "raycast":
+        return cast(table, camera, world_from_camera, world_from_part, person_of_part, hidden)
+    if name == "bullet":
+        return rasterise(bullet, camera, world_from_camera, np.where(hidden, NOBODY, person_of_part))
+    raise BadInput(f"renderer {name!r}: there is none of that name; choose raycast or bullet")
+
+
+def cast(
+    table: ShapeTable,
+    camera: Camera,
+    world_from_camera: Matrix,
+    world_from_part: Matrix,
+    person_of_part: NDArray[np.int64],
+    hidden: NDArray[np.bool_],
+) -> View:
+    """Draw by the ray caster; arguments as in `render`."""
+    lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
+    canvas = make_canvas(lens, len(table.surface_part))
+    camera_from_part = invert_pose(world_from_camera) @ world_from_part
+    draw(table, camera_from_part, hidden, person_bits(person_of_part), lens, canvas)
+    shape = (camera.height, camera.width)
+    part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)
+    normal = np.empty((*shape, 3), np.float32)
+    rotation = np.ascontiguousarray(world_from_camera[:3, :3])
+    shade(table.surface_part, lens, canvas, rotation, part, depth, normal)
+    return View(part, depth, normal, canvas.cover)
+
+
+def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:
+    """(P,) the bit of the person that a part belongs to, 0 for none."""
+    bits = np.uint64(1) << np.maximum(person_of_part, 0).astype(np.uint64)
+    return np.where(person_of_part == NOBODY, np.uint64(0), bits)
+
+
+def rasterise(
+    bullet: Bullet, camera: Camera, world_from_camera: Matrix, person_of_part: NDArray[np.int64]
+) -> View:
+    """Draw by TinyRenderer: everything at once, then each person alone for the cover.
+
+    Normals come from differences of depth, and are rough on small parts.
+    """
+    part, depth = bullet.camera_image(camera, world_from_camera)
+    cover = np.zeros(part.shape, np.uint64)
+    names = np.array([key.name for key in bullet.parts()])
+    for person in np.unique(person_of_part[person_of_part != NOBODY]):
+        alone = set(names[person_of_part == person].tolist())
+        silhouette, _ = bullet.camera_image(camera, world_from_camera, only=alone)
+        cover |= np.where(silhouette >= 0, np.uint64(1) << np.uint64(person), np.uint64(0))
+    rotation = np.ascontiguousarray(world_from_camera[:3, :3])
+    lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
+    return View(part, depth, normals_from_depth(depth, lens, rotation), cover)

@@ -1,0 +1,92 @@
+"""How large a person would be in the image if nothing hid it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from sim.camera import Camera, Matrix, invert_pose
+from sim.rendering.bounds import EMPTY, Bounds, shape_bounds, unite
+from sim.rendering.canvas import Lens, make_canvas
+from sim.rendering.raycast import draw
+from sim.rendering.shape_table import ShapeTable
+from sim.rendering.vectors import compose
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+def silhouette_bounds(
+    table: ShapeTable,
+    world_from_part: Matrix,
+    camera: Camera,
+    world_from_camera: Matrix,
+    parts: NDArray[np.bool_],
+) -> tuple[float, float, float, float]:
+    """Find the rectangle around all that the camera would see of some parts if nothing hid them.
+
+    It may lie outside the image. What is nearer than 0.05 m along the optical axis does not count.
+
+    Args:
+        table: the world's shapes.
+        world_from_part: (P, 4, 4).
+        camera: the pinhole camera.
+        world_from_camera: (4, 4) optical frame to world.
+        parts: (P,) which parts.
+
+    Returns:
+        left, top, right, bottom [px]; all NaN if nothing of them lies before the camera.
+    """
+    left, top, right, bottom = _bounds(table, invert_pose(world_from_camera) @ world_from_part, parts)
+    if left > right:
+        return math.nan, math.nan, math.nan, math.nan
+    u, v, focal = *camera.centre_px, camera.focal_px
+    return u + focal * left, v + focal * top, u + focal * right, v + focal * bottom
+
+
+def silhouette_area(
+    table: ShapeTable,
+    world_from_part: Matrix,
+    camera: Camera,
+    world_from_camera: Matrix,
+    parts: NDArray[np.bool_],
+) -> int:
+    """Count the pixels that some parts would fill if nothing hid them, the image's border neither.
+
+    The image is continued by its own width and height beyond each border; arguments are as in
+    `silhouette_bounds`.
+    """
+    box = silhouette_bounds(table, world_from_part, camera, world_from_camera, parts)
+    if math.isnan(box[0]):
+        return 0
+    left, right = _within(box[0], box[2], camera.width)
+    top, bottom = _within(box[1], box[3], camera.height)
+    if left > right or top > bottom:
+        return 0
+    u, v = camera.centre_px
+    lens = Lens(camera.focal_px, u - left, v - top, right - left + 1, bottom - top + 1)
+    canvas = make_canvas(lens, len(table.surface_part))
+    bits = np.ones(len(parts), np.uint64)
+    draw(table, invert_pose(world_from_camera) @ world_from_part, ~parts, bits, lens, canvas)
+    return int(np.count_nonzero(canvas.cover))
+
+
+def _within(low: float, high: float, size: int) -> tuple[int, int]:
+    """First and last pixel of an interval within the image and one image on either side."""
+    return math.ceil(max(low, -float(size))), math.floor(min(high, 2.0 * size - 1.0))
+
+
+@njit(cache=True)
+def _bounds(table: ShapeTable, camera_from_part: Array, parts: Mask) -> Bounds:
+    pose = np.empty((3, 4))
+    bounds = EMPTY
+    for shape in range(len(table.kind)):
+        if parts[table.part[shape]]:
+            compose(camera_from_part[table.part[shape]], table.part_from_shape[shape], pose)
+            first, end = table.triangle_range[shape]
+            triangles = table.triangles[first:end]
+            bounds = unite(bounds, shape_bounds(table.kind[shape], table.size[shape], pose, triangles))
+    return bounds

@@ -1,0 +1,1 @@
+"""The PeopleBot: wheels, encoders, sonars and how it looks."""

@@ -1,0 +1,164 @@
+"""The robot: wheels that drive it, encoders that count, and a ring of sonars."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bad_input import BadInput
+from sim.camera import Matrix
+from sim.config import DriveConfig, RobotConfig
+from sim.physics.bullet import Bullet
+from sim.random_streams import stream
+from sim.robot.sonar import SonarRing
+
+NAME = "robot"
+URDF = Path(__file__).with_name("peoplebot.urdf")
+
+WHEEL_RADIUS_M = 0.0825
+WHEEL_DISTANCE_M = 0.333
+RADIUS_M = 0.355  # of the circle about the middle between the wheels in which the robot turns on the spot
+# The body's rear and front ends and its half width [m], about the same middle.
+_REAR_M, _FRONT_M, _HALF_WIDTH_M = -0.30, 0.21, 0.19
+_JOINTS = ("left_wheel_joint", "right_wheel_joint")
+_MOTOR_TORQUE_NM = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class Planar:
+    """Where something stands on the floor: x, y [m] and heading [rad], world frame."""
+
+    x: float
+    y: float
+    heading: float
+
+
+def limit_command(linear: float, angular: float, limits: DriveConfig) -> tuple[float, float]:
+    """Clip a velocity command [m/s, rad/s] to what the robot can do."""
+    return (
+        float(np.clip(linear, -limits.max_linear_m_s, limits.max_linear_m_s)),
+        float(np.clip(angular, -limits.max_angular_rad_s, limits.max_angular_rad_s)),
+    )
+
+
+def wheel_speeds(linear: float, angular: float) -> tuple[float, float]:
+    """Return the rim speeds [m/s] of the left and right wheel that give a robot's velocity [m/s, rad/s]."""
+    half = angular * WHEEL_DISTANCE_M / 2.0
+    return linear - half, linear + half
+
+
+class PeopleBot:
+    """A differential-drive robot in a PyBullet world, moved by its wheels alone.
+
+    Its wheels turn at controlled speeds and its acceleration is limited; grip, bumps and walls are left to
+    the physics engine. Odometry integrates what the encoders count, noise included, from the start pose.
+    """
+
+    def __init__(self, bullet: Bullet, config: RobotConfig, seed: int) -> None:
+        self._bullet = bullet
+        self._limits = config.drive
+        self._encoder_noise = stream(seed, "odometry.noise")
+        self._command = (0.0, 0.0)
+        self._target = (0.0, 0.0)
+        x, y = config.at_m
+        half = config.heading_rad / 2.0
+        bullet.add_urdf(
+            NAME,
+            URDF,
+            position=(x, y, 0.0),
+            orientation=(0.0, 0.0, math.sin(half), math.cos(half)),
+            fixed=False,
+        )
+        self._turn_wheels()
+        self._sonar = SonarRing(bullet, config.sonar, stream(seed, "sonar.noise"), NAME)
+        self._turned = self._wheel_angles()
+        self.odometry = Planar(x, y, config.heading_rad)
+
+    def command(self, linear: float, angular: float) -> None:
+        """Ask for a velocity [m/s, rad/s], clipped to the robot's limits; it is approached, not jumped to.
+
+        Raises:
+            BadInput: the command is not finite.
+        """
+        if not (math.isfinite(linear) and math.isfinite(angular)):
+            raise BadInput(f"velocity command ({linear}, {angular}) must be finite")
+        self._target = limit_command(linear, angular, self._limits)
+
+    def drive(self, dt_s: float) -> None:
+        """Move the wheel speeds towards the command, as far as the acceleration limits allow in dt_s."""
+        if self._command == self._target:
+            return
+        self._command = (
+            _approach(self._command[0], self._target[0], self._limits.linear_acceleration_m_s2 * dt_s),
+            _approach(self._command[1], self._target[1], self._limits.angular_acceleration_rad_s2 * dt_s),
+        )
+        self._turn_wheels()
+
+    def update_odometry(self) -> None:
+        """Integrate what the wheel encoders counted since the last call, with their noise."""
+        angles = self._wheel_angles()
+        travelled = (angles - self._turned) * WHEEL_RADIUS_M
+        self._turned = angles
+        noise = self._encoder_noise.standard_normal(2) * self._limits.encoder_noise_m
+        left, right = (travelled + noise * np.sqrt(np.abs(travelled))).tolist()
+        turn = (right - left) / WHEEL_DISTANCE_M
+        middle = self.odometry.heading + turn / 2.0
+        advance = (left + right) / 2.0
+        self.odometry = Planar(
+            self.odometry.x + advance * math.cos(middle),
+            self.odometry.y + advance * math.sin(middle),
+            math.remainder(self.odometry.heading + turn, math.tau),
+        )
+
+    def sonar(self) -> NDArray[np.float64]:
+        """Read the ring once: (16,) [m]."""
+        return self._sonar.read(self.world_from_robot())
+
+    def wheel_speeds(self) -> tuple[float, float]:
+        """Rim speeds [m/s] of the left and the right wheel, as they turn."""
+        _, speeds = self._bullet.joint_states(NAME, _JOINTS)
+        return float(speeds[0] * WHEEL_RADIUS_M), float(speeds[1] * WHEEL_RADIUS_M)
+
+    def world_from_robot(self) -> Matrix:
+        """(4, 4) true pose of the robot's frame."""
+        return self._bullet.pose(NAME)
+
+    def pose(self) -> Planar:
+        """Return the true pose on the floor."""
+        matrix = self.world_from_robot()
+        return Planar(float(matrix[0, 3]), float(matrix[1, 3]), math.atan2(matrix[1, 0], matrix[0, 0]))
+
+    def gap_to(self, x: float, y: float) -> float:
+        """Distance [m] on the floor between its outline and a point, world frame; 0 inside."""
+        pose = self.pose()
+        cos, sin = math.cos(pose.heading), math.sin(pose.heading)
+        ahead = cos * (x - pose.x) + sin * (y - pose.y)
+        aside = cos * (y - pose.y) - sin * (x - pose.x)
+        return math.hypot(max(_REAR_M - ahead, ahead - _FRONT_M, 0.0), max(abs(aside) - _HALF_WIDTH_M, 0.0))
+
+    def velocity(self) -> tuple[float, float]:
+        """Return the true forward speed [m/s] and turn rate [rad/s]."""
+        linear, angular = self._bullet.velocity(NAME)
+        return float(linear @ self.world_from_robot()[:3, 0]), float(angular[2])
+
+    def touching(self) -> set[str]:
+        """Names of the bodies that the robot touched during the last physics step, the floor included."""
+        return self._bullet.touching(NAME)
+
+    def _turn_wheels(self) -> None:
+        """Set the motors to the speeds that give the present command."""
+        speeds = [speed / WHEEL_RADIUS_M for speed in wheel_speeds(*self._command)]
+        self._bullet.set_joint_speeds(NAME, dict(zip(_JOINTS, speeds, strict=True)), _MOTOR_TORQUE_NM)
+
+    def _wheel_angles(self) -> NDArray[np.float64]:
+        angles, _ = self._bullet.joint_states(NAME, _JOINTS)
+        return angles
+
+
+def _approach(value: float, target: float, step: float) -> float:
+    """Move a value towards a target by at most one step."""
+    return value + min(max(target - value, -step), step)

@@ -1,0 +1,92 @@
+"""The sonar ring: the nearest solid within each of 16 cones."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.camera import Matrix, transform
+from sim.config import SonarConfig
+from sim.physics.bullet import Bullet
+
+# x, y [m] and angle [deg] of each sonar of the lower rings: ARIA's parameter file peoplebot-sh.p, SonarUnit
+# 0..15 (its 16..31, up on the deck, are left out).
+_UNITS = np.array(
+    [
+        (0.069, 0.136, 90.0),
+        (0.114, 0.119, 50.0),
+        (0.148, 0.078, 30.0),
+        (0.166, 0.027, 10.0),
+        (0.166, -0.027, -10.0),
+        (0.148, -0.078, -30.0),
+        (0.114, -0.119, -50.0),
+        (0.069, -0.136, -90.0),
+        (-0.157, -0.136, -90.0),
+        (-0.203, -0.119, -130.0),
+        (-0.237, -0.078, -150.0),
+        (-0.255, -0.027, -170.0),
+        (-0.255, 0.027, 170.0),
+        (-0.237, 0.078, 150.0),
+        (-0.203, 0.119, 130.0),
+        (-0.157, 0.136, 90.0),
+    ]
+)
+SONAR_POSITION_M = _UNITS[:, :2].copy()
+SONAR_ANGLE_RAD = np.radians(_UNITS[:, 2])
+# Rings of rays about a cone's axis: share of its half angle, and number of rays.
+_RINGS = ((0.0, 1), (0.5, 6), (1.0, 8))
+# Rays end this far above the floor, which throws sound away from a sonar and is not heard itself.
+_CLEAR_OF_FLOOR_M = 0.03
+
+
+def cone_rays(cone_rad: float) -> NDArray[np.float64]:
+    """(16, 15, 3) unit vectors, robot frame, that fill each sonar's cone: its axis, and two rings around."""
+    around = [(share, math.tau * k / count) for share, count in _RINGS for k in range(count)]
+    off, turn = np.array(around).T * [[cone_rad / 2.0], [1.0]]
+    ahead, left, up = np.cos(off), np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn)
+    cos, sin = np.cos(SONAR_ANGLE_RAD)[:, None], np.sin(SONAR_ANGLE_RAD)[:, None]
+    return np.stack([ahead * cos - left * sin, ahead * sin + left * cos, np.tile(up, (len(_UNITS), 1))], -1)
+
+
+class SonarRing:
+    """A ring of 16 sonars on a body, which they do not see.
+
+    Each reads the distance to the nearest solid along 15 rays in its cone, the floor aside. Mirror-like
+    reflection off walls at a slant, and echoes between sonars, are not modelled; drop-outs stand in for lost
+    echoes.
+    """
+
+    def __init__(self, bullet: Bullet, config: SonarConfig, rng: np.random.Generator, owner: str) -> None:
+        self._bullet = bullet
+        self._config = config
+        self._rng = rng
+        self._owner = owner
+        rays = cone_rays(config.cone_rad)
+        self._starts = np.concatenate([SONAR_POSITION_M, np.full((len(_UNITS), 1), config.height_m)], axis=1)[
+            :, None, :
+        ].repeat(rays.shape[1], axis=1)
+        with np.errstate(divide="ignore"):
+            to_floor = (config.height_m - _CLEAR_OF_FLOOR_M) / np.maximum(-rays[..., 2], 0.0)
+        self._reach = np.minimum(config.farthest_m, to_floor)
+        self._ends = self._starts + rays * self._reach[..., None]
+
+    def read(self, world_from_robot: Matrix) -> NDArray[np.float64]:
+        """Read all sonars once.
+
+        Args:
+            world_from_robot: (4, 4) pose of the robot.
+
+        Returns:
+            (16,) [m] within nearest..farthest; farthest where nothing answers.
+        """
+        starts = transform(world_from_robot, self._starts).reshape(-1, 3)
+        ends = transform(world_from_robot, self._ends).reshape(-1, 3)
+        fraction, _ = self._bullet.cast_rays(starts, ends, ignore=self._owner)
+        fraction = fraction.reshape(self._reach.shape)
+        nearest = np.where(fraction < 1.0, fraction * self._reach, np.inf).min(axis=1)
+        noise = self._rng.normal(0.0, self._config.noise_m, len(_UNITS))
+        is_lost = self._rng.random(len(_UNITS)) < self._config.drop_out
+        reading = np.where(is_lost, np.inf, nearest + noise)
+        return np.clip(reading, self._config.nearest_m, self._config.farthest_m)
