@@ -8,6 +8,7 @@ from dataclasses import replace
 from behaviours.behaviour import Behaviour
 from behaviours.command import Command
 from behaviours.echoes import Points, fill_drop_outs
+from behaviours.memory import EchoMemory, MemoryConfig, remember
 from behaviours.safety import SafetyConfig, limit
 from behaviours.sight import Sight
 
@@ -23,6 +24,7 @@ class Guarded:
         self._behaviour = behaviour
         self._config = SafetyConfig() if config is None else config
         self._recent: deque[Points] = deque(maxlen=readings)
+        self._memory = EchoMemory()
         self.is_limited = False
 
     @property
@@ -35,6 +37,7 @@ class Guarded:
         self._recent.append(sight.sonar_m)
         steady = replace(sight, sonar_m=fill_drop_outs(list(self._recent)))
         wanted = self._behaviour.command(steady)
-        safe = limit(wanted, steady, self._config)
+        self._memory = remember(self._memory, steady, MemoryConfig())
+        safe = limit(wanted, steady, self._config, self._memory.points)
         self.is_limited = safe != wanted
         return safe

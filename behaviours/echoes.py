@@ -21,8 +21,8 @@ def echoes(sight: Sight) -> Points:
     A range that is no number, or negative, counts as an obstacle at the sonar itself.
     """
     ranges = np.where(np.isfinite(sight.sonar_m), np.maximum(sight.sonar_m, 0.0), 0.0)
-    axis = np.stack([np.cos(sight.sonar_angle_rad), np.sin(sight.sonar_angle_rad)], axis=1)
-    points: Points = axis * (np.array(RING_HALF_AXES_M) + ranges[:, None])
+    axes = np.stack([np.cos(sight.sonar_angle_rad), np.sin(sight.sonar_angle_rad)], axis=1)
+    points: Points = axes * (np.array(RING_HALF_AXES_M) + ranges[:, None])
     points[:, 0] += RING_CENTRE_X_M
     return points
 

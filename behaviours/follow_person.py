@@ -36,6 +36,7 @@ class FollowConfig:
         turn_only_rad: [rad] ... and from this one on it only turns.
         swerve_from_m_s: [m/s] forward speed from which the robot swerves fully past obstacles.
         search_rad_s: [rad/s] turn rate while nobody is seen.
+        stalled_s: [s] a search that does not turn for this long goes on the other way round.
         wait_turn_rad_s: [rad/s] highest turn rate while waiting for a lost person.
         max_age_s: [s] an older track stops the robot.
         wait_s: [s] from the last sight of a person who left the image until the search begins.
@@ -61,6 +62,7 @@ class FollowConfig:
     turn_only_rad: float = math.radians(32.0)
     swerve_from_m_s: float = 0.1
     search_rad_s: float = 0.6
+    stalled_s: float = 0.7
     wait_turn_rad_s: float = 0.5
     max_age_s: float = 0.3
     wait_s: float = 1.2
@@ -82,6 +84,7 @@ class FollowState:
         walking_m_s: [m/s] learnt speed at which the person walks away.
         side: +1 (left) or -1, to which to search: where the person was last seen to go.
         patience_s: [s] how long to wait for the person before searching.
+        stalled_s: [s] for how long the search has not turned: an obstacle is in the way.
     """
 
     mode: str = "search"
@@ -90,6 +93,7 @@ class FollowState:
     walking_m_s: float = 0.0
     side: int = 1
     patience_s: float = 0.0
+    stalled_s: float = 0.0
 
 
 class FollowPerson:
@@ -124,7 +128,7 @@ def follow(state: FollowState, sight: Sight, config: FollowConfig) -> tuple[Foll
         return replace(state, mode="blind"), STOP
     state = replace(_update_target(state, sight, step_s, config), time_s=sight.time_s)
     if state.target is None:
-        return _search(state, config)
+        return _search(state, sight, step_s, config)
     if sight.time_s - state.target.seen_s > config.max_age_s:
         return _wait(state, state.target, config)
     return _go_after(state, state.target, sight, step_s, config)
@@ -180,10 +184,17 @@ def _patience(target: Target, config: FollowConfig) -> float:
     )
 
 
-def _search(state: FollowState, config: FollowConfig) -> tuple[FollowState, Command]:
-    """Rotate in place, towards the side where the person was last seen."""
+def _search(
+    state: FollowState, sight: Sight, step_s: float, config: FollowConfig
+) -> tuple[FollowState, Command]:
+    """Rotate in place, to the side where the person was last seen; if that is blocked, to the other."""
+    is_stalled = state.mode == "search" and abs(sight.angular_rad_s) < 0.1 * config.search_rad_s
+    stalled_s = state.stalled_s + min(step_s, config.max_age_s) if is_stalled else 0.0
+    if stalled_s > config.stalled_s:
+        state, stalled_s = replace(state, side=-state.side), 0.0
     turn = state.side * config.search_rad_s
-    return replace(state, mode="search", walking_m_s=0.0), Command(linear_m_s=0.0, angular_rad_s=turn)
+    state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s)
+    return state, Command(linear_m_s=0.0, angular_rad_s=turn)
 
 
 def _wait(state: FollowState, target: Target, config: FollowConfig) -> tuple[FollowState, Command]:

@@ -11,6 +11,9 @@ from behaviours.command import STOP, Command
 from behaviours.echoes import Points, echoes
 from behaviours.sight import Sight
 
+NOTHING_REMEMBERED: Points = np.zeros((0, 2))
+NOTHING_REMEMBERED.setflags(write=False)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SafetyConfig:
@@ -44,18 +47,27 @@ class SafetyConfig:
     tight_turn_rad_s: float = 0.3
 
 
-def limit(command: Command, sight: Sight, config: SafetyConfig) -> Command:
+def limit(
+    command: Command, sight: Sight, config: SafetyConfig, remembered: Points = NOTHING_REMEMBERED
+) -> Command:
     """Change a command as little as needed so that the robot can always stop before what its sonars see.
 
     The result is within the drive's limits; its parts keep their sign or are zero. Senseless input stops the
     robot; a sonar that reads no number counts as an obstacle at the sonar itself.
+
+    Args:
+        command: what a behaviour asks for.
+        sight: with the sonars' ranges.
+        config: limits and outline.
+        remembered: (N, 2) [m] further obstacles, robot frame, which limit turning: a corner of the hull
+            swings through the gaps between the sonars' cones.
     """
     if not sight.is_sound:
         return STOP
     points = echoes(sight)
     ahead, behind = _free_way(points, config)
     backwards, forwards = -safe_speed(behind, config), safe_speed(ahead, config)
-    turn = _safe_turn(command.angular_rad_s, points, config)
+    turn = _safe_turn(command.angular_rad_s, np.concatenate([points, remembered]), config)
     return Command(
         linear_m_s=min(max(command.linear_m_s, backwards), forwards),
         angular_rad_s=min(max(command.angular_rad_s, -turn), turn),

@@ -124,8 +124,11 @@ class Toy:
     def is_contact(self) -> bool:
         return _is_in_hull(self.obstacles())
 
-    def is_in_wall(self) -> bool:
-        return _is_in_hull(self.local(self.walls))
+    def wall_gap(self) -> float:
+        """Smallest distance [m] from the hull to a wall."""
+        x, y = self.local(self.walls).T
+        beyond = np.maximum(np.maximum(x - FRONT, -REAR - x), 0.0)
+        return float(np.hypot(beyond, np.maximum(np.abs(y) - HALF_WIDTH, 0.0)).min())
 
     def step(self, behaviour: Behaviour) -> Command:
         """One tick; the command acts one frame after its image."""
