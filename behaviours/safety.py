@@ -25,7 +25,7 @@ class SafetyConfig:
         max_linear_m_s: [m/s] forward speed limit, also backwards.
         max_angular_rad_s: [rad/s] turn rate limit.
         braking_m_s2: [m/s2] deceleration to count on; less than the drive's 0.6, in reserve.
-        reaction_s: [s] from an echo until the brakes act: frames of latency, and a drive that still speeds up.
+        reaction_s: [s] from an echo until the brakes act: a frame of latency, and a drive still speeding up.
         margin_m: [m] room left between the hull and an obstacle straight ahead or behind.
         front_m, rear_m: [m] from the origin to the hull's front and rear edge.
         half_width_m: [m] half of the lane that must be free: half the hull plus a hand's breadth.
