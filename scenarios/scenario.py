@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from bad_input import BadInput
-from behaviours.arbitrate import Guarded
+from behaviours.behaviour import Behaviour
 from behaviours.command import Command
 from behaviours.follow_person import FollowConfig
 from behaviours.make import make_behaviour
 from scenarios.build_place import make_floor_plan, make_place
 from scenarios.cast_people import cast, make_config, members
 from scenarios.check import Ground, check_scenario, make_ground
+from scenarios.drives import Repeat
 from scenarios.equip_robot import equip_robot
 from scenarios.outfits import tell_apart
 from scenarios.schema import DrawnSpec, PersonSpec, RobotSpec, ScenarioSpec
@@ -35,12 +37,14 @@ class Scenario:
         plan: the floor.
         place: everything that stands still.
         ground: where people can walk.
+        drive: commands, one a control step, that the robot repeats instead of behaving; None to behave.
     """
 
     spec: ScenarioSpec
     plan: FloorPlan
     place: Place
     ground: Ground
+    drive: tuple[Command, ...] | None = None
 
     @property
     def name(self) -> str:
@@ -91,8 +95,18 @@ class Scenario:
             renderer=renderer,
         )
 
-    def make_behaviour(self) -> Guarded:
+    def lasting(self, duration_s: float) -> Scenario:
+        """The same scenario, but shorter or longer."""
+        return replace(self, spec=self.spec.model_copy(update={"duration_s": duration_s}))
+
+    def driven(self, drive: Sequence[Command]) -> Scenario:
+        """The same scenario, but the robot repeats recorded commands."""
+        return replace(self, drive=tuple(drive))
+
+    def make_behaviour(self) -> Behaviour:
         """What drives the robot, fresh from the start."""
+        if self.drive is not None:
+            return Repeat(self.drive)
         script = [
             (c.from_s, Command(linear_m_s=c.linear_m_s, angular_rad_s=math.radians(c.angular_deg_s)))
             for c in self.robot.commands
