@@ -72,7 +72,7 @@ def schema() -> None:
     "--out", type=click.Path(path_type=Path), help="Folder of the run.  [default: runs/SCENARIO-SEED]"
 )
 @click.option("--frames", is_flag=True, help="Write every thermal and colour image as PNG too.")
-@click.option("--tracker", default="peopleboy", show_default=True, help="peopleboy, thesis or paper.")
+@click.option("--tracker", default="peopleboy", show_default=True, help="A wrong name lists them all.")
 @click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
@@ -149,7 +149,7 @@ def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None) -> N
     show_default=True,
     help="Where the runs' folders go.",
 )
-@click.option("--tracker", default="peopleboy", show_default=True, help="peopleboy, thesis or paper.")
+@click.option("--tracker", default="peopleboy", show_default=True, help="A wrong name lists them all.")
 @click.option(
     "--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Runs at the same time."
 )

@@ -13,6 +13,8 @@ import trimesh
 from numpy.typing import NDArray
 
 from bad_input import BadInput
+from sim.physics.bullet import Bullet
+from sim.rendering.shape_table import VisualShape
 from sim.places.place import Fixture
 from sim.rotations import pose_matrices
 from sim.shapes import Shape, ShapeKind
@@ -78,76 +80,46 @@ def find_urdf(name: str) -> Path:
 
 @cache
 def urdf_extent(path: Path) -> Extent:
-    """The box around the base link of a URDF: furniture is one link.
+    """The box around everything that is seen of a URDF, all links in their rest pose.
 
     Raises:
         BadInput: the file is not a URDF with shapes, or names a mesh outside its own folder.
     """
+    _check_meshes(path)
+    with Bullet() as bullet:
+        bullet.add_urdf("thing", path)
+        poses = bullet.part_poses()
+        extents = [_visual_extent(shape, poses[shape.part]) for shape in bullet.visual_shapes()]
+    if not extents:
+        raise BadInput(f"{path} is not furniture: it has no visible shapes")
+    return _around(np.concatenate(extents))
+
+
+def _visual_extent(shape: VisualShape, world_from_part: NDArray[np.float64]) -> Extent:
+    own = shape_extent(Shape(kind=shape.kind, size=shape.size, mesh=shape.mesh))
+    return _placed(own, world_from_part @ shape.part_from_shape)
+
+
+def _check_meshes(path: Path) -> None:
+    """Refuse a file that is no XML, and meshes that lie outside its folder, or outside pybullet_data."""
     try:
         text = re.sub(r"<\?xml.*?\?>", "", path.read_text("utf-8"), count=1)
         root = ElementTree.fromstring(text)
     except (OSError, UnicodeDecodeError, ElementTree.ParseError) as error:
         raise BadInput(f"{path} cannot be read as a URDF: {error}") from error
-    elements = [e for kind in ("visual", "collision") for e in root.iterfind(f"./link/{kind}")]
-    extents = [_element_extent(path, element) for element in elements]
-    if not extents or len(root.findall("./link")) != 1:
-        raise BadInput(f"{path} is not furniture: it must be a URDF of one link with shapes")
-    return _around(np.concatenate(extents))
-
-
-def _element_extent(path: Path, element: ElementTree.Element) -> Extent:
-    shape = element.find("./geometry/*")
-    origin = element.find("origin")
-    if shape is None:
-        raise BadInput(f"{path} is not a URDF: a <{element.tag}> has no geometry")
-    try:
-        xyz = _numbers(origin, "xyz", "0 0 0")
-        roll, pitch, yaw = _numbers(origin, "rpy", "0 0 0")
-        return _moved(_geometry_extent(path, shape), xyz, _quaternion(roll, pitch, yaw))
-    except (ValueError, TypeError) as error:
-        raise BadInput(f"{path} is not a URDF: {error}") from error
-
-
-def _geometry_extent(path: Path, shape: ElementTree.Element) -> Extent:
-    if shape.tag == "mesh":
-        name = Path(shape.get("filename", ""))
-        if name.is_absolute() or ".." in name.parts:
-            raise BadInput(f"{path}: mesh {str(name)!r} lies outside the file's folder")
-        return mesh_extent(path.parent / name) * _numbers(shape, "scale", "1 1 1")
-    if shape.tag == "box":
-        size = _numbers(shape, "size", "")
-    else:
-        radius = float(shape.get("radius", ""))
-        size = np.array([2.0 * radius, 2.0 * radius, float(shape.get("length", 2.0 * radius))])
-    return np.array([-size, size]) / 2.0
-
-
-def _numbers(element: ElementTree.Element | None, name: str, default: str) -> NDArray[np.float64]:
-    text = default if element is None else element.get(name, default)
-    numbers = np.array([float(word) for word in text.split()])
-    if numbers.shape != (3,):
-        raise ValueError(f"{name}={text!r} must be three numbers")
-    return numbers
-
-
-def _quaternion(roll: float, pitch: float, yaw: float) -> NDArray[np.float64]:
-    """Turn the fixed-axis angles of a URDF [rad] into a quaternion x, y, z, w."""
-    (sr, sp, sy), (cr, cp, cy) = (
-        np.sin(np.divide((roll, pitch, yaw), 2)),
-        np.cos(np.divide((roll, pitch, yaw), 2)),
-    )
-    return np.array(
-        [
-            sr * cp * cy - cr * sp * sy,
-            cr * sp * cy + sr * cp * sy,
-            cr * cp * sy - sr * sp * cy,
-            cr * cp * cy + sr * sp * sy,
-        ]
-    )
+    data = Path(pybullet_data.getDataPath())
+    home = data if path.is_relative_to(data) else path.parent
+    for mesh in root.iter("mesh"):
+        name = mesh.get("filename", "")
+        if not (path.parent / name).resolve().is_relative_to(home.resolve()):
+            raise BadInput(f"{path}: mesh {name!r} lies outside the file's folder")
 
 
 def _moved(extent: Extent, position: object, orientation: object) -> Extent:
-    pose = pose_matrices(np.asarray(position, float), np.asarray(orientation, float))
+    return _placed(extent, pose_matrices(np.asarray(position, float), np.asarray(orientation, float)))
+
+
+def _placed(extent: Extent, pose: NDArray[np.float64]) -> Extent:
     corners = extent[0] + _CORNERS * (extent[1] - extent[0])
     return _around(corners @ pose[:3, :3].T + pose[:3, 3])
 

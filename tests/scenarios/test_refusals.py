@@ -226,10 +226,6 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d["things"].append({"kind": "urdf", "at_m": [4, 2], "urdf": "tabel.urdf"}),
         ("things[4].urdf: 'tabel.urdf' is neither in pybullet_data nor",),
     ),
-    "robot arm as furniture": (
-        lambda d: d["things"].append({"kind": "urdf", "at_m": [4, 2], "urdf": "kuka_iiwa/model.urdf"}),
-        ("things[4]", "model.urdf is not furniture"),
-    ),
 }
 
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from boxes import Box, fighting_faces, piece_boxes
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bad_input import BadInput
 from sim.places.extent import find_urdf, fixture_extent, urdf_extent
 from sim.places.pieces import SINK_M
 from sim.places.place import Fixture
@@ -95,3 +97,16 @@ def test_the_extent_of_a_urdf_is_that_of_its_table_top_and_legs() -> None:
     low, high = urdf_extent(find_urdf("table/table.urdf"))
     assert low == pytest.approx([-0.75, -0.5, 0.0], abs=0.01)
     assert high == pytest.approx([0.75, 0.5, 0.625], abs=0.01)
+
+
+def test_furniture_of_many_links_is_measured_in_its_rest_pose() -> None:
+    # Clearpath's data sheet of the Husky: 990 x 670 x 390 mm.
+    low, high = urdf_extent(find_urdf("husky/husky.urdf"))
+    assert high - low == pytest.approx([0.99, 0.67, 0.39], abs=0.06)
+
+
+def test_a_file_without_shapes_is_no_furniture(tmp_path: Path) -> None:
+    path = tmp_path / "bare.urdf"
+    path.write_text('<robot name="bare"><link name="base"/></robot>')
+    with pytest.raises(BadInput, match="no visible shapes"):
+        urdf_extent(path)
