@@ -11,7 +11,7 @@ from bad_input import BadInput
 from scenarios.folder import RunFolder, claim_folder, versions
 from scenarios.loop import Tick, closed_loop
 from scenarios.scenario import Scenario
-from scenarios.score import RunScores, score_run
+from scenarios.score import RunScores, following_task, score_run
 from scenarios.watchers import Watchers
 from sim.random_streams import stream
 from sim.world import World
@@ -78,8 +78,11 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
             folder.write(tick, [event.to_json() for event in events])
             report(tick, frames)
         folder.flush()
-        follows = scenario.robot.behaviour == "follow_person"
-        scores = score_run(options.out, frames, watchers.following.score() if follows else None)
+        following = None
+        if scenario.robot.behaviour == "follow_person" and config.people:
+            task = following_task(config, scenario.follow_config().keep_height)
+            following = watchers.following.score(task)
+        scores = score_run(options.out, frames, following)
         watchers.save(options.out)
         folder.complete(scores.to_json())
     return scores

@@ -111,10 +111,12 @@ class Scenario:
             (c.from_s, Command(linear_m_s=c.linear_m_s, angular_rad_s=math.radians(c.angular_deg_s)))
             for c in self.robot.commands
         ]
-        follow = FollowConfig()
-        if self.robot.keep_height is not None:
-            follow = replace(follow, keep_height=self.robot.keep_height)
-        return make_behaviour(self.robot.behaviour, script=script, follow=follow)
+        return make_behaviour(self.robot.behaviour, script=script, follow=self.follow_config())
+
+    def follow_config(self) -> FollowConfig:
+        """Gains and heights of a robot that follows a person."""
+        keep_height = self.robot.keep_height
+        return FollowConfig() if keep_height is None else FollowConfig(keep_height=keep_height)
 
     def resolved(self, seed: int, versions: dict[str, str] | None = None) -> dict[str, Any]:
         """The scenario as plain data with everything drawn; reading it again gives the same world.

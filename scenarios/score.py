@@ -9,12 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.following_metrics import FollowingScore, score_following
+from scenarios.following_metrics import FollowingScore, FollowingTask, score_following
 from scenarios.loop import Tick
+from sim.config import WorldConfig
 from tracker.evaluation.boxes import iou
 from tracker.evaluation.evaluate import Scores, evaluate
 from tracker.evaluation.mot_files import read_tracks, read_truth
 from tracker.evaluation.table import to_json
+
+BAND_M = 1.2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,8 +62,8 @@ class FollowingLog:
             (truth.time_s, robot.x, robot.y, robot.heading, *position, is_tracked, bool(truth.contacts))
         )
 
-    def score(self) -> FollowingScore:
-        """Score the run so far."""
+    def score(self, task: FollowingTask) -> FollowingScore:
+        """Score the run so far against what the robot was to do."""
         table = np.array(self._rows, dtype=np.float64)
         return score_following(
             time_s=table[:, 0],
@@ -68,7 +71,19 @@ class FollowingLog:
             person=table[:, 4:6],
             is_tracked=table[:, 6] > 0.0,
             is_contact=table[:, 7] > 0.0,
+            task=task,
         )
+
+
+def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:
+    """Turn the height [image heights] at which a person is to be seen into the distance that shows it so.
+
+    The band reaches 1.2 m to either side of it. It is the first person who is to be followed.
+    """
+    camera = config.robot.thermal.camera
+    shown_px = keep_height * camera.height
+    keep_m = camera.focal_px * config.people[0].height_m / shown_px + camera.position_m[0]
+    return FollowingTask(keep_m=keep_m, band_m=(keep_m - BAND_M, keep_m + BAND_M))
 
 
 def score_run(folder: Path, frames: int, following: FollowingScore | None) -> RunScores:

@@ -7,6 +7,8 @@ from hypothesis import strategies as st
 
 from bad_input import BadInput
 from scenarios.following_metrics import FollowingTask, score_following
+from scenarios.load import load_scenario
+from scenarios.score import following_task
 
 STEP_S = 0.5
 
@@ -119,3 +121,13 @@ def test_arrays_of_different_lengths_and_standing_time_are_refused():
         score_following(**{**good, "person": np.ones((2, 2))})
     with pytest.raises(BadInput, match="rise"):
         score_following(**{**good, "time_s": np.zeros(3)})
+
+
+def test_the_distance_to_keep_is_the_one_that_shows_the_person_as_tall_as_asked() -> None:
+    config = load_scenario("single_follow").world(0)
+    task = following_task(config, keep_height=0.5)
+    camera, person = config.robot.thermal.camera, config.people[0]
+    away = task.keep_m - camera.position_m[0]
+    feet, head = camera.project(np.array([[0.0, 1.2, away], [0.0, 1.2 - person.height_m, away]]))
+    assert feet[1] - head[1] == pytest.approx(0.5 * camera.height)
+    assert task.band_m == pytest.approx((task.keep_m - 1.2, task.keep_m + 1.2))
