@@ -9,32 +9,11 @@ import math
 from dataclasses import dataclass, field
 
 from bad_input import BadInput
+from tracker.appearance.config import ColourConfig
+from tracker.check_config import check_not_negative, check_positive, check_share, refuse_unless
 
 REFERENCE_HEIGHT_PX = 240
 """Image height for which the sources give their constants."""
-
-
-def check_positive(config: object, *names: str) -> None:
-    """Refuse a record in which one of the named numbers is not positive."""
-    for name in names:
-        _refuse_unless(getattr(config, name) > 0, config, name, "positive")
-
-
-def check_share(config: object, *names: str) -> None:
-    """Refuse a record in which one of the named numbers is not in 0..1."""
-    for name in names:
-        _refuse_unless(0 <= getattr(config, name) <= 1, config, name, "in 0..1")
-
-
-def check_not_negative(config: object, *names: str) -> None:
-    """Refuse a record in which one of the named numbers is negative."""
-    for name in names:
-        _refuse_unless(getattr(config, name) >= 0, config, name, "0 or more")
-
-
-def _refuse_unless(is_right: bool, config: object, name: str, rule: str) -> None:
-    if not is_right:
-        raise BadInput(f"{type(config).__name__}: {name} must be {rule}, got {getattr(config, name)}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,7 +114,7 @@ class MotionConfig:
     def __post_init__(self) -> None:
         check_not_negative(self, "noise_x", "noise_y", "noise_w", "noise_h", "noise_d", "noise_by_height")
         check_share(self, "place_memory", "size_memory")
-        _refuse_unless(0 < self.view_angle_deg < 180, self, "view_angle_deg", "between 0 and 180")
+        refuse_unless(0 < self.view_angle_deg < 180, self, "view_angle_deg", "between 0 and 180")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -149,6 +128,7 @@ class FilterConfig:
     sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0: the probability, or the paper's fitness
     estimate_share: float = 1.0  # share of the samples, the best ones, that makes the estimate
     estimate_reach: float = math.inf  # only those within so many semi-axes of the best
+    floor: float = -math.inf  # least fitness for the weight: what a hidden person would have anywhere
 
     def __post_init__(self) -> None:
         check_positive(self, "count", "estimate_share", "estimate_reach")
@@ -195,6 +175,23 @@ class SmoothingConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LooksConfig:
+    """By how much the looks of one person differ from frame to frame: head, torso, legs.
+
+    Colours and greys are means over the part, 0..1; colours after the light has been divided out.
+    """
+
+    colour_spread: tuple[float, float, float] = (0.06, 0.02, 0.035)
+    grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)
+    brightness: float = 80.0  # mean of the colour image [grey] to which all are scaled
+    darkest: float = 12.0  # mean below which colours are noise
+
+    def __post_init__(self) -> None:
+        for spread in (*self.colour_spread, *self.grey_spread, self.brightness):
+            refuse_unless(spread > 0, self, "colour_spread", "positive")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class InteractionConfig:
     """How filters keep off each other's people, and how many samples they share."""
 
@@ -212,6 +209,34 @@ class InteractionConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OcclusionConfig:
+    """What happens when people hide each other, and who is remembered.
+
+    The defaults are section 7.3 of the thesis; what follows `forget_s` goes beyond it.
+    """
+
+    is_handled: bool = False  # whether it matters who is in front
+    head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
+    kept_frames: int = 8  # frames for which a hidden person's samples are kept
+    forget_s: float = 10.0  # time after which a hidden person is forgotten
+    removes_front: bool = False  # points of the contour on people in front are left out of the evidence
+    covered_response: float = 0.4  # what such a point counts
+    growth: float = 1.0  # by which the people in front are enlarged for that
+    keeps_velocity: bool = False  # hidden people walk on; otherwise they are where their occluder is
+    hidden_memory: float = 0.97  # share of a hidden person's velocity that lasts to the next step
+    hidden_noise: float = 0.3  # share of the motion noise while hidden
+    colour_gate: float = 0.15  # largest squared distance of colours of who comes back to sight
+    remembers_lost: bool = False  # who is lost in any other way is remembered as well
+    least_age_s: float = 0.5  # if tracked for so long
+    shown_s: float = 10.0  # how long a hidden person is shown
+
+    def __post_init__(self) -> None:
+        check_share(self, "head_covered", "hidden_memory", "hidden_noise")
+        check_not_negative(self, "kept_frames", "forget_s", "least_age_s", "shown_s")
+        check_positive(self, "growth")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class TrackerConfig:
     """A whole tracker."""
 
@@ -224,3 +249,6 @@ class TrackerConfig:
     box: BoxConfig = field(default_factory=BoxConfig)
     smoothing: SmoothingConfig = field(default_factory=SmoothingConfig)
     interaction: InteractionConfig = field(default_factory=InteractionConfig)
+    colour: ColourConfig | None = None  # None: thermal alone
+    looks: LooksConfig | None = None  # None: colours as they are
+    occlusion: OcclusionConfig = field(default_factory=OcclusionConfig)

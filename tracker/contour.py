@@ -21,6 +21,9 @@ HEAD_LEFT, HEAD_TOP, HEAD_RIGHT, SHOULDER_LEFT, SHOULDER_RIGHT, SIDE_LEFT, SIDE_
 SECTIONS = 8
 GREYS = 256
 FEET_COLUMNS = 8
+COVERED = 0
+"""Grey of the pixels of people in front, in an image where no other pixel has it."""
+NO_GREY = -2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -162,7 +165,12 @@ def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np
 
 
 def section_differences(
-    image: NDArray[np.uint8], state: Floats, probes: Probes, response: Floats, unseen: float
+    image: NDArray[np.uint8],
+    state: Floats,
+    probes: Probes,
+    response: Floats,
+    unseen: float,
+    covered: float | None = None,
 ) -> Floats:
     """Measure the mean response (N, 8) of every section of every sample, D_j of equation 4.3.
 
@@ -172,9 +180,18 @@ def section_differences(
         probes: the points to look at.
         response: (8, 511) what a difference counts.
         unseen: what a pair counts with a point outside the image.
+        covered: what a pair counts with a point on a person in front; None in an image without such marks.
     """
     return _differences(
-        image, state, probes.inner, probes.outer, probes.section, response, np.float32(unseen)
+        image,
+        state,
+        probes.inner,
+        probes.outer,
+        probes.section,
+        response,
+        np.float32(unseen),
+        NO_GREY if covered is None else COVERED,
+        np.float32(0 if covered is None else covered),
     )
 
 
@@ -187,6 +204,8 @@ def _differences(
     section: NDArray[np.int64],
     response: Floats,
     unseen: np.float32,
+    covered_grey: int,
+    covered: np.float32,
 ) -> Floats:
     share = np.zeros(SECTIONS, dtype=np.float32)
     for j in section:
@@ -200,6 +219,8 @@ def _differences(
             j = section[p]
             if inside < 0 or outside < 0:
                 result[i, j] += unseen
+            elif inside == covered_grey or outside == covered_grey:
+                result[i, j] += covered
             else:
                 result[i, j] += response[j, GREYS - 1 + inside - outside]
         for j in range(SECTIONS):

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.config import REFERENCE_HEIGHT_PX, FilterConfig, TrackerConfig
+from tracker.appearance.colour_view import ColourView
+from tracker.config import REFERENCE_HEIGHT_PX, FilterConfig, MotionConfig, TrackerConfig
 from tracker.frame import Frame
+from tracker.looks import LooksView
 from tracker.measure import ContourModel, fitness, is_within, probability, sample_weights
 from tracker.motion import Columns, predict, turned
 from tracker.particles import (
@@ -36,6 +38,10 @@ class View:
         dt_s: time since the last frame [s].
         turn_rad: how the camera turned since then, left positive [rad]; 0 if unknown.
         focal_px: focal length [px].
+        colour: the colour image; None without one.
+        looks: colours and thermal pattern together; None if they are not compared.
+        covered: what a point of the contour counts where the image says that somebody is in front; None
+            where it says nothing of the kind.
     """
 
     image: NDArray[np.uint8]
@@ -43,6 +49,9 @@ class View:
     dt_s: float
     turn_rad: float
     focal_px: float
+    colour: ColourView | None = None
+    looks: LooksView | None = None
+    covered: float | None = None
 
     @property
     def size(self) -> float:
@@ -59,7 +68,12 @@ def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerCo
     motion = config.motion
     turn = frame.turn_rad if motion.uses_odometry and frame.turn_rad is not None else 0.0
     focal = frame.height_px / 2 / math.tan(math.radians(motion.view_angle_deg) / 2)
-    return View(model.prepare(frame.thermal), model, dt_s, turn, focal)
+    image = model.prepare(frame.thermal)
+    colour = None
+    if config.colour is not None and frame.colour is not None:
+        colour = ColourView.build(frame.colour, frame.thermal.shape, config.colour)
+    looks = None if config.looks is None else LooksView.build(image, colour, config.looks)
+    return View(image, model, dt_s, turn, focal, colour, looks)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,10 +113,12 @@ def weigh(
 
     Source: thesis, algorithm 3 (update), equations 4.2 and 4.6; 5.1, 5.2 and 6.17 with the factor.
     """
-    fit = fitness(view.model.differences(view.image, state), view.model.weights, config.likelihood)
+    differences = view.model.differences(view.image, state, view.covered)
+    fit = fitness(differences, view.model.weights, config.likelihood)
     chance = probability(fit, config.likelihood)
     inside = is_within(state, view.image.shape[0], filter_config.limits)
-    weight = sample_weights(fit, chance, inside, config.likelihood.model, filter_config)
+    counted = np.maximum(fit, np.float32(filter_config.floor))
+    weight = sample_weights(counted, chance, inside, config.likelihood.model, filter_config)
     if factor is not None:
         weight = normalised(weight * factor)
     particles = Particles(state, weight)
@@ -141,11 +157,12 @@ def advance(
     filter_config: FilterConfig,
     config: TrackerConfig,
     rng: np.random.Generator,
+    motion: MotionConfig | None = None,
 ) -> Floats:
     """Draw the samples (N, 9) of this frame from those of the last one, some of them from the prior."""
     fresh = round(filter_config.fresh_share * filter_config.count)
     kept = resample(particles, filter_config.count - fresh, rng)
-    moved = predict(kept, view.dt_s, view.size, config.motion, rng)
+    moved = predict(kept, view.dt_s, view.size, config.motion if motion is None else motion, rng)
     moved[:, X] = view.after_turn(moved[:, X])
     return np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)])
 

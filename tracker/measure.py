@@ -48,9 +48,16 @@ class ContourModel:
         """Turn a thermal image (H, W) into the one that the contour is compared with."""
         return person_grey(thermal, self.config)
 
-    def differences(self, image: NDArray[np.uint8], state: Floats) -> Floats:
-        """Measure every section of every sample in a prepared image, (N, 8)."""
-        result = section_differences(image, state, self.probes, self.response, self.config.unseen_response)
+    def differences(self, image: NDArray[np.uint8], state: Floats, covered: float | None = None) -> Floats:
+        """Measure every section of every sample in a prepared image, (N, 8).
+
+        Args:
+            image: (H, W) prepared.
+            state: (N, 9) samples.
+            covered: what a point counts where the image says that somebody is in front; None if it does not.
+        """
+        unseen = self.config.unseen_response
+        result = section_differences(image, state, self.probes, self.response, unseen, covered)
         if self.config.feet_weight > 0:
             result[:, FEET] = np.minimum(1.0, self.config.feet_gain * result[:, FEET])
         return result

@@ -1,62 +1,47 @@
-"""Several people: a sequential detector finds them one by one, and each keeps a filter of its own."""
+"""People in view: a sequential detector finds them one by one, and each keeps a filter of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bad_input import BadInput
-from tracker.config import FilterConfig, TrackerConfig
+from tracker.config import TrackerConfig
+from tracker.crowd import follow, foot_of, learn
 from tracker.ellipse import box_of
 from tracker.filter import Belief, View, advance, draw_fresh, view_frame, weigh
 from tracker.frame import Frame
-from tracker.interaction import detector_factor, overlap_shares, person_factor, regions_of
-from tracker.life import is_born, is_kept
+from tracker.identity import recognised, remembered
+from tracker.interaction import detector_factor, overlap_shares, regions_of
+from tracker.life import is_born
 from tracker.measure import ContourModel
-from tracker.particles import VX, Floats, Particles, X, ellipse_of
-from tracker.smooth import smoothed
+from tracker.order import Order, lower_foot
+from tracker.particles import Particles, X, ellipse_of
+from tracker.person import Person
 from tracker.track import Status, Track
 
 FIRST_STEP_S = 1 / 15
 DETECTOR_KEY = 0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Person:
-    """A tracked person between two frames.
-
-    Attributes:
-        id: 1 or more.
-        born_s: time of the first frame [s].
-        belief: its filter.
-        shown: (9,) its estimate, smoothed over time.
-        missing: frames in a row in which the person was not seen.
-    """
-
-    id: int
-    born_s: float
-    belief: Belief
-    shown: NDArray[np.float64]
-    missing: int = 0
-
-
 class PeopleTracker:
-    """Finds people one after the other, and keeps each until it is no longer seen.
+    """Finds people one after the other, keeps each while it is seen, and remembers the hidden.
 
-    Source: thesis, chapter 5.
+    Source: thesis, chapters 5 and 7.
     """
 
-    def __init__(self, config: TrackerConfig, rng: np.random.Generator) -> None:
+    def __init__(self, config: TrackerConfig, rng: np.random.Generator, order: Order = lower_foot) -> None:
         self._config = config
         self._rng = rng
+        self._order = order
         self._model: ContourModel | None = None
         self._last_s: float | None = None
         self._detector: Belief | None = None
         self._hits = 0
         self._persons: tuple[Person, ...] = ()
+        self._memories: tuple[Person, ...] = ()
         self._born = 0
 
     @property
@@ -73,9 +58,21 @@ class PeopleTracker:
         """
         view = view_frame(frame, self._time_step(frame.time_s), self._model_for(frame), self._config)
         self._last_s = frame.time_s
-        self._follow(view)
-        tracks = [self._track(person, frame.time_s, self._status(person)) for person in self._persons]
-        return (*tracks, *self._search(view, frame.time_s))
+        self._memories = tuple(
+            person
+            for memory in self._memories
+            if (person := remembered(memory, view, self._persons, self._config)).hidden_s
+            <= self._config.occlusion.forget_s
+        )
+        persons = follow(self._persons, view, self._config, self._order, self._rng)
+        self._part(persons, frame.time_s)
+        newcomer = self._search(view, frame.time_s)
+        tracks = [
+            self._track(person, frame.time_s)
+            for person in (*self._persons, *self._memories)
+            if not person.is_hidden or self._is_shown(person, view)
+        ]
+        return (*tracks, *newcomer)
 
     def _time_step(self, time_s: float) -> float:
         if self._last_s is None:
@@ -90,37 +87,26 @@ class PeopleTracker:
             self._model = ContourModel.build(shape, self._config.contour)
         return self._model
 
-    def _follow(self, view: View) -> None:
-        """Carry everybody's filter on, and give up those who have not been seen for too long."""
-        expected = regions_of([predicted(person, view) for person in self._persons], self._config)
-        kept = []
-        for number, person in enumerate(self._persons):
-            others = np.delete(expected, number, axis=0)
-            follower = self._carried_on(person, others, view)
+    def _part(self, persons: tuple[Person, ...], time_s: float) -> None:
+        """Divide people into those who are kept, those who are only remembered, and those who are gone."""
+        handling, life = self._config.occlusion, self._config.life
+        kept, memories = [], []
+        for person in persons:
             # Without confidence no sample is within the limits, and the estimate may be no ellipse at all.
-            if follower.missing < self._config.life.death_frames and follower.belief.confidence > 0:
-                kept.append(follower)
+            is_lost = person.missing >= life.death_frames or person.belief.confidence == 0
+            is_old = time_s - person.born_s >= handling.least_age_s
+            if (
+                person.is_hidden
+                and not handling.keeps_velocity
+                and person.hidden_frames > handling.kept_frames
+            ):
+                memories.append(person)
+            elif not is_lost:
+                kept.append(person)
+            elif handling.remembers_lost and is_old:
+                memories.append(replace(person, status=Status.TOTALLY_OCCLUDED, occluder=None))
         self._persons = tuple(kept)
-
-    def _carried_on(self, person: Person, others: Floats, view: View) -> Person:
-        config = self._config
-        state = advance(person.belief.core, view, self._filter_of_a_person(), config, self._rng)
-        shares = overlap_shares(state, others, config)
-        factor = person_factor(shares, np.full(len(others), config.interaction.penalty))
-        belief = weigh(state, view, config.person, config, factor)
-        return replace(
-            person,
-            belief=belief,
-            missing=0 if is_kept(belief, view, config.life) else person.missing + 1,
-            shown=smoothed(person.shown, belief.estimate, view, config.smoothing),
-        )
-
-    def _filter_of_a_person(self) -> FilterConfig:
-        """Give everybody N samples, or an equal part of what all share."""
-        config = self._config
-        if config.interaction.total_count == 0:
-            return config.person
-        return replace(config.person, count=max(1, config.interaction.total_count // len(self._persons)))
+        self._memories = (*self._memories, *memories)
 
     def _search(self, view: View, time_s: float) -> tuple[Track, ...]:
         """Carry the detector on; a person is born when it has settled on one for long enough."""
@@ -132,12 +118,37 @@ class PeopleTracker:
         self._hits = self._hits + 1 if is_born(self._detector, view, config.life) else 0
         if self._hits == 0:
             return ()
-        person = Person(self._born + 1, time_s, self._detector, self._detector.estimate)
+        found = self._newborn(self._detector, view, time_s)
         if self._hits < config.life.birth_frames:
-            return (self._track(person, time_s, Status.TENTATIVE),)
-        self._born, self._hits, self._detector = person.id, 0, None
-        self._persons = (*self._persons, person)
-        return (self._track(person, time_s, Status.TRACKED),)
+            return (self._track(replace(found, status=Status.TENTATIVE), time_s),)
+        self._hits, self._detector = 0, None
+        lost = (*self._memories, *(person for person in self._persons if person.is_hidden))
+        known = recognised(found, lost, view, config)
+        if known is None:
+            self._born = found.id
+        else:
+            self._memories = tuple(person for person in self._memories if person is not known)
+            self._persons = tuple(person for person in self._persons if person is not known)
+            found = replace(
+                found,
+                id=known.id,
+                born_s=known.born_s,
+                looks=known.looks or found.looks,
+                colour=known.colour or found.colour,
+            )
+        self._persons = tuple(sorted((*self._persons, found), key=lambda person: person.id))
+        return ()
+
+    def _newborn(self, belief: Belief, view: View, time_s: float) -> Person:
+        person = Person(
+            id=self._born + 1,
+            born_s=time_s,
+            belief=belief,
+            shown=belief.estimate,
+            velocity=np.zeros(2),
+            foot=foot_of(belief.estimate),
+        )
+        return learn(person, belief.estimate, view, self._config)
 
     def _detected(self, view: View) -> Belief:
         """Weigh the detector's samples, kept off the people that are tracked."""
@@ -146,29 +157,25 @@ class PeopleTracker:
             state = draw_fresh(config.detector.count, view, config.detector, config, rng)
         else:
             state = advance(self._detector.particles, view, config.detector, config, rng)
-        regions = regions_of([person.belief.estimate for person in self._persons], config)
-        factor = detector_factor(overlap_shares(state, regions, config), config.interaction)
+        seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
+        factor = detector_factor(overlap_shares(state, regions_of(seen, config), config), config.interaction)
         return weigh(state, view, config.detector, config, factor)
 
-    def _status(self, person: Person) -> Status:
-        return Status.TRACKED if person.missing < self._config.life.doubt_frames else Status.TENTATIVE
+    def _is_shown(self, person: Person, view: View) -> bool:
+        """Tell whether a hidden person is shown: for some time, and not outside the image."""
+        return (
+            person.hidden_s <= self._config.occlusion.shown_s and 0 <= person.shown[X] < view.image.shape[1]
+        )
 
-    def _track(self, person: Person, time_s: float, status: Status) -> Track:
+    def _track(self, person: Person, time_s: float) -> Track:
         ellipse = ellipse_of(person.shown)
         return Track(
             id=person.id,
             ellipse=ellipse,
             box=box_of(ellipse, self._config.box, self._config.contour.head_divisor),
             confidence=person.belief.confidence,
-            status=status,
+            status=person.status,
             age_s=time_s - person.born_s,
             uncertainty_px2=person.belief.uncertainty_px2,
+            occluder=person.occluder,
         )
-
-
-def predicted(person: Person, view: View) -> NDArray[np.float64]:
-    """Move a person's last estimate (9,) on to this frame, by its velocity and the camera's turn."""
-    state = person.belief.estimate.copy()
-    state[:4] += view.dt_s * state[VX:]
-    state[[X]] = view.after_turn(state[[X]])
-    return state

@@ -54,6 +54,7 @@ class Track:
         age_s: time since the track was born [s].
         uncertainty_px2: spread of the particles about the estimate, over x and y [px^2] (thesis, equation
             4.6).
+        occluder: id of the person in front who hides it; None if nobody does, or nobody known.
     """
 
     id: int
@@ -63,3 +64,4 @@ class Track:
     status: Status
     age_s: float
     uncertainty_px2: float
+    occluder: int | None = None

@@ -1,0 +1,61 @@
+"""What is kept of a person between two frames."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracker.appearance.colour_model import ColourModel
+from tracker.filter import Belief, View
+from tracker.particles import VX, X
+from tracker.track import Status
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Person:
+    """A tracked person between two frames.
+
+    Attributes:
+        id: 1 or more.
+        born_s: time of the first frame [s].
+        belief: its filter.
+        shown: (9,) its estimate, smoothed over time; of a hidden person, where it is supposed to be.
+        velocity: (2,) of its place, smoothed over a longer time [px/s].
+        foot: row of its feet [px], smoothed, as last seen whole.
+        missing: frames in a row in which the person was not seen.
+        status: how well it is seen.
+        occluder: id of the person who hides it, or part of it.
+        hidden_frames: for how many frames it has been hidden.
+        hidden_s: for how long it has been hidden [s].
+        colour: its colours of late; None until they were seen.
+        looks: colours and thermal pattern of late; None until they were seen.
+    """
+
+    id: int
+    born_s: float
+    belief: Belief
+    shown: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    foot: float
+    missing: int = 0
+    status: Status = Status.TRACKED
+    occluder: int | None = None
+    hidden_frames: int = 0
+    hidden_s: float = 0.0
+    colour: ColourModel | None = None
+    looks: ColourModel | None = None
+
+    @property
+    def is_hidden(self) -> bool:
+        """Whether nothing of it is seen."""
+        return self.status is Status.TOTALLY_OCCLUDED
+
+
+def moved_on(state: NDArray[np.float64], view: View) -> NDArray[np.float64]:
+    """Move a state (9,) of the last frame to this one, by its velocity and the camera's turn."""
+    later = state.copy()
+    later[:4] += view.dt_s * later[VX:]
+    later[[X]] = view.after_turn(later[[X]])
+    return later
