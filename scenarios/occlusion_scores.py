@@ -123,7 +123,7 @@ def score_occlusions(
         rows = np.flatnonzero((truth.id == person) & in_image & truth.counted)
         ids = {int(truth.frame[row]): on_person[row] for row in np.flatnonzero(truth.id == person)}
         spans = find_occlusions(truth.frame[rows], hidden[rows])
-        ends = [start for start, _ in spans[1:]] + [truth.last_frame + 1]
+        ends = [*(start for start, _ in spans), truth.last_frame + 1][1:]
         scores += [
             _score(int(person), start, end, limit, ids, rate_hz)
             for (start, end), limit in zip(spans, ends, strict=True)

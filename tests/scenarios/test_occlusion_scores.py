@@ -43,6 +43,10 @@ def test_an_id_that_comes_back_is_kept_and_its_time_is_measured_from_the_end_of_
     assert occlusion.found_after_s == pytest.approx(0.3)
 
 
+def test_nobody_hidden_is_nothing_to_score() -> None:
+    assert scene([0.0] * 10, [7] * 10) == []
+
+
 @pytest.mark.parametrize("after", [[None] * 10, [8] * 10])
 def test_another_id_or_none_is_not_kept(after: list[int | None]) -> None:
     (occlusion,) = scene([0.0] * 10 + [1.0] * 5 + [0.0] * 10, [7] * 10 + [None] * 5 + after)

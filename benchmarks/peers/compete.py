@@ -1,0 +1,113 @@
+"""Let contestants see kept frames, keep what they say, and score it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+import benchmarks.peers
+import tracker
+from benchmarks.peers.contestants import PEERS, RATE_HZ, make_contestant
+from scenarios.frame_cache import Film, film, frames_of
+from scenarios.load import load_scenario
+from scenarios.occlusion_scores import Occlusion, score_occlusions
+from tracker.evaluation.evaluate import Scores, evaluate
+from tracker.evaluation.mot_files import read_tracks, write_tracks
+from tracker.evaluation.sequence import Tracks, Truth
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Result:
+    """One contestant on one film.
+
+    Attributes:
+        name: of the contestant.
+        scenario: whose film.
+        scores: all figures.
+        occlusions: what became of identities.
+        ms: CPU time of each frame [ms], median.
+    """
+
+    name: str
+    scenario: str
+    scores: Scores
+    occlusions: tuple[Occlusion, ...]
+    ms: float
+
+
+def compete_on_film(names: Sequence[str], scenario: str, seed: int, folder: Path) -> list[Result]:
+    """Score several contestants on one film."""
+    return [compete(name, scenario, seed, folder) for name in names]
+
+
+def compete(name: str, scenario: str, seed: int, folder: Path) -> Result:
+    """Score one contestant on one film; both the film and what it said are kept in the folder, and reused.
+
+    What it said is kept for as long as the source of the trackers stays the same.
+    """
+    shot = film(load_scenario(scenario), seed, folder / "films")
+    said = folder / "tracks" / f"{name}-{_digest(name)}" / shot.folder.name
+    if not said.with_suffix(".json").is_file():
+        _run(name, shot, said)
+    ms = json.loads(said.with_suffix(".json").read_text(encoding="utf-8"))["ms"]
+    truth, tracks = shot.truth(), read_tracks(said.with_suffix(".txt"))
+    return Result(
+        name=name,
+        scenario=scenario,
+        scores=evaluate(truth, tracks, frames=shot.frames),
+        occlusions=tuple(occlusions_of(shot, truth, tracks)),
+        ms=ms,
+    )
+
+
+def occlusions_of(shot: Film, truth: Truth, tracks: Tracks) -> list[Occlusion]:
+    """Score the identities at the total occlusions of a film."""
+    people = shot.people().select(["frame", "id", "occluded_fraction"])
+    columns = (people[name].to_pylist() for name in people.column_names)
+    hidden = {(frame, person): share for frame, person, share in zip(*columns, strict=True)}
+    of_rows = np.array([hidden[key] for key in zip(truth.frame.tolist(), truth.id.tolist(), strict=True)])
+    return score_occlusions(truth, tracks, of_rows, np.ones(len(truth), dtype=np.bool_), RATE_HZ)
+
+
+def _run(name: str, shot: Film, said: Path) -> None:
+    contestant = make_contestant(name, shot.seed, shot.truth())
+    rows: list[tuple[int, int, tuple[float, ...]]] = []
+    times = []
+    for number, frame in enumerate(frames_of(shot), 1):
+        start = time.process_time()
+        boxes, ids = contestant.step(frame)
+        times.append(time.process_time() - start)
+        rows += [(number, identity, tuple(box)) for box, identity in zip(boxes, ids, strict=True)]
+    said.parent.mkdir(parents=True, exist_ok=True)
+    write_tracks(said.with_suffix(".txt"), _tracks(rows))
+    about = {"ms": 1000.0 * float(np.median(times))}
+    said.with_suffix(".json").write_text(json.dumps(about) + "\n", encoding="utf-8")
+
+
+def _tracks(rows: list[tuple[int, int, tuple[float, ...]]]) -> Tracks:
+    return Tracks(
+        frame=np.array([frame for frame, _, _ in rows], dtype=np.int64),
+        id=np.array([identity for _, identity, _ in rows], dtype=np.int64),
+        box=np.array([box for _, _, box in rows], dtype=np.float64).reshape(-1, 4),
+        confidence=np.ones(len(rows)),
+    )
+
+
+@cache
+def _digest(name: str) -> str:
+    """Of the source on which a contestant's boxes depend."""
+    digest = hashlib.sha256()
+    package = benchmarks.peers if name in PEERS else tracker
+    if name in PEERS:
+        digest.update(version("trackers").encode())
+    for path in sorted(Path(package.__path__[0]).rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:8]

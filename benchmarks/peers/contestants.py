@@ -1,0 +1,102 @@
+"""All who compete, by name: peers, and the trackers of `tracker.people`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+import supervision as sv
+from trackers import ByteTrackTracker, SORTTracker
+
+from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
+from sim.random_streams import stream
+from tracker.evaluation.sequence import Truth
+from tracker.frame import Frame
+from tracker.people import TRACKERS, make_tracker
+from tracker.track import Status
+
+RATE_HZ = 15.0
+# Two seconds at 15 Hz (the package counts in frames at 30 Hz): longer memories gave the peers more switches.
+_LOST_BUFFER = 60
+_STRONG = 0.4  # confidence; HOG's are lower than those of the detectors that the defaults are made for
+
+
+class Contestant(Protocol):
+    """Whatever turns frames into boxes with ids."""
+
+    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
+        """Give the boxes (N, 4) of the next frame, left, top, width, height [px], and their ids."""
+        ...
+
+
+class _Detector(Protocol):
+    def detect(self, frame: Frame) -> Detections: ...
+
+
+class DetectAndAssociate:
+    """A detector, and a tracker that sees only its boxes."""
+
+    def __init__(self, detector: _Detector, tracker: Any) -> None:
+        self._detector, self._tracker = detector, tracker
+
+    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
+        """Detect, and associate."""
+        found = self._detector.detect(frame)
+        corners = np.concatenate([found.box[:, :2], found.box[:, :2] + found.box[:, 2:]], axis=1)
+        tracked = self._tracker.update(sv.Detections(xyxy=corners, confidence=found.confidence))
+        is_known = np.asarray(tracked.tracker_id).reshape(-1) >= 0
+        corners = tracked.xyxy[is_known]
+        boxes = np.concatenate([corners[:, :2], corners[:, 2:] - corners[:, :2]], axis=1)
+        return boxes, [int(number) for number in np.asarray(tracked.tracker_id)[is_known]]
+
+
+class Ours:
+    """A tracker of `tracker.people`."""
+
+    def __init__(self, name: str, seed: int) -> None:
+        self._tracker = make_tracker(name, stream(seed, "tracker"))
+
+    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
+        """Update, and take the confirmed tracks."""
+        tracks = [track for track in self._tracker.update(frame) if track.status is not Status.TENTATIVE]
+        return np.array([track.box for track in tracks]).reshape(-1, 4), [track.id for track in tracks]
+
+
+def _bytetrack() -> Any:
+    return ByteTrackTracker(
+        lost_track_buffer=_LOST_BUFFER,
+        frame_rate=RATE_HZ,
+        track_activation_threshold=_STRONG,
+        high_conf_det_threshold=_STRONG,
+    )
+
+
+def _sort() -> Any:
+    return SORTTracker(lost_track_buffer=_LOST_BUFFER, frame_rate=RATE_HZ, track_activation_threshold=_STRONG)
+
+
+PEERS: dict[str, Callable[[Truth], Contestant]] = {
+    "hog_colour+bytetrack": lambda _: DetectAndAssociate(Hog(uses_colour=True), _bytetrack()),
+    "hog_colour+sort": lambda _: DetectAndAssociate(Hog(uses_colour=True), _sort()),
+    "hog_thermal+bytetrack": lambda _: DetectAndAssociate(Hog(uses_colour=False), _bytetrack()),
+    "hog_thermal+sort": lambda _: DetectAndAssociate(Hog(uses_colour=False), _sort()),
+    "blobs+bytetrack": lambda _: DetectAndAssociate(Blobs(), _bytetrack()),
+    "blobs+sort": lambda _: DetectAndAssociate(Blobs(), _sort()),
+    "oracle+bytetrack": lambda truth: DetectAndAssociate(Oracle(truth), _bytetrack()),
+}
+"""Each peer's maker by name; only the oracle sees the truth."""
+
+
+def contestants() -> list[str]:
+    """Name all who can compete."""
+    return [*TRACKERS, *PEERS]
+
+
+def make_contestant(name: str, seed: int, truth: Truth) -> Contestant:
+    """Make a contestant for one run.
+
+    Raises:
+        BadInput: an unknown name.
+    """
+    return PEERS[name](truth) if name in PEERS else Ours(name, seed)

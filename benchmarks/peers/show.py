@@ -1,0 +1,90 @@
+"""Tables and a picture of a competition."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from rich.console import Console
+from rich.table import Table
+
+from benchmarks.peers.compete import Result
+from scenarios.occlusion_scores import LengthRow, by_length
+from tracker.evaluation.evaluate import combine
+
+Results = Mapping[str, Sequence[Result]]  # by contestant
+_SPOT = 4.0
+
+
+def print_results(results: Results, console: Console) -> None:
+    """Print every contestant's figures over all films."""
+    table = Table(
+        "", "CP %", "CR %", "AA %", "HOTA %", "IDF1 %", "IDSW", "false tracks", "kept %", "ms/frame", box=None
+    )
+    for name, runs in results.items():
+        scores = combine([run.scores for run in runs])
+        thesis, mot = scores.thesis, scores.mot
+        shares = [thesis.cp, thesis.cr, thesis.aa, mot.hota.hota, mot.identity.idf1]
+        tracked = [o for run in runs for o in run.occlusions if o.id_before is not None]
+        kept = f"{100.0 * np.mean([o.is_kept for o in tracked]):.0f} of {len(tracked)}" if tracked else "-"
+        table.add_row(
+            name,
+            *(f"{share:.1f}" for share in shares),
+            str(mot.clear.switches),
+            str(scores.counts.false_tracks),
+            kept,
+            f"{np.median([run.ms for run in runs]):.1f}",
+        )
+    console.print(table)
+
+
+def print_occlusions(results: Results, console: Console) -> None:
+    """Print identities kept, and the time until people are found again, by length of the occlusion."""
+    rows = {name: by_length(_occlusions(runs)) for name, runs in results.items()}
+    ranges = next(iter(rows.values()))
+    columns = [f"{row.from_s:g}..{row.to_s:g} s" for row in ranges]
+    table = Table("identity kept (found again after)", *columns, box=None)
+    for name, table_rows in rows.items():
+        table.add_row(name, *(_cell(row) for row in table_rows))
+    console.print(table)
+
+
+def draw_occlusions(results: Results, path: Path) -> None:
+    """Draw both as curves over the length of the occlusion, and save the picture."""
+    figure = Figure(figsize=(9.0, 3.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    kept, found = figure.subplots(1, 2)
+    for name, runs in results.items():
+        rows = [row for row in by_length(_occlusions(runs)) if row.occlusions]
+        at = [_middle(row) for row in rows]
+        style = "--" if "+" in name else "-"
+        kept.plot(at, [100.0 * row.kept_share for row in rows], style, marker="o", ms=_SPOT, label=name)
+        found.plot(at, [row.found_after_s for row in rows], style, marker="o", ms=_SPOT)
+    for axes, title in ((kept, "identity kept [%]"), (found, "found again after, median [s]")):
+        axes.set_title(title, fontsize=10)
+        axes.set_xlabel("wholly hidden for [s]")
+        axes.set_xscale("log")
+        axes.set_xticks([0.2, 0.5, 1, 2, 5, 8], ["0.2", "0.5", "1", "2", "5", "8"])
+        axes.minorticks_off()
+        axes.grid(alpha=0.3)
+    kept.set_ylim(-3.0, 103.0)
+    figure.legend(loc="outside right center", fontsize=8)
+    figure.savefig(path, dpi=130)
+
+
+def _occlusions(runs: Sequence[Result]) -> list[object]:
+    return [occlusion for run in runs for occlusion in run.occlusions]
+
+
+def _cell(row: LengthRow) -> str:
+    if not row.occlusions:
+        return "-"
+    return f"{100.0 * row.kept_share:.0f} % of {row.occlusions} ({row.found_after_s:.1f} s)"
+
+
+def _middle(row: LengthRow) -> float:
+    """A length to draw a range at."""
+    return row.from_s * 1.3 if np.isinf(row.to_s) else max((row.from_s + row.to_s) / 2.0, 0.1)
