@@ -225,14 +225,15 @@ class OcclusionConfig:
     keeps_velocity: bool = False  # hidden people walk on; otherwise they are where their occluder is
     hidden_memory: float = 0.97  # share of a hidden person's velocity that lasts to the next step
     hidden_noise: float = 0.3  # share of the motion noise while hidden
-    colour_gate: float = 0.15  # largest squared distance of colours of who comes back to sight
+    colour_gate: float = 40.0  # largest squared distance of colours of who comes back to sight
     remembers_lost: bool = False  # who is lost in any other way is remembered as well
-    least_age_s: float = 0.5  # if tracked for so long
+    lost_frames: int = 3  # frames without evidence after which somebody counts as hidden by something unknown
+    searched_frames: int = 45  # frames for which a hidden person's samples look for it in the open
     shown_s: float = 10.0  # how long a hidden person is shown
 
     def __post_init__(self) -> None:
         check_share(self, "head_covered", "hidden_memory", "hidden_noise")
-        check_not_negative(self, "kept_frames", "forget_s", "least_age_s", "shown_s")
+        check_not_negative(self, "kept_frames", "forget_s", "shown_s")
         check_positive(self, "growth")
 
 

@@ -30,6 +30,12 @@ def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Fl
     return _shares(_regions(state, *_proportions(config.box, config.contour.head_divisor)), regions)
 
 
+def least_overlaps(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
+    """Measure (N, M) the intersection of a sample and a region as a share of the smaller of the two."""
+    samples = _regions(state, *_proportions(config.box, config.contour.head_divisor))
+    return np.maximum(_shares(samples, regions), _shares(regions, samples).T)
+
+
 def detector_factor(shares: Floats, config: InteractionConfig) -> Floats:
     """Give the factor (N,) on a detector's samples: psi_D, once, for those that overlap anybody.
 

@@ -45,7 +45,7 @@ class LooksView:
         return cls(colour if light > config.darkest else None, thermal, _scale(light, config))
 
     def describe(self, state: Floats) -> Floats:
-        """Describe people (N, 9) by the colours and the grey of each part, (N, 12); NaN for what is outside."""
+        """Describe people (N, 9) by the colours and the grey of each part, (N, 12); NaN outside."""
         each = np.full((len(state), PARTS, 4), np.nan, dtype=np.float32)
         if self.colour is not None:
             moments = self.colour.describe(state).reshape(len(state), PARTS, 3, -1)

@@ -9,7 +9,8 @@ from typing import Protocol
 import numpy as np
 
 from bad_input import BadInput
-from tracker.config import InteractionConfig
+from tracker.appearance.config import FAR_AFFINE, ColourConfig
+from tracker.config import InteractionConfig, LooksConfig, OcclusionConfig
 from tracker.frame import Frame
 from tracker.particles import Particles
 from tracker.several import PeopleTracker
@@ -31,7 +32,26 @@ class Tracker(Protocol):
         ...
 
 
-_SEVERAL = replace(PEOPLEBOY, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
+_SEVERAL = replace(
+    PEOPLEBOY,
+    person=replace(PEOPLEBOY.person, floor=0.2),
+    interaction=InteractionConfig(
+        detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
+    ),
+    colour=ColourConfig(
+        representation="moments1", sharpness=0.05, frames=30, affine=FAR_AFFINE, parallax=0.157
+    ),
+    looks=LooksConfig(),
+    occlusion=OcclusionConfig(
+        is_handled=True,
+        removes_front=True,
+        growth=1.2,
+        keeps_velocity=True,
+        hidden_noise=1.0,
+        remembers_lost=True,
+        shown_s=1.0,
+    ),
+)
 
 TRACKERS: Mapping[str, Callable[[np.random.Generator], Tracker]] = {
     "peopleboy": lambda rng: PeopleTracker(_SEVERAL, rng),

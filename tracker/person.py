@@ -12,6 +12,8 @@ from tracker.filter import Belief, View
 from tracker.particles import VX, X
 from tracker.track import Status
 
+SETTLED = 6  # frames
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Person:
@@ -24,6 +26,7 @@ class Person:
         shown: (9,) its estimate, smoothed over time; of a hidden person, where it is supposed to be.
         velocity: (2,) of its place, smoothed over a longer time [px/s].
         foot: row of its feet [px], smoothed, as last seen whole.
+        seen_frames: in how many frames it was seen whole.
         missing: frames in a row in which the person was not seen.
         status: how well it is seen.
         occluder: id of the person who hides it, or part of it.
@@ -39,6 +42,7 @@ class Person:
     shown: NDArray[np.float64]
     velocity: NDArray[np.float64]
     foot: float
+    seen_frames: int = 0
     missing: int = 0
     status: Status = Status.TRACKED
     occluder: int | None = None
@@ -46,6 +50,11 @@ class Person:
     hidden_s: float = 0.0
     colour: ColourModel | None = None
     looks: ColourModel | None = None
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether it was seen for long enough to be worth remembering."""
+        return self.seen_frames >= SETTLED
 
     @property
     def is_hidden(self) -> bool:

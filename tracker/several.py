@@ -9,12 +9,13 @@ import numpy as np
 
 from bad_input import BadInput
 from tracker.config import TrackerConfig
-from tracker.crowd import follow, foot_of, learn
+from tracker.crowd import follow
 from tracker.ellipse import box_of
 from tracker.filter import Belief, View, advance, draw_fresh, view_frame, weigh
 from tracker.frame import Frame
 from tracker.identity import recognised, remembered
-from tracker.interaction import detector_factor, overlap_shares, regions_of
+from tracker.interaction import detector_factor, least_overlaps, regions_of
+from tracker.judge import foot_of, learn
 from tracker.life import is_born
 from tracker.measure import ContourModel
 from tracker.order import Order, lower_foot
@@ -65,7 +66,7 @@ class PeopleTracker:
             <= self._config.occlusion.forget_s
         )
         persons = follow(self._persons, view, self._config, self._order, self._rng)
-        self._part(persons, frame.time_s)
+        self._part(persons)
         newcomer = self._search(view, frame.time_s)
         tracks = [
             self._track(person, frame.time_s)
@@ -87,26 +88,28 @@ class PeopleTracker:
             self._model = ContourModel.build(shape, self._config.contour)
         return self._model
 
-    def _part(self, persons: tuple[Person, ...], time_s: float) -> None:
+    def _part(self, persons: tuple[Person, ...]) -> None:
         """Divide people into those who are kept, those who are only remembered, and those who are gone."""
-        handling, life = self._config.occlusion, self._config.life
         kept, memories = [], []
         for person in persons:
-            # Without confidence no sample is within the limits, and the estimate may be no ellipse at all.
-            is_lost = person.missing >= life.death_frames or person.belief.confidence == 0
-            is_old = time_s - person.born_s >= handling.least_age_s
-            if (
-                person.is_hidden
-                and not handling.keeps_velocity
-                and person.hidden_frames > handling.kept_frames
-            ):
-                memories.append(person)
-            elif not is_lost:
+            if self._is_kept(person):
                 kept.append(person)
-            elif handling.remembers_lost and is_old:
-                memories.append(replace(person, status=Status.TOTALLY_OCCLUDED, occluder=None))
+            elif self._is_remembered(person):
+                memories.append(replace(person, status=Status.TOTALLY_OCCLUDED))
         self._persons = tuple(kept)
         self._memories = (*self._memories, *memories)
+
+    def _is_kept(self, person: Person) -> bool:
+        handling = self._config.occlusion
+        # Without confidence no sample is within the limits, and the estimate may be no ellipse at all.
+        if not person.is_hidden:
+            return person.missing < self._config.life.death_frames and person.belief.confidence > 0
+        if handling.keeps_velocity:
+            return person.missing < handling.searched_frames
+        return person.hidden_frames <= handling.kept_frames
+
+    def _is_remembered(self, person: Person) -> bool:
+        return person.is_hidden or (self._config.occlusion.remembers_lost and person.is_settled)
 
     def _search(self, view: View, time_s: float) -> tuple[Track, ...]:
         """Carry the detector on; a person is born when it has settled on one for long enough."""
@@ -158,7 +161,7 @@ class PeopleTracker:
         else:
             state = advance(self._detector.particles, view, config.detector, config, rng)
         seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
-        factor = detector_factor(overlap_shares(state, regions_of(seen, config), config), config.interaction)
+        factor = detector_factor(least_overlaps(state, regions_of(seen, config), config), config.interaction)
         return weigh(state, view, config.detector, config, factor)
 
     def _is_shown(self, person: Person, view: View) -> bool:

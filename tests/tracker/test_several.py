@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from drawn_people import blank, draw_person
 
-from tracker import several
+from tracker import crowd, several
 from tracker.config import InteractionConfig
 from tracker.filter import weigh
 from tracker.frame import Frame
@@ -70,7 +70,8 @@ def test_equal_seeds_give_equal_tracks():
 
 def test_the_image_is_measured_once_for_each_person_and_once_for_the_detector(monkeypatch):
     calls = []
-    monkeypatch.setattr(several, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
+    for module in (several, crowd):
+        monkeypatch.setattr(module, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
     tracker = PeopleTracker(APART, np.random.default_rng(0))
     for i in range(60):
         calls.clear()
