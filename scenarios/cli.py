@@ -5,12 +5,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from bad_input import BadInput
 from scenarios.show_scores import print_following, print_scores, print_spread
+
+if TYPE_CHECKING:
+    from scenarios.run import RunOptions
 
 BAD_INPUT = 2
 
@@ -23,11 +26,14 @@ def cli() -> None:
 
 @cli.command("list")
 def list_command() -> None:
-    """List the scenarios of the library."""
+    """List the scenarios of the library, and the suites."""
     from scenarios.load import library
+    from scenarios.suite import load_suite, suite_names
 
     for name, description in library().items():
         click.echo(f"{name:20} {description}")
+    for name in suite_names():
+        click.echo(f"{name:20} suite: {' '.join(load_suite(name).description.split())}")
 
 
 @cli.command()
@@ -88,28 +94,68 @@ def run(
 ) -> None:
     """Run a scenario headless, and leave a folder with truth, tracks, scores and a recording.
 
-    SCENARIO is a name from `peopleboy list` or the path of a YAML file.
+    SCENARIO is a name from `peopleboy list` or the path of a YAML file; or a suite, such as dataset1, whose
+    runs have seeds of their own and leave no recordings. A suite that was killed goes on where it was.
     """
     from scenarios.load import load_scenario
     from scenarios.progress import run_with_progress
     from scenarios.run import RunOptions
+    from scenarios.suite import suite_names
 
-    loaded = load_scenario(scenario)
+    is_suite = scenario in suite_names()
+    loaded = None if is_suite else load_scenario(scenario)
+    name = scenario if loaded is None else f"{loaded.name}-{seed}"
     options = RunOptions(
         seed=seed,
-        out=out if out is not None else Path("runs") / f"{loaded.name}-{seed}",
+        out=out if out is not None else Path("runs") / name,
         frames=frames,
         tracker=tracker,
         renderer=renderer,
         record=not no_rrd,
         overwrite=overwrite,
     )
+    if loaded is None:
+        _run_suite(scenario, options)
+        return
     scores = run_with_progress(loaded, options)
     print_scores(scores.people)
     if scores.following is not None:
         print_following(scores.following)
     for path in sorted(options.out.iterdir()):
         click.echo(path)
+
+
+def _run_suite(name: str, options: RunOptions) -> None:
+    from scenarios.evaluate_runs import evaluate_runs
+    from scenarios.run_suite import run_suite
+
+    folders = run_suite(name, options)
+    print_spread(evaluate_runs(folders))
+    for path in folders:
+        click.echo(path)
+
+
+@cli.command()
+@click.argument("suites", nargs=-1)
+@click.option(
+    "--films",
+    type=click.Path(path_type=Path),
+    default=Path("runs/films"),
+    show_default=True,
+    help="Where rendered frames are kept.",
+)
+def datasets(suites: Sequence[str], films: Path) -> None:
+    """Count what the data sets hold, beside table 3.1 of the thesis; their frames are rendered and kept.
+
+    SUITES are any of dataset1 to dataset4; without a name, all of them.
+    """
+    from scenarios.show_contents import print_contents
+    from scenarios.suite_table import THESIS
+
+    for name in suites:
+        if name not in THESIS:
+            raise BadInput(f"datasets: unknown data set {name!r}; there are {', '.join(THESIS)}")
+    print_contents(suites or tuple(THESIS), films)
 
 
 @cli.command()
@@ -161,6 +207,36 @@ def sweep(scenario: str, seeds: int, out: Path, tracker: str, jobs: int, overwri
 
     folders = run_seeds(scenario, range(seeds), out, tracker, jobs, overwrite=overwrite)
     print_spread(evaluate_runs(folders))
+
+
+@cli.command("train-occlusion")
+@click.option("--tracker", default="peopleboy", show_default=True, help="Whom to teach: peopleboy or thesis.")
+@click.option(
+    "--seeds",
+    type=click.IntRange(min=1),
+    default=5,
+    show_default=True,
+    help="Runs of each scenario.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder for the examples and the learned table.  [default: runs/occlusion-TRACKER]",
+)
+@click.option("--again", is_flag=True, help="Run the scenarios even if the examples are there.")
+@click.option("--triplets/--no-triplets", default=True, help="Try weighted triplets as well (a minute).")
+@click.option("--ship", is_flag=True, help="Put the learned table in the place of the tracker's own.")
+def train_occlusion(
+    tracker: str, seeds: int, out: Path | None, again: bool, triplets: bool, ship: bool
+) -> None:
+    """Learn from scenarios which of two overlapping people is in front, and compare with the thesis.
+
+    One set of scenarios is learned from, another one is for testing. Needs scikit-learn: peopleboy[train].
+    """
+    from scenarios.occlusion_lesson import give_lesson
+
+    folder = out if out is not None else Path("runs") / f"occlusion-{tracker}"
+    click.echo(give_lesson(folder, tracker, seeds, triplets=triplets, again=again, ship=ship))
 
 
 @cli.command()

@@ -49,8 +49,8 @@ def pair_features(
     result = np.zeros((len(pairs), len(FEATURES)))
     result[:, :3] = alone[pairs[:, 0]] - alone[pairs[:, 1]]
     if len(pairs) > 0 and (view.looks is not None or view.colour is not None):
-        one = _similarities(people, models, pairs, view)
-        other = _similarities(people, models, pairs[:, ::-1], view)
+        both_ways = np.concatenate([pairs, pairs[:, ::-1]])
+        one, other = np.split(_similarities(people, models, both_ways, view), 2)
         result[:, 3:] = np.nan_to_num(one - other)
     return result
 
