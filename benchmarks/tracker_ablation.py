@@ -24,11 +24,12 @@ from tracker.evaluation.evaluate import Scores, combine, evaluate
 from tracker.evaluation.sequence import Tracks, Truth
 from tracker.frame import Frame
 from tracker.people import make_tracker
-from tracker.single import SinglePersonTracker
+from tracker.several import PeopleTracker
 from tracker.track import Status, Track
 from tracker.variants import PAPER, PEOPLEBOY, THESIS
 
-SCENARIOS = ("single_stationary", "single_follow", "empty_room")
+SINGLE = ("single_stationary", "single_follow", "empty_room")
+SEVERAL = ("crossing_3", "hidden_1s", "hidden_2s", "pass_behind_pillar", "three_depths", "turn_while_hidden")
 
 # Every setting in which the two differ belongs to one step; a name stands for all that begin with it.
 STEPS: dict[str, tuple[str, ...]] = {
@@ -71,6 +72,20 @@ STEPS: dict[str, tuple[str, ...]] = {
     "the line under the feet": ("contour.feet", "contour.unseen_response"),
     "box proportions": ("box",),
     "smoothing": ("smoothing",),
+    "filters keep farther off each other": ("interaction",),
+    "colours and thermal pattern, by part, without the light": ("colour", "looks"),
+    "who is in front is no evidence for who is behind": (
+        "occlusion.is_handled",
+        "occlusion.removes_front",
+        "occlusion.growth",
+    ),
+    "the hidden walk on, and are looked for": (
+        "occlusion.keeps_velocity",
+        "occlusion.hidden",
+        "occlusion.shown_s",
+        "person.floor",
+    ),
+    "whoever was lost is remembered": ("occlusion.remembers_lost",),
 }
 
 
@@ -157,7 +172,7 @@ def record(scenario: str, seed: int) -> Recorded:
 
 def replay(run: Recorded, config: TrackerConfig, seed: int) -> Scores:
     """Score a tracker on a recorded run."""
-    tracker = SinglePersonTracker(config, np.random.default_rng(seed))
+    tracker = PeopleTracker(config, np.random.default_rng(seed))
     found: list[tuple[int, Track]] = []
     for number, frame in enumerate(run.frames, start=1):
         found += [(number, track) for track in tracker.update(frame) if track.status is not Status.TENTATIVE]
@@ -171,30 +186,47 @@ def replay(run: Recorded, config: TrackerConfig, seed: int) -> Scores:
 
 
 def score(runs: dict[str, list[Recorded]], config: TrackerConfig) -> list[str]:
-    """Give one row: CP, CR, AA of the scenarios with a person, false alarms of the one without."""
+    """Give one row of figures.
+
+    CP, CR, AA of the scenarios with one person; false alarms of the one without; IDF1, HOTA and identity
+    switches of those with several.
+    """
     cells = []
-    for scenario, recorded in runs.items():
-        scores = combine([replay(run, config, seed) for seed, run in enumerate(recorded)])
+    for scenario in SINGLE:
+        scores = combine([replay(run, config, seed) for seed, run in enumerate(runs[scenario])])
         if scenario == "empty_room":
             cells.append(f"{100 * scores.counts.candidates / scores.counts.frames:.1f}")
         else:
             values = (scores.thesis.cp, scores.thesis.cr, scores.thesis.aa)
             cells += ["-" if math.isnan(value) else f"{value:.1f}" for value in values]
-    return cells
+    several = [(seed, run) for scenario in SEVERAL for seed, run in enumerate(runs[scenario])]
+    mot = combine([replay(run, config, seed) for seed, run in several]).mot
+    return [*cells, f"{mot.identity.idf1:.1f}", f"{mot.hota.hota:.1f}", f"{mot.clear.switches}"]
 
 
 @click.command()
 @click.option("--seeds", default=2, show_default=True, help="Runs of each scenario.")
 def main(seeds: int) -> None:
     """Print what each step from the literal tracker to the default one gives."""
-    runs = {name: [record(name, seed) for seed in range(seeds)] for name in SCENARIOS}
-    table = Table(title=f"Single-person tracker, {seeds} runs each, percent")
+    runs = {name: [record(name, seed) for seed in range(seeds)] for name in (*SINGLE, *SEVERAL)}
+    table = Table(title=f"{seeds} runs each, percent")
     table.add_column("variant", no_wrap=True)
-    for heading in ("standing CP", "CR", "AA", "following CP", "CR", "AA", "empty room: false"):
+    for heading in (
+        "standing CP",
+        "CR",
+        "AA",
+        "following CP",
+        "CR",
+        "AA",
+        "empty: false",
+        "IDF1",
+        "HOTA",
+        "switches",
+    ):
         table.add_column(heading, justify="right")
     for name, config in variants():
         table.add_row(name, *score(runs, config))
-    Console(width=130).print(table)
+    Console(width=150).print(table)
 
 
 if __name__ == "__main__":

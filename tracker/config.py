@@ -224,16 +224,18 @@ class OcclusionConfig:
     growth: float = 1.0  # by which the people in front are enlarged for that
     keeps_velocity: bool = False  # hidden people walk on; otherwise they are where their occluder is
     hidden_memory: float = 0.97  # share of a hidden person's velocity that lasts to the next step
-    hidden_noise: float = 0.3  # share of the motion noise while hidden
+    hidden_noise: float = 1.0  # share of the motion noise along the floor while hidden
+    hidden_stiffness: float = 0.1  # the same for all other directions and the size
     colour_gate: float = 40.0  # largest squared distance of colours of who comes back to sight
+    size_gate: float = 0.25  # largest change of the logarithm of its height
     remembers_lost: bool = False  # who is lost in any other way is remembered as well
     lost_frames: int = 3  # frames without evidence after which somebody counts as hidden by something unknown
     searched_frames: int = 45  # frames for which a hidden person's samples look for it in the open
     shown_s: float = 10.0  # how long a hidden person is shown
 
     def __post_init__(self) -> None:
-        check_share(self, "head_covered", "hidden_memory", "hidden_noise")
-        check_not_negative(self, "kept_frames", "forget_s", "shown_s")
+        check_share(self, "head_covered", "hidden_memory", "hidden_stiffness")
+        check_not_negative(self, "kept_frames", "forget_s", "shown_s", "hidden_noise")
         check_positive(self, "growth")
 
 

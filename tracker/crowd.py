@@ -99,16 +99,16 @@ def shared_filter(config: TrackerConfig, persons: int) -> FilterConfig:
 
 
 def hidden_motion(config: TrackerConfig) -> MotionConfig:
-    """Let a hidden person walk on steadily."""
-    share, motion = config.occlusion.hidden_noise, config.motion
+    """Let a hidden person walk on along the floor, and keep its size."""
+    handling, motion = config.occlusion, config.motion
     return replace(
         motion,
-        noise_x=share * motion.noise_x,
-        noise_y=share * motion.noise_y,
-        noise_w=share * motion.noise_w,
-        noise_h=share * motion.noise_h,
-        noise_d=share * motion.noise_d,
-        place_memory=config.occlusion.hidden_memory,
+        noise_x=handling.hidden_noise * motion.noise_x,
+        noise_y=handling.hidden_stiffness * motion.noise_y,
+        noise_w=handling.hidden_stiffness * motion.noise_w,
+        noise_h=handling.hidden_stiffness * motion.noise_h,
+        noise_d=handling.hidden_stiffness * motion.noise_d,
+        place_memory=handling.hidden_memory,
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ from tracker.track import Status
 
 VELOCITY_S = 0.4  # time constant of the velocity with which a hidden person walks on
 FOOT_S = 0.5
+Value = TypeVar("Value", float, NDArray[np.float64])
 HIDDEN_BODY = 0.4  # least share of the contour by which a person with a covered head is still followed
 
 
@@ -105,8 +107,8 @@ def _seen(person: Person, belief: Belief, scene: Scene, view: View, config: Trac
     return replace(
         learn(moved, belief.estimate, view, config),
         seen_frames=person.seen_frames + 1,
-        velocity=blend(person.velocity, speed, view.dt_s / VELOCITY_S),
-        foot=float(blend(np.array(person.foot), np.array(foot_of(belief.estimate)), view.dt_s / FOOT_S)),
+        velocity=blend(person.velocity, speed, max(view.dt_s / VELOCITY_S, 1 / (person.seen_frames + 1))),
+        foot=blend(person.foot, foot_of(belief.estimate), view.dt_s / FOOT_S),
     )
 
 
@@ -159,6 +161,6 @@ def foot_of(state: NDArray[np.float64]) -> float:
     return float(state[Y] + 2.05 * state[H])
 
 
-def blend(before: NDArray[np.float64], now: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+def blend(before: Value, now: Value, share: float) -> Value:
     """Move a smoothed value on by a share of the way."""
     return before + min(share, 1.0) * (now - before)

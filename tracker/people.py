@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
 from bad_input import BadInput
-from tracker.appearance.config import FAR_AFFINE, ColourConfig
-from tracker.config import InteractionConfig, LooksConfig, OcclusionConfig
 from tracker.frame import Frame
 from tracker.particles import Particles
 from tracker.several import PeopleTracker
-from tracker.single import SinglePersonTracker
 from tracker.track import Track
-from tracker.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
+from tracker.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
 
 
 class Tracker(Protocol):
@@ -32,33 +28,13 @@ class Tracker(Protocol):
         ...
 
 
-_SEVERAL = replace(
-    PEOPLEBOY,
-    person=replace(PEOPLEBOY.person, floor=0.2),
-    interaction=InteractionConfig(
-        detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
-    ),
-    colour=ColourConfig(
-        representation="moments1", sharpness=0.05, frames=30, affine=FAR_AFFINE, parallax=0.157
-    ),
-    looks=LooksConfig(),
-    occlusion=OcclusionConfig(
-        is_handled=True,
-        removes_front=True,
-        growth=1.2,
-        keeps_velocity=True,
-        hidden_noise=1.0,
-        remembers_lost=True,
-        shown_s=1.0,
-    ),
-)
-
 TRACKERS: Mapping[str, Callable[[np.random.Generator], Tracker]] = {
-    "peopleboy": lambda rng: PeopleTracker(_SEVERAL, rng),
-    "footage": lambda rng: SinglePersonTracker(FOOTAGE, rng),
+    "peopleboy": lambda rng: PeopleTracker(PEOPLEBOY, rng),
+    "footage": lambda rng: PeopleTracker(FOOTAGE, rng),
+    "thesis": lambda rng: PeopleTracker(THESIS_OCCLUSION, rng),
     "thermal": lambda rng: PeopleTracker(THESIS, rng),
-    "thesis": lambda rng: SinglePersonTracker(THESIS, rng),
-    "paper": lambda rng: SinglePersonTracker(PAPER, rng),
+    "colour": lambda rng: PeopleTracker(THESIS_COLOUR, rng),
+    "paper": lambda rng: PeopleTracker(PAPER, rng),
 }
 """Each tracker's maker by name; the first is the default."""
 

@@ -16,7 +16,7 @@ from tracker.filter import Belief, View
 from tracker.interaction import regions_of
 from tracker.looks import visible
 from tracker.measure import probability
-from tracker.particles import Floats
+from tracker.particles import Floats, H
 from tracker.person import Person
 
 CLEAR = 0.5  # share of head and body in view from which a hidden person may be seen again
@@ -47,7 +47,7 @@ class Sight:
         head: share of the head's contour that is in view.
         body: share of the whole contour.
         confidence: probability by what is in view alone.
-        is_alike: whether what is in view has the person's colours, as far as they are known.
+        is_alike: whether what is in view has the person's height, and its looks as far as they are known.
     """
 
     head: float
@@ -74,7 +74,8 @@ def look_at(person: Person, belief: Belief, scene: Scene, view: View, config: Tr
     away = np.nan
     if model is not None and features is not None:
         away = float(squared_distances(features, model)[0])
-    is_alike = not away > config.occlusion.colour_gate
+    growth = abs(np.log(max(belief.estimate[H], 1.0) / max(person.shown[H], 1.0)))
+    is_alike = growth < config.occlusion.size_gate and not away > config.occlusion.colour_gate
     return Sight(head_share(shares), body_share(shares), chance, is_alike)
 
 

@@ -1,23 +1,38 @@
-"""The named settings of the single-person tracker: the sources' own, and ours."""
+"""The named settings of the tracker: the sources' own, and ours."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
+from tracker.appearance.config import FAR_AFFINE, ROBOT_PARALLAX, ColourConfig
 from tracker.config import (
     BoxConfig,
     ContourConfig,
     FilterConfig,
+    InteractionConfig,
     LifeConfig,
     LikelihoodConfig,
     LimitsConfig,
+    LooksConfig,
     MotionConfig,
+    OcclusionConfig,
     SmoothingConfig,
     TrackerConfig,
 )
 
 THESIS = TrackerConfig()
-"""Chapter 4 as it is written, with the readings named in tracker/config.py."""
+"""Chapters 4 and 5 as they are written, with the readings named in tracker/config.py: thermal alone."""
+
+THESIS_COLOUR = replace(THESIS, colour=ColourConfig())
+"""With the colours of chapter 6."""
+
+THESIS_OCCLUSION = replace(
+    THESIS_COLOUR,
+    interaction=InteractionConfig(occluded_penalty=0.5),
+    occlusion=OcclusionConfig(is_handled=True),
+)
+"""With the occlusion handling of chapter 7: the whole thesis."""
 
 PAPER = TrackerConfig(
     likelihood=LikelihoodConfig(model="paper"),
@@ -66,10 +81,10 @@ PEOPLEBOY = TrackerConfig(
         estimate_share=0.3,
         estimate_reach=0.7,
     ),
-    person=FilterConfig(fresh_share=0.0, limits=_LIMITS, sharpness=20.0, estimate_share=0.3),
+    person=FilterConfig(fresh_share=0.0, limits=_LIMITS, sharpness=20.0, estimate_share=0.3, floor=0.2),
     life=LifeConfig(
         birth_confidence=0.6,
-        birth_frames=4,
+        birth_frames=3,
         death_confidence=0.3,
         doubt_frames=5,
         death_frames=12,
@@ -78,6 +93,23 @@ PEOPLEBOY = TrackerConfig(
     # Torso and feet of the drawn and simulated people lie so, relative to the ellipse that fits them best.
     box=BoxConfig(width_per_w=1.88, height_per_h=3.7),
     smoothing=SmoothingConfig(place_s=0.05, size_s=0.1),
+    interaction=InteractionConfig(
+        detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
+    ),
+    colour=ColourConfig(
+        representation="moments1", sharpness=0.05, frames=30, affine=FAR_AFFINE, parallax=ROBOT_PARALLAX
+    ),
+    looks=LooksConfig(),
+    occlusion=OcclusionConfig(
+        is_handled=True,
+        removes_front=True,
+        growth=1.2,
+        keeps_velocity=True,
+        hidden_memory=0.985,
+        hidden_noise=0.5,
+        remembers_lost=True,
+        shown_s=1.0,
+    ),
 )
 """What works on the robot: the default."""
 
@@ -87,8 +119,15 @@ FOOTAGE = replace(
         PEOPLEBOY.contour, saturation_grey=25.0, cold_response=1.0, feet_weight=0.1, hottest_grey=256
     ),
     motion=replace(PEOPLEBOY.motion, noise_x=20.0, noise_y=6.0, noise_w=3.0, noise_h=3.0, place_memory=0.8),
-    person=replace(PEOPLEBOY.person, sharpness=5.0, estimate_share=1.0),
-    life=replace(PEOPLEBOY.life, death_confidence=0.02, doubt_frames=20, death_frames=20),
+    person=replace(PEOPLEBOY.person, sharpness=5.0, estimate_share=1.0, floor=-math.inf),
+    life=replace(PEOPLEBOY.life, birth_frames=4, death_confidence=0.02, doubt_frames=20, death_frames=20),
     box=BoxConfig(),
+    interaction=InteractionConfig(max_persons=1),
+    colour=None,
+    looks=None,
+    occlusion=OcclusionConfig(),
 )
-"""For recorded footage of a standing camera: people keep their size, and are not given up in a crowd."""
+"""For recorded footage of a standing camera, one person at a time.
+
+People keep their size, and are not given up in a crowd.
+"""

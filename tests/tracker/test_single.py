@@ -11,12 +11,23 @@ from drawn_people import RADIATOR, blank, draw_person, person_frame
 from bad_input import BadInput
 from tracker.frame import Frame
 from tracker.people import TRACKERS, make_tracker
-from tracker.single import SinglePersonTracker
+from tracker.several import PeopleTracker
 from tracker.track import Status
 from tracker.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
 
 SEEDS = range(3)
-VARIANTS = {"default": PEOPLEBOY, "footage": FOOTAGE, "thesis": THESIS, "paper": PAPER}
+
+
+def alone(config):
+    return replace(config, interaction=replace(config.interaction, max_persons=1))
+
+
+VARIANTS = {
+    "default": alone(PEOPLEBOY),
+    "footage": FOOTAGE,
+    "thesis": alone(THESIS),
+    "paper": alone(PAPER),
+}
 
 
 def confirmed(tracks):
@@ -24,7 +35,7 @@ def confirmed(tracks):
 
 
 def make(name="default", seed=0):
-    return SinglePersonTracker(VARIANTS[name], np.random.default_rng(seed))
+    return PeopleTracker(VARIANTS[name], np.random.default_rng(seed))
 
 
 def follow(frames, seed=0, name="default"):
@@ -80,12 +91,13 @@ def test_a_walking_person_keeps_one_id_and_a_box_near_the_truth():
     assert np.abs(late).max() < 6
 
 
-def test_a_person_who_was_lost_comes_back_with_a_new_id():
+@pytest.mark.parametrize(("name", "later"), [("default", 1), ("footage", 2)])
+def test_a_person_who_was_lost_comes_back_as_itself_if_it_is_remembered(name, later):
     frames = [person_frame(i / 15) for i in range(20)]
     frames += [Frame(thermal=blank(), time_s=i / 15) for i in range(20, 45)]
     frames += [person_frame(i / 15) for i in range(45, 70)]
-    tracks = follow(frames)
-    assert [confirmed(tracks[i])[0].id for i in (19, 69)] == [1, 2]
+    tracks = follow(frames, name=name)
+    assert [confirmed(tracks[i])[0].id for i in (19, 69)] == [1, later]
     assert not tracks[44]
 
 
@@ -137,9 +149,8 @@ def test_the_same_seed_gives_the_same_tracks_and_another_seed_does_not(name):
 
 def test_a_fresh_process_gives_the_same_tracks():
     code = (
-        "import numpy as np; from drawn_people import person_frame; "
-        "from tracker.single import SinglePersonTracker; from tracker.variants import PEOPLEBOY; "
-        "t = SinglePersonTracker(PEOPLEBOY, np.random.default_rng(5)); "
+        "from drawn_people import person_frame; "
+        "from test_single import make; t = make(seed=5); "
         "print([t.update(person_frame(i / 15, 60 + i)) for i in range(20)])"
     )
     here = Path(__file__).parent
@@ -177,7 +188,7 @@ def test_an_unknown_tracker_is_refused_with_the_names_of_those_that_exist():
 
 
 def test_a_filter_of_300_samples_finds_the_person_too():
-    config = replace(PEOPLEBOY, person=replace(PEOPLEBOY.person, count=300))
-    tracker = SinglePersonTracker(config, np.random.default_rng(0))
+    config = replace(alone(PEOPLEBOY), person=replace(PEOPLEBOY.person, count=300))
+    tracker = PeopleTracker(config, np.random.default_rng(0))
     tracks = [tracker.update(person_frame(i / 15)) for i in range(25)]
     assert confirmed(tracks[-1])
