@@ -218,6 +218,6 @@ def _unpack(packed: bytes, shape: tuple[int, ...]) -> NDArray[np.uint8]:
 def _source_digest() -> str:
     """A hash of the simulator's own source, which may change within a version."""
     digest = hashlib.sha256()
-    for path in sorted(Path(sim.__path__[0]).glob("*.py")):
+    for path in sorted(Path(sim.__path__[0]).rglob("*.py")):
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
