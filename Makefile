@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-heavy lint format bench clean
+.PHONY: demo test test-heavy lint format bench peers clean
 
 demo: $(READY)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -25,6 +25,12 @@ format: $(READY)
 
 bench: $(READY)
 	$(BIN)/python -m benchmarks
+
+peers: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[peers]'
+	# Both ask for opencv-python as well, see below.
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps trackers supervision
+	$(BIN)/python -m benchmarks.peers
 
 clean:
 	rm -rf $(VENV) runs

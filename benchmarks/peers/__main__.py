@@ -11,6 +11,12 @@ from rich.console import Console
 from rich.progress import track
 
 from bad_input import BadInput
+
+try:
+    import trackers as _trackers  # noqa: F401
+except ImportError as error:
+    raise SystemExit("benchmarks.peers: the package trackers is missing; run `make peers`") from error
+
 from benchmarks.peers.compete import Result, compete_on_film
 from benchmarks.peers.contestants import contestants
 from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results

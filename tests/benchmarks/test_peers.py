@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("trackers", reason="the extra 'peers' is not installed")
+
+from benchmarks.peers.compete import compete_on_film
+from benchmarks.peers.detectors import Blobs, Oracle, _from_colour
+from tracker.evaluation.sequence import Truth
+from tracker.frame import Frame
+
+
+def frame(thermal: np.ndarray) -> Frame:
+    return Frame(thermal=thermal, time_s=0.0)
+
+
+def test_blobs_find_a_warm_upright_region_and_leave_a_flat_one() -> None:
+    image = np.zeros((240, 320), dtype=np.uint8)
+    image[60:160, 100:130] = 120
+    image[20:30, 200:300] = 255
+    found = Blobs().detect(frame(image))
+    assert found.box == pytest.approx(np.array([[115.0 - 13.5, 60.0, 27.0, 100.0]]))
+
+
+def test_the_oracle_gives_each_frame_who_is_seen_well_enough() -> None:
+    truth = Truth(
+        frame=np.array([1, 1, 2]),
+        id=np.array([1, 2, 1]),
+        box=np.array([[0.0, 0, 10, 30], [50.0, 0, 10, 30], [2.0, 0, 10, 30]]),
+        counted=np.ones(3, dtype=np.bool_),
+        visible=np.array([1.0, 0.2, 0.9]),
+    )
+    oracle = Oracle(truth)
+    blank = frame(np.zeros((240, 320), dtype=np.uint8))
+    assert [oracle.detect(blank).box[:, 0].tolist() for _ in range(3)] == [[0.0], [2.0], []]
+
+
+def test_boxes_of_the_colour_image_shrink_by_its_zoom_when_they_move_to_the_thermal_one() -> None:
+    image = frame(np.zeros((240, 320), dtype=np.uint8))
+    (box,) = _from_colour(np.array([[148.0, 108.0, 24.0, 24.0]]), (240, 320, 3), image)
+    assert box[2:] == pytest.approx([20.0, 20.0])
+    assert box[1] + 10.0 == pytest.approx(120.0)  # the middle row stays the middle row
+
+
+def test_results_are_kept_and_the_oracle_is_right_about_everybody_it_tracks(tmp_path: Path) -> None:
+    first = compete_on_film(["oracle+bytetrack", "blobs+sort"], "crossing_2", 1, tmp_path)
+    again = compete_on_film(["oracle+bytetrack", "blobs+sort"], "crossing_2", 1, tmp_path)
+    assert [run.ms for run in first] == [run.ms for run in again]
+    assert first[0].scores.thesis.cp == 100.0
+    assert first[0].scores.thesis.cr > first[1].scores.thesis.cr
+    assert len(first[0].occlusions) > 0
