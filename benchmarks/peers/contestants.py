@@ -17,8 +17,8 @@ from tracker.people import TRACKERS, make_tracker
 from tracker.track import Status
 
 RATE_HZ = 15.0
-# The package counts in frames at 30 Hz: five seconds. Of 1, 2, 5 and 10 s it is best for the oracle's IDF1, and
-# within a point of the best for that of the blobs.
+# The package counts in frames at 30 Hz: five seconds. Of 1, 2, 5 and 10 s it is best for the oracle's IDF1,
+# and within a point of the best for that of the blobs.
 _LOST_BUFFER = 150
 _STRONG = 0.4  # confidence; HOG's are lower than those of the detectors that the defaults are made for
 
