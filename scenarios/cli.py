@@ -240,6 +240,47 @@ def train_occlusion(
 
 
 @cli.command()
+@click.argument("names", metavar="[ID]...", nargs=-1)
+@click.option("--quick", is_flag=True, help="A little of everything, in minutes.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder of the page and the results.  [default: runs/reproduce, or runs/reproduce-quick]",
+)
+@click.option(
+    "--films",
+    type=click.Path(path_type=Path),
+    default=Path("runs") / "films",
+    show_default=True,
+    help="Where rendered frames are kept.",
+)
+@click.option("--jobs", type=click.IntRange(min=1), help="Processes at the same time.  [default: one a core]")
+@click.option("--scheduler", metavar="tcp://...", help="Work on the cluster of this Dask scheduler.")
+@click.option("--list", "lists", is_flag=True, help="List tables and figures, and do nothing.")
+def reproduce(
+    names: Sequence[str],
+    quick: bool,
+    out: Path | None,
+    films: Path,
+    jobs: int | None,
+    scheduler: str | None,
+    lists: bool,
+) -> None:
+    """Measure every table and figure of the sources again, and write one page about it.
+
+    ID is one of `--list`, or its number: 4.9 stands for figures 4.9a and 4.9b. A killed call goes on where it
+    was when it is given again.
+    """
+    from scenarios.reproduce.show import list_experiments, reproduce_with_progress
+
+    if lists:
+        list_experiments(names)
+    else:
+        folder = out if out is not None else Path("runs") / ("reproduce-quick" if quick else "reproduce")
+        click.echo(reproduce_with_progress(names, folder, films, jobs, scheduler, quick=quick))
+
+
+@cli.command()
 @click.argument("folder", metavar="RUN", type=click.Path(path_type=Path))
 def view(folder: Path) -> None:
     """Open the recording of a run in the rerun viewer."""

@@ -1,0 +1,164 @@
+"""Plots of experiments, as pictures that lie inside the page."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+from scenarios.reproduce.compare import mean_and_spread
+from scenarios.reproduce.experiment import Experiment, Line, Samples
+from scenarios.reproduce.source import SOURCE, SourceTable
+
+COLOURS = {SOURCE: "#1a1a1a", "literal": "#d95f02", "literal, strict": "#f4a76a", "default": "#1f78b4"}
+_OTHERS = ("#1f78b4", "#66a61e", "#7570b3")
+
+
+def draw(experiment: Experiment, samples: Samples, table: SourceTable) -> str | None:
+    """Draw an experiment as an SVG data address; None if there is nothing to draw."""
+    if experiment.chart == "none":
+        return None
+    if experiment.chart == "lines":
+        figure = _lines(experiment.plotted[0], samples, table)
+    elif len(experiment.plotted) > 1:
+        figure = _bars_by_metric(experiment.plotted, samples, table)
+    else:
+        figure = _bars_by_group(experiment.plotted[0], samples, table)
+    return _address(figure)
+
+
+def source_figures(table: SourceTable, column: str) -> dict[str, tuple[float, float | None]]:
+    """Give the source's own figures of a column, by group."""
+    return {
+        value.group: value.figures[column]
+        for value in table.values
+        if value.who == SOURCE and column in value.figures
+    }
+
+
+def _lines(column: str, samples: Samples, table: SourceTable) -> Figure:
+    """Draw a sweep: one curve each for the source and the trackers."""
+    figure, axes = _canvas(6.0)
+    groups = list(dict.fromkeys([*(line.group for line in samples), *source_figures(table, column)]))
+    groups.sort(key=_number)
+    curves = {who: _ours(samples, column, who) for who in _names(samples)}
+    curves[SOURCE] = source_figures(table, column)
+    for who, points in curves.items():
+        known = [group for group in groups if group in points]
+        axes.errorbar(
+            [groups.index(group) for group in known],
+            [points[group][0] for group in known],
+            [points[group][1] or 0.0 for group in known],
+            label=who,
+            color=_colour(who, 0),
+            marker="o",
+            markersize=4,
+            capsize=3,
+            linestyle="--" if who == SOURCE else "-",
+        )
+    axes.set_xticks(range(len(groups)), groups)
+    axes.set_ylabel(f"{column} [%]")
+    _finish(axes)
+    return figure
+
+
+def _bars_by_group(column: str, samples: Samples, table: SourceTable) -> Figure:
+    """Draw one cluster of bars a group."""
+    series = {SOURCE: source_figures(table, column)}
+    groups = list(dict.fromkeys([*series[SOURCE], *(line.group for line in samples)]))
+    figure, axes = _canvas(6.0)
+    series |= {who: _ours(samples, column, who) for who in _names(samples)}
+    _cluster(axes, groups, series)
+    axes.set_ylabel(column if "%" in column else f"{column} [%]")
+    _finish(axes)
+    return figure
+
+
+def _bars_by_metric(columns: Sequence[str], samples: Samples, table: SourceTable) -> Figure:
+    """Draw one plot a group, with a cluster of bars a metric."""
+    groups = list(dict.fromkeys(line.group for line in samples))
+    figure = Figure(figsize=(6.0, 2.3 * len(groups)), layout="constrained")
+    FigureCanvasSVG(figure)
+    for number, group in enumerate(groups):
+        axes = figure.add_subplot(len(groups), 1, number + 1)
+        series = {
+            SOURCE: {c: points[group] for c in columns if group in (points := source_figures(table, c))}
+        }
+        for who in _names(samples):
+            figures = samples.get(Line(group, who), {})
+            series[who] = {c: mean_and_spread(figures[c]) for c in columns if c in figures}
+        _cluster(axes, columns, series)
+        axes.set_title(group, fontsize=9, loc="left")
+        axes.set_ylabel("%")
+        _finish(axes, with_legend=False)
+        if number == 0:
+            handles, labels = axes.get_legend_handles_labels()
+            figure.legend(handles, labels, fontsize=8, frameon=False, ncols=4, loc="outside upper left")
+    return figure
+
+
+def _cluster(
+    axes: Axes, groups: Sequence[str], series: dict[str, dict[str, tuple[float, float | None]]]
+) -> None:
+    drawn = {who: points for who, points in series.items() if points}
+    width = 0.8 / max(len(drawn), 1)
+    for number, (who, points) in enumerate(drawn.items()):
+        at = [groups.index(group) for group in points]
+        axes.bar(
+            np.array(at) + width * (number - (len(drawn) - 1) / 2),
+            [mean for mean, _ in points.values()],
+            0.92 * width,
+            yerr=[spread or 0.0 for _, spread in points.values()],
+            label=who,
+            color=_colour(who, number),
+            error_kw={"linewidth": 0.8},
+        )
+    axes.set_xticks(range(len(groups)), groups)
+    axes.set_ylim(0, 105)
+
+
+def _ours(samples: Samples, column: str, who: str) -> dict[str, tuple[float, float | None]]:
+    return {
+        line.group: mean_and_spread(figures[column])
+        for line, figures in samples.items()
+        if line.who == who and column in figures
+    }
+
+
+def _names(samples: Samples) -> list[str]:
+    return list(dict.fromkeys(line.who for line in samples))
+
+
+def _colour(who: str, number: int) -> str:
+    return COLOURS.get(who, _OTHERS[(number - 1) % len(_OTHERS)])
+
+
+def _number(group: str) -> float:
+    return float(group.removesuffix(" %"))
+
+
+def _canvas(width: float) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(width, 3.2), layout="constrained")
+    FigureCanvasSVG(figure)
+    return figure, figure.add_subplot()
+
+
+def _finish(axes: Axes, *, with_legend: bool = True) -> None:
+    axes.tick_params(labelsize=8)
+    axes.grid(axis="y", linewidth=0.4, alpha=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    if with_legend:
+        axes.legend(fontsize=8, frameon=False, ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+
+
+def _address(figure: Figure) -> str:
+    buffer = io.BytesIO()
+    # Neither date nor creator: the same figures give the same bytes.
+    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    return "data:image/svg+xml;base64," + base64.b64encode(buffer.getvalue()).decode()

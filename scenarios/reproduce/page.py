@@ -1,0 +1,154 @@
+"""The page: every table and figure of the sources beside ours, in one file that needs nothing else."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import jinja2
+
+from scenarios.read_yaml import read_yaml
+from scenarios.reproduce.charts import draw
+from scenarios.reproduce.compare import SIGNIFICANT, Verdict, judge, mean_and_spread
+from scenarios.reproduce.experiment import Experiment, Samples
+from scenarios.reproduce.source import SOURCE, Claim, SourceTable, source_tables
+
+HERE = Path(__file__).parent
+NOTES = HERE / "notes.yaml"
+MAIN = ("default", "held out")
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One line of a table on the page: a group, whose figures, and the cells as text."""
+
+    group: str
+    who: str
+    cells: tuple[str, ...]
+    is_source: bool
+    is_first: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A claim of the source, and how it went."""
+
+    claim: Claim
+    verdicts: tuple[Verdict, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """One table or figure on the page."""
+
+    id: str
+    table: SourceTable
+    columns: tuple[str, ...]
+    rows: tuple[Row, ...]
+    picture: str | None
+    checked: tuple[Checked, ...]
+    why: str
+
+    @property
+    def summary(self) -> str:
+        """How the source's claims fare with the main tracker, in a few words."""
+        count = Counter(
+            verdict.outcome.value for item in self.checked for verdict in item.verdicts if verdict.who in MAIN
+        )
+        return ", ".join(f"{number} {'hold' if word == 'holds' else word}" for word, number in count.items())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class About:
+    """What the page says of the run.
+
+    Attributes:
+        command: by which it can be repeated.
+        is_quick: whether only a little was done.
+        amount: what was done, in words.
+        facts: further lines: versions, machine, time.
+    """
+
+    command: str
+    is_quick: bool
+    amount: str
+    facts: Mapping[str, str]
+
+
+def write_page(path: Path, results: Sequence[tuple[Experiment, Samples]], about: About) -> None:
+    """Write the page."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["points"] = lambda value: "-" if math.isnan(value) else f"{value:+.2f}"
+    environment.filters["chance"] = chance
+    sections = [section(experiment, samples) for experiment, samples in results]
+    notes = _notes()
+    text = environment.get_template("page.html.jinja").render(
+        sections=sections, about=about, general=notes["general"], significant=SIGNIFICANT
+    )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def section(experiment: Experiment, samples: Samples) -> Section:
+    """Lay out one table or figure."""
+    table = source_tables()[experiment.id]
+    columns = tuple(dict.fromkeys(name for figures in samples.values() for name in figures))
+    return Section(
+        id=experiment.id,
+        table=table,
+        columns=columns,
+        rows=tuple(rows(samples, table, columns)),
+        picture=draw(experiment, samples, table),
+        checked=tuple(Checked(claim, tuple(judge(claim, samples))) for claim in table.claims),
+        why=_notes()["why"].get(experiment.id, ""),
+    )
+
+
+def rows(samples: Samples, table: SourceTable, columns: Sequence[str]) -> list[Row]:
+    """Put the source's lines before ours, group by group."""
+    lines: dict[str, list[tuple[str, tuple[str, ...]]]] = {}
+    for value in table.values:
+        cells = tuple(_cell(value.figures.get(name), columns) for name in columns)
+        lines.setdefault(value.group, []).append((value.who, cells))
+    printed = {value.who for value in table.values}
+    for line, figures in samples.items():
+        cells = tuple(
+            _cell(mean_and_spread(figures[name]) if name in figures else None, columns) for name in columns
+        )
+        lines.setdefault(line.group, []).append((line.who, cells))
+    return [
+        Row(group, who, cells, who in (SOURCE, *printed), number == 0)
+        for group, parts in lines.items()
+        for number, (who, cells) in enumerate(parts)
+    ]
+
+
+def chance(p: float) -> str:
+    """Write a p-value."""
+    if math.isnan(p):
+        return "no test"
+    return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
+
+
+def _cell(figure: tuple[float, float | None] | None, columns: Sequence[str]) -> str:
+    if figure is None or math.isnan(figure[0]):
+        return "-"
+    mean, spread = figure
+    if mean == round(mean) and spread is None and "ms" not in columns:
+        return f"{mean:.0f}"
+    text = f"{mean:.3g}" if "ms" in columns and mean < 1 else f"{mean:.2f}"
+    return text if spread is None else f"{text} ± {spread:.2f}"
+
+
+def _notes() -> dict[str, dict[str, str]]:
+    notes: dict[str, dict[str, str]] = read_yaml(NOTES)
+    return notes
