@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,38 +13,11 @@ from scenarios.occlusion_pairs import PairExample, collect
 from scenarios.pair_files import read_pairs, write_pairs
 from scenarios.show_training import print_best, print_trials
 from scenarios.train_occlusion import TRAINING, UNSEEN, check_examples, learn, run_trials
-from tracker.appearance.config import FAR_AFFINE, ROBOT_PARALLAX, ColourConfig
-from tracker.config import InteractionConfig, LooksConfig, OcclusionConfig, TrackerConfig
+from tracker.config import TrackerConfig
 from tracker.occlusion.learned_table import TABLES
-from tracker.variants import PEOPLEBOY, THESIS
+from tracker.variants import PEOPLEBOY, THESIS_OCCLUSION
 
-PUPILS: dict[str, TrackerConfig] = {
-    "peopleboy": replace(
-        PEOPLEBOY,
-        person=replace(PEOPLEBOY.person, floor=0.2),
-        interaction=InteractionConfig(
-            detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
-        ),
-        colour=ColourConfig(
-            representation="moments1", sharpness=0.05, frames=30, affine=FAR_AFFINE, parallax=ROBOT_PARALLAX
-        ),
-        looks=LooksConfig(),
-        occlusion=OcclusionConfig(
-            is_handled=True,
-            removes_front=True,
-            growth=1.2,
-            keeps_velocity=True,
-            hidden_noise=1.0,
-            remembers_lost=True,
-        ),
-    ),
-    "thesis": replace(
-        THESIS,
-        interaction=InteractionConfig(occluded_penalty=0.5),
-        colour=ColourConfig(),
-        occlusion=OcclusionConfig(is_handled=True),
-    ),
-}
+PUPILS: dict[str, TrackerConfig] = {"peopleboy": PEOPLEBOY, "thesis": THESIS_OCCLUSION}
 """The trackers that put people in order, by name."""
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby, zip_longest
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
+from scipy.stats import ttest_rel
 
 from scenarios.train_occlusion import Trial
 from tracker.occlusion.learned_table import LearnedTable
@@ -19,6 +21,13 @@ _TITLES = {
     "7.2": "Table 7.2: combinations of features [%]",
     "7.3": "Table 7.3: single features [%]",
 }
+_TESTS = (
+    ("both", "thermal", "< 0.01"),
+    ("both", "colour", "< 0.01"),
+    ("thermal", "colour", "significant"),
+    ("weighted pairs", "single", "-"),
+    ("weighted pairs", "weighted triplets", "> 0.01"),
+)
 # The weights of the ten best weak classifiers, by feature.
 _THESIS_BEST: tuple[dict[str, float], ...] = (
     {"strength": -0.05, "colour_no": 1.0},
@@ -41,9 +50,29 @@ def print_trials(trials: Sequence[Trial]) -> None:
         for column in ("", "weak classifiers", "thesis", "ours", "ours, unseen scenarios"):
             table.add_column(column, justify="right" if column else "left")
         for trial in rows:
-            figures = [_percent(*pair) for pair in (trial.thesis, trial.held_out, trial.unseen)]
-            table.add_row(trial.name, str(trial.classifiers), *figures)
+            ours = [_percent(np.mean(each), np.std(each, ddof=1)) for each in (trial.held_out, trial.unseen)]
+            table.add_row(trial.name, str(trial.classifiers), _percent(*trial.thesis), *ours)
         _print(table)
+    _print_tests({trial.name: trial for trial in trials})
+
+
+def _print_tests(trials: Mapping[str, Trial]) -> None:
+    """Print the paired t-tests of section 7.4, over the splits that two ways share."""
+    table = _table("Paired t-tests: p that the two are equally good")
+    for column in ("", "thesis", "ours", "ours, unseen scenarios"):
+        table.add_column(column, justify="right" if column else "left")
+    for one, other, thesis in _TESTS:
+        if one in trials and other in trials:
+            a, b = trials[one], trials[other]
+            ours = [_p_value(a.held_out, b.held_out), _p_value(a.unseen, b.unseen)]
+            table.add_row(f"{one}, {other}", thesis, *ours)
+    _print(table)
+
+
+def _p_value(one: Sequence[float], other: Sequence[float]) -> str:
+    if np.allclose(one, other):
+        return "1"
+    return f"{ttest_rel(one, other).pvalue:.2g}"
 
 
 def print_best(learned: LearnedTable) -> None:
@@ -63,7 +92,7 @@ def _weights(weights: dict[str, float]) -> list[str]:
     return [f"{weights[name]:.2f}" if name in weights else "-" for name in FEATURES]
 
 
-def _percent(mean: float, deviation: float) -> str:
+def _percent(mean: float | np.floating, deviation: float | np.floating) -> str:
     return "-" if math.isnan(mean) else f"{mean:.2f} ± {deviation:.2f}"
 
 

@@ -38,16 +38,16 @@ class Trial:
         name: as in that table.
         classifiers: how many weak classifiers there are to choose from.
         thesis: (mean, deviation) there.
-        held_out: (mean, deviation) over repeated splits of the training scenarios' examples.
-        unseen: (mean, deviation) of the same classifiers on the other scenarios.
+        held_out: of each split, on the rest of the training scenarios' examples.
+        unseen: of the same classifiers, on the other scenarios.
     """
 
     table: str
     name: str
     classifiers: int
     thesis: tuple[float, float]
-    held_out: tuple[float, float]
-    unseen: tuple[float, float]
+    held_out: tuple[float, ...]
+    unseen: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,8 +131,8 @@ def _try_out(
         name=plan.name,
         classifiers=len(weighted_sums(len(plan.uses), plan.most)),
         thesis=plan.thesis,
-        held_out=(float(np.mean(held_out)), float(np.std(held_out, ddof=1))),
-        unseen=(float(np.mean(elsewhere)), float(np.std(elsewhere, ddof=1))),
+        held_out=tuple(held_out),
+        unseen=tuple(elsewhere),
     )
 
 

@@ -5,9 +5,11 @@ import pytest
 from synthetic_ticks import person
 
 from bad_input import BadInput
+from scenarios.occlusion_lesson import give_lesson
 from scenarios.occlusion_pairs import Episodes, PairExample, mirrored, who_is_in_front
 from scenarios.pair_files import read_pairs, write_pairs
 from scenarios.train_occlusion import TRAINING, UNSEEN, learn, run_trials, share_right
+from tracker.occlusion.learned_table import LearnedTable
 
 
 def examples(count: int, seed: int) -> list[PairExample]:
@@ -75,14 +77,30 @@ def test_trials_hold_the_rows_and_counts_of_the_thesis_tables():
     ]
     by_name = {trial.name: trial for trial in trials}
     assert by_name["both"].held_out == by_name["weighted pairs"].held_out
-    assert by_name["thermal"].unseen[0] > 85
-    assert by_name["colour"].unseen[0] < 65
+    assert min(by_name["thermal"].unseen) > 80
+    assert max(by_name["colour"].unseen) < 70
 
 
 def test_what_is_learned_says_from_how_much_and_how_well():
     learned = learn(examples(100, 0), examples(60, 1), rounds=10)
     assert "100 pairs" in learned.about["learned from"]
     assert float(learned.about["right on these"].split()[0]) > 85
+
+
+def test_a_tracker_that_does_not_order_people_has_nothing_to_learn(tmp_path):
+    with pytest.raises(BadInput, match="must be one that orders people: peopleboy, thesis"):
+        give_lesson(tmp_path, "paper", 1, triplets=False, again=False, ship=False)
+
+
+def test_a_lesson_from_kept_examples_prints_the_tables_and_leaves_a_table_that_loads(tmp_path, capsys):
+    write_pairs(tmp_path / "training.csv", examples(60, 0))
+    write_pairs(tmp_path / "unseen.csv", examples(40, 1))
+    path = give_lesson(tmp_path, "peopleboy", 1, triplets=False, again=False, ship=False)
+    assert path == tmp_path / "peopleboy.yaml"
+    assert len(LearnedTable.load(path).classifiers) > 1
+    printed = capsys.readouterr().out
+    for words in ("Table 7.1", "Table 7.2", "Table 7.3", "Table 7.4", "1206", "89.38 ± 2.48", "t-tests"):
+        assert words in printed
 
 
 def test_too_few_examples_are_refused():

@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import cv2
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from tracker.appearance.config import ColourConfig
 from tracker.config import ContourConfig
 from tracker.filter import View
 from tracker.measure import ContourModel
+from tracker.occlusion.learned_order import shipped_order
 from tracker.occlusion.pair_features import FEATURES, boxes, cut, overlapping_pairs, pair_features
 
 
@@ -97,6 +100,21 @@ def test_colours_that_nobody_knows_make_no_difference(models):
     features = pair_features(people(NEAR, FAR), models, np.array([[0, 1]]), scene(1, 0))[0]
     assert np.all(features[3:] == 0)
     assert np.all(features[:3] != 0)
+
+
+def test_everybody_is_compared_at_once_as_they_are_two_by_two():
+    order = shipped_order()
+    models = known_colours()
+    states = [NEAR, FAR, (290.0, 120.0, 9.0, 25.0)]
+    figures = [
+        SimpleNamespace(state=people(state)[0], person=SimpleNamespace(looks=None, colour=model))
+        for state, model in zip(states, [*models, None], strict=True)
+    ]
+    view = scene(1, 0)
+    leads = order.leads(figures, view)
+    assert np.array_equal(leads, -leads.T)
+    assert leads[0, 1] == order(figures[0], figures[1], view) > 0
+    assert np.all(leads[2] == 0)
 
 
 def test_without_pairs_there_are_no_features():
