@@ -76,6 +76,7 @@ STEPS: dict[str, tuple[str, ...]] = {
     "colours and thermal pattern, by part, without the light": ("colour", "looks"),
     "who is in front is no evidence for who is behind": (
         "occlusion.is_handled",
+        "occlusion.order",
         "occlusion.removes_front",
         "occlusion.growth",
     ),

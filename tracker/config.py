@@ -216,6 +216,7 @@ class OcclusionConfig:
     """
 
     is_handled: bool = False  # whether it matters who is in front
+    order: str = "foot"  # how that is told: "foot" by whose feet are lower, "looks" by looks as well
     head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
     kept_frames: int = 8  # frames for which a hidden person's samples are kept
     forget_s: float = 10.0  # time after which a hidden person is forgotten
@@ -234,6 +235,7 @@ class OcclusionConfig:
     shown_s: float = 10.0  # how long a hidden person is shown
 
     def __post_init__(self) -> None:
+        refuse_unless(self.order in ("foot", "looks"), self, "order", "foot or looks")
         check_share(self, "head_covered", "hidden_memory", "hidden_stiffness")
         check_not_negative(self, "kept_frames", "forget_s", "shown_s", "hidden_noise")
         check_positive(self, "growth")

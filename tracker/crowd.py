@@ -53,16 +53,12 @@ def _scene(
     is_front = overlaps & config.occlusion.is_handled
     front = tuple(person for person, hides in zip(seen, is_front, strict=True) if hides)
     later = [other.region for other in behind if not other.person.is_hidden]
+    rivals = np.concatenate([regions[~is_front], np.array(later, dtype=np.float32).reshape(-1, 4)])
     interaction = config.interaction
     return Scene(
         front=front,
-        others=np.concatenate([regions, np.array(later, dtype=np.float32).reshape(-1, 4)]),
-        strength=np.concatenate(
-            [
-                np.where(is_front, interaction.occluded_penalty, interaction.penalty),
-                np.full(len(later), interaction.penalty),
-            ]
-        ),
+        others=np.concatenate([regions[is_front], rivals]),
+        strength=np.repeat([interaction.occluded_penalty, interaction.penalty], [len(front), len(rivals)]),
         image=covered_by(
             view.image,
             [person.belief.estimate for person in front],
@@ -115,10 +111,11 @@ def hidden_motion(config: TrackerConfig) -> MotionConfig:
 def _factor(person: Person, state: Floats, scene: Scene, view: View, config: TrackerConfig) -> Floats:
     """Weigh samples (N,) by what is known beside the contour: the others, and the person's colours.
 
-    Source: thesis, equations 5.2 and 6.17; section 7.3, by which a hidden person is not penalised.
+    Source: thesis, equations 5.2 and 6.17; section 7.3, by which a hidden person is not penalised. Ours is,
+    towards all who are not in front, or it would come back as one of them.
     """
     factor = np.ones(len(state), dtype=np.float32)
-    if not person.is_hidden:
+    if not person.is_hidden or config.occlusion.keeps_velocity:
         factor = person_factor(overlap_shares(state, scene.others, config), scene.strength)
     model = appearance(person)
     if model is None or config.colour is None:

@@ -18,7 +18,7 @@ from tracker.interaction import detector_factor, least_overlaps, regions_of
 from tracker.judge import foot_of, learn
 from tracker.life import is_born
 from tracker.measure import ContourModel
-from tracker.order import Order, lower_foot
+from tracker.order import ORDERS, Order
 from tracker.particles import Particles, X, ellipse_of
 from tracker.person import Person
 from tracker.track import Status, Track
@@ -33,10 +33,10 @@ class PeopleTracker:
     Source: thesis, chapters 5 and 7.
     """
 
-    def __init__(self, config: TrackerConfig, rng: np.random.Generator, order: Order = lower_foot) -> None:
+    def __init__(self, config: TrackerConfig, rng: np.random.Generator, order: Order | None = None) -> None:
         self._config = config
         self._rng = rng
-        self._order = order
+        self._order = ORDERS[config.occlusion.order] if order is None else order
         self._model: ContourModel | None = None
         self._last_s: float | None = None
         self._detector: Belief | None = None

@@ -13,13 +13,15 @@ from tracker.config import TrackerConfig
 from tracker.contour import SECTIONS
 from tracker.cover import body_share, head_share, seen_shares
 from tracker.filter import Belief, View
-from tracker.interaction import regions_of
+from tracker.interaction import overlap_shares, regions_of
 from tracker.looks import visible
 from tracker.measure import probability
 from tracker.particles import Floats, H
 from tracker.person import Person
 
 CLEAR = 0.5  # share of head and body in view from which a hidden person may be seen again
+
+CLAIMED = 0.5  # share of its region that another person must have left free
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,7 +30,7 @@ class Scene:
 
     Attributes:
         front: those in front who overlap the person, as they are in this frame.
-        others: everybody else who is seen: their regions (M, 4) [px].
+        others: everybody else who is seen, those in front first: their regions (M, 4) [px].
         strength: (M,) rho of equation 5.3 towards each.
         image: (H, W) with the people in front marked as covered.
     """
@@ -37,6 +39,11 @@ class Scene:
     others: Floats
     strength: NDArray[np.float64]
     image: NDArray[np.uint8]
+
+    @property
+    def rivals(self) -> Floats:
+        """Regions of those who are seen and not in front."""
+        return self.others[len(self.front) :]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,18 +54,20 @@ class Sight:
         head: share of the head's contour that is in view.
         body: share of the whole contour.
         confidence: probability by what is in view alone.
+        is_free: whether nobody else is seen there.
         is_alike: whether what is in view has the person's height, and its looks as far as they are known.
     """
 
     head: float
     body: float
     confidence: float
+    is_free: bool
     is_alike: bool
 
     @property
     def is_clear(self) -> bool:
         """Whether most of the right person is in view."""
-        return min(self.head, self.body) > CLEAR and self.is_alike
+        return min(self.head, self.body) > CLEAR and self.is_alike and self.is_free
 
 
 def look_at(person: Person, belief: Belief, scene: Scene, view: View, config: TrackerConfig) -> Sight:
@@ -76,7 +85,8 @@ def look_at(person: Person, belief: Belief, scene: Scene, view: View, config: Tr
         away = float(squared_distances(features, model)[0])
     growth = abs(np.log(max(belief.estimate[H], 1.0) / max(person.shown[H], 1.0)))
     is_alike = growth < config.occlusion.size_gate and not away > config.occlusion.colour_gate
-    return Sight(head_share(shares), body_share(shares), chance, is_alike)
+    is_free = not (overlap_shares(rows, scene.rivals, config) > CLAIMED).any()
+    return Sight(head_share(shares), body_share(shares), chance, is_free, is_alike)
 
 
 def appearance(person: Person) -> ColourModel | None:

@@ -102,6 +102,7 @@ PEOPLEBOY = TrackerConfig(
     looks=LooksConfig(),
     occlusion=OcclusionConfig(
         is_handled=True,
+        order="looks",
         removes_front=True,
         growth=1.2,
         keeps_velocity=True,
