@@ -115,6 +115,8 @@ def run(
         overwrite=overwrite,
     )
     if loaded is None:
+        if seed != 0:
+            raise BadInput(f"--seed {seed}: suite {scenario} has seeds of its own; leave it out")
         _run_suite(scenario, options)
         return
     scores = run_with_progress(loaded, options)

@@ -81,7 +81,8 @@ def test_a_suite_skips_complete_runs_and_redoes_those_that_were_cut_off(tmp_path
 def test_an_unknown_suite_or_data_set_is_refused() -> None:
     with pytest.raises(BadInput, match="did you mean 'dataset1'"):
         load_suite("datset1")
-    assert isinstance(CliRunner().invoke(cli, ["datasets", "dataset9"]).exception, BadInput)
+    for command in (["datasets", "dataset9"], ["run", "dataset1", "--seed", "1"]):
+        assert isinstance(CliRunner().invoke(cli, command).exception, BadInput)
 
 
 def test_a_suite_file_with_a_mistake_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
