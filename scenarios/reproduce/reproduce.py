@@ -83,7 +83,8 @@ def _amount(plan: Plan) -> str:
     if plan.is_quick:
         return (
             f"One run per data set and of it {QUICK_S:g} s at most, {plan.repeats} repeats instead of 10, "
-            "fewer values of each parameter, no weighted triplets."
+            "fewer values of each parameter, figure 6.6 with 200 samples instead of 1000, pairs of people "
+            "from one run per scenario, no weighted triplets."
         )
     total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
     return f"{plan.repeats} repeats of everything with other random numbers in the trackers. {total}."

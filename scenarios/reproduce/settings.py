@@ -15,6 +15,7 @@ from tracker.several import PeopleTracker
 from tracker.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
 
 Value = float | int | str | None
+Changes = tuple[tuple[str, Value], ...]
 
 _ONE_PERSON = InteractionConfig(max_persons=1)
 _OPEN = OcclusionConfig()
@@ -45,7 +46,7 @@ class Setting:
     """
 
     base: str
-    changes: tuple[tuple[str, Value], ...] = ()
+    changes: Changes = ()
 
     @property
     def key(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from scenarios.reproduce.experiment import Chart, Done, Line, Samples, missing
 from scenarios.reproduce.plan import Plan
-from scenarios.reproduce.settings import Setting
+from scenarios.reproduce.settings import Changes, Setting
 from scenarios.reproduce.units import RECORDS, FilmUnit, TrackUnit, Unit, restored
 from tracker.evaluation.uncounted import Rule
 
@@ -29,6 +29,7 @@ class Trial:
         suites: names of the data sets, taken together.
         rule: for people who are not counted.
         is_quick: whether it is tried as well when time is short.
+        quick_changes: further changes of the tracker when time is short.
     """
 
     line: Line
@@ -36,6 +37,12 @@ class Trial:
     suites: tuple[str, ...]
     rule: Rule = "ignore"
     is_quick: bool = True
+    quick_changes: Changes = ()
+
+    def setting_in(self, plan: Plan) -> Setting:
+        """Give the tracker as the plan wants it."""
+        changes = self.quick_changes if plan.is_quick else ()
+        return replace(self.setting, changes=self.setting.changes + changes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +94,7 @@ class Tracking:
 def units_of(trial: Trial, plan: Plan, repeat: int) -> list[TrackUnit]:
     """List the work of one repeat of a trial."""
     return [
-        TrackUnit(play, plan.cache, trial.setting, repeat)
+        TrackUnit(play, plan.cache, trial.setting_in(plan), repeat)
         for name in trial.suites
         for play in plan.suites[name]
     ]
