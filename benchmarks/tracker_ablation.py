@@ -71,6 +71,7 @@ STEPS: dict[str, tuple[str, ...]] = {
     "garments may be colder than what is behind": ("contour.cold_response",),
     "the line under the feet": ("contour.feet", "contour.unseen_response"),
     "box proportions": ("box",),
+    "some samples tried at another size": ("person.resized_share",),
     "smoothing": ("smoothing",),
     "filters keep farther off each other": ("interaction",),
     "colours and thermal pattern, by part, without the light": ("colour", "looks"),

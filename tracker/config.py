@@ -123,6 +123,7 @@ class FilterConfig:
 
     count: int = 1000  # N
     fresh_share: float = 0.2  # share drawn anew from the prior in every step
+    resized_share: float = 0.0  # share tried at another size in every step
     limits: LimitsConfig = field(default_factory=LimitsConfig)
     log_uniform_h: bool = False  # prior of h: uniform, or uniform in log h
     sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0: the probability, or the paper's fitness
@@ -132,7 +133,7 @@ class FilterConfig:
 
     def __post_init__(self) -> None:
         check_positive(self, "count", "estimate_share", "estimate_reach")
-        check_share(self, "fresh_share", "estimate_share")
+        check_share(self, "fresh_share", "resized_share", "estimate_share")
         check_not_negative(self, "sharpness")
 
 

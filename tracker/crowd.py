@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracker.appearance.colour_model import likelihood
+from tracker.appearance.colour_model import likelihood, squared_distances
 from tracker.config import FilterConfig, MotionConfig, TrackerConfig
 from tracker.cover import covered_by
 from tracker.filter import View, advance, weigh
@@ -27,7 +27,7 @@ def follow(
     Source: thesis, algorithm 6; but the order is found on the predictions, before the image is measured, so
     that those in front can be taken out of the evidence for those behind.
     """
-    figures = [figure_of(person, view, config) for person in persons]
+    figures = figures_of(persons, view, config)
     if config.occlusion.is_handled:
         figures = list(front_to_back(figures, order, view))
     followed: list[Person] = []
@@ -37,10 +37,24 @@ def follow(
     return tuple(sorted(followed, key=lambda person: person.id))
 
 
-def figure_of(person: Person, view: View, config: TrackerConfig) -> Figure:
-    """Predict where a person is in this frame."""
-    state = moved_on(person.shown if person.is_hidden else person.belief.estimate, view)
-    return Figure(person, state, regions_of([state], config)[0])
+def figures_of(persons: Sequence[Person], view: View, config: TrackerConfig) -> list[Figure]:
+    """Predict where people are in this frame, and compare what is seen there with their looks."""
+    states = [
+        moved_on(person.shown if person.is_hidden else person.belief.estimate, view) for person in persons
+    ]
+    unlikeness = [0.0] * len(persons)
+    if config.occlusion.order == "looks" and view.looks is not None and len(persons) > 1:
+        features = view.looks.describe(np.array(states, dtype=np.float32))
+        unlikeness = [_unlikeness(*each) for each in zip(persons, features, strict=True)]
+    regions = regions_of(states, config)
+    return [Figure(*each) for each in zip(persons, states, regions, unlikeness, strict=True)]
+
+
+def _unlikeness(person: Person, features: Floats) -> float:
+    if person.looks is None:
+        return 0.0
+    distance = float(squared_distances(features[None], person.looks)[0])
+    return 0.0 if np.isnan(distance) else distance
 
 
 def _scene(
@@ -78,12 +92,17 @@ def _carried_on(
     was_hidden = person.is_hidden
     motion = hidden_motion(config) if was_hidden and handling.keeps_velocity else config.motion
     particles = person.belief.particles if was_hidden else person.belief.core
-    state = advance(particles, view, shared_filter(config, count), config, rng, motion)
+    samples = shared_filter(config, count)
+    if was_hidden:
+        samples = replace(samples, resized_share=0.0)
+    state = advance(particles, view, samples, config, rng, motion)
     own_view = view
     if scene.front and handling.removes_front:
         own_view = replace(view, image=scene.image, covered=handling.covered_response)
-    factor = _factor(person, state, scene, view, config)
-    belief = weigh(state, own_view, config.person, config, factor)
+    likeness = _likeness(person, state, scene, view, config)
+    belief = weigh(
+        state, own_view, config.person, config, _distance_kept(person, state, scene, config), likeness
+    )
     return judge(person, belief, scene, view, config, rng)
 
 
@@ -108,18 +127,31 @@ def hidden_motion(config: TrackerConfig) -> MotionConfig:
     )
 
 
-def _factor(person: Person, state: Floats, scene: Scene, view: View, config: TrackerConfig) -> Floats:
-    """Weigh samples (N,) by what is known beside the contour: the others, and the person's colours.
+def _distance_kept(person: Person, state: Floats, scene: Scene, config: TrackerConfig) -> Floats | None:
+    """Penalise samples (N,) that overlap the others.
 
-    Source: thesis, equations 5.2 and 6.17; section 7.3, by which a hidden person is not penalised. Ours is,
-    towards all who are not in front, or it would come back as one of them.
+    Source: thesis, equation 5.2; section 7.3, by which a hidden person is not penalised. Ours is, towards all
+    who are not in front, or it would come back as one of them.
     """
-    factor = np.ones(len(state), dtype=np.float32)
-    if not person.is_hidden or config.occlusion.keeps_velocity:
-        factor = person_factor(overlap_shares(state, scene.others, config), scene.strength)
+    if person.is_hidden and not config.occlusion.keeps_velocity:
+        return None
+    return person_factor(overlap_shares(state, scene.others, config), scene.strength)
+
+
+def _likeness(
+    person: Person, state: Floats, scene: Scene, view: View, config: TrackerConfig
+) -> Floats | None:
+    """Tell how likely samples (N,) look like the person (thesis, equation 6.4); None if nobody knows."""
     model = appearance(person)
     if model is None or config.colour is None:
-        return factor
-    front = scene.front if config.occlusion.removes_front else ()
-    features = describe(state, front, view, config)
-    return factor if features is None else factor * likelihood(features, model, config.colour)
+        return None
+    removes = config.occlusion.removes_front
+    features = describe(state, scene.front if removes else (), view, config)
+    if features is None:
+        return None
+    likeness = likelihood(features, model, config.colour)
+    if removes:
+        # Who is not seen at all looks as a person usually does: one spread off in every feature.
+        unseen = np.isnan(features).all(axis=1)
+        likeness[unseen] = np.exp(-config.colour.sharpness * features.shape[1])
+    return likeness

@@ -16,8 +16,11 @@ from tracker.measure import ContourModel, fitness, is_within, probability, sampl
 from tracker.motion import Columns, predict, turned
 from tracker.particles import (
     Floats,
+    H,
     Particles,
+    W,
     X,
+    Y,
     core_rows,
     mean_state,
     normalised,
@@ -26,6 +29,8 @@ from tracker.particles import (
     uncertainty_px2,
 )
 from tracker.prior import draw_prior
+
+RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,6 +106,7 @@ def weigh(
     filter_config: FilterConfig,
     config: TrackerConfig,
     factor: Floats | None = None,
+    likeness: Floats | None = None,
 ) -> Belief:
     """Weigh samples (N, 9) by the image and estimate the person from them.
 
@@ -109,15 +115,19 @@ def weigh(
         view: the image.
         filter_config: of this filter.
         config: of the tracker.
-        factor: (N,) on the weights, what is known beside the contour; None for 1.
+        factor: (N,) on the weights, for keeping off other people; None for 1.
+        likeness: (N,) likelihood of the looks; None for 1.
 
-    Source: thesis, algorithm 3 (update), equations 4.2 and 4.6; 5.1, 5.2 and 6.17 with the factor.
+    Source: thesis, algorithm 3 (update), equations 4.2 and 4.6; 5.1 and 5.2 with the factor, 6.17 with the
+    likeness.
     """
     differences = view.model.differences(view.image, state, view.covered)
     fit = fitness(differences, view.model.weights, config.likelihood)
     chance = probability(fit, config.likelihood)
     inside = is_within(state, view.image.shape[0], filter_config.limits)
-    counted = np.maximum(fit, np.float32(filter_config.floor))
+    if likeness is not None and filter_config.sharpness == 0:
+        factor = likeness if factor is None else likeness * factor
+    counted = _floored(fit, likeness, filter_config)
     weight = sample_weights(counted, chance, inside, config.likelihood.model, filter_config)
     if factor is not None:
         weight = normalised(weight * factor)
@@ -132,6 +142,18 @@ def weigh(
         confidence=float(core.weight @ np.where(inside, chance, np.float32(0))[rows]),
         uncertainty_px2=uncertainty_px2(core),
     )
+
+
+def _floored(fit: Floats, likeness: Floats | None, config: FilterConfig) -> Floats:
+    """Give the fitness (N,) of contour and looks together, but not less than the floor.
+
+    The floor stands for a person hidden by something unknown, of whom neither would be seen.
+    """
+    if config.sharpness > 0 and likeness is not None:
+        logarithm: Floats = np.log(np.maximum(likeness, np.float32(1e-30)))
+        fit = fit + logarithm / np.float32(config.sharpness)
+    floored: Floats = np.maximum(fit, np.float32(config.floor))
+    return floored
 
 
 def step(
@@ -164,7 +186,20 @@ def advance(
     kept = resample(particles, filter_config.count - fresh, rng)
     moved = predict(kept, view.dt_s, view.size, config.motion if motion is None else motion, rng)
     moved[:, X] = view.after_turn(moved[:, X])
+    if filter_config.resized_share > 0:
+        _resize(moved, filter_config.resized_share, 1 + 2 / config.contour.head_divisor, rng)
     return np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)])
+
+
+def _resize(state: Floats, share: float, top_per_h: float, rng: np.random.Generator) -> None:
+    """Make a share of the samples (N, 9) larger or smaller below the same top of the head, in place.
+
+    A torso that was taken for a whole person is found out that way.
+    """
+    tried = state[:: round(1 / share)]
+    factor = np.exp(RESIZING * rng.standard_normal(len(tried), dtype=np.float32))
+    tried[:, Y] += top_per_h * (factor - 1) * tried[:, H]
+    tried[:, W : H + 1] *= factor[:, None]
 
 
 def begin(view: View, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator) -> Belief:

@@ -19,6 +19,7 @@ SIZE = 0.2  # spread of the logarithm of the height
 SIZE_S = 0.15
 LOOKS2 = 12.0  # squared distance of looks of the same person
 WORST = 9.0  # largest sum of squares
+FARTHEST = 5.0  # for which place counts at most: people turn back, and come in by another door
 
 
 def remembered(person: Person, view: View, leaders: Sequence[Person], config: TrackerConfig) -> Person:
@@ -79,4 +80,4 @@ def mismatch(found: Person, person: Person, view: View) -> float:
     if found.looks is not None and person.looks is not None:
         distance = float(squared_distances(found.looks.mean[None], person.looks)[0])
         looks = 1.0 if np.isnan(distance) else distance / LOOKS2
-    return float(away @ away + size * size + looks)
+    return min(float(away @ away), FARTHEST) + float(size * size) + looks

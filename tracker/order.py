@@ -10,7 +10,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.appearance.colour_model import squared_distances
 from tracker.filter import View
 from tracker.interaction import Regions
 from tracker.person import Person
@@ -28,11 +27,13 @@ class Figure:
         person: as the last frame left it.
         state: (9,) where it should be by now.
         region: (4,) left, top, width, height [px] of that.
+        unlikeness: squared distance of what is seen there from the person's looks; 0 where nothing is known.
     """
 
     person: Person
     state: NDArray[np.float64]
     region: Regions
+    unlikeness: float = 0.0
 
 
 class Order(Protocol):
@@ -54,17 +55,8 @@ def likelier_front(one: Figure, other: Figure, view: View) -> float:
     Where two people overlap, the image shows the looks of the one in front; the one behind looks wrong.
     """
     lower = lower_foot(one, other, view) / (FOOT_PX * view.size)
-    clearer = (_unlikeness(other, view) - _unlikeness(one, view)) / LOOKS
+    clearer = (other.unlikeness - one.unlikeness) / LOOKS
     return lower + min(max(clearer, -MOST), MOST)
-
-
-def _unlikeness(figure: Figure, view: View) -> float:
-    """Compare what is seen where a person is expected with its looks; 0 where nothing is known."""
-    if view.looks is None or figure.person.looks is None:
-        return 0.0
-    features = view.looks.describe(figure.state.astype(np.float32)[None])
-    distance = float(squared_distances(features, figure.person.looks)[0])
-    return 0.0 if np.isnan(distance) else distance
 
 
 def front_to_back(figures: Sequence[Figure], order: Order, view: View) -> tuple[Figure, ...]:

@@ -114,7 +114,7 @@ class PeopleTracker:
     def _search(self, view: View, time_s: float) -> tuple[Track, ...]:
         """Carry the detector on; a person is born when it has settled on one for long enough."""
         config = self._config
-        if len(self._persons) >= config.interaction.max_persons:
+        if sum(not person.is_hidden for person in self._persons) >= config.interaction.max_persons:
             self._detector = None
             return ()
         self._detector = self._detected(view)

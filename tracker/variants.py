@@ -65,7 +65,7 @@ PEOPLEBOY = TrackerConfig(
         noise_x=30.0,
         noise_y=15.0,
         noise_w=20.0,
-        noise_h=15.0,
+        noise_h=25.0,
         noise_d=60.0,
         noise_by_height=45.0,
         place_memory=0.9,
@@ -81,7 +81,14 @@ PEOPLEBOY = TrackerConfig(
         estimate_share=0.3,
         estimate_reach=0.7,
     ),
-    person=FilterConfig(fresh_share=0.0, limits=_LIMITS, sharpness=20.0, estimate_share=0.3, floor=0.2),
+    person=FilterConfig(
+        fresh_share=0.0,
+        resized_share=0.2,
+        limits=_LIMITS,
+        sharpness=20.0,
+        estimate_share=0.3,
+        floor=0.2,
+    ),
     life=LifeConfig(
         birth_confidence=0.6,
         birth_frames=3,
@@ -120,7 +127,7 @@ FOOTAGE = replace(
         PEOPLEBOY.contour, saturation_grey=25.0, cold_response=1.0, feet_weight=0.1, hottest_grey=256
     ),
     motion=replace(PEOPLEBOY.motion, noise_x=20.0, noise_y=6.0, noise_w=3.0, noise_h=3.0, place_memory=0.8),
-    person=replace(PEOPLEBOY.person, sharpness=5.0, estimate_share=1.0, floor=-math.inf),
+    person=replace(PEOPLEBOY.person, sharpness=5.0, resized_share=0.0, estimate_share=1.0, floor=-math.inf),
     life=replace(PEOPLEBOY.life, birth_frames=4, death_confidence=0.02, doubt_frames=20, death_frames=20),
     box=BoxConfig(),
     interaction=InteractionConfig(max_persons=1),

@@ -86,3 +86,65 @@ def test_shared_samples_are_divided_evenly():
     for i in range(60):
         tracker.update(frame(i, *THREE))
     assert [len(cloud) for key, cloud in tracker.particles.items() if key] == [300] * 3
+
+
+BLUE, RED = (30, 60, 200), (200, 40, 40)
+
+
+def dressed(i, *people):
+    """Draw people from back to front, with torsos of their own colour and warmth."""
+    thermal, colour = blank(), np.full((240, 320, 3), 90, dtype=np.uint8)
+    for x, h, rgb, grey in people:
+        mask = blank()
+        draw_person(mask, x, 120 + 0.36 * h, 0.38 * h, h)
+        is_person = mask > 100
+        thermal[is_person] = mask[is_person]
+        rows = np.arange(240)[:, None]
+        is_torso = is_person & (rows > 120 - 0.6 * h) & (rows < 120 + 1.2 * h)
+        thermal[is_torso] = grey
+        # The colour camera sees the middle 1/1.2 of the thermal image.
+        v, u = np.nonzero(is_torso)
+        at = np.rint(1.2 * np.stack([v, u]) - 0.1 * np.array([[240], [320]])).astype(int)
+        inside = (at >= 0).all(axis=0) & (at[0] < 240) & (at[1] < 320)
+        for down in (0, 1):
+            for right in (0, 1):
+                row, column = np.minimum(at[0] + down, 239), np.minimum(at[1] + right, 319)
+                colour[row[inside], column[inside]] = rgb
+    return Frame(thermal=thermal, colour=colour, time_s=i / 15)
+
+
+def passing(i):
+    """One stands in front; another walks past behind and is wholly hidden on the way."""
+    walker = (60 + 2.2 * max(0, i - 30), 18, RED, 150)
+    return dressed(i, walker, (160, 50, BLUE, 110))
+
+
+def identity_at(tracks, x):
+    near = [track for track in tracks if abs(track.ellipse.x - x) < 12 and track.ellipse.h < 30]
+    return near[0].id if near else None
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_person_keeps_its_identity_through_a_total_occlusion(seed):
+    tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(seed))
+    tracks = [tracker.update(passing(i)) for i in range(115)]
+    before, after = identity_at(tracks[45], 60 + 2.2 * 15), identity_at(tracks[-1], 60 + 2.2 * 84)
+    assert before is not None
+    assert after == before
+    hidden = [t for frame in tracks for t in frame if t.status is Status.TOTALLY_OCCLUDED]
+    front = next(track.id for track in tracks[45] if track.ellipse.h > 35)
+    assert {t.id for t in hidden} == {before}
+    assert {t.occluder for t in hidden} <= {front, None}
+
+
+@pytest.mark.parametrize(("seconds", "is_known"), [(4, True), (12, False)])
+def test_who_was_lost_is_remembered_for_ten_seconds(seconds, is_known):
+    tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(1))
+    gone = 40 + round(15 * seconds)
+    for i in range(40):
+        before = tracker.update(dressed(i, (150, 30, RED, 140)))
+    for i in range(40, gone):
+        tracker.update(dressed(i))
+    for i in range(gone, gone + 30):
+        after = tracker.update(dressed(i, (150, 30, RED, 140)))
+    assert (confirmed(before)[0].id == confirmed(after)[0].id) is is_known
