@@ -9,6 +9,7 @@ from tracker import crowd, several
 from tracker.config import InteractionConfig
 from tracker.filter import weigh
 from tracker.frame import Frame
+from tracker.people import TRACKERS, make_tracker
 from tracker.several import PeopleTracker
 from tracker.track import Status
 from tracker.variants import PEOPLEBOY
@@ -148,3 +149,19 @@ def test_who_was_lost_is_remembered_for_ten_seconds(seconds, is_known):
     for i in range(gone, gone + 30):
         after = tracker.update(dressed(i, (150, 30, RED, 140)))
     assert (confirmed(before)[0].id == confirmed(after)[0].id) is is_known
+
+
+@pytest.mark.parametrize("name", TRACKERS)
+def test_every_tracker_gives_finite_tracks_with_ids_of_their_own(name):
+    tracker = make_tracker(name, np.random.default_rng(3))
+    for i in range(30, 90, 2):
+        tracks = tracker.update(passing(i))
+        assert len({track.id for track in tracks}) == len(tracks)
+        assert np.isfinite([track.box for track in tracks]).all()
+        assert all(track.box[2] >= 0 and track.box[3] >= 0 for track in tracks)
+
+
+def test_without_a_colour_camera_people_are_told_apart_by_their_warmth():
+    tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(0))
+    tracks = [tracker.update(replace(passing(i), colour=None)) for i in range(115)]
+    assert identity_at(tracks[45], 60 + 2.2 * 15) == identity_at(tracks[-1], 60 + 2.2 * 84) is not None

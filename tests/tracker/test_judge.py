@@ -1,0 +1,83 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from drawn_people import blank
+
+from tracker.cover import covered_by
+from tracker.filter import Belief, view_frame
+from tracker.frame import Frame
+from tracker.interaction import regions_of
+from tracker.judge import judge
+from tracker.measure import ContourModel
+from tracker.particles import equally_weighted
+from tracker.person import Person
+from tracker.sight import Scene
+from tracker.track import Status
+from tracker.variants import PEOPLEBOY, THESIS_OCCLUSION
+
+
+def person(number, x, h):
+    state = np.array([x, 120 + 0.36 * h, 0.38 * h, h, 0, 0, 0, 0, 0])
+    cloud = equally_weighted(np.repeat(state[None], 50, axis=0).astype(np.float32))
+    belief = Belief(cloud, cloud, state, 0.9, 1.0)
+    return Person(number, 0.0, belief, state, np.array([30.0, 0.0]), 190.0, seen_frames=30)
+
+
+def judged(config, behind, *front):
+    view = view_frame(
+        Frame(thermal=blank(), time_s=1.0), 1 / 15, ContourModel.build((240, 320), config.contour), config
+    )
+    states = [one.belief.estimate for one in front]
+    scene = Scene(
+        front=front,
+        others=regions_of(states, config),
+        strength=np.zeros(len(front)),
+        image=covered_by(view.image, states, config.contour) if front else view.image,
+    )
+    return judge(behind, behind.belief, scene, view, config, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("config", [PEOPLEBOY, THESIS_OCCLUSION])
+def test_who_is_alone_is_tracked_and_who_overlaps_is_partly_hidden(config):
+    assert judged(config, person(1, 160, 30)).status is Status.TRACKED
+    beside = judged(config, person(1, 160, 30), person(2, 183, 40))
+    assert beside.status is Status.PARTLY_OCCLUDED
+    assert beside.occluder == 2
+
+
+@pytest.mark.parametrize("config", [PEOPLEBOY, THESIS_OCCLUSION])
+def test_whose_head_is_covered_is_hidden_by_the_one_in_front(config):
+    hidden = judged(config, person(1, 160, 20), person(2, 160, 70))
+    assert hidden.status is Status.TOTALLY_OCCLUDED
+    assert hidden.occluder == 2
+    assert hidden.hidden_frames == 1
+    assert hidden.hidden_s == pytest.approx(1 / 15)
+
+
+def test_in_the_thesis_a_hidden_person_is_where_its_occluder_is():
+    front = person(2, 165, 70)
+    assert judged(THESIS_OCCLUSION, person(1, 160, 20), front).shown is front.shown
+
+
+def test_in_ours_a_hidden_person_walks_on_with_the_velocity_that_it_had():
+    hidden = judged(PEOPLEBOY, person(1, 160, 20), person(2, 165, 70))
+    assert hidden.shown[5] == 30.0
+    assert hidden.belief.particles.state[:, 5].mean() == pytest.approx(30.0, abs=10)
+    later = judged(PEOPLEBOY, hidden, person(2, 165, 70))
+    assert later.is_hidden
+    assert later.hidden_frames == 2
+
+
+def test_looks_are_not_learnt_while_somebody_is_in_front():
+    alone = judged(PEOPLEBOY, person(1, 160, 30))
+    beside = judged(PEOPLEBOY, person(1, 160, 30), person(2, 183, 40))
+    assert alone.looks is not None
+    assert beside.looks is None
+
+
+def test_who_is_lost_in_mid_image_is_hidden_by_something_unknown():
+    lost = replace(person(1, 160, 30), missing=PEOPLEBOY.occlusion.lost_frames - 1)
+    gone = judged(PEOPLEBOY, replace(lost, belief=replace(lost.belief, confidence=0.0)))
+    assert gone.status is Status.TOTALLY_OCCLUDED
+    assert gone.occluder is None
