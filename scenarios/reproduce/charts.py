@@ -49,6 +49,8 @@ def _lines(column: str, samples: Samples, table: SourceTable) -> Figure:
     curves = {who: _ours(samples, column, who) for who in _names(samples)}
     curves[SOURCE] = source_figures(table, column)
     for who, points in curves.items():
+        if not points:
+            continue
         known = [group for group in groups if group in points]
         axes.errorbar(
             [groups.index(group) for group in known],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,11 +14,13 @@ from scenarios.read_yaml import read_yaml
 from scenarios.reproduce.charts import draw
 from scenarios.reproduce.compare import SIGNIFICANT, Verdict, judge, mean_and_spread
 from scenarios.reproduce.experiment import Experiment, Samples
-from scenarios.reproduce.source import SOURCE, Claim, SourceTable, source_tables
+from scenarios.reproduce.source import Claim, SourceTable, source_tables
 
 HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"
 MAIN = ("default", "held out")
+
+Figures = Mapping[str, tuple[float, float | None]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +60,7 @@ class Section:
         count = Counter(
             verdict.outcome.value for item in self.checked for verdict in item.verdicts if verdict.who in MAIN
         )
-        return ", ".join(f"{number} {'hold' if word == 'holds' else word}" for word, number in count.items())
+        return ", ".join(f"{word}: {number}" for word, number in count.items())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,21 +117,27 @@ def section(experiment: Experiment, samples: Samples) -> Section:
 
 def rows(samples: Samples, table: SourceTable, columns: Sequence[str]) -> list[Row]:
     """Put the source's lines before ours, group by group."""
-    lines: dict[str, list[tuple[str, tuple[str, ...]]]] = {}
+    lines: dict[str, list[tuple[str, Figures, bool]]] = {}
     for value in table.values:
-        cells = tuple(_cell(value.figures.get(name), columns) for name in columns)
-        lines.setdefault(value.group, []).append((value.who, cells))
-    printed = {value.who for value in table.values}
+        lines.setdefault(value.group, []).append((value.who, value.figures, True))
     for line, figures in samples.items():
-        cells = tuple(
-            _cell(mean_and_spread(figures[name]) if name in figures else None, columns) for name in columns
-        )
-        lines.setdefault(line.group, []).append((line.who, cells))
+        ours = {name: mean_and_spread(values) for name, values in figures.items()}
+        lines.setdefault(line.group, []).append((line.who, ours, False))
+    write = _writer([figures for parts in lines.values() for _, figures, _ in parts])
     return [
-        Row(group, who, cells, who in (SOURCE, *printed), number == 0)
-        for group, parts in lines.items()
-        for number, (who, cells) in enumerate(parts)
+        Row(group, who, tuple(write(figures.get(name)) for name in columns), is_source, number == 0)
+        for group in in_order(lines)
+        for number, (who, figures, is_source) in enumerate(lines[group])
     ]
+
+
+def in_order(groups: Iterable[str]) -> list[str]:
+    """Sort groups that are numbers; leave others as they come."""
+    listed = list(groups)
+    try:
+        return sorted(listed, key=lambda group: float(group.removesuffix(" %")))
+    except ValueError:
+        return listed
 
 
 def chance(p: float) -> str:
@@ -139,14 +147,22 @@ def chance(p: float) -> str:
     return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
 
 
-def _cell(figure: tuple[float, float | None] | None, columns: Sequence[str]) -> str:
-    if figure is None or math.isnan(figure[0]):
-        return "-"
-    mean, spread = figure
-    if mean == round(mean) and spread is None and "ms" not in columns:
-        return f"{mean:.0f}"
-    text = f"{mean:.3g}" if "ms" in columns and mean < 1 else f"{mean:.2f}"
-    return text if spread is None else f"{text} ± {spread:.2f}"
+def _writer(lines: Sequence[Figures]) -> Callable[[tuple[float, float | None] | None], str]:
+    """Choose how a table's figures are written: counts, times of less than 1 ms, or two decimals."""
+    known = [mean for figures in lines for mean, _ in figures.values() if not math.isnan(mean)]
+    are_counts = all(mean == round(mean) for mean in known)
+    are_times = any("ms" in figures for figures in lines)
+
+    def write(figure: tuple[float, float | None] | None) -> str:
+        if figure is None or math.isnan(figure[0]):
+            return "-"
+        mean, spread = figure
+        if are_counts:
+            return f"{mean:.0f}"
+        text = f"{mean:#.2g}" if are_times and mean < 1 else f"{mean:.2f}"
+        return text if spread is None else f"{text} ± {spread:.2f}"
+
+    return write
 
 
 def _notes() -> dict[str, dict[str, str]]:
