@@ -24,7 +24,7 @@ class Outcome(StrEnum):
     """How a claim fares."""
 
     HOLDS = "holds"
-    UNCLEAR = "right way, not significant"
+    UNCLEAR = "not significant"
     FAILS = "does not hold"
     BLIND = "finds too few people to tell"
     UNKNOWN = "not measured"
@@ -91,7 +91,9 @@ def _outcome(claim: Claim, by: float, p: float) -> Outcome:
     """Compare a difference with a claim; where the source tests, ours has to be significant as well."""
     is_clear = p < SIGNIFICANT or not claim.tested
     if claim.expect == "alike":
-        return Outcome.HOLDS if abs(by) <= ALIKE or (claim.tested and p >= SIGNIFICANT) else Outcome.FAILS
+        if abs(by) <= ALIKE:
+            return Outcome.HOLDS
+        return Outcome.UNCLEAR if claim.tested and p >= SIGNIFICANT else Outcome.FAILS
     ways = {"more": by > 0, "less": by < 0, "differs": by != 0}
     if not ways[claim.expect]:
         return Outcome.FAILS

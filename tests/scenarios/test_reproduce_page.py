@@ -127,7 +127,7 @@ A, B = Line("a", "default"), Line("b", "default")
         ("less", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], Outcome.FAILS),
         ("alike", False, [71.0, 70.0], [69.5, 70.0], Outcome.HOLDS),
         ("alike", False, [75.0, 75.0], [69.5, 70.0], Outcome.FAILS),
-        ("alike", True, [75.0, 60.0], [55.0, 70.0], Outcome.HOLDS),
+        ("alike", True, [75.0, 60.0], [55.0, 70.0], Outcome.UNCLEAR),
         ("differs", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], Outcome.HOLDS),
         ("more", False, [1.0, 1.0], [0.0, 0.0], Outcome.BLIND),
         ("more", False, [np.nan, 1.0], [0.0, 0.0], Outcome.UNKNOWN),
