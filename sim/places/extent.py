@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from bad_input import BadInput
 from sim.physics.bullet import Bullet
-from sim.rendering.shape_table import VisualShape
 from sim.places.place import Fixture
+from sim.rendering.shape_table import VisualShape
 from sim.rotations import pose_matrices
 from sim.shapes import Shape, ShapeKind
 

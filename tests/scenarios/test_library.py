@@ -13,7 +13,7 @@ from scenarios.load import LIBRARY, library, load_scenario, parse_scenario
 from scenarios.plan import draw_plan
 from scenarios.schema import json_schema
 from sim.config import WorldConfig
-from sim.timetable import timetable
+from sim.people.timetable import timetable
 
 NAMES = sorted(path.stem for path in LIBRARY.glob("*.yaml"))
 every_scenario = pytest.mark.parametrize("name", NAMES)
