@@ -68,7 +68,7 @@ def _judge_walking(
         return replace(_hidden(person, view), belief=belief, shown=shown, missing=missing, occluder=occluder)
     is_covered = sight.head <= 1 - config.occlusion.head_covered and sight.body < HIDDEN_BODY
     seen = _seen(person, belief, scene, view, config)
-    is_lost = seen.missing >= config.occlusion.lost_frames
+    is_lost = config.occlusion.remembers_lost and seen.missing >= config.occlusion.lost_frames
     if (scene.front and is_covered) or (is_lost and person.is_settled):
         return walking_on(replace(_hidden(seen, view), occluder=occluder), rng)
     return seen
