@@ -144,7 +144,7 @@ def _run_suite(name: str, options: RunOptions) -> None:
     type=click.Path(path_type=Path),
     default=Path("runs/films"),
     show_default=True,
-    help="Where rendered frames are kept.",
+    help="Where rendered frames are kept; for a cluster, a folder that all share.",
 )
 def datasets(suites: Sequence[str], films: Path) -> None:
     """Count what the data sets hold, beside table 3.1 of the thesis; their frames are rendered and kept.
@@ -254,7 +254,7 @@ def train_occlusion(
     type=click.Path(path_type=Path),
     default=Path("runs") / "films",
     show_default=True,
-    help="Where rendered frames are kept.",
+    help="Where rendered frames are kept; for a cluster, a folder that all share.",
 )
 @click.option("--jobs", type=click.IntRange(min=1), help="Processes at the same time.  [default: one a core]")
 @click.option("--scheduler", metavar="tcp://...", help="Work on the cluster of this Dask scheduler.")

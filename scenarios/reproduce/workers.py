@@ -13,7 +13,7 @@ from scenarios.reproduce.store import Result, Store
 from scenarios.reproduce.units import Unit
 
 ATTEMPTS = 5  # how often workers may die without a unit having been finished in between
-CONNECT_S = 10.0
+CONNECT_S = 30.0  # [s] to wait for the scheduler, and for its first worker
 
 Report = Callable[[int, int, str], None]
 
@@ -101,5 +101,10 @@ def _dask(scheduler: str) -> Iterator[None]:
         client = Client(scheduler, timeout=CONNECT_S)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
         raise BadInput(f"--scheduler {scheduler}: cannot be reached: {error}") from None
-    with client, joblib.parallel_config(backend="dask", wait_for_workers_timeout=60):
-        yield
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=CONNECT_S)
+        except TimeoutError:
+            raise BadInput(f"--scheduler {scheduler}: has no workers; start some with dask worker") from None
+        with joblib.parallel_config(backend="dask"):
+            yield

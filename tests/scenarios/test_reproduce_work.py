@@ -92,8 +92,11 @@ def test_a_scheduler_that_does_not_answer_is_refused(tmp_path: Path, monkeypatch
 
 @pytest.mark.heavy
 @pytest.mark.filterwarnings("default")
-def test_a_cluster_finishes_though_one_of_its_two_workers_is_killed(tmp_path: Path) -> None:
+def test_a_cluster_finishes_though_one_of_its_two_workers_is_killed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip("distributed")
+    monkeypatch.setattr("scenarios.reproduce.workers.CONNECT_S", 5.0)
     address_file = tmp_path / "scheduler.json"
     here = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
     scheduler = start("dask_scheduler", *here, "--scheduler-file", str(address_file))
@@ -102,6 +105,8 @@ def test_a_cluster_finishes_though_one_of_its_two_workers_is_killed(tmp_path: Pa
         while not address_file.exists():
             time.sleep(0.05)
         address = json.loads(address_file.read_text(encoding="utf-8"))["address"]
+        with pytest.raises(BadInput, match="has no workers"):
+            run_units(toys(tmp_path), Store(tmp_path / "none.jsonl"), -1, address, no_report)
         workers += [
             start("dask_worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard") for _ in range(2)
         ]
