@@ -16,10 +16,10 @@ from sim.world import World
 from tracker.config import TrackerConfig
 from tracker.evaluation.boxes import iou
 from tracker.filter import View
-from tracker.occlusion.pair_features import FEATURES, Features, overlapping_pairs, pair_features
+from tracker.occlusion.learned_order import features_of
+from tracker.occlusion.pair_features import FEATURES, Features, overlapping_pairs
 from tracker.order import Figure, Order, lower_foot
 from tracker.several import PeopleTracker
-from tracker.sight import appearance
 
 # A tracked person is the true one whose box it overlaps most, and by at least this (thesis, section 3.4).
 _LEAST_IOU = 0.5
@@ -60,11 +60,9 @@ class RecordingOrder:
 
     def __call__(self, one: Figure, other: Figure, view: View) -> float:
         """Tell who is in front."""
-        state = np.stack([one.state, other.state])
-        pairs = overlapping_pairs(state)
+        pairs = overlapping_pairs(np.stack([one.state, other.state]))
         if len(pairs) > 0 and not (one.person.is_hidden or other.person.is_hidden):
-            features = pair_features(state, [appearance(one.person), appearance(other.person)], pairs, view)
-            self.asked.append((one, other, features[0]))
+            self.asked.append((one, other, features_of((one, other), pairs, view)[0]))
         return self.order(one, other, view)
 
 

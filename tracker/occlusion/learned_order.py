@@ -76,9 +76,14 @@ class LearnedOrder:
         return leads - leads.T
 
     def _leads(self, figures: Sequence[Figure], pairs: Pairs, view: View) -> Features:
-        states = np.array([figure.state for figure in figures])
-        models = [appearance(figure.person) for figure in figures]
-        return self.lead(pair_features(states, models, pairs, view))
+        return self.lead(features_of(figures, pairs, view))
+
+
+def features_of(figures: Sequence[Figure], pairs: Pairs, view: View) -> Features:
+    """Measure the features (P, 6) of pairs (P, 2) among people (M,)."""
+    states = np.array([figure.state for figure in figures])
+    models = [appearance(figure.person) for figure in figures]
+    return pair_features(states, models, pairs, view, [figure.person.foot for figure in figures])
 
 
 @cache

@@ -25,7 +25,11 @@ Features = NDArray[np.float64]
 
 
 def pair_features(
-    state: NDArray[np.floating], models: Sequence[ColourModel | None], pairs: Pairs, view: View
+    state: NDArray[np.floating],
+    models: Sequence[ColourModel | None],
+    pairs: Pairs,
+    view: View,
+    feet: Sequence[float] | None = None,
 ) -> Features:
     """Measure the features of pairs of people: the one's minus the other's.
 
@@ -38,6 +42,8 @@ def pair_features(
         models: (M,) what these people look like; None if unknown.
         pairs: (P, 2) the one and the other, rows of `state`.
         view: the images.
+        feet: (M,) rows of the feet [px] as last seen whole; None for the contour's own. While a person is
+            partly hidden, the contour ends where it likes, and feet on a level floor tell the distance.
 
     Returns:
         (P, 6) in the order of FEATURES; the mirrored pair has the same values with the sign turned.
@@ -45,7 +51,10 @@ def pair_features(
     Source: thesis, section 7.1 and figure 7.1.
     """
     people: Floats = np.asarray(state, dtype=np.float32).reshape(-1, 9)
-    alone = np.stack([_strength(people, view), *_ends(people, view)], axis=1)
+    top, bottom = _ends(people, view)
+    if feet is not None:
+        bottom = np.array(feet, dtype=np.float64) / view.image.shape[0]
+    alone = np.stack([_strength(people, view), top, bottom], axis=1)
     result = np.zeros((len(pairs), len(FEATURES)))
     result[:, :3] = alone[pairs[:, 0]] - alone[pairs[:, 1]]
     if len(pairs) > 0 and (view.looks is not None or view.colour is not None):
