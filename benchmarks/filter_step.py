@@ -8,7 +8,7 @@ from statistics import median
 
 import numpy as np
 
-from tracker.filter import Belief, View, begin, step, view_frame
+from tracker.filter import begin, step, view_frame
 from tracker.frame import Frame
 from tracker.measure import ContourModel
 from tracker.variants import PEOPLEBOY
@@ -17,27 +17,21 @@ SHAPE = (240, 320)
 
 
 def step_time_ms(count: int, steps: int = 300) -> float:
-    """Return the median time [ms] of one step with this many samples, on a drawn person at 320x240."""
+    """Return the median time [ms] of one step with this many samples, on a drawn person at 320x240.
+
+    What is prepared once a frame for all filters is not in it.
+    """
     config = replace(PEOPLEBOY, person=replace(PEOPLEBOY.person, count=count))
     rng = np.random.default_rng(0)
     frame = Frame(thermal=_drawn_person(), time_s=0.0, turn_rad=0.01)
-    model = ContourModel.build(SHAPE, config.contour)
+    view = view_frame(frame, 1 / 15, ContourModel.build(SHAPE, config.contour), config)
+    belief = begin(view, config.detector, config, rng)
     times = []
-    belief = begin(_view(frame, model), config.detector, config, rng)
     for _ in range(steps):
         start = time.process_time()
-        belief = _step(belief, _view(frame, model), count)
+        belief = step(belief.core, view, config.person, config, rng)
         times.append(time.process_time() - start)
     return 1000.0 * median(times[10:])
-
-
-def _view(frame: Frame, model: ContourModel) -> View:
-    return view_frame(frame, 1 / 15, model, PEOPLEBOY)
-
-
-def _step(belief: Belief, view: View, count: int) -> Belief:
-    config = replace(PEOPLEBOY.person, count=count)
-    return step(belief.core, view, config, PEOPLEBOY, np.random.default_rng(1))
 
 
 def _drawn_person() -> np.ndarray:

@@ -9,6 +9,7 @@ import numpy as np
 
 from bad_input import BadInput
 from tracker.frame import Frame
+from tracker.occlusion.learned_order import shipped_order
 from tracker.particles import Particles
 from tracker.several import PeopleTracker
 from tracker.track import Track
@@ -30,6 +31,7 @@ class Tracker(Protocol):
 
 TRACKERS: Mapping[str, Callable[[np.random.Generator], Tracker]] = {
     "peopleboy": lambda rng: PeopleTracker(PEOPLEBOY, rng),
+    "learned": lambda rng: PeopleTracker(PEOPLEBOY, rng, shipped_order()),
     "footage": lambda rng: PeopleTracker(FOOTAGE, rng),
     "thesis": lambda rng: PeopleTracker(THESIS_OCCLUSION, rng),
     "thermal": lambda rng: PeopleTracker(THESIS, rng),
