@@ -32,7 +32,9 @@ peers: $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps trackers supervision
 	$(BIN)/python -m benchmarks.peers
 
+# numba looks only at a kernel's own file: after editing one that others inline, throw its cache away.
 clean:
+	find . -name '*.nb[ic]' -delete
 	rm -rf $(VENV) runs
 
 $(READY): pyproject.toml constraints.txt

@@ -168,7 +168,14 @@ def datasets(suites: Sequence[str], films: Path) -> None:
 @click.option(
     "--tracks", type=click.Path(path_type=Path), help="MOTChallenge results, such as RUN/tracks.txt."
 )
-def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None) -> None:
+@click.option(
+    "--min-visible",
+    type=click.FloatRange(0.0, 1.0, max_open=True),
+    default=0.0,
+    show_default=True,
+    help="People count if more than this share of them is seen; 0.3 leaves out slivers at the border.",
+)
+def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None, min_visible: float) -> None:
     """Score tracks against truth: one pair of files, or the folders of any number of runs.
 
     Several runs give mean and standard deviation over them, beside the figure of all their frames.
@@ -178,11 +185,11 @@ def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None) -> N
     if bool(runs) == (truth is not None or tracks is not None):
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
     if runs:
-        print_spread(evaluate_runs(runs))
+        print_spread(evaluate_runs(runs, min_visible))
     elif truth is None or tracks is None:
         raise BadInput("evaluate: --truth and --tracks go together")
     else:
-        print_scores(evaluate_files(truth, tracks))
+        print_scores(evaluate_files(truth, tracks, min_visible=min_visible))
 
 
 @cli.command()

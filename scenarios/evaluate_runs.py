@@ -10,21 +10,26 @@ from typing import Any
 from bad_input import BadInput
 from tracker.evaluation.evaluate import Scores, evaluate
 from tracker.evaluation.mot_files import read_tracks, read_truth
+from tracker.evaluation.uncounted import MIN_VISIBLE
 
 
-def evaluate_files(truth: Path, tracks: Path, frames: int | None = None) -> Scores:
-    """Score one pair of MOTChallenge files."""
-    return evaluate(read_truth(truth), read_tracks(tracks), frames=frames)
+def evaluate_files(
+    truth: Path, tracks: Path, frames: int | None = None, min_visible: float = MIN_VISIBLE
+) -> Scores:
+    """Score one pair of MOTChallenge files; people of whom no more than min_visible is seen do not count."""
+    return evaluate(read_truth(truth), read_tracks(tracks), frames=frames, min_visible=min_visible)
 
 
-def evaluate_runs(folders: Sequence[Path]) -> list[Scores]:
-    """Score the runs in these folders, one by one.
+def evaluate_runs(folders: Sequence[Path], min_visible: float = MIN_VISIBLE) -> list[Scores]:
+    """Score the runs in these folders, one by one; min_visible as for files.
 
     Raises:
         BadInput: a folder holds no run, or one that was cut off.
     """
     return [
-        evaluate_files(folder / "truth" / "gt.txt", folder / "tracks.txt", read_run(folder)["frames"])
+        evaluate_files(
+            folder / "truth" / "gt.txt", folder / "tracks.txt", read_run(folder)["frames"], min_visible
+        )
         for folder in folders
     ]
 

@@ -202,14 +202,6 @@ class Bullet:
         """(P,) which parts are hidden now."""
         return self._bodies.hidden_parts()
 
-    def set_friction(
-        self, name: str, link: int, *, lateral: float, rolling: float = 0.0, spinning: float = 0.0
-    ) -> None:
-        """Set the friction coefficients of one link, -1 being the base."""
-        coefficients = {"lateralFriction": lateral, "rollingFriction": rolling, "spinningFriction": spinning}
-        for number in self._bodies[name].ids:
-            self._client.changeDynamics(number, link, **coefficients)
-
     def step(self) -> None:
         """Advance the world by one physics step."""
         self._client.stepSimulation()

@@ -11,7 +11,7 @@ import yaml
 
 from bad_input import BadInput
 from scenarios.cli import main
-from scenarios.evaluate_runs import evaluate_runs
+from scenarios.evaluate_runs import evaluate_files, evaluate_runs
 from scenarios.load import load_scenario, parse_scenario
 from scenarios.run import RunOptions, run
 
@@ -129,6 +129,17 @@ def test_evaluate_prints_the_same_scores_for_a_run_and_for_its_files(
     for figure in ("CP", "AA", "HOTA"):
         value = next(line.split()[1] for line in alone.splitlines() if line.startswith(figure))
         assert next(line.split()[1] for line in together.splitlines() if line.startswith(figure)) == value
+
+
+def test_people_of_whom_little_is_seen_can_be_left_out(tmp_path: Path) -> None:
+    truth = "1,1,10,10,20,60,1,1,0.2000\n1,2,100,10,20,60,1,1,0.9000\n"
+    (tmp_path / "gt.txt").write_text(truth)
+    (tmp_path / "tracks.txt").write_text("1,1,100,10,20,60,0.9,-1,-1,-1\n")
+    files = (tmp_path / "gt.txt", tmp_path / "tracks.txt")
+    assert evaluate_files(*files).thesis.cr == pytest.approx(50.0)
+    assert evaluate_files(*files, min_visible=0.3).thesis.cr == pytest.approx(100.0)
+    assert run_cli("evaluate", "--truth", files[0], "--tracks", files[1], "--min-visible", "0.3") == 0
+    assert run_cli("evaluate", "--truth", files[0], "--tracks", files[1], "--min-visible", "1.5") == 2
 
 
 def test_nobody_is_a_sensible_run(tmp_path: Path) -> None:
