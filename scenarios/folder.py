@@ -19,6 +19,7 @@ from bad_input import BadInput
 from scenarios.loop import Tick
 from scenarios.tables import ROBOT, TRACKS, TRUTH, Row, robot_row, track_rows, truth_rows, write_table
 from sim.images.thermal import encode_16bit
+from tracker.evaluation.mot_files import track_line, truth_line
 from tracker.track import Status
 
 _IMAGES = ("thermal", "thermal16", "colour")
@@ -131,7 +132,7 @@ def claim_folder(path: Path, *, overwrite: bool) -> None:
 def gt_lines(tick: Tick) -> list[str]:
     """MOTChallenge truth of everybody whose silhouette reaches into the image: one line a person."""
     return [
-        f"{tick.frame},{person.id},{_box(person.box)},{person.is_counted:d},1,{person.visible_fraction:.4f}\n"
+        truth_line(tick.frame, person.id, person.box, person.is_counted, person.visible_fraction)
         for person in tick.truth.people
         if person.box is not None and person.is_in_image
     ]
@@ -140,14 +141,10 @@ def gt_lines(tick: Tick) -> list[str]:
 def result_lines(tick: Tick) -> list[str]:
     """MOTChallenge results: one line per confirmed track."""
     return [
-        f"{tick.frame},{track.id},{_box(track.box)},{track.confidence:.4f},-1,-1,-1\n"
+        track_line(tick.frame, track.id, track.box, track.confidence)
         for track in tick.tracks
         if track.status is not Status.TENTATIVE
     ]
-
-
-def _box(box: tuple[float, float, float, float]) -> str:
-    return ",".join(f"{edge:z.2f}" for edge in box)
 
 
 def _write_png(path: Path, image: NDArray[np.uint8] | NDArray[np.uint16]) -> None:

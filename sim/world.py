@@ -23,7 +23,7 @@ from sim.random_streams import stream
 from sim.rendering.render import View, render
 from sim.rendering.shape_table import make_shape_table
 from sim.robot.peoplebot import NAME as ROBOT
-from sim.robot.peoplebot import PeopleBot, Planar
+from sim.robot.peoplebot import PeopleBot
 from sim.robot.robot_looks import robot_look
 from sim.truth import BORDER, Truth
 from sim.truth_maker import TruthMaker
@@ -77,11 +77,6 @@ class World:
     def time_s(self) -> float:
         """Seconds since the start: a whole number of control steps."""
         return self._tick / self.config.control_hz
-
-    @property
-    def robot_pose(self) -> Planar:
-        """True pose of the robot."""
-        return self._robot.pose()
 
     def observe(self) -> Observation:
         """Read every sensor once.

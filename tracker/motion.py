@@ -60,13 +60,6 @@ def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
     return (size * amplitude).astype(np.float32)
 
 
-def transition(dt_s: float) -> NDArray[np.float64]:
-    """Build the matrix A (9, 9) of equation 4.8; A times a state is its prediction without noise."""
-    matrix = np.eye(9)
-    matrix[:4, VX:] = dt_s * np.eye(4)
-    return matrix
-
-
 @njit(cache=True, nogil=True)
 def _predicted(
     state: Floats,

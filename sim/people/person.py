@@ -116,12 +116,6 @@ class Person:
         girths = self._size.girths
         return (girths.bideltoid_breadth + girths.chest_depth) / 4.0 * self._size.stature_m
 
-    @property
-    def torso_width_m(self) -> float:
-        """[m] breadth across the shoulders, without arms."""
-        girths = self._size.girths
-        return max(girths.bideltoid_breadth, girths.hip_breadth) * self._size.stature_m
-
     def step(
         self,
         time_s: float,

@@ -187,7 +187,7 @@ def test_observing_and_asking_for_the_truth_changes_nothing_in_the_world() -> No
             watched.truth()
             for world in (watched, left_alone):
                 world.step(0.5, 0.5)
-        assert watched.robot_pose == left_alone.robot_pose
+        assert watched.truth().robot == left_alone.truth().robot
         assert np.array_equal(watched.truth().instance, left_alone.truth().instance)
 
 
@@ -283,14 +283,14 @@ def test_a_person_who_appears_inside_the_robot_is_solid_once_they_are_apart() ->
             world.step(0.0, 0.0)
         assert world.truth().people[0].name == "ann"
         assert world.truth().contacts == ()
-        assert world.robot_pose.x == pytest.approx(1.0, abs=0.01)
+        assert world.truth().robot.x == pytest.approx(1.0, abs=0.01)
         for _ in range(30):
             world.step(-0.5, 0.0)
-        assert world.robot_pose.x < 0.5
+        assert world.truth().robot.x < 0.5
         for _ in range(60):
             world.step(0.5, 0.0)
         assert world.truth().contacts == ("ann",)
-        assert world.robot_pose.x < 1.1 - 0.2
+        assert world.truth().robot.x < 1.1 - 0.2
 
 
 def test_a_robot_that_drives_into_a_person_touches_it_and_is_stopped() -> None:
@@ -301,5 +301,5 @@ def test_a_robot_that_drives_into_a_person_touches_it_and_is_stopped() -> None:
             contacts.append(world.truth().contacts)
         assert contacts[0] == ()
         assert contacts[-1] == ("ann",)
-        assert world.robot_pose.x < 3.0 - 0.21 - 0.1
+        assert world.truth().robot.x < 3.0 - 0.21 - 0.1
         assert world.observe().sonar_m[3:5].max() < 0.25

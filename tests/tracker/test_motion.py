@@ -4,10 +4,17 @@ import numpy as np
 import pytest
 
 from tracker.config import MotionConfig
-from tracker.motion import noise_per_step, predict, transition, turned
+from tracker.motion import noise_per_step, predict, turned
 
 DT = 1 / 15
 STATE = np.array([120, 110, 12, 30, 2, 15, -9, 3, -6], dtype=np.float32)
+
+
+def transition(dt_s):
+    """Build the matrix A (9, 9) of equation 4.8."""
+    matrix = np.eye(9)
+    matrix[:4, 5:] = dt_s * np.eye(4)
+    return matrix
 
 
 def test_without_noise_the_prediction_is_the_matrix_of_equation_4_8():

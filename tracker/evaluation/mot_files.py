@@ -5,6 +5,7 @@ Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world p
 An empty file is a sequence without people, or a tracker that found nobody.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -49,15 +50,8 @@ def write_truth(path: Path, truth: Truth) -> None:
     Raises:
         BadInput: the file cannot be written.
     """
-    _write_lines(
-        path,
-        [
-            f"{_start(frame, identity, box)},{counted:d},1,{visible:.4f}"
-            for frame, identity, box, counted, visible in zip(
-                truth.frame, truth.id, truth.box, truth.counted, truth.visible, strict=True
-            )
-        ],
-    )
+    columns = (truth.frame, truth.id, truth.box, truth.counted, truth.visible)
+    _write_lines(path, [truth_line(*row) for row in zip(*columns, strict=True)])
 
 
 def write_tracks(path: Path, tracks: Tracks) -> None:
@@ -66,15 +60,18 @@ def write_tracks(path: Path, tracks: Tracks) -> None:
     Raises:
         BadInput: the file cannot be written.
     """
-    _write_lines(
-        path,
-        [
-            f"{_start(frame, identity, box)},{confidence:.4f},-1,-1,-1"
-            for frame, identity, box, confidence in zip(
-                tracks.frame, tracks.id, tracks.box, tracks.confidence, strict=True
-            )
-        ],
-    )
+    columns = (tracks.frame, tracks.id, tracks.box, tracks.confidence)
+    _write_lines(path, [track_line(*row) for row in zip(*columns, strict=True)])
+
+
+def truth_line(frame: int, identity: int, box: Sequence[float], counted: bool, visible: float) -> str:
+    """Give the line of one person in one frame, newline included."""
+    return f"{_start(frame, identity, box)},{counted:d},1,{visible:.4f}\n"
+
+
+def track_line(frame: int, identity: int, box: Sequence[float], confidence: float) -> str:
+    """Give the line of one track in one frame, newline included."""
+    return f"{_start(frame, identity, box)},{confidence:.4f},-1,-1,-1\n"
 
 
 def _read_table(path: Path, names: str) -> Floats:
@@ -110,7 +107,7 @@ def _build(path: Path, kind: type[Kind], table: Floats, **others: Floats) -> Kin
     return kind(**columns)
 
 
-def _start(frame: np.int64, identity: np.int64, box: Floats) -> str:
+def _start(frame: int, identity: int, box: Sequence[float]) -> str:
     """Format the columns that both kinds of file begin with."""
     edges = ",".join(f"{edge:z.2f}" for edge in box)  # z: never -0.00
     return f"{frame},{identity},{edges}"
@@ -118,6 +115,6 @@ def _start(frame: np.int64, identity: np.int64, box: Floats) -> str:
 
 def _write_lines(path: Path, lines: list[str]) -> None:
     try:
-        path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8", newline="\n")
+        path.write_text("".join(lines), encoding="utf-8", newline="\n")
     except OSError as error:
         raise BadInput(f"{path}: cannot be written: {error.strerror}") from error
