@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracker.config import ContourConfig
-from tracker.contour import COVERED, FEET, HEAD_RIGHT, SECTIONS, Probes
+from tracker.contour import COVERED, FEET, HEAD_RIGHT, SECTIONS, Probes, pixels_under
 from tracker.particles import D, H, W, X, Y
 
 LEGS_END = 2.05  # feet below the body's centre, in body semi-heights
@@ -67,7 +67,9 @@ def seen_shares(image: NDArray[np.uint8], state: NDArray[np.float64], probes: Pr
         state: (9,) of a person.
         probes: the points of its contour.
     """
-    seen = _is_seen(image, state, probes.inner) & _is_seen(image, state, probes.outer)
+    at = pixels_under(state.astype(np.float32), probes, image.shape)
+    is_seen = (at >= 0) & (image.reshape(-1)[at] != COVERED)
+    seen = is_seen[: len(probes.section)] & is_seen[len(probes.section) :]
     count = np.bincount(probes.section, minlength=SECTIONS)
     shares: NDArray[np.float64] = np.bincount(probes.section, seen, SECTIONS) / np.maximum(count, 1)
     return np.where(count > 0, shares, 1.0)
@@ -81,18 +83,6 @@ def head_share(shares: NDArray[np.float64]) -> float:
 def body_share(shares: NDArray[np.float64]) -> float:
     """Average over all sections (8,) but the feet what is seen of them."""
     return float(shares[:FEET].mean())
-
-
-def _is_seen(
-    image: NDArray[np.uint8], state: NDArray[np.float64], mix: NDArray[np.float32]
-) -> NDArray[np.bool_]:
-    scale = np.array([state[D], state[W], state[H], 1.0])
-    at = np.floor(mix @ scale + state[[X, Y]] + 0.5).astype(np.int64)
-    height, width = image.shape
-    inside = (at[:, 0] >= 0) & (at[:, 1] >= 0) & (at[:, 0] < width) & (at[:, 1] < height)
-    grey = image[np.clip(at[:, 1], 0, height - 1), np.clip(at[:, 0], 0, width - 1)]
-    seen: NDArray[np.bool_] = inside & (grey != COVERED)
-    return seen
 
 
 def _fill_ellipse(image: NDArray[np.uint8], x: float, y: float, a: float, b: float) -> None:

@@ -188,6 +188,8 @@ def advance(
     moved[:, X] = view.after_turn(moved[:, X])
     if filter_config.resized_share > 0:
         _resize(moved, filter_config.resized_share, 1 + 2 / config.contour.head_divisor, rng)
+    if fresh == 0:
+        return moved
     return np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)])
 
 

@@ -58,7 +58,8 @@ def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
     """
     if shares.shape[1] == 0:
         return np.ones(len(shares), dtype=np.float32)
-    factor: Floats = np.exp(-(shares * strength.astype(np.float32)).max(axis=1))
+    costs = shares.T * strength.astype(np.float32)[:, None]
+    factor: Floats = np.exp(-np.ascontiguousarray(costs).max(axis=0))
     return factor
 
 

@@ -20,6 +20,7 @@ from tracker.contour import (
     build_response,
     head_points,
     person_grey,
+    pixels_under,
     section_angles,
     section_weights,
 )
@@ -70,6 +71,17 @@ def test_inner_points_lie_inside_and_outer_points_outside_of_the_contour(config)
         on_body = np.isin(probes.section, (SHOULDER_LEFT, SHOULDER_RIGHT, SIDE_LEFT, SIDE_RIGHT))
         body = points[on_body]
         assert np.all(sign * ((body[:, 0] / 20) ** 2 + (body[:, 1] / 50) ** 2 - 1) > 0)
+
+
+@pytest.mark.parametrize("x", [160.0, 4.0, np.nan, 1e20])
+def test_the_pixels_under_a_contour_are_those_nearest_to_its_points(x):
+    probes = build_probes(PEOPLEBOY.contour, 1.0)
+    state = np.array([x, 120, 12, 30, 3, 0, 0, 0, 0], np.float32)
+    points = np.concatenate([probes.inner, probes.outer]) @ np.array([3.0, 12, 30, 1]) + (x, 120)
+    inside = ((points >= -0.5) & (points < (319.5, 239.5))).all(axis=1)
+    nearest = np.floor(np.where(inside[:, None], points, 0) + 0.5).astype(int)
+    expected = np.where(inside, nearest @ (1, 320), -1)
+    assert np.array_equal(pixels_under(state, probes, (240, 320)), expected)
 
 
 def literal_difference(image, x, y, w, h, config, section):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
+import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -41,13 +43,13 @@ class PowerSums:
     """Integral images of an (H, W, C) picture's first K powers.
 
     Attributes:
-        integral: (H + 1, W + 1, C, K) int64; entry [v, u] sums over the pixels above row v and left of
-            column u. Exact.
+        integral: (H + 1, W + 1, C, K) int64, or int32 for K = 1; entry [v, u] sums over the pixels above
+            row v and left of column u. Exact.
 
     Source: thesis, equations 6.5 to 6.7.
     """
 
-    integral: Integers
+    integral: NDArray[np.integer[Any]]
 
     @classmethod
     def build(cls, picture: NDArray[np.uint8], degree: int) -> PowerSums:
@@ -58,6 +60,10 @@ class PowerSums:
         """
         if picture.shape[0] * picture.shape[1] > _MOST_PIXELS:
             raise BadInput(f"picture must have at most {_MOST_PIXELS} pixels, got {picture.shape}")
+        if degree == 1:
+            # OpenCV knows no higher powers of integers, but is three times as fast with these.
+            height, width, channels = picture.shape
+            return cls(np.asarray(cv2.integral(picture)).reshape(height + 1, width + 1, channels, 1))
         power = np.arange(256, dtype=np.int64) ** np.arange(1, degree + 1, dtype=np.int64)[:, None]
         return cls(_integrate(picture, power))
 
@@ -84,7 +90,7 @@ def _integrate(picture: NDArray[np.uint8], power: Integers) -> Integers:
 
 
 @njit(cache=True, nogil=True)
-def _sum_over(integral: Integers, bounds: Bounds) -> Integers:
+def _sum_over(integral: NDArray[np.integer[Any]], bounds: Bounds) -> Integers:
     height, width, channels, degree = integral.shape
     flat = integral.reshape(height, width, channels * degree)
     power = np.empty((len(bounds), channels * degree), dtype=np.int64)

@@ -41,6 +41,17 @@ def test_sums_stay_exact_in_a_large_white_picture():
     assert sums.power[0, 0].tolist() == [1_200_000 * 255**k for k in (1, 2, 3)]
 
 
+@given(rectangles)
+def test_the_first_powers_sum_to_the_same_alone_and_with_higher_ones(bounds):
+    alone = PowerSums.build(PICTURE, 1).over(np.array([bounds], np.int32))
+    assert np.array_equal(alone.power[..., 0], SUMS.over(np.array([bounds], np.int32)).power[..., 0])
+
+
+def test_first_powers_stay_exact_in_the_largest_white_picture():
+    white = PowerSums.build(np.full((2048, 4096, 1), 255, np.uint8), 1)
+    assert white.over(np.array([[0, 0, 4096, 2048]], np.int32)).power.item() == 2048 * 4096 * 255
+
+
 @settings(deadline=None)
 @given(rectangles)
 def test_moments_are_scipys_k_statistics_in_the_thesis_normalisation(bounds):
