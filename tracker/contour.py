@@ -92,10 +92,10 @@ def build_probes(config: ContourConfig, size: float) -> Probes:
         parts.append((*_feet_points(config), FEET))
     inner = np.concatenate([inner for inner, _, _ in parts])
     outer = np.concatenate([outer for _, outer, _ in parts])
-    section = np.concatenate([np.full(len(inner), section) for inner, _, section in parts])
+    sections = np.concatenate([np.full(len(inner), section) for inner, _, section in parts])
     points = np.concatenate([inner, outer])
     mix = np.concatenate([points[:, 0], points[:, 1, 1:]], axis=1)
-    return Probes(inner, outer, section, np.ascontiguousarray(mix.T))
+    return Probes(inner, outer, sections, np.ascontiguousarray(mix.T))
 
 
 def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArray[np.int32]:

@@ -63,7 +63,8 @@ class PowerSums:
         if degree == 1:
             # OpenCV knows no higher powers of integers, but is three times as fast with these.
             height, width, channels = picture.shape
-            return cls(np.asarray(cv2.integral(picture)).reshape(height + 1, width + 1, channels, 1))
+            sums = np.asarray(cv2.integral(picture), dtype=np.int32)
+            return cls(sums.reshape(height + 1, width + 1, channels, 1))
         power = np.arange(256, dtype=np.int64) ** np.arange(1, degree + 1, dtype=np.int64)[:, None]
         return cls(_integrate(picture, power))
 
