@@ -7,10 +7,13 @@ from rich.table import Table
 
 from benchmarks.closed_loop import loop_speed, peak_memory_mb, run_speed
 from benchmarks.filter_step import step_time_ms
+from benchmarks.memory import endless_frames, memory_curve
 from benchmarks.render import render_times
+from benchmarks.whole_tracker import whole_tracker
 
 COUNTS = (300, 1000)
 SCENARIOS = ("single_follow", "crossing_pair")
+MEMORY_FRAMES = 10_000
 
 
 def main() -> None:
@@ -27,7 +30,24 @@ def main() -> None:
         table.add_row(f"closed loop, {name}", f"{loop_speed(name):.1f} x real time", "at least 5")
         table.add_row(f"peopleboy run {name}, all it writes", f"{run_speed(name):.1f} x real time", "")
     table.add_row("peak memory", f"{peak_memory_mb():.0f} MB", "")
+    _add_tracker(table)
+    growth = memory_curve(endless_frames(), MEMORY_FRAMES).bytes_per_frame
+    table.add_row(f"growth of memory over {MEMORY_FRAMES} frames", f"{growth:.0f} bytes a frame", "none")
     Console(width=100).print(table)
+
+
+def _add_tracker(table: Table) -> None:
+    found = whole_tracker()
+    for crowd in found.crowds:
+        seen = f"{crowd.tracked:.1f} of {crowd.people} tracked"
+        goal = "at most 5 ms" if crowd is found.crowds[-1] else ""
+        table.add_row(f"whole tracker, N = 1000 each, {seen}", f"{crowd.frame_ms:.2f} ms", goal)
+    table.add_row("each further person", f"{found.person_ms:.2f} ms", "")
+    table.add_row("both images prepared for all", f"{found.prepare_ms:.2f} ms", "")
+    for part, time_ms in found.parts_ms.items():
+        table.add_row(f"a person's 1000 samples: {part}", f"{time_ms:.3f} ms", "")
+    table.add_row("OpenCV's HOG on frames of 4 people", f"{found.hog_ms:.0f} ms", "")
+    table.add_row("ratio", f"{found.hog_ratio:.1f}", "at least 10")
 
 
 if __name__ == "__main__":

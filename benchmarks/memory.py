@@ -1,0 +1,89 @@
+"""Whether memory stays flat: a tracker sees people come and go for 100 000 frames.
+
+The frames of one scenario are kept and shown again and again, with time going on; with `--world` they are
+rendered, in a new world every time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import chain, count, islice, repeat
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.whole_tracker import STEP_S, shoot
+from sim.random_streams import stream
+from tracker.frame import Frame
+from tracker.people import DEFAULT_TRACKER, make_tracker
+
+SCENARIO = "hall_visits"
+SAMPLES = 20
+WARM_UP = 0.25  # share of the frames after which growth is looked for
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MemoryCurve:
+    """Resident memory over a long run.
+
+    Attributes:
+        frame: (S,) numbers of frames.
+        resident_mb: (S,) [MB] held after them.
+        people: how many were born in all.
+    """
+
+    frame: tuple[int, ...]
+    resident_mb: tuple[float, ...]
+    people: int
+
+    @property
+    def bytes_per_frame(self) -> float:
+        """How fast memory grows once all is warm: the slope over the later samples."""
+        warm = [at > WARM_UP * self.frame[-1] for at in self.frame]
+        frame, held = np.array(self.frame)[warm], np.array(self.resident_mb)[warm]
+        return float(np.polyfit(frame, 1e6 * held, 1)[0])
+
+
+def memory_curve(frames: Iterable[Frame], length: int) -> MemoryCurve:
+    """Track so many frames, and look at the memory now and then."""
+    tracker = make_tracker(DEFAULT_TRACKER, stream(0, "tracker"))
+    at, held, people = [], [], 0
+    for number, frame in enumerate(islice(frames, length), 1):
+        tracks = tracker.update(frame)
+        people = max([people, *(track.id for track in tracks)])
+        if number * SAMPLES // length > (number - 1) * SAMPLES // length:
+            at.append(number)
+            held.append(resident_mb())
+    return MemoryCurve(frame=tuple(at), resident_mb=tuple(held), people=people)
+
+
+def resident_mb() -> float:
+    """Return the memory [MB] that this process holds now (Linux)."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def endless_frames(*, renders: bool = False) -> Iterator[Frame]:
+    """Show the scenario again and again, with time going on; kept, or rendered in a new world every time."""
+    rounds = (shoot(SCENARIO) for _ in count()) if renders else repeat(list(shoot(SCENARIO)))
+    for number, frame in enumerate(chain.from_iterable(rounds)):
+        yield replace(frame, time_s=number * STEP_S)
+
+
+def main() -> None:
+    """Run, and print the curve."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.memory", description=__doc__)
+    parser.add_argument("--frames", type=int, default=100_000)
+    parser.add_argument("--world", action="store_true", help="render every round in a new world")
+    options = parser.parse_args()
+    curve = memory_curve(endless_frames(renders=options.world), options.frames)
+    for frame, held in zip(curve.frame, curve.resident_mb, strict=True):
+        print(f"{frame:8d} frames  {held:7.1f} MB")
+    print(f"{curve.people} people were born; growth {curve.bytes_per_frame:.0f} bytes a frame")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,183 @@
+"""The default tracker, whole: a frame with nobody to four people, and the parts of it by their cost."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from statistics import mean, median
+
+import numpy as np
+
+from benchmarks.peers.detectors import Hog
+from scenarios.load import load_scenario
+from scenarios.loop import make_frame
+from sim.random_streams import stream
+from sim.world import World
+from tracker.appearance.colour_model import ColourModel, likelihood
+from tracker.cover import covered_by, seen_shares
+from tracker.filter import View, view_frame, weigh
+from tracker.frame import Frame
+from tracker.interaction import overlap_shares, person_factor, regions_of
+from tracker.measure import ContourModel
+from tracker.motion import predict
+from tracker.particles import mean_state, resample
+from tracker.people import DEFAULT_TRACKER, Tracker, make_tracker
+from tracker.several import DETECTOR_KEY
+from tracker.track import Status
+from tracker.variants import PEOPLEBOY
+
+SCENARIO = "crossing_4"  # they hide each other, partly and wholly
+MOST = 4
+STEP_S = 1 / 15
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrowdTime:
+    """A frame with so many people before the camera.
+
+    Attributes:
+        people: how many there are.
+        frame_ms: [ms] CPU time of the tracker, median over those frames in which each has a filter.
+        frames: how many those are.
+        tracked: people with a track in these, mean.
+    """
+
+    people: int
+    frame_ms: float
+    frames: int
+    tracked: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WholeTracker:
+    """What the whole tracker costs.
+
+    Attributes:
+        crowds: by the number of people, from 0.
+        prepare_ms: [ms] of a frame before the first filter, for all.
+        hog_ms: [ms] OpenCV's people detector on frames of the largest crowd, median.
+        parts_ms: [ms] of the parts, for one person of 1000 samples in the largest crowd.
+    """
+
+    crowds: tuple[CrowdTime, ...]
+    prepare_ms: float
+    hog_ms: float
+    parts_ms: Mapping[str, float]
+
+    @property
+    def person_ms(self) -> float:
+        """What each further person costs: the slope over the crowds."""
+        return float(np.polyfit([c.people for c in self.crowds], [c.frame_ms for c in self.crowds], 1)[0])
+
+    @property
+    def hog_ratio(self) -> float:
+        """How many times longer HOG takes."""
+        return self.hog_ms / self.crowds[-1].frame_ms
+
+
+def whole_tracker() -> WholeTracker:
+    """Track crowds of nobody to four people, and time it."""
+    crowds = []
+    for people in range(MOST + 1):
+        film = list(shoot(SCENARIO, people))
+        crowds.append(_crowd_time(film, people))
+    hog = Hog(uses_colour=True)
+    return WholeTracker(
+        crowds=tuple(crowds),
+        prepare_ms=_milliseconds([partial(_view_of, frame) for frame in film]),
+        hog_ms=_milliseconds([partial(hog.detect, frame) for frame in film[::20]]),
+        parts_ms=_parts_ms(film),
+    )
+
+
+def shoot(scenario: str, people: int | None = None, seed: int = 0) -> Iterator[Frame]:
+    """Render the frames of a scenario with its first people only, or all of them; the robot stands still."""
+    loaded = load_scenario(scenario)
+    config = loaded.world(seed)
+    before = None
+    with World(replace(config, people=config.people[:people])) as world:
+        for _ in range(round(loaded.duration_s * config.control_hz)):
+            observation = world.observe()
+            yield make_frame(observation, before)
+            before = observation.odometry
+            world.step(0.0, 0.0)
+
+
+def _crowd_time(film: Sequence[Frame], people: int) -> CrowdTime:
+    tracker = make_tracker(DEFAULT_TRACKER, stream(0, "tracker"))
+    times, tracked = [], []
+    for frame in film:
+        start = time.process_time()
+        tracks = tracker.update(frame)
+        spent = time.process_time() - start
+        if len(_people_in(tracker)) == people:
+            times.append(1000.0 * spent)
+            tracked.append(sum(track.status is not Status.TENTATIVE for track in tracks))
+    return CrowdTime(people=people, frame_ms=median(times), frames=len(times), tracked=mean(tracked))
+
+
+def _people_in(tracker: Tracker) -> list[int]:
+    return [key for key in tracker.particles if key != DETECTOR_KEY]
+
+
+def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
+    """Time the parts with the samples of people in the middle of a film, each in turn before all others."""
+    tracker = make_tracker(DEFAULT_TRACKER, stream(0, "tracker"))
+    for frame in film[: len(film) // 2]:
+        tracker.update(frame)
+    view = _view_of(film[len(film) // 2])
+    each = [_person_works(tracker, number, view) for number in _people_in(tracker)]
+    parts = {name: _milliseconds([works[name] for works in each] * 50) for name in each[0]}
+    # Weighing measures first.
+    parts["weights, estimate"] -= parts["measure contour"]
+    return parts
+
+
+def _view_of(frame: Frame) -> View:
+    model = _model_of(frame.thermal.shape[0], frame.thermal.shape[1])
+    return view_frame(frame, STEP_S, model, PEOPLEBOY)
+
+
+@cache
+def _model_of(height_px: int, width_px: int) -> ContourModel:
+    return ContourModel.build((height_px, width_px), PEOPLEBOY.contour)
+
+
+def _person_works(tracker: Tracker, number: int, view: View) -> dict[str, Callable[[], object]]:
+    config, rng = PEOPLEBOY, stream(0, "tracker")
+    clouds = tracker.particles
+    cloud, state = clouds[number], clouds[number].state
+    estimate = mean_state(cloud)
+    others = [mean_state(clouds[other]) for other in _people_in(tracker) if other != number]
+    looks, colour = view.looks, config.colour
+    assert looks is not None
+    assert colour is not None
+    known = ColourModel.begin(looks.describe(estimate.astype(np.float32)[None])[0], colour)
+    strength = np.full(len(others), config.interaction.penalty)
+
+    def occlusion() -> object:
+        image = covered_by(view.image, others[:1], config.contour, config.occlusion.growth)
+        seen_shares(image, estimate, view.model.probes)
+        return person_factor(overlap_shares(state, regions_of(others, config), config), strength)
+
+    return {
+        "resample": lambda: resample(cloud, len(cloud), rng),
+        "motion": lambda: predict(state, STEP_S, view.size, config.motion, rng),
+        "measure contour": lambda: view.model.differences(view.image, state),
+        "weights, estimate": lambda: weigh(state, view, config.person, config),
+        "colour and looks": lambda: likelihood(looks.describe(state), known, colour),
+        "occlusion": occlusion,
+    }
+
+
+def _milliseconds(works: Sequence[Callable[[], object]]) -> float:
+    """Give the median CPU time of some work [ms], after once to warm up."""
+    works[0]()
+    times = []
+    for work in works:
+        start = time.process_time()
+        work()
+        times.append(1000.0 * (time.process_time() - start))
+    return median(times)

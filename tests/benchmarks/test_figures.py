@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.memory import MemoryCurve, memory_curve
+from benchmarks.whole_tracker import CrowdTime, WholeTracker
+from tracker.frame import Frame
+
+
+def test_growth_of_memory_is_the_slope_once_all_is_warm() -> None:
+    frames = tuple(range(500, 10_001, 500))
+    held = tuple(200.0 if at > 2500 else 0.1 * at for at in frames)
+    assert MemoryCurve(frame=frames, resident_mb=held, people=1).bytes_per_frame == pytest.approx(0, abs=1e-6)
+    leaking = tuple(at + 2e-6 * frame for at, frame in zip(held, frames, strict=True))
+    assert MemoryCurve(frame=frames, resident_mb=leaking, people=1).bytes_per_frame == pytest.approx(2.0)
+
+
+def test_memory_is_looked_at_twenty_times_until_the_last_frame() -> None:
+    image = np.zeros((60, 80), dtype=np.uint8)
+    curve = memory_curve((Frame(thermal=image, time_s=0.1 * number) for number in range(99)), 50)
+    assert curve.frame[-1] == 50
+    assert len(curve.frame) == len(curve.resident_mb) == 20
+    assert min(curve.resident_mb) > 10
+    assert curve.people == 0
+
+
+def test_a_persons_cost_is_the_slope_over_the_crowds_and_hog_is_compared_with_the_largest() -> None:
+    crowds = tuple(
+        CrowdTime(people=people, frame_ms=1.0 + 0.5 * people, frames=9, tracked=people) for people in range(5)
+    )
+    found = WholeTracker(crowds=crowds, prepare_ms=0.1, hog_ms=60.0, parts_ms={})
+    assert found.person_ms == pytest.approx(0.5)
+    assert found.hog_ratio == pytest.approx(20.0)
