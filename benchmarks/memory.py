@@ -7,6 +7,7 @@ rendered, in a new world every time.
 from __future__ import annotations
 
 import argparse
+import ctypes
 import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -61,7 +62,11 @@ def memory_curve(frames: Iterable[Frame], length: int) -> MemoryCurve:
 
 
 def resident_mb() -> float:
-    """Return the memory [MB] that this process holds now (Linux)."""
+    """Return the memory [MB] that this process uses now (Linux with the GNU C library).
+
+    What was freed is given back to the system first, or growth could hide in it for long.
+    """
+    ctypes.CDLL(None).malloc_trim(0)
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
