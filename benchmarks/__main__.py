@@ -7,7 +7,7 @@ from rich.table import Table
 
 from benchmarks.closed_loop import loop_speed, peak_memory_mb, run_speed
 from benchmarks.filter_step import step_time_ms
-from benchmarks.memory import endless_frames, memory_curve
+from benchmarks.memory import long_run
 from benchmarks.render import render_times
 from benchmarks.whole_tracker import whole_tracker
 
@@ -31,7 +31,7 @@ def main() -> None:
         table.add_row(f"peopleboy run {name}, all it writes", f"{run_speed(name):.1f} x real time", "")
     table.add_row("peak memory", f"{peak_memory_mb():.0f} MB", "")
     _add_tracker(table)
-    growth = memory_curve(endless_frames(), MEMORY_FRAMES).bytes_per_frame
+    growth = long_run(MEMORY_FRAMES).bytes_per_frame
     table.add_row(f"growth of memory over {MEMORY_FRAMES} frames", f"{growth:.0f} bytes a frame", "none")
     Console(width=100).print(table)
 

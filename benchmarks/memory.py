@@ -10,8 +10,10 @@ import argparse
 import ctypes
 import os
 from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import chain, count, islice, repeat
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -61,6 +63,16 @@ def memory_curve(frames: Iterable[Frame], length: int) -> MemoryCurve:
     return MemoryCurve(frame=tuple(at), resident_mb=tuple(held), people=people)
 
 
+def long_run(frames: int, *, renders: bool = False) -> MemoryCurve:
+    """Do that in a process of its own, where nothing else takes memory or gives it back."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as process:
+        return process.submit(_run, frames, renders=renders).result()
+
+
+def _run(frames: int, *, renders: bool) -> MemoryCurve:
+    return memory_curve(endless_frames(renders=renders), frames)
+
+
 def resident_mb() -> float:
     """Return the memory [MB] that this process uses now (Linux with the GNU C library).
 
@@ -84,7 +96,7 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=100_000)
     parser.add_argument("--world", action="store_true", help="render every round in a new world")
     options = parser.parse_args()
-    curve = memory_curve(endless_frames(renders=options.world), options.frames)
+    curve = long_run(options.frames, renders=options.world)
     for frame, held in zip(curve.frame, curve.resident_mb, strict=True):
         print(f"{frame:8d} frames  {held:7.1f} MB")
     print(f"{curve.people} people were born; growth {curve.bytes_per_frame:.0f} bytes a frame")
