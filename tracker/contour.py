@@ -214,7 +214,7 @@ def section_differences(
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, fastmath={"contract"}, nogil=True)
 def _locate(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, height: int) -> None:
     """Write the pixels of `pixels_under` into (2 P,): without branches, many points at a time."""
     half, columns, right, bottom = np.float32(0.5), np.int32(width), np.float32(width), np.float32(height)
@@ -227,7 +227,7 @@ def _locate(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, heig
         at[q] = np.int32(v) * columns + np.int32(u) if is_inside else np.int32(-1)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, fastmath={"contract"}, nogil=True)
 def _differences(
     image: NDArray[np.uint8],
     state: Floats,
