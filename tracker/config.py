@@ -35,6 +35,7 @@ class ContourConfig:
     reach_px: float = 2.0  # distance of the points from the contour, whatever its size
     body_reach: tuple[float, ...] = (0.0,)  # plus this share of the body's semi-width; the points take turns
     head_reach: tuple[float, ...] = (0.0,)  # plus this share of the head's semi-width
+    inner_depth: float = 1.0  # distance of the inner points as a share of that of the outer ones
     far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 is none
     saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
     # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
@@ -51,7 +52,7 @@ class ContourConfig:
 
     def __post_init__(self) -> None:
         check_positive(self, "head_divisor", "head_aspect", "points", "feet_line")
-        check_not_negative(self, "saturation_grey", "reach_px", "far_head_reach")
+        check_not_negative(self, "saturation_grey", "reach_px", "inner_depth", "far_head_reach")
         if len(self.weights) != 7:
             raise BadInput(f"ContourConfig: weights must be 7 numbers, got {len(self.weights)}")
 
@@ -106,6 +107,8 @@ class MotionConfig:
     noise_by_height: float = (
         0.0  # semi-height [px] at which these hold, others in proportion; 0: the same for all
     )
+    # Spread of vx, vy, vw, vh [px/s] of samples drawn anew; None: the amplitudes above.
+    fresh_speed: tuple[float, float, float, float] | None = None
     place_memory: float = 1.0  # share of (vx, vy) that lasts to the next step
     size_memory: float = 1.0  # the same for (vw, vh)
     uses_odometry: bool = False

@@ -72,21 +72,21 @@ def build_probes(config: ContourConfig, size: float) -> Probes:
         config: the contour model.
         size: image height / 240, which scales `reach_px`.
     """
-    near = config.reach_px * size
+    near, deep = config.reach_px * size, config.inner_depth
     parts: list[tuple[Floats, Floats, int]] = []
     for section, (start, end) in section_angles(config).items():
         # The middles of equal pieces: no point is shared by two sections.
         angle = start + (end - start) * (np.arange(config.points) + 0.5) / config.points
         if section in (HEAD_LEFT, HEAD_TOP, HEAD_RIGHT):
             reach = np.resize(config.head_reach, len(angle))
-            inner = head_points(angle, config, -reach, -near)
+            inner = head_points(angle, config, -deep * reach, -deep * near)
             parts.append((inner, head_points(angle, config, reach, near), section))
             if config.far_head_reach > 0:
                 far = np.full(len(angle), config.far_head_reach)
                 parts.append((inner, head_points(angle, config, far, near), section))
         else:
             reach = np.resize(config.body_reach, len(angle))
-            inner = body_points(angle, -reach, -near)
+            inner = body_points(angle, -deep * reach, -deep * near)
             parts.append((inner, body_points(angle, reach, near), section))
     if config.feet_weight > 0:
         parts.append((*_feet_points(config), FEET))

@@ -17,7 +17,7 @@ def draw_prior(
     filter_config: FilterConfig,
     rng: np.random.Generator,
 ) -> Floats:
-    """Draw samples (count, 9) evenly over the limits; velocities normal with the motion model's amplitudes.
+    """Draw samples (count, 9) evenly over the limits; velocities normal around standing still.
 
     Source: thesis, section 4.1, "in our case uniform".
     """
@@ -31,7 +31,8 @@ def draw_prior(
     state[:, Y] = _rows(height, state[:, H], limits, chance[:, 1])
     state[:, W] = state[:, H] * _between(limits.ratio_wh, chance[:, 3])
     state[:, D] = state[:, W] * _between(limits.ratio_dw, chance[:, 4])
-    amplitude = np.array([motion.noise_x, motion.noise_y, motion.noise_w, motion.noise_h], dtype=np.float32)
+    noise = (motion.noise_x, motion.noise_y, motion.noise_w, motion.noise_h)
+    amplitude = np.array(noise if motion.fresh_speed is None else motion.fresh_speed, dtype=np.float32)
     state[:, [VX, VY, VW, VH]] = height / REFERENCE_HEIGHT_PX * amplitude * velocity
     return state
 

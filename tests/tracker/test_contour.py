@@ -25,7 +25,7 @@ from tracker.contour import (
     section_weights,
 )
 from tracker.measure import ContourModel
-from tracker.variants import PEOPLEBOY
+from tracker.variants import PEOPLEBOY, THESIS
 
 LITERAL = ContourConfig()
 
@@ -63,7 +63,7 @@ def test_the_head_stands_on_top_of_the_body():
     assert np.allclose(bottom, [[0, -30]], atol=1e-5)
 
 
-@pytest.mark.parametrize("config", [LITERAL, PEOPLEBOY.contour])
+@pytest.mark.parametrize("config", [LITERAL, THESIS.contour, PEOPLEBOY.contour])
 def test_inner_points_lie_inside_and_outer_points_outside_of_the_contour(config):
     probes = build_probes(config, 1.0)
     mix = np.array([0.0, 20.0, 50.0, 1.0])

@@ -106,6 +106,12 @@ def test_samples_from_the_prior_lie_within_the_limits(limits, log_uniform_h):
     assert state[:, 0].max() <= 320
 
 
+def test_samples_from_the_prior_have_the_speeds_they_are_given():
+    motion = MotionConfig(fresh_speed=(60.0, 8.0, 2.0, 1.0))
+    state = draw_prior(20000, (480, 640), motion, FilterConfig(), np.random.default_rng(0))
+    assert np.allclose(state[:, 5:].std(axis=0), (120, 16, 4, 2), rtol=0.05)
+
+
 @pytest.mark.parametrize(
     "make",
     [
