@@ -74,7 +74,7 @@ THESIS_OCCLUSION = replace(
     interaction=InteractionConfig(occluded_penalty=0.5),
     occlusion=OcclusionConfig(is_handled=True, head_covered=1.0),
 )
-"""With the occlusion handling of chapter 7: the whole thesis; a head is hidden once no point of it is seen."""
+"""With the occlusion handling of chapter 7; a head is hidden once no point of it is seen."""
 
 _PAPER_SAMPLES = replace(_THESIS_SAMPLES, fresh_share=0.1, estimate_share=0.3)
 
