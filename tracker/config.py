@@ -162,9 +162,11 @@ class BoxConfig:
 
     width_per_w: float = 2.0
     height_per_h: float = 3.5
+    hair_per_h: float = 0.0  # cold hair above the head's ellipse
 
     def __post_init__(self) -> None:
         check_positive(self, "width_per_w", "height_per_h")
+        check_not_negative(self, "hair_per_h")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -231,17 +233,26 @@ class OcclusionConfig:
     hidden_memory: float = 0.97  # share of a hidden person's velocity that lasts to the next step
     hidden_noise: float = 1.0  # share of the motion noise along the floor while hidden
     hidden_stiffness: float = 0.1  # the same for all other directions and the size
+    # Spread of the logarithm of an overlapped person's height around that when seen whole; 0: as it may be.
+    size_spread: float = 0.0
+    hidden_w: float = 0.0  # semi-width of a hidden person, who may turn, in semi-heights; 0: as last seen
     colour_gate: float = 40.0  # largest squared distance of colours of who comes back to sight
     size_gate: float = 0.25  # largest change of the logarithm of its height
     remembers_lost: bool = False  # who is lost in any other way is remembered as well
     lost_frames: int = 3  # frames without evidence after which somebody counts as hidden by something unknown
     searched_frames: int = 45  # frames for which a hidden person's samples look for it in the open
-    shown_s: float = 10.0  # how long a hidden person is shown
+    # How long a hidden person is shown: hidden by nobody known; on its way out of the image; behind somebody,
+    # if its samples are farther apart than this share of its semi-width. Others are until they are forgotten.
+    shown_s: float = 10.0
+    shown_leaving_s: float = 10.0
+    shown_behind_s: float = 10.0
+    sure_spread: float = 0.35
 
     def __post_init__(self) -> None:
         refuse_unless(self.order in ("foot", "looks"), self, "order", "foot or looks")
         check_share(self, "head_covered", "hidden_memory", "hidden_stiffness")
-        check_not_negative(self, "kept_frames", "forget_s", "shown_s", "hidden_noise")
+        check_not_negative(self, "kept_frames", "forget_s", "hidden_noise", "size_spread", "hidden_w")
+        check_not_negative(self, "shown_s", "shown_leaving_s", "shown_behind_s", "sure_spread")
         check_positive(self, "growth")
 
 

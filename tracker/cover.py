@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from tracker.config import ContourConfig
 from tracker.contour import COVERED, FEET, HEAD_RIGHT, SECTIONS, Probes, pixels_under
-from tracker.particles import D, H, W, X, Y
+from tracker.particles import FOOT, D, H, W, X, Y
 
-LEGS_END = 2.05  # feet below the body's centre, in body semi-heights
 LEGS_WIDTH = 0.75  # half width of the legs, in body semi-widths
 _SUBPIXEL_BITS = 4
 _SCALE = 1 << _SUBPIXEL_BITS
@@ -54,7 +53,7 @@ def cover(
     _fill_ellipse(image, x + d, y - h - head, growth * contour.head_aspect * head, growth * head)
     legs = growth * LEGS_WIDTH * w
     left, right = round(x - legs), round(x + legs)
-    image[max(round(y), 0) : max(round(y + LEGS_END * h), 0), max(left, 0) : max(right + 1, 0)] = COVERED
+    image[max(round(y), 0) : max(round(y + FOOT * h), 0), max(left, 0) : max(right + 1, 0)] = COVERED
 
 
 def seen_shares(image: NDArray[np.uint8], state: NDArray[np.float64], probes: Probes) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from tracker.filter import View, advance, weigh
 from tracker.interaction import overlap_shares, person_factor, regions_of
 from tracker.judge import judge
 from tracker.order import Figure, Order, front_to_back
-from tracker.particles import Floats
+from tracker.particles import Floats, H
 from tracker.person import Person, moved_on
 from tracker.sight import Scene, appearance, describe
 
@@ -93,7 +93,7 @@ def _carried_on(
     motion = hidden_motion(config) if was_hidden and handling.keeps_velocity else config.motion
     particles = person.belief.particles if was_hidden else person.belief.core
     samples = shared_filter(config, count)
-    if was_hidden:
+    if was_hidden or scene.front:
         samples = replace(samples, resized_share=0.0)
     state = advance(particles, view, samples, config, rng, motion)
     own_view = view
@@ -135,7 +135,17 @@ def _distance_kept(person: Person, state: Floats, scene: Scene, config: TrackerC
     """
     if person.is_hidden and not config.occlusion.keeps_velocity:
         return None
-    return person_factor(overlap_shares(state, scene.others, config), scene.strength)
+    factor = person_factor(overlap_shares(state, scene.others, config), scene.strength)
+    if config.occlusion.size_spread > 0 and (scene.front or person.is_hidden):
+        factor *= _size_kept(person, state, config)
+    return factor
+
+
+def _size_kept(person: Person, state: Floats, config: TrackerConfig) -> Floats:
+    """Penalise samples (N,) that have not the height that the person had when last seen whole."""
+    growth = np.log(np.maximum(state[:, H], np.float32(1)) / np.float32(max(person.size[1], 1.0)))
+    factor: Floats = np.exp(np.float32(-0.5 / config.occlusion.size_spread**2) * growth * growth)
+    return factor
 
 
 def _likeness(

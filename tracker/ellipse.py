@@ -20,7 +20,7 @@ def box_of(ellipse: Ellipse, config: BoxConfig, head_divisor: float) -> Box:
     Source: thesis, section 3.4 (2 w by 3.5 h); paper, section 4.1 (2 w by 3 h).
     """
     width, height = config.width_per_w * ellipse.w, config.height_per_h * ellipse.h
-    top = ellipse.y - ellipse.h - 2 * ellipse.h / head_divisor
+    top = ellipse.y - (1 + 2 / head_divisor + config.hair_per_h) * ellipse.h
     return ellipse.x - width / 2, top, width, height
 
 

@@ -15,6 +15,7 @@ from tracker.looks import LooksView
 from tracker.measure import ContourModel, fitness, is_within, probability, sample_weights
 from tracker.motion import Columns, predict, turned
 from tracker.particles import (
+    FOOT,
     Floats,
     H,
     Particles,
@@ -43,6 +44,7 @@ class View:
         dt_s: time since the last frame [s].
         turn_rad: how the camera turned since then, left positive [rad]; 0 if unknown.
         focal_px: focal length [px].
+        advance_m: how far the camera moved forward since then [m]; 0 if unknown.
         colour: the colour image; None without one.
         looks: colours and thermal pattern together; None if they are not compared.
         covered: what a point of the contour counts where the image says that somebody is in front; None
@@ -57,6 +59,7 @@ class View:
     colour: ColourView | None = None
     looks: LooksView | None = None
     covered: float | None = None
+    advance_m: float = 0.0
 
     @property
     def size(self) -> float:
@@ -73,12 +76,13 @@ def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerCo
     motion = config.motion
     turn = frame.turn_rad if motion.uses_odometry and frame.turn_rad is not None else 0.0
     focal = frame.height_px / 2 / math.tan(math.radians(motion.view_angle_deg) / 2)
+    advance = frame.advance_m if motion.uses_odometry and frame.advance_m is not None else 0.0
     image = model.prepare(frame.thermal)
     colour = None
     if config.colour is not None and frame.colour is not None:
         colour = ColourView.build(frame.colour, frame.thermal.shape, config.colour)
     looks = None if config.looks is None else LooksView.build(image, colour, config.looks)
-    return View(image, model, dt_s, turn, focal, colour, looks)
+    return View(image, model, dt_s, turn, focal, colour, looks, advance_m=advance)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -187,20 +191,22 @@ def advance(
     moved = predict(kept, view.dt_s, view.size, config.motion if motion is None else motion, rng)
     moved[:, X] = view.after_turn(moved[:, X])
     if filter_config.resized_share > 0:
-        _resize(moved, filter_config.resized_share, 1 + 2 / config.contour.head_divisor, rng)
+        _resize(moved, filter_config.resized_share, config.contour.head_divisor, rng)
     if fresh == 0:
         return moved
     return np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)])
 
 
-def _resize(state: Floats, share: float, top_per_h: float, rng: np.random.Generator) -> None:
-    """Make a share of the samples (N, 9) larger or smaller below the same top of the head, in place.
+def _resize(state: Floats, share: float, head_divisor: float, rng: np.random.Generator) -> None:
+    """Make a share of the samples (N, 9) larger or smaller, in place.
 
-    A torso that was taken for a whole person is found out that way.
+    Every other one keeps the top of its head where it is, the others keep their feet: a torso that was taken
+    for a whole person is found out that way.
     """
     tried = state[:: round(1 / share)]
     factor = np.exp(RESIZING * rng.standard_normal(len(tried), dtype=np.float32))
-    tried[:, Y] += top_per_h * (factor - 1) * tried[:, H]
+    kept = np.where(np.arange(len(tried)) % 2 == 0, -(1 + 2 / head_divisor), FOOT).astype(np.float32)
+    tried[:, Y] -= kept * (factor - 1) * tried[:, H]
     tried[:, W : H + 1] *= factor[:, None]
 
 

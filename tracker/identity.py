@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -15,11 +16,13 @@ from tracker.person import Person, moved_on
 
 PLACE_PX = 12.0  # [px] of 240 rows: spread of the place of a person who was just lost
 PLACE_PX_S = 40.0  # [px/s] by which it grows
-SIZE = 0.2  # spread of the logarithm of the height
-SIZE_S = 0.15
-LOOKS2 = 12.0  # squared distance of looks of the same person
-WORST = 9.0  # largest sum of squares
-FARTHEST = 5.0  # for which place counts at most: people turn back, and come in by another door
+FARTHEST = 5.0  # square that place counts at most: people turn back, and come in by another door
+LOOKS2 = 12.0  # squared distance of looks of the same person, where they are not known
+# Logistic regression over reappearances in the data sets and the library, of the same person and of others.
+PLACE_WEIGHT = 0.56
+LOOKS_WEIGHT = 1.76
+WORST = 6.8
+GROWTH = 0.7  # largest change of the logarithm of the height
 
 
 def remembered(person: Person, view: View, leaders: Sequence[Person], config: TrackerConfig) -> Person:
@@ -71,13 +74,16 @@ def colour_distance(one: Person, other: Person) -> float:
 
 
 def mismatch(found: Person, person: Person, view: View) -> float:
-    """Add up what speaks against one being the other: place, height and looks, each in its own spread."""
-    time_s = person.hidden_s
-    place = (PLACE_PX + PLACE_PX_S * time_s) * view.size
+    """Add up what speaks against one being the other: their places, and their looks.
+
+    The logarithm takes into account that looks in another pose, or half hidden, can be far off.
+    """
+    if abs(np.log(max(found.shown[H], 1.0) / max(person.shown[H], 1.0))) > GROWTH:
+        return math.inf
+    place = (PLACE_PX + PLACE_PX_S * person.hidden_s) * view.size
     away = (found.shown - person.shown)[[X, Y]] / place
-    size = np.log(max(found.shown[H], 1.0) / max(person.shown[H], 1.0)) / (SIZE + SIZE_S * time_s)
-    looks = 0.0
+    looks = LOOKS2
     if found.looks is not None and person.looks is not None:
         distance = float(squared_distances(found.looks.mean[None], person.looks)[0])
-        looks = 1.0 if np.isnan(distance) else distance / LOOKS2
-    return min(float(away @ away), FARTHEST) + float(size * size) + looks
+        looks = LOOKS2 if np.isnan(distance) else distance
+    return PLACE_WEIGHT * min(float(away @ away), FARTHEST) + LOOKS_WEIGHT * float(np.log1p(looks))

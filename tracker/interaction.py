@@ -65,7 +65,7 @@ def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
 
 def _proportions(box: BoxConfig, head_divisor: float) -> tuple[float, float, float]:
     """Give width per w, height per h, and how many h the top lies above the centre."""
-    return box.width_per_w, box.height_per_h, 1 + 2 / head_divisor
+    return box.width_per_w, box.height_per_h, 1 + 2 / head_divisor + box.hair_per_h
 
 
 @njit(cache=True, nogil=True)

@@ -13,13 +13,13 @@ from tracker.appearance.colour_model import ColourModel
 from tracker.appearance.colour_view import ColourView
 from tracker.appearance.config import ColourConfig
 from tracker.config import TrackerConfig
-from tracker.cover import head_share, seen_shares
+from tracker.cover import body_share, head_share, seen_shares
 from tracker.filter import Belief, View
 from tracker.interaction import overlap_shares, regions_of
 from tracker.life import is_kept
 from tracker.looks import LooksView
-from tracker.particles import VX, VY, D, Floats, H, W, X, Y, equally_weighted
-from tracker.person import Person, moved_on
+from tracker.particles import FOOT, VX, VY, D, Floats, H, W, X, Y, equally_weighted
+from tracker.person import SIZE, Person, approached, moved_on
 from tracker.sight import CLEAR, Scene, look_at
 from tracker.smooth import smoothed
 from tracker.track import Status
@@ -35,6 +35,7 @@ def judge(
 ) -> Person:
     """Tell how well a person is seen, and learn from it what may be learnt."""
     if config.occlusion.keeps_velocity:
+        person = approached(person, view)
         return _judge_walking(person, belief, scene, view, config, rng)
     if scene.front:
         shares = seen_shares(scene.image, belief.estimate, view.model.probes)
@@ -65,13 +66,31 @@ def _judge_walking(
         else:
             shown = moved_on(shown, view)
             shown[VX : VX + 2] *= config.occlusion.hidden_memory
-        return replace(_hidden(person, view), belief=belief, shown=shown, missing=missing, occluder=occluder)
+        shown[SIZE] = person.size
+        if config.occlusion.hidden_w > 0:
+            shown[W] = config.occlusion.hidden_w * shown[H]
+        shown[Y] = person.foot - FOOT * person.size[1]
+        return replace(
+            _hidden(person, view),
+            belief=belief,
+            shown=shown,
+            missing=missing,
+            occluder=occluder,
+            is_behind=_is_behind(shown, scene, view),
+        )
     is_covered = sight.head <= 1 - config.occlusion.head_covered and sight.body < HIDDEN_BODY
     seen = _seen(person, belief, scene, view, config)
     is_lost = config.occlusion.remembers_lost and seen.missing >= config.occlusion.lost_frames
     if (scene.front and is_covered) or (is_lost and person.is_settled):
         return walking_on(replace(_hidden(seen, view), occluder=occluder), rng)
     return seen
+
+
+def _is_behind(state: NDArray[np.float64], scene: Scene, view: View) -> bool:
+    """Tell whether people in front explain why a person with this state (9,) is not seen."""
+    if not scene.front:
+        return False
+    return body_share(seen_shares(scene.image, state, view.model.probes)) < HIDDEN_BODY
 
 
 def _hidden(person: Person, view: View) -> Person:
@@ -96,6 +115,7 @@ def _seen(person: Person, belief: Belief, scene: Scene, view: View, config: Trac
         shown=shown,
         status=Status.TENTATIVE if missing >= config.life.doubt_frames else status,
         occluder=main_occluder(belief, scene.front, config).id if scene.front else None,
+        is_behind=bool(scene.front),
         missing=missing,
         hidden_frames=0,
         hidden_s=0.0,
@@ -109,6 +129,7 @@ def _seen(person: Person, belief: Belief, scene: Scene, view: View, config: Trac
         seen_frames=person.seen_frames + 1,
         velocity=blend(person.velocity, speed, max(view.dt_s / VELOCITY_S, 1 / (person.seen_frames + 1))),
         foot=blend(person.foot, foot_of(belief.estimate), view.dt_s / FOOT_S),
+        size=blend(person.size, belief.estimate[SIZE], view.dt_s / FOOT_S),
     )
 
 
@@ -158,7 +179,7 @@ def main_occluder(belief: Belief, front: Sequence[Person], config: TrackerConfig
 
 def foot_of(state: NDArray[np.float64]) -> float:
     """Give the row of a person's feet [px]."""
-    return float(state[Y] + 2.05 * state[H])
+    return float(state[Y] + FOOT * state[H])
 
 
 def blend(before: Value, now: Value, share: float) -> Value:

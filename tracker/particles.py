@@ -22,6 +22,7 @@ VY: Final = 6
 VW: Final = 7
 VH: Final = 8
 STATE_SIZE: Final = 9
+FOOT: Final = 2.05  # feet below the body's centre, in body semi-heights
 
 Floats = NDArray[np.float32]
 
@@ -75,14 +76,16 @@ def resample(particles: Particles, count: int, rng: np.random.Generator) -> Floa
 def systematic_rows(weight: Floats, count: int, offset: float) -> NDArray[np.int64]:
     """Find the rows (count,) under `count` evenly spaced marks on the cumulated weights; offset in [0, 1)."""
     rows = np.empty(count, dtype=np.int64)
-    total = 0.0
-    for w in weight:
-        total += w
+    total, last = 0.0, 0
+    for k in range(len(weight)):
+        total += weight[k]
+        if weight[k] > 0:
+            last = k
     row = 0
     cumulated = float(weight[0])
     for j in range(count):
         mark = total * (offset + j) / count
-        while mark >= cumulated and row < len(weight) - 1:
+        while mark >= cumulated and row < last:
             row += 1
             cumulated += weight[row]
         rows[j] = row

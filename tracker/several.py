@@ -19,8 +19,8 @@ from tracker.judge import foot_of, learn
 from tracker.life import is_born
 from tracker.measure import ContourModel
 from tracker.order import ORDERS, Order
-from tracker.particles import Particles, X, ellipse_of
-from tracker.person import Person
+from tracker.particles import Particles, W, ellipse_of
+from tracker.person import SIZE, Person
 from tracker.track import Status, Track
 
 FIRST_STEP_S = 1 / 15
@@ -95,7 +95,7 @@ class PeopleTracker:
             if self._is_kept(person):
                 kept.append(person)
             elif self._is_remembered(person):
-                memories.append(replace(person, status=Status.TOTALLY_OCCLUDED))
+                memories.append(replace(person, status=Status.TOTALLY_OCCLUDED, is_behind=False))
         self._persons = tuple(kept)
         self._memories = (*self._memories, *memories)
 
@@ -150,6 +150,7 @@ class PeopleTracker:
             shown=belief.estimate,
             velocity=np.zeros(2),
             foot=foot_of(belief.estimate),
+            size=belief.estimate[SIZE],
         )
         return learn(person, belief.estimate, view, self._config)
 
@@ -165,10 +166,20 @@ class PeopleTracker:
         return weigh(state, view, config.detector, config, factor)
 
     def _is_shown(self, person: Person, view: View) -> bool:
-        """Tell whether a hidden person is shown: for some time, and not outside the image."""
-        return (
-            person.hidden_s <= self._config.occlusion.shown_s and 0 <= person.shown[X] < view.image.shape[1]
+        """Tell whether a hidden person is shown: as long as it is fairly certain where it is."""
+        handling = self._config.occlusion
+        left, top, width, height = regions_of([person.shown], self._config)[0]
+        rows, columns = view.image.shape
+        if left > columns or left + width < 0:
+            return False
+        if person.is_behind:
+            is_sure = person.belief.uncertainty_px2 < (handling.sure_spread * float(person.shown[W])) ** 2
+            return person.hidden_s <= (handling.forget_s if is_sure else handling.shown_behind_s)
+        walks_out = (left < 0 and person.velocity[0] < 0) or (
+            left + width > columns and person.velocity[0] > 0
         )
+        is_whole = top + height < rows
+        return person.hidden_s <= (handling.shown_leaving_s if walks_out and is_whole else handling.shown_s)
 
     def _track(self, person: Person, time_s: float) -> Track:
         ellipse = ellipse_of(person.shown)

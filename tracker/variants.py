@@ -94,7 +94,7 @@ It names no threshold of the fitness; 18 grey, below the thesis's 22, since sect
 weight.
 """
 
-_LIMITS = LimitsConfig(ratio_wh=(0.22, 0.62), ratio_dw=(-0.5, 0.5), y=(0.1, 0.8), h=(0.05, 0.5))
+_LIMITS = LimitsConfig(ratio_wh=(0.22, 0.62), ratio_dw=(-0.5, 0.5), y=(0.1, 0.8), h=(0.03, 0.5))
 
 PEOPLEBOY = TrackerConfig(
     contour=ContourConfig(
@@ -126,7 +126,7 @@ PEOPLEBOY = TrackerConfig(
     detector=FilterConfig(
         fresh_share=0.5,
         # A level camera 1.2 m above the floor sees the middle of whoever stands there just below the horizon.
-        limits=replace(_LIMITS, y_below_horizon=(-0.1, 0.9)),
+        limits=replace(_LIMITS, h=(0.05, 0.5), y_below_horizon=(-0.1, 0.9)),
         log_uniform_h=True,
         sharpness=20.0,
         estimate_share=0.3,
@@ -149,8 +149,8 @@ PEOPLEBOY = TrackerConfig(
         uncertainty_px2=100.0,
     ),
     # Torso and feet of the drawn and simulated people lie so, relative to the ellipse that fits them best.
-    box=BoxConfig(width_per_w=1.88, height_per_h=3.7),
-    smoothing=SmoothingConfig(place_s=0.05, size_s=0.1),
+    box=BoxConfig(width_per_w=1.88, height_per_h=3.9, hair_per_h=0.08),
+    smoothing=SmoothingConfig(place_s=0.05, size_s=0.3),
     interaction=InteractionConfig(
         detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
     ),
@@ -166,8 +166,12 @@ PEOPLEBOY = TrackerConfig(
         keeps_velocity=True,
         hidden_memory=0.985,
         hidden_noise=0.5,
+        size_spread=0.1,
+        hidden_w=0.42,
         remembers_lost=True,
-        shown_s=1.0,
+        shown_s=0.3,
+        shown_leaving_s=0.5,
+        shown_behind_s=0.8,
     ),
 )
 """What works on the robot: the default."""

@@ -10,7 +10,7 @@ from tracker.frame import Frame
 from tracker.identity import most_alike_and_nearest, recognised, remembered
 from tracker.measure import ContourModel
 from tracker.particles import equally_weighted
-from tracker.person import Person
+from tracker.person import SIZE, Person
 from tracker.track import Status
 from tracker.variants import PEOPLEBOY, THESIS_OCCLUSION
 
@@ -33,6 +33,7 @@ def person(number, x=160.0, h=30.0, colour=0.0, hidden_s=1.0, **more):
         shown=state,
         velocity=np.zeros(2),
         foot=190.0,
+        size=state[SIZE],
         status=Status.TOTALLY_OCCLUDED,
         hidden_s=hidden_s,
         colour=model,

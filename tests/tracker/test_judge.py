@@ -11,7 +11,7 @@ from tracker.interaction import regions_of
 from tracker.judge import judge
 from tracker.measure import ContourModel
 from tracker.particles import equally_weighted
-from tracker.person import Person
+from tracker.person import SIZE, Person
 from tracker.sight import Scene
 from tracker.track import Status
 from tracker.variants import PEOPLEBOY, THESIS_OCCLUSION
@@ -21,7 +21,7 @@ def person(number, x, h):
     state = np.array([x, 120 + 0.36 * h, 0.38 * h, h, 0, 0, 0, 0, 0])
     cloud = equally_weighted(np.repeat(state[None], 50, axis=0).astype(np.float32))
     belief = Belief(cloud, cloud, state, 0.9, 1.0)
-    return Person(number, 0.0, belief, state, np.array([30.0, 0.0]), 190.0, seen_frames=30)
+    return Person(number, 0.0, belief, state, np.array([30.0, 0.0]), 190.0, state[SIZE], seen_frames=30)
 
 
 def judged(config, behind, *front):
