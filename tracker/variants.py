@@ -141,9 +141,9 @@ PEOPLEBOY = TrackerConfig(
         floor=0.2,
     ),
     life=LifeConfig(
-        birth_confidence=0.6,
+        birth_confidence=0.75,
         birth_frames=3,
-        death_confidence=0.3,
+        death_confidence=0.4,
         doubt_frames=5,
         death_frames=12,
         uncertainty_px2=100.0,
