@@ -155,7 +155,7 @@ PEOPLEBOY = TrackerConfig(
         detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
     ),
     colour=ColourConfig(
-        representation="moments1", sharpness=0.05, frames=30, affine=FAR_AFFINE, parallax=ROBOT_PARALLAX
+        representation="moments1", sharpness=0.035, frames=30, affine=FAR_AFFINE, parallax=ROBOT_PARALLAX
     ),
     looks=LooksConfig(),
     occlusion=OcclusionConfig(
@@ -167,11 +167,12 @@ PEOPLEBOY = TrackerConfig(
         hidden_memory=0.985,
         hidden_noise=0.5,
         size_spread=0.1,
-        hidden_w=0.42,
+        hidden_w=0.46,
         remembers_lost=True,
         shown_s=0.3,
         shown_leaving_s=0.5,
         shown_behind_s=0.8,
+        sure_spread=0.4,
     ),
 )
 """What works on the robot: the default."""
