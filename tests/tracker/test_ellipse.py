@@ -18,6 +18,11 @@ def test_the_paper_box_is_3_h_high():
     assert box_of(ELLIPSE, PAPER.box, 4.4)[3] == pytest.approx(132)
 
 
+def test_hair_raises_the_top_of_the_box_and_nothing_else():
+    bald, haired = (box_of(ELLIPSE, BoxConfig(hair_per_h=hair), 4.4) for hair in (0.0, 0.1))
+    assert haired == pytest.approx((bald[0], bald[1] - 4.4, bald[2], bald[3]))
+
+
 def test_the_outline_spans_body_and_head():
     body, head = outline(ELLIPSE, ContourConfig(), count=721)
     assert np.allclose([body.min(axis=0), body.max(axis=0)], [[88, 76], [112, 164]], atol=0.01)

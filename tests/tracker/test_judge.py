@@ -69,6 +69,22 @@ def test_in_ours_a_hidden_person_walks_on_with_the_velocity_that_it_had():
     assert later.hidden_frames == 2
 
 
+def test_in_ours_a_hidden_person_keeps_its_height_and_its_feet_where_they_were():
+    hidden = judged(PEOPLEBOY, person(1, 160, 20), person(2, 165, 70))
+    shrunk = replace(hidden, belief=person(1, 160, 14).belief)
+    later = judged(PEOPLEBOY, shrunk, person(2, 165, 70))
+    assert later.shown[3] == 20
+    assert later.shown[1] + 2.05 * 20 == pytest.approx(190.0)
+
+
+def test_a_hidden_person_is_behind_those_who_cover_it_and_behind_nobody_where_it_would_be_seen():
+    covered = judged(PEOPLEBOY, judged(PEOPLEBOY, person(1, 160, 20), person(2, 160, 70)), person(2, 160, 70))
+    assert covered.is_behind
+    in_the_open = judged(PEOPLEBOY, replace(covered, shown=person(1, 60, 20).shown))
+    assert in_the_open.is_hidden
+    assert not in_the_open.is_behind
+
+
 def test_looks_are_not_learnt_while_somebody_is_in_front():
     alone = judged(PEOPLEBOY, person(1, 160, 30))
     beside = judged(PEOPLEBOY, person(1, 160, 30), person(2, 183, 40))

@@ -138,6 +138,21 @@ def test_a_person_keeps_its_identity_through_a_total_occlusion(seed):
     assert {t.occluder for t in hidden} <= {front, None}
 
 
+def stopping(i, stops_s):
+    """As `passing`, but the walker stays behind the one in front for a while."""
+    walked = min(i, 45) + max(0, i - 45 - round(15 * stops_s))
+    return dressed(i, (61 + 2.2 * walked, 18, RED, 150), (160, 50, BLUE, 110))
+
+
+def test_who_stops_behind_somebody_large_is_not_claimed_for_long_and_yet_known_again():
+    tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(0))
+    tracks = [tracker.update(stopping(i, stops_s=3)) for i in range(125)]
+    walker = identity_at(tracks[30], 61 + 2.2 * 30)
+    assert identity_at(tracks[42], 61 + 2.2 * 42) == walker
+    assert {identity_at(frame, 160) for frame in tracks[60:90]} == {None}
+    assert identity_at(tracks[-1], 61 + 2.2 * 79) == walker
+
+
 @pytest.mark.parametrize(("seconds", "is_known"), [(4, True), (12, False)])
 def test_who_was_lost_is_remembered_for_ten_seconds(seconds, is_known):
     tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(1))
