@@ -60,16 +60,7 @@ def _judge_walking(
         if sight.is_clear and sight.confidence > config.life.birth_confidence:
             return _seen(person, belief, scene, view, config)
         missing = person.missing + (sight.head > CLEAR)
-        shown = person.shown
-        if scene.front:
-            shown = smoothed(shown, belief.estimate, view, config.smoothing)
-        else:
-            shown = moved_on(shown, view)
-            shown[VX : VX + 2] *= config.occlusion.hidden_memory
-        shown[SIZE] = person.size
-        if config.occlusion.hidden_w > 0:
-            shown[W] = config.occlusion.hidden_w * shown[H]
-        shown[Y] = person.foot - FOOT * person.size[1]
+        shown = _supposed(person, belief, scene, view, config)
         return replace(
             _hidden(person, view),
             belief=belief,
@@ -84,6 +75,22 @@ def _judge_walking(
     if (scene.front and is_covered) or (is_lost and person.is_settled):
         return walking_on(replace(_hidden(seen, view), occluder=occluder), rng)
     return seen
+
+
+def _supposed(
+    person: Person, belief: Belief, scene: Scene, view: View, config: TrackerConfig
+) -> NDArray[np.float64]:
+    """Suppose where a hidden person is (9,): it walks on, as tall as it was, on the floor where it was."""
+    if scene.front:
+        shown = smoothed(person.shown, belief.estimate, view, config.smoothing)
+    else:
+        shown = moved_on(person.shown, view)
+        shown[VX : VX + 2] *= config.occlusion.hidden_memory
+    shown[SIZE] = person.size
+    if config.occlusion.hidden_w > 0:
+        shown[W] = config.occlusion.hidden_w * shown[H]
+    shown[Y] = person.foot - FOOT * shown[H]
+    return shown
 
 
 def _is_behind(state: NDArray[np.float64], scene: Scene, view: View) -> bool:
