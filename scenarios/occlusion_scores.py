@@ -23,6 +23,7 @@ Ints = NDArray[np.int64]
 
 TOTAL_STARTS = 0.98  # share hidden of what lies inside the image, as in the event log
 TOTAL_ENDS = 0.90
+SEEN_AGAIN = 0.5  # share hidden below which a person can be expected to be found
 WINDOW_S = 1.0  # before an occlusion
 PATIENCE_S = 3.0  # after it, within which the person must be found again
 LENGTHS_S = (0.0, 0.35, 0.75, 1.5, 3.0, 6.0, math.inf)  # edges of the bins of occlusion length
@@ -35,8 +36,9 @@ class Occlusion:
     Attributes:
         person: id in the truth.
         start_frame: first frame with more than `TOTAL_STARTS` hidden.
-        end_frame: first frame after that with less than `TOTAL_ENDS` hidden.
-        duration_s: between the two.
+        end_frame: first frame after that with less than `SEEN_AGAIN` hidden.
+        duration_s: time between the two with at least `TOTAL_ENDS` hidden. A person in a crowd may peep out
+            of one total occlusion and vanish in the next; that is one occlusion.
         id_before: the track on the person before; None if nobody tracked it.
         id_after: the track that is first found on the person again; None if none is.
         found_after_s: from the end of the occlusion to that moment; NaN if it never comes.
@@ -89,7 +91,7 @@ def find_occlusions(frame: Ints, hidden: Floats) -> list[tuple[int, int]]:
         hidden: (N,) share hidden of what lies inside the image.
 
     Returns:
-        First frame with more than `TOTAL_STARTS` hidden, and first one after it with less than `TOTAL_ENDS`.
+        First frame with more than `TOTAL_STARTS` hidden, and first one after it with less than `SEEN_AGAIN`.
         Who leaves the image meanwhile, or is never seen again, is left out.
     """
     found: list[tuple[int, int]] = []
@@ -99,7 +101,7 @@ def find_occlusions(frame: Ints, hidden: Floats) -> list[tuple[int, int]]:
             start = None
         if start is None and hidden[k] > TOTAL_STARTS:
             start = int(frame[k])
-        elif start is not None and hidden[k] < TOTAL_ENDS:
+        elif start is not None and hidden[k] < SEEN_AGAIN:
             found.append((start, int(frame[k])))
             start = None
     return found
@@ -124,10 +126,10 @@ def score_occlusions(
         ids = {int(truth.frame[row]): on_person[row] for row in np.flatnonzero(truth.id == person)}
         spans = find_occlusions(truth.frame[rows], hidden[rows])
         ends = [*(start for start, _ in spans), truth.last_frame + 1][1:]
-        scores += [
-            _score(int(person), start, end, limit, ids, rate_hz)
-            for (start, end), limit in zip(spans, ends, strict=True)
-        ]
+        wholly_hidden = truth.frame[rows][hidden[rows] >= TOTAL_ENDS]
+        for (start, end), limit in zip(spans, ends, strict=True):
+            frames = int(((wholly_hidden >= start) & (wholly_hidden < end)).sum())
+            scores.append(_score(int(person), (start, end, limit), frames / rate_hz, ids, rate_hz))
     return scores
 
 
@@ -161,8 +163,14 @@ def _ids_on_people(truth: Truth, tracks: Tracks) -> list[int | None]:
 
 
 def _score(
-    person: int, start: int, end: int, limit: int, ids: dict[int, int | None], rate_hz: float
+    person: int,
+    span: tuple[int, int, int],
+    duration_s: float,
+    ids: dict[int, int | None],
+    rate_hz: float,
 ) -> Occlusion:
+    """Score one occlusion by its first frame, the first after it, and the first of the next one."""
+    start, end, limit = span
     window, patience = round(WINDOW_S * rate_hz), round(PATIENCE_S * rate_hz)
     before = [ids.get(frame) for frame in range(start - window, start)]
     after = [(frame, ids.get(frame)) for frame in range(end, min(end + patience, limit))]
@@ -171,7 +179,7 @@ def _score(
         person=person,
         start_frame=start,
         end_frame=end,
-        duration_s=(end - start) / rate_hz,
+        duration_s=duration_s,
         id_before=_most_common(before),
         id_after=None if steady is None else steady[1],
         found_after_s=math.nan if steady is None else (steady[0] - end) / rate_hz,
