@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from bad_input import BadInput
 from scenarios.reproduce.contents import Contents
+from scenarios.reproduce.delay import Delay
 from scenarios.reproduce.experiment import Experiment, Line
 from scenarios.reproduce.learning import BestClassifiers, Learning, Way
 from scenarios.reproduce.settings import Changes, Setting, Value
@@ -187,7 +188,7 @@ _REPRESENTATIONS: dict[str, Changes | None] = {
     "no colour": None,
     "1 moment": (("colour.representation", "moments1"),),
     "2 moments": (("colour.representation", "moments2"),),
-    "3 moments": (),
+    "3 moments": (("colour.representation", "moments3"),),
     "histogram": _histogram("rgb"),
 }
 _SPACES: dict[str, Changes | None] = {
@@ -218,6 +219,7 @@ _ALL: tuple[Experiment, ...] = (
     TIMINGS[0],
     _per_suite("figure-5.4", SEVERAL, "thesis-thermal"),
     *_SWEEPS[2:5],
+    Delay(SINGLE, {LITERAL: Setting("thesis-single"), OURS: Setting("peopleboy")}),
     TIMINGS[1],
     _chapters("figure-6.4", list(_STEPS)[:2]),
     _colours("figure-6.5", _REPRESENTATIONS, ("histogram",)),

@@ -98,16 +98,15 @@ def time_people(setting: Setting, steps: int) -> Milliseconds:
 
 
 def _time_crowd(setting: Setting, people: int, steps: int) -> float:
-    """Time a frame [ms] over the number of filters; NaN if the tracker does not find everybody."""
+    """Time frames in which everybody has a filter, over the number of filters [ms]; NaN if there are none."""
     tracker = setting.make(stream(0, "reproduce.timing"))
-    times = (k / 15 for k in range(10**6))
-    image = frame_of(people)
-    for _ in range(60 * (people + 1)):
-        tracker.update(replace(image, time_s=next(times)))
-    found = len(tracker.particles) - 1
-    spent = milliseconds(lambda: tracker.update(replace(image, time_s=next(times))), steps)
-    is_all = found == people == len(tracker.particles) - 1
-    return spent / (people + 1) if is_all else float("nan")
+    image, times = frame_of(people), []
+    for number in range(60 * (people + 1) + 10 * steps):
+        before, start = len(tracker.particles), time.process_time_ns()
+        tracker.update(replace(image, time_s=number / 15))
+        if before == len(tracker.particles) == people + 1:
+            times.append(time.process_time_ns() - start)
+    return median(times[-steps:]) / 1e6 / (people + 1) if len(times) >= steps else float("nan")
 
 
 _PICTURES: Mapping[str, tuple[int, int]] = {

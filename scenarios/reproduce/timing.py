@@ -85,8 +85,8 @@ def _by_tracker(
 
 _MEASURES: dict[str, dict[str, Measure]] = {
     "table-4.1": _by_tracker(time_steps, "thesis-single", "peopleboy"),
-    # The literal tracker does not hold the drawn people, and so never has several filters.
     "table-5.1": {
+        "literal": lambda steps: time_people(Setting("thesis-thermal"), steps),
         "default, thermal only": lambda steps: time_people(Setting("peopleboy-thermal"), steps),
         "default": lambda steps: time_people(Setting("peopleboy"), steps),
     },

@@ -33,6 +33,7 @@ ALL = {
     *(f"figure-{number}" for number in FIGURES),
     *(f"table-{number}" for number in TABLES),
     *(f"paper-{number}" for number in PAPER),
+    "section-5.3",
 }
 
 
