@@ -6,7 +6,8 @@ from collections import deque
 from dataclasses import replace
 
 from behaviours.behaviour import Behaviour
-from behaviours.command import Command
+from behaviours.command import EMERGENCY_STOP, STOP, Command
+from behaviours.deafness import Deafness
 from behaviours.echoes import Points, fill_drop_outs
 from behaviours.memory import EchoMemory, MemoryConfig, remember
 from behaviours.safety import SafetyConfig, limit
@@ -15,6 +16,9 @@ from behaviours.sight import Sight
 
 class Guarded:
     """A behaviour under guard: it sees sonars without drop-outs, and what it asks for is limited by them.
+
+    The robot stops at once when images stay out or nobody can tell who is in them, and drives no farther when
+    the sonars have gone deaf; the behaviour is not asked then, and goes on afterwards where it was.
 
     Attributes:
         is_limited: whether the last command was changed.
@@ -25,19 +29,45 @@ class Guarded:
         self._config = SafetyConfig() if config is None else config
         self._recent: deque[Points] = deque(maxlen=readings)
         self._memory = EchoMemory()
+        self._deafness = Deafness()
+        self._fault = ""
         self.is_limited = False
 
     @property
     def mode(self) -> str:
-        """The mode of the guarded behaviour."""
-        return self._behaviour.mode
+        """The mode of the guarded behaviour, or "stop"."""
+        return "stop" if self._fault else self._behaviour.mode
+
+    @property
+    def reason(self) -> str:
+        """Why the behaviour is in this mode, or what the robot was stopped for."""
+        return self._fault or self._behaviour.reason
+
+    @property
+    def following(self) -> int | None:
+        """Whom the behaviour follows; nobody while the robot is stopped."""
+        return None if self._fault else self._behaviour.following
 
     def command(self, sight: Sight) -> Command:
         """Give the behaviour's command, as far as it is safe."""
+        self._fault = self._blindness(sight)
+        if self._fault:
+            self.is_limited = True
+            return EMERGENCY_STOP
         self._recent.append(sight.sonar_m)
         steady = replace(sight, sonar_m=fill_drop_outs(list(self._recent)))
+        if self._deafness.listen(steady):
+            self._fault, self.is_limited = "the sonars hear nothing any more", True
+            return STOP
         wanted = self._behaviour.command(steady)
         self._memory = remember(self._memory, steady, MemoryConfig())
         safe = limit(wanted, steady, self._config, self._memory.points)
         self.is_limited = safe != wanted
         return safe
+
+    def _blindness(self, sight: Sight) -> str:
+        """Tell why the images are of no use; empty if they are."""
+        if sight.fault:
+            return sight.fault
+        is_late = not sight.image_age_s <= self._config.latest_image_s
+        return f"no new image for {self._config.latest_image_s:g} s" if is_late else ""

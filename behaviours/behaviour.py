@@ -13,11 +13,23 @@ class Behaviour(Protocol):
 
     Attributes:
         mode: what it is doing, one word for event log and curves: "search", "follow", "wait", "stand", ...
+        reason: why it is doing that, for the event log; empty where there is nothing to decide.
+        following: number of the track that it follows; None if it follows nobody.
     """
 
     @property
     def mode(self) -> str:
         """What it is doing."""
+        ...
+
+    @property
+    def reason(self) -> str:
+        """Why it is doing that."""
+        ...
+
+    @property
+    def following(self) -> int | None:
+        """Whom it follows."""
         ...
 
     def command(self, sight: Sight) -> Command:

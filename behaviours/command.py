@@ -15,6 +15,7 @@ class Command:
     Attributes:
         linear_m_s: [m/s] forward speed, negative drives backwards.
         angular_rad_s: [rad/s] turn rate, positive turns left.
+        is_emergency: whether the robot is to lose its forward speed as fast as it can.
 
     Raises:
         BadInput: a value is not finite.
@@ -22,6 +23,7 @@ class Command:
 
     linear_m_s: float
     angular_rad_s: float
+    is_emergency: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no motor can do."""
@@ -32,3 +34,4 @@ class Command:
 
 
 STOP = Command(linear_m_s=0.0, angular_rad_s=0.0)
+EMERGENCY_STOP = Command(linear_m_s=0.0, angular_rad_s=0.0, is_emergency=True)

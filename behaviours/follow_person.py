@@ -8,8 +8,18 @@ from dataclasses import dataclass, field, replace
 from behaviours.avoid import AvoidConfig, swerve
 from behaviours.command import STOP, Command
 from behaviours.echoes import echoes
+from behaviours.identity import IdentityConfig, company, recognise
+from behaviours.last_place import LastPlace, PlaceConfig, carry_place, end_of_way, on_the_way, place_of
 from behaviours.sight import SeenPerson, Sight
-from behaviours.target import Target, TargetConfig, carry_on, first_sight, forget_drift, look_again
+from behaviours.target import (
+    Target,
+    TargetConfig,
+    bearing,
+    carry_on,
+    first_sight,
+    forget_drift,
+    look_again,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,10 +50,16 @@ class FollowConfig:
         wait_turn_rad_s: [rad/s] highest turn rate while waiting for a lost person.
         max_age_s: [s] an older track stops the robot.
         wait_s: [s] from the last sight of a person who left the image until the search begins.
-        patience_s: [s] the same for one lost in the middle of the image: hidden, or missed by the tracker.
+        patience_s: [s] how long to wait for a person who is hidden behind another one.
+        gone_s: [s] the same for one lost in the middle of the image with nobody in front: it went behind a
+            wall, or the tracker missed it; then the robot goes to where it was seen last.
+        behind_rad: [rad] farthest off the person that somebody who hides it can be.
+        recover_1_s: [1/s] speed per distance on the way there.
+        give_up_s: [s] a person out of sight for this long is given up; the robot looks for anybody then.
         leaving_rad: [rad] a person seen farther off the nose, or about to be, has left the image.
-        min_confidence: people of lower confidence are not followed.
         target: smoothing of what is seen.
+        identity: who is taken for the followed person.
+        place: where a person was seen last.
         avoid: steering along walls.
     """
 
@@ -67,9 +83,14 @@ class FollowConfig:
     max_age_s: float = 0.3
     wait_s: float = 1.2
     patience_s: float = 3.0
+    gone_s: float = 0.7
+    behind_rad: float = math.radians(9.0)
+    recover_1_s: float = 0.6
+    give_up_s: float = 30.0
     leaving_rad: float = math.radians(19.0)
-    min_confidence: float = 0.5
     target: TargetConfig = field(default_factory=TargetConfig)
+    identity: IdentityConfig = field(default_factory=IdentityConfig)
+    place: PlaceConfig = field(default_factory=PlaceConfig)
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
 
 
@@ -78,21 +99,30 @@ class FollowState:
     """What the follower remembers from one step to the next.
 
     Attributes:
-        mode: "search", "follow", "wait" (just lost the person) or "blind" (no new, sound input).
+        mode: "search", "follow", "wait" (just lost the person), "recover" (on the way to where the person was
+            seen last) or "blind" (no new, sound input).
+        reason: why it is in this mode.
         time_s: [s] of the last sound sight.
-        target: the followed person, None while searching.
+        target: the followed person, None before anybody was seen and after it was given up.
+        others: tracks that were seen beside the followed person, and so are somebody else.
         walking_m_s: [m/s] learnt speed at which the person walks away.
         side: +1 (left) or -1, to which to search: where the person was last seen to go.
-        patience_s: [s] how long to wait for the person before searching.
+        has_left: whether the person was leaving the image sideways when it was last seen.
+        place: where the person was last seen; None once the robot has been there.
+        searched_rad: [rad] by how much the search has turned.
         stalled_s: [s] for how long the search has not turned: an obstacle is in the way.
     """
 
     mode: str = "search"
+    reason: str = "nobody seen yet"
     time_s: float = -math.inf
     target: Target | None = None
+    others: frozenset[int] = frozenset()
     walking_m_s: float = 0.0
     side: int = 1
-    patience_s: float = 0.0
+    has_left: bool = False
+    place: LastPlace | None = None
+    searched_rad: float = 0.0
     stalled_s: float = 0.0
 
 
@@ -108,6 +138,17 @@ class FollowPerson:
         """What the robot is doing."""
         return self.state.mode
 
+    @property
+    def reason(self) -> str:
+        """Why it is doing that."""
+        return self.state.reason
+
+    @property
+    def following(self) -> int | None:
+        """Number of the track that it drives after."""
+        target = self.state.target
+        return None if target is None or self.state.mode != "follow" else target.id
+
     def command(self, sight: Sight) -> Command:
         """Give the command for this sight."""
         self.state, command = follow(self.state, sight, self._config)
@@ -115,23 +156,29 @@ class FollowPerson:
 
 
 def follow(state: FollowState, sight: Sight, config: FollowConfig) -> tuple[FollowState, Command]:
-    """Take one step of searching, following or waiting.
+    """Take one step of searching, following, waiting or going to where the person was seen last.
 
-    The robot drives only while the person's track is younger than max_age_s, and stops on senseless
+    The robot drives after a person only while its track is younger than max_age_s, and stops on senseless
     input or when time stands still.
 
     Source: thesis, section 3.2: search by rotating, approach, hold distance; the learnt walking speed,
-    the drift and the wait are ours.
+    the drift, the wait and the way round corners are ours.
     """
     step_s = sight.time_s - state.time_s
     if not (sight.is_sound and step_s > 0.0):
-        return replace(state, mode="blind"), STOP
+        return replace(state, mode="blind", reason="senseless or old input"), STOP
     state = replace(_update_target(state, sight, step_s, config), time_s=sight.time_s)
     if state.target is None:
         return _search(state, sight, step_s, config)
-    if sight.time_s - state.target.seen_s > config.max_age_s:
-        return _wait(state, state.target, config)
-    return _go_after(state, state.target, sight, step_s, config)
+    gap_s = sight.time_s - state.target.seen_s
+    if gap_s <= config.max_age_s:
+        return _go_after(state, state.target, sight, step_s, config)
+    why, patience_s = _patience(state, state.target, sight, config)
+    if gap_s <= patience_s:
+        return _wait(state, state.target, why, config)
+    if state.place is not None and (not state.has_left or state.searched_rad > math.tau):
+        return _recover(state, state.place, sight, step_s, config)
+    return _search(state, sight, step_s, config)
 
 
 def distance_error(height: float, config: FollowConfig) -> float:
@@ -139,49 +186,60 @@ def distance_error(height: float, config: FollowConfig) -> float:
     return config.keep_height / height - 1.0
 
 
-def choose(people: tuple[SeenPerson, ...], target: Target | None, config: FollowConfig) -> SeenPerson | None:
-    """Choose whom to follow: the same person as before, else whoever seems nearest (tallest).
-
-    A person who is still tracked, though hidden just now, is not exchanged for another.
-    """
-    if target is not None and any(person.id == target.id for person in people):
-        people = tuple(person for person in people if person.id == target.id)
-    seen = [
-        person
-        for person in people
-        if person.is_sound and person.is_visible and person.confidence >= config.min_confidence
-    ]
-    return max(seen, key=lambda person: person.height, default=None)
-
-
 def _update_target(state: FollowState, sight: Sight, step_s: float, config: FollowConfig) -> FollowState:
-    """Predict where the followed person is, look for it, forget it when it stays away."""
+    """Predict where the followed person is, look for it, give it up when it stays away."""
     known = state.target if step_s <= config.wait_s else None
-    person = choose(sight.people, known, config)
-    if person is not None:
-        if known is None:
-            seen = first_sight(person, sight.time_s, config.target)
-        else:
-            moved = carry_on(known, sight.angular_rad_s, step_s)
-            seen = look_again(moved, person, sight.time_s, step_s, config.target)
-        return replace(state, target=seen, side=_side(seen, config), patience_s=_patience(seen, config))
-    if known is None or sight.time_s - known.seen_s > state.patience_s:
-        return replace(state, target=None)
-    moved = carry_on(known, sight.angular_rad_s, step_s)
-    return replace(state, target=forget_drift(moved, step_s, config.target))
+    if known is not None and sight.time_s - known.seen_s > config.give_up_s:
+        known = None
+    if known is None:
+        state = replace(state, target=None, others=frozenset(), place=None)
+    else:
+        known = carry_on(known, sight.angular_rad_s, step_s)
+        gone = forget_drift(known, step_s, config.target)
+        place = None if state.place is None else carry_place(state.place, sight, step_s)
+        state = replace(state, target=gone, place=place)
+    gap_s = 0.0 if known is None else sight.time_s - known.seen_s
+    person = recognise(sight.people, known, state.others, gap_s, config.identity, config.target)
+    if person is None:
+        return state
+    if known is None or gap_s > config.wait_s:
+        seen = first_sight(person, sight.time_s, config.target)
+    else:
+        seen = look_again(known, person, sight.time_s, step_s, config.target)
+    return _seen_at(state, seen, person, sight, config)
 
 
-def _side(target: Target, config: FollowConfig) -> int:
-    """Tell on which side the person will be when the search begins: +1 left, -1 right."""
-    return 1 if target.bearing_rad + target.drift_rad_s * config.wait_s >= 0.0 else -1
-
-
-def _patience(target: Target, config: FollowConfig) -> float:
-    """Tell how long [s] to wait for the person, should this be the last sight."""
-    soon = target.bearing_rad + target.drift_rad_s * config.max_age_s
-    return (
-        config.wait_s if max(abs(target.bearing_rad), abs(soon)) > config.leaving_rad else config.patience_s
+def _seen_at(
+    state: FollowState, seen: Target, person: SeenPerson, sight: Sight, config: FollowConfig
+) -> FollowState:
+    """Remember what to do should this be the last sight of the person."""
+    soon = seen.bearing_rad + seen.drift_rad_s * config.max_age_s
+    later = seen.bearing_rad + seen.drift_rad_s * config.wait_s
+    return replace(
+        state,
+        target=seen,
+        others=company(sight.people, person, state.others),
+        side=1 if later >= 0.0 else -1,
+        has_left=max(abs(seen.bearing_rad), abs(soon)) > config.leaving_rad,
+        place=place_of(seen, config.place),
+        searched_rad=0.0,
     )
+
+
+def _patience(state: FollowState, target: Target, sight: Sight, config: FollowConfig) -> tuple[str, float]:
+    """Tell how the person was lost, and how long [s] to wait for it where the robot is."""
+    if state.has_left:
+        return f"track {target.id} left the image", config.wait_s
+    for other in sight.people:
+        if other.is_visible and other.id != target.id and _is_in_front(other, target, config):
+            return f"track {target.id} is hidden behind track {other.id}", config.patience_s
+    return f"track {target.id} is out of sight", config.gone_s
+
+
+def _is_in_front(other: SeenPerson, target: Target, config: FollowConfig) -> bool:
+    """Tell whether somebody is nearer than the followed person and about where it should be."""
+    off_rad = abs(bearing(other.x, config.target) - target.bearing_rad)
+    return other.is_sound and other.height > 0.9 * target.height and off_rad < config.behind_rad
 
 
 def _search(
@@ -193,14 +251,34 @@ def _search(
     if stalled_s > config.stalled_s:
         state, stalled_s = replace(state, side=-state.side), 0.0
     turn = state.side * config.search_rad_s
-    state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s)
+    turned = state.searched_rad + abs(sight.angular_rad_s) * min(step_s, config.max_age_s)
+    if state.mode in ("follow", "wait", "blind"):
+        state = replace(state, reason="nobody came back")
+    state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s, searched_rad=turned)
     return state, Command(linear_m_s=0.0, angular_rad_s=turn)
 
 
-def _wait(state: FollowState, target: Target, config: FollowConfig) -> tuple[FollowState, Command]:
+def _wait(state: FollowState, target: Target, why: str, config: FollowConfig) -> tuple[FollowState, Command]:
     """Stand, and turn gently towards where the person should be by now."""
     turn = _clip(_facing_turn(target, config), config.wait_turn_rad_s)
-    return replace(state, mode="wait", walking_m_s=0.0), Command(linear_m_s=0.0, angular_rad_s=turn)
+    return replace(state, mode="wait", reason=why), Command(linear_m_s=0.0, angular_rad_s=turn)
+
+
+def _recover(
+    state: FollowState, place: LastPlace, sight: Sight, step_s: float, config: FollowConfig
+) -> tuple[FollowState, Command]:
+    """Drive to where the person was seen last; from there, search to the side where it went."""
+    place = on_the_way(place, sight, step_s)
+    end = end_of_way(place, config.place)
+    if end:
+        state = replace(state, mode="recover", reason=end, place=None, searched_rad=0.0)
+        return _search(state, sight, step_s, config)
+    aim = place.bearing_rad
+    speed = _facing_share(aim, config) * min(config.recover_1_s * place.distance_m, config.max_linear_m_s)
+    share = min(speed / config.swerve_from_m_s, 1.0)
+    turn = config.facing_gain * (aim + share * swerve(aim, echoes(sight), config.avoid))
+    state = replace(state, mode="recover", reason="to where the person was seen last", place=place)
+    return state, Command(linear_m_s=speed, angular_rad_s=_clip(turn, config.max_turn_rad_s))
 
 
 def _go_after(
@@ -210,7 +288,8 @@ def _go_after(
     walking = _learn_walking(state.walking_m_s, target, sight, step_s, config)
     speed = _speed(target, walking, config)
     turn = _clip(_turn(target, speed, sight, config), config.max_turn_rad_s)
-    state = replace(state, mode="follow", walking_m_s=walking)
+    why = f"track {target.id} is seen"
+    state = replace(state, mode="follow", reason=why, walking_m_s=walking)
     return state, Command(linear_m_s=speed, angular_rad_s=turn)
 
 
@@ -235,12 +314,12 @@ def _speed(target: Target, walking_m_s: float, config: FollowConfig) -> float:
     if target.height >= config.stop_height:
         return 0.0
     wanted = config.approach_gain * distance_error(target.height, config) + walking_m_s
-    return _facing_share(target, config) * min(max(wanted, 0.0), config.max_linear_m_s)
+    return _facing_share(target.bearing_rad, config) * min(max(wanted, 0.0), config.max_linear_m_s)
 
 
-def _facing_share(target: Target, config: FollowConfig) -> float:
+def _facing_share(bearing_rad: float, config: FollowConfig) -> float:
     """Give the share of the speed that the bearing allows: 1 ahead, 0 where the robot should only turn."""
-    left = config.turn_only_rad - abs(target.bearing_rad)
+    left = config.turn_only_rad - abs(bearing_rad)
     return min(max(left / (config.turn_only_rad - config.full_speed_rad), 0.0), 1.0)
 
 

@@ -19,6 +19,8 @@ class Scripted:
     """
 
     mode = "scripted"
+    reason = ""
+    following = None
 
     def __init__(self, script: Sequence[tuple[float, Command]]) -> None:
         self._from_s = [from_s for from_s, _ in script]
@@ -37,6 +39,8 @@ class Stand:
     """Stays where it is."""
 
     mode = "stand"
+    reason = ""
+    following = None
 
     def command(self, sight: Sight) -> Command:  # noqa: ARG002
         """Stop, whatever there is to see."""

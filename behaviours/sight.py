@@ -52,6 +52,8 @@ class Sight:
         sonar_angle_rad: (N,) [rad] direction of each sonar in the robot's frame, positive to the left.
         linear_m_s: [m/s] forward speed from the wheels.
         angular_rad_s: [rad/s] turn rate from the wheels, positive to the left.
+        image_age_s: [s] since the newest image came in; `people` are those of that image.
+        fault: why nobody can be seen just now, such as a tracker's error; empty if all is well.
 
     Raises:
         BadInput: there is not one angle for each range.
@@ -63,6 +65,8 @@ class Sight:
     sonar_angle_rad: Ranges
     linear_m_s: float
     angular_rad_s: float
+    image_age_s: float = 0.0
+    fault: str = ""
 
     def __post_init__(self) -> None:
         """Keep own, read-only copies of the arrays."""

@@ -19,6 +19,8 @@ class Repeat:
     """Gives recorded commands one after the other, and looks at nothing; after the last it stops."""
 
     mode = "repeat"
+    reason = ""
+    following = None
 
     def __init__(self, drive: Sequence[Command]) -> None:
         self._left = iter(drive)

@@ -25,12 +25,17 @@ class FollowingTask:
         band_m: [m] nearest and farthest distance that count as kept: 1.2 m to either side.
         facing_rad: [rad] bearing within which the robot faces the person.
         lost_s: [s] a person out of track for this long is lost; shorter gaps are drop-outs.
+        reached_s: [s] last part of the run, which tells whether the person was followed to the end.
+        spaces_m: [m] intimate and personal space, from the robot's outline to the middle of a body (E. T.
+            Hall, The Hidden Dimension, 1966).
     """
 
     keep_m: float = 3.9
     band_m: tuple[float, float] = (2.7, 5.1)
     facing_rad: float = math.radians(10.0)
     lost_s: float = 0.5
+    reached_s: float = 5.0
+    spaces_m: tuple[float, float] = (0.45, 1.2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +54,13 @@ class FollowingScore:
         collisions: contacts begun, over the whole run.
         times_lost: periods without track, each of lost_s or longer.
         longest_lost_s: [s] longest period without track.
+        followed_to_end: whether the person was tracked for most of the last reached_s, and not exchanged.
+        path_efficiency: from the encounter to the first time in the band, straight way / way driven.
+        mean_heading_error_rad: [rad] mean absolute bearing of the person.
+        jerk_m_s3: [m/s3] root mean square of the second difference of the forward speed, over the whole run.
+        wrong_person_s: [s] for which the robot went after somebody else.
+        identity_changes: how often the track that lay on the person got another number.
+        intimate_intrusions, personal_intrusions: how often somebody and the robot came so near.
 
     What is not defined (no encounter, nobody there) is NaN.
     """
@@ -65,6 +77,14 @@ class FollowingScore:
     collisions: int
     times_lost: int
     longest_lost_s: float
+    followed_to_end: bool
+    path_efficiency: float
+    mean_heading_error_rad: float
+    jerk_m_s3: float
+    wrong_person_s: float
+    identity_changes: int
+    intimate_intrusions: int
+    personal_intrusions: int
 
     def rows(self) -> list[Row]:
         """Give the scores as table rows: name, value, unit, explanation."""
@@ -81,41 +101,82 @@ class FollowingScore:
             ("collisions", float(self.collisions), "", "contacts begun in the run"),
             ("times lost", float(self.times_lost), "", "periods without track since found"),
             ("longest lost", self.longest_lost_s, "s", "longest period without track since found"),
+            ("to the end", float(self.followed_to_end), "", "1 if the right person was followed at the end"),
+            ("path efficiency", 100.0 * self.path_efficiency, "%", "straight way to the band / way driven"),
+            ("heading error", math.degrees(self.mean_heading_error_rad), "deg", "mean absolute since found"),
+            ("jerk", self.jerk_m_s3, "m/s3", "root mean square, forwards"),
+            ("wrong person", self.wrong_person_s, "s", "time spent going after somebody else"),
+            ("identity changes", float(self.identity_changes), "", "new numbers of the person's track"),
+            ("within 0.45 m", float(self.intimate_intrusions), "", "intrusions into intimate space"),
+            ("within 1.2 m", float(self.personal_intrusions), "", "intrusions into personal space"),
         ]
 
 
-def score_following(
-    *,
-    time_s: Floats,
-    robot: Floats,
-    person: Floats,
-    is_tracked: Flags,
-    is_contact: Flags,
-    task: FollowingTask | None = None,
-) -> FollowingScore:
-    """Score one run in which the robot was to follow one person.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FollowingRun:
+    """What happened in a run in which the robot was to follow one person; one row a frame.
 
-    Args:
+    Attributes:
         time_s: (T,) [s] rising.
         robot: (T, 3) [m, m, rad] x, y, heading in the world frame.
         person: (T, 2) [m] x, y in the world frame, NaN while the person is not there.
         is_tracked: (T,) whether a track lay on this person.
         is_contact: (T,) whether the robot touched anything or anyone.
-        task: what was asked.
+        track: (T,) number of the track that lay on this person, 0 for none; None to leave that out.
+        is_wrong: (T,) whether the robot went after somebody else; None to leave that out.
+        gap_m: (T,) [m] from the robot's outline to the nearest body's middle; None to leave that out.
 
     Raises:
         BadInput: the arrays do not have these shapes, or time does not rise.
     """
-    _check(time_s, robot, person, is_tracked, is_contact)
+
+    time_s: Floats
+    robot: Floats
+    person: Floats
+    is_tracked: Flags
+    is_contact: Flags
+    track: NDArray[np.int64] | None = None
+    is_wrong: Flags | None = None
+    gap_m: Floats | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse arrays that do not belong together."""
+        frames = len(self.time_s)
+        arrays = (self.time_s, self.robot, self.person, self.is_tracked, self.is_contact)
+        shapes = [a.shape for a in arrays]
+        if frames == 0 or shapes != [(frames,), (frames, 3), (frames, 2), (frames,), (frames,)]:
+            raise BadInput(
+                f"following: shapes must be (T,), (T, 3), (T, 2), (T,), (T,) with T > 0, got {shapes}"
+            )
+        more = [a.shape for a in (self.track, self.is_wrong, self.gap_m) if a is not None]
+        if any(shape != (frames,) for shape in more):
+            raise BadInput(f"following: track, is_wrong and gap_m must be ({frames},), got {more}")
+        if not np.all(np.diff(self.time_s) > 0.0):
+            raise BadInput("following: time_s must rise from frame to frame")
+
+    @property
+    def first(self) -> int:
+        """Index of the encounter; T if there was none."""
+        return int(np.argmax(self.is_tracked)) if self.is_tracked.any() else len(self.time_s)
+
+
+def score_following(run: FollowingRun, task: FollowingTask | None = None) -> FollowingScore:
+    """Score one run in which the robot was to follow one person.
+
+    Args:
+        run: what happened.
+        task: what was asked.
+    """
     task = FollowingTask() if task is None else task
-    distance, bearing = _person_from_robot(robot, person)
+    time_s, is_tracked, first = run.time_s, run.is_tracked, run.first
+    distance, bearing = _person_from_robot(run.robot, run.person)
     is_there = np.isfinite(distance)
-    first = int(np.argmax(is_tracked)) if is_tracked.any() else len(time_s)
     since = is_there & (np.arange(len(time_s)) >= first)
     is_kept = (distance >= task.band_m[0]) & (distance <= task.band_m[1])  # NaN is in no band
     is_facing = np.abs(bearing) < task.facing_rad
     error = np.abs(distance[since] - task.keep_m)
     lost = _periods(time_s, since & ~is_tracked)
+    intimate, personal = (_intrusions(run.gap_m, space_m) for space_m in task.spaces_m)
     return FollowingScore(
         found=bool(is_tracked.any()),
         time_to_find_s=float(time_s[first] - time_s[0]) if is_tracked.any() else math.nan,
@@ -126,20 +187,56 @@ def score_following(
         mean_distance_error_m=_mean(error),
         rms_distance_error_m=math.sqrt(_mean(error**2)),
         min_distance_m=float(np.min(distance[is_there])) if is_there.any() else math.nan,
-        collisions=_count_starts(is_contact),
+        collisions=_count_starts(run.is_contact),
         times_lost=int(np.sum(lost >= task.lost_s)),
         longest_lost_s=float(np.max(lost, initial=0.0)),
+        followed_to_end=_is_at_end(run, task.reached_s),
+        path_efficiency=_path_efficiency(run.robot[first:], is_kept[first:]),
+        mean_heading_error_rad=_mean(np.abs(bearing[since])),
+        jerk_m_s3=_jerk(run),
+        wrong_person_s=0.0 if run.is_wrong is None else float(np.sum(_periods(time_s, run.is_wrong))),
+        identity_changes=0 if run.track is None else _changes(run.track),
+        intimate_intrusions=intimate,
+        personal_intrusions=personal,
     )
 
 
-def _check(time_s: Floats, robot: Floats, person: Floats, is_tracked: Flags, is_contact: Flags) -> None:
-    """Refuse arrays that do not belong together."""
-    frames = len(time_s)
-    shapes = [a.shape for a in (time_s, robot, person, is_tracked, is_contact)]
-    if frames == 0 or shapes != [(frames,), (frames, 3), (frames, 2), (frames,), (frames,)]:
-        raise BadInput(f"following: shapes must be (T,), (T, 3), (T, 2), (T,), (T,) with T > 0, got {shapes}")
-    if not np.all(np.diff(time_s) > 0.0):
-        raise BadInput("following: time_s must rise from frame to frame")
+def _is_at_end(run: FollowingRun, last_s: float) -> bool:
+    """Tell whether the person was tracked for most of the last part, and nobody else followed."""
+    last = run.time_s >= run.time_s[-1] - last_s
+    is_there = last & np.isfinite(run.person[:, 0])
+    is_wrong = run.is_wrong is not None and bool(run.is_wrong[last].any())
+    return bool(np.mean(run.is_tracked[is_there]) > 0.5) and not is_wrong if is_there.any() else False
+
+
+def _path_efficiency(robot: Floats, is_kept: Flags) -> float:
+    """Give straight way / way driven until the person is first in the band; NaN if no way was to be made."""
+    if not is_kept.any():
+        return math.nan
+    way = robot[: int(np.argmax(is_kept)) + 1, :2]
+    driven = float(np.sum(np.hypot(*np.diff(way, axis=0).T)))
+    return float(np.hypot(*(way[-1] - way[0]))) / driven if driven > 0.1 else math.nan
+
+
+def _jerk(run: FollowingRun) -> float:
+    """Give the root mean square of the second derivative of the forward speed [m/s3], by differences."""
+    if len(run.time_s) < 4:
+        return math.nan
+    steps, heading = np.diff(run.robot[:, :2], axis=0), run.robot[:-1, 2]
+    ahead = steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading)
+    step_s = np.diff(run.time_s)
+    acceleration = np.diff(ahead / step_s) / step_s[1:]
+    return float(np.sqrt(np.mean((np.diff(acceleration) / step_s[2:]) ** 2)))
+
+
+def _changes(track: NDArray[np.int64]) -> int:
+    """Count how often the number on the person is another than the last one before."""
+    return int(np.sum(np.diff(track[track > 0]) != 0))
+
+
+def _intrusions(gap_m: Floats | None, space_m: float) -> int:
+    """Count how often the gap falls below a space."""
+    return 0 if gap_m is None else _count_starts(gap_m < space_m)
 
 
 def _person_from_robot(robot: Floats, person: Floats) -> tuple[Floats, Floats]:

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bad_input import BadInput
+from scenarios.faults import FaultySensors, FaultyTracker
 from scenarios.folder import RunFolder, claim_folder, versions
 from scenarios.loop import Tick, closed_loop
 from scenarios.scenario import Scenario
 from scenarios.score import RunScores, following_task, score_run
+from scenarios.true_eyes import check_eyes, make_eyes
 from scenarios.watchers import Watchers
-from sim.random_streams import stream
 from sim.world import World
-from tracker.people import make_tracker
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +26,7 @@ class RunOptions:
         seed: 0 or more; everything random follows from it.
         out: the run's folder.
         frames: whether to write every image.
-        tracker: name of the tracker.
+        tracker: name of the tracker, or "truth".
         renderer: "raycast" or "bullet".
         record: whether to write recording.rrd.
         overwrite: whether an earlier run in that folder may be replaced.
@@ -54,7 +54,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
     """
     if options.seed < 0:
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
-    tracker = make_tracker(options.tracker, stream(options.seed, "tracker"))
+    check_eyes(options.tracker)
     config = scenario.world(options.seed, options.renderer)
     about = {
         "scenario": scenario.name,
@@ -65,6 +65,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
     }
     with ExitStack() as stack:
         world = stack.enter_context(World(config))
+        tracker = make_eyes(options.tracker, options.seed, world.truth)
         claim_folder(options.out, overwrite=options.overwrite)
         folder = stack.enter_context(
             RunFolder(options.out, scenario.resolved(options.seed, versions()), about, frames=options.frames)
@@ -73,7 +74,9 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         recording = options.out / "recording.rrd" if options.record else None
         watchers = Watchers(stack, config, title, recording)
         frames = round(scenario.duration_s * config.control_hz)
-        for tick in closed_loop(world, tracker, scenario.make_behaviour(), frames):
+        stage = FaultySensors(world, scenario.spec.faults, config.robot.sonar.farthest_m)
+        eyes = FaultyTracker(tracker, scenario.spec.faults)
+        for tick in closed_loop(stage, eyes, scenario.make_behaviour(), frames):
             events = watchers.update(tick)
             folder.write(tick, [event.to_json() for event in events])
             report(tick, frames)

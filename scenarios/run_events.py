@@ -20,6 +20,7 @@ class LogLine:
         kind: what happened; those of `sim.events.Event`, and "detected", "lost" and "mode".
         who: a person, "robot", or "track 3".
         other: who or what else takes part: an occluder, what is touched, or the new mode.
+        why: of a change of mode, its reason.
     """
 
     frame: int
@@ -27,10 +28,14 @@ class LogLine:
     kind: str
     who: str
     other: str = ""
+    why: str = ""
 
     def to_json(self) -> dict[str, Any]:
-        """Give the line as a JSON object."""
-        return asdict(self)
+        """Give the line as a JSON object; `why` is left out where there is none."""
+        line = asdict(self)
+        if not self.why:
+            del line["why"]
+        return line
 
 
 class RunEvents:
@@ -47,11 +52,21 @@ class RunEvents:
         tracks = frozenset(track.id for track in tick.tracks if track.status is not Status.TENTATIVE)
         found += [("detected", f"track {number}", "") for number in sorted(tracks - self._tracks)]
         found += [("lost", f"track {number}", "") for number in sorted(self._tracks - tracks)]
-        if tick.mode != self._mode:
-            found.append(("mode", "robot", tick.mode))
-        self._tracks, self._mode = tracks, tick.mode
         time_s = tick.truth.time_s
-        return [
+        lines = [
             LogLine(frame=tick.frame, time_s=time_s, kind=kind, who=who, other=other)
             for kind, who, other in found
         ]
+        if tick.mode != self._mode:
+            lines.append(
+                LogLine(
+                    frame=tick.frame,
+                    time_s=time_s,
+                    kind="mode",
+                    who="robot",
+                    other=tick.mode,
+                    why=tick.reason,
+                )
+            )
+        self._tracks, self._mode = tracks, tick.mode
+        return lines

@@ -283,6 +283,17 @@ class RobotSpec(Strict):
     colour: CameraSpec = CameraSpec()
 
 
+class FaultSpec(Strict):
+    """Something that breaks for a while."""
+
+    kind: Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
+    """the cameras give the last images again and again, or black ones; the tracker fails at every image; all
+    sonars say that there is nothing; the odometry's pose jumps at once and again every second"""
+    from_s: Seconds
+    lasts_s: Seconds | None = None
+    """left out, it lasts to the end"""
+
+
 class DrawnSpec(Strict):
     """In a run's folder: what everything was drawn from."""
 
@@ -307,6 +318,8 @@ class ScenarioSpec(Strict):
     lights: Annotated[tuple[LightSpec, ...], Field(strict=False)] = ()
     """steps of the room's light, in the order of time; left out, it is full light"""
     robot: RobotSpec
+    faults: Annotated[tuple[FaultSpec, ...], Field(strict=False, max_length=50)] = ()
+    """what breaks, to try a controller"""
     drawn: DrawnSpec | None = None
 
 

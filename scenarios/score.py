@@ -9,13 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.following_metrics import FollowingScore, FollowingTask, score_following
+from scenarios.following_metrics import FollowingRun, FollowingScore, FollowingTask, score_following
 from scenarios.loop import Tick
 from sim.config import WorldConfig
+from sim.robot.peoplebot import outline_gap
+from sim.truth import PersonTruth
 from tracker.evaluation.boxes import iou
 from tracker.evaluation.evaluate import Scores, evaluate
 from tracker.evaluation.mot_files import read_tracks, read_truth
 from tracker.evaluation.table import to_json
+from tracker.track import Status, Track
 
 BAND_M = 1.2
 
@@ -44,35 +47,56 @@ class RunScores:
 
 
 class FollowingLog:
-    """Keeps what the scores of following need, tick by tick."""
+    """Keeps what the scores of following need, tick by tick; the person to follow is the scenario's first."""
 
     def __init__(self) -> None:
         self._rows: list[tuple[float, ...]] = []
 
     def add(self, tick: Tick) -> None:
-        """Take in one tick; the person followed is the scenario's first."""
-        truth = tick.truth
+        """Take in one tick."""
+        truth, robot = tick.truth, tick.truth.robot
         target = next((person for person in truth.people if person.id == 1), None)
         position = (math.nan, math.nan) if target is None else target.position_m
-        boxes = np.array([track.box for track in tick.tracks if track.status != "tentative"]).reshape(-1, 4)
-        has_box = target is not None and target.box is not None and len(boxes) > 0
-        is_tracked = has_box and bool(iou(np.array([target.box]), boxes).max() > 0.5)  # type: ignore[union-attr]
-        robot = truth.robot
+        track, is_wrong = _whose_track(tick)
+        gap_m = min((outline_gap(robot, person.position_m) for person in truth.people), default=math.inf)
         self._rows.append(
-            (truth.time_s, robot.x, robot.y, robot.heading, *position, is_tracked, bool(truth.contacts))
+            (
+                *(truth.time_s, robot.x, robot.y, robot.heading, *position),
+                *(track > 0, bool(truth.contacts), track, is_wrong, gap_m),
+            )
         )
 
     def score(self, task: FollowingTask) -> FollowingScore:
         """Score the run so far against what the robot was to do."""
         table = np.array(self._rows, dtype=np.float64)
-        return score_following(
+        run = FollowingRun(
             time_s=table[:, 0],
             robot=table[:, 1:4],
             person=table[:, 4:6],
             is_tracked=table[:, 6] > 0.0,
             is_contact=table[:, 7] > 0.0,
-            task=task,
+            track=table[:, 8].astype(np.int64),
+            is_wrong=table[:, 9] > 0.0,
+            gap_m=table[:, 10],
         )
+        return score_following(run, task)
+
+
+def _whose_track(tick: Tick) -> tuple[int, bool]:
+    """Give the number of the track on the first person, 0 for none; and whether somebody else is followed."""
+    tracks = [track for track in tick.tracks if track.status is not Status.TENTATIVE]
+    people = [person for person in tick.truth.people if person.box is not None]
+    mine, is_wrong = (0.5, 0), False
+    for track in tracks:
+        covers = [(_overlap(track, person), person.id) for person in people]
+        overlap, whose = max(covers, default=(0.0, 0))
+        is_wrong |= track.id == tick.following and whose != 1 and overlap > 0.5
+        mine = max([mine, *((share, track.id) for share, owner in covers if owner == 1)])
+    return mine[1], is_wrong
+
+
+def _overlap(track: Track, person: PersonTruth) -> float:
+    return float(iou(np.array(track.box), np.array(person.box)))
 
 
 def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:

@@ -96,6 +96,7 @@ class DriveConfig:
         max_angular_rad_s: [rad/s] turn rate limit.
         linear_acceleration_m_s2: [m/s2] rate at which the forward speed changes.
         angular_acceleration_rad_s2: [rad/s2] rate at which the turn rate changes.
+        emergency_m_s2: [m/s2] rate at which the forward speed falls in an emergency stop.
         encoder_noise_m: [m] standard deviation of the way that a wheel's encoder counts on 1 m; it grows with
             the square root of the way.
     """
@@ -104,6 +105,7 @@ class DriveConfig:
     max_angular_rad_s: float = math.radians(150.0)
     linear_acceleration_m_s2: float = 0.6
     angular_acceleration_rad_s2: float = math.radians(200.0)
+    emergency_m_s2: float = 5.0
     encoder_noise_m: float = 0.002
 
 
@@ -135,7 +137,7 @@ class WorldConfig:
         seed: of every random stream in the world.
         physics_hz: [Hz] steps of the physics engine.
         control_hz: [Hz] commands and images.
-        renderer: "raycast" or "bullet".
+        renderer: "raycast" or "bullet"; "none" for a world without images, which is several times faster.
 
     Raises:
         BadInput: a control step is not a whole number of physics steps, or the seed is negative.

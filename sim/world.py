@@ -15,16 +15,17 @@ from sim.images.colour import colour_image, expose
 from sim.images.surfaces import make_look_table
 from sim.images.thermal import detect, encode_8bit, make_detector, surface_image
 from sim.looks import Look
-from sim.observation import Observation
+from sim.observation import Observation, Senses
 from sim.people.crowd import Crowd
 from sim.physics.bullet import Bullet
 from sim.places.place import Place
 from sim.random_streams import stream
-from sim.rendering.render import View, render
+from sim.rendering.render import BLIND, View, render
 from sim.rendering.shape_table import make_shape_table
 from sim.robot.peoplebot import NAME as ROBOT
 from sim.robot.peoplebot import PeopleBot
 from sim.robot.robot_looks import robot_look
+from sim.scene import Scene, bystanders
 from sim.truth import BORDER, Truth
 from sim.truth_maker import TruthMaker
 
@@ -85,18 +86,43 @@ class World:
         """
         thermal_c = self._thermal_image()
         lowest, highest = self.config.robot.thermal.lowest_c, self.config.robot.thermal.highest_c
+        senses = self.sense()
         return Observation(
-            time_s=self.time_s,
+            time_s=senses.time_s,
             thermal=encode_8bit(thermal_c, lowest, highest),
             thermal_c=thermal_c,
             colour=self._colour_image(),
+            sonar_m=senses.sonar_m,
+            odometry=senses.odometry,
+            wheel_speeds_m_s=senses.wheel_speeds_m_s,
+        )
+
+    def sense(self) -> Senses:
+        """Read every sensor but the cameras once; instead of `observe`, where nobody needs the images."""
+        return Senses(
+            time_s=self.time_s,
             sonar_m=self._robot.sonar(),
             odometry=self._robot.odometry,
             wheel_speeds_m_s=self._robot.wheel_speeds(),
         )
 
+    def scene(self) -> Scene:
+        """Tell what is true at this instant as far as no image is needed for it."""
+        return Scene(
+            time_s=self.time_s,
+            robot=self._robot.pose(),
+            robot_velocity=self._robot.velocity(),
+            contacts=tuple(sorted(self._touching)),
+            people=bystanders(
+                self._crowd.people,
+                self._bullet,
+                self._robot.world_from_robot(),
+                self.config.robot.thermal.camera,
+            ),
+        )
+
     def truth(self) -> Truth:
-        """Tell what is true at this instant."""
+        """Tell all that is true at this instant."""
         sight = self._look(self.config.robot.thermal.camera)
         return self._truth_maker.make(
             time_s=self.time_s,
@@ -108,13 +134,15 @@ class World:
             contacts=tuple(sorted(self._touching)),
         )
 
-    def step(self, linear_m_s: float, angular_rad_s: float) -> None:
+    def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
         """Drive the robot by a velocity command for one control step; people and light move on too.
+
+        In an emergency the robot loses its forward speed at a higher rate.
 
         Raises:
             BadInput: the command is not finite.
         """
-        self._robot.command(linear_m_s, angular_rad_s)
+        self._robot.command(linear_m_s, angular_rad_s, is_emergency=is_emergency)
         self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot)
         self._tick += 1
         touched = set()
@@ -131,9 +159,17 @@ class World:
     def _build(self) -> None:
         config, bullet = self.config, self._bullet
         looks = _add_fixtures(bullet, config.place)
-        self._crowd = Crowd(bullet, config.people, config.place, config.seed)
+        self._crowd = Crowd(
+            bullet, config.people, config.place, config.seed, is_visible=config.renderer != BLIND
+        )
         self._robot = PeopleBot(bullet, config.robot, config.seed)
-        looks |= self._crowd.looks
+        if config.renderer != BLIND:
+            self._open_eyes(looks | self._crowd.looks)
+        self._settle()
+
+    def _open_eyes(self, looks: dict[str, Look]) -> None:
+        """Prepare for images: what is to be seen, and how each part looks, by body name."""
+        config, bullet = self.config, self._bullet
         keys = bullet.parts()
         part_looks = [robot_look(key.link_name) if key.name == ROBOT else looks[key.name] for key in keys]
         self._table = make_shape_table(bullet.visual_shapes())
@@ -144,17 +180,24 @@ class World:
         self._detector = make_detector(config.robot.thermal, stream(config.seed, "thermal.detector"))
         self._thermal_noise = stream(config.seed, "thermal.noise")
         self._colour_noise = stream(config.seed, "colour.noise")
-        self._settle()
 
     def _settle(self) -> None:
         """Take over the poses of a new instant; what was seen before is forgotten."""
         self._crowd.show(self._robot)
+        if self.config.renderer == BLIND:
+            return
         self._poses = self._bullet.part_poses()
         self._hidden = self._bullet.hidden_parts()
         self._seen: dict[Camera, _Sight] = {}
 
     def _look(self, camera: Camera) -> _Sight:
-        """Render one camera's view, once an instant."""
+        """Render one camera's view, once an instant.
+
+        Raises:
+            BadInput: this is a world without images.
+        """
+        if self.config.renderer == BLIND:
+            raise BadInput("renderer 'none': there are no images in this world; choose raycast or bullet")
         if camera not in self._seen:
             pose = self._robot.world_from_robot() @ camera.robot_from_camera
             self._seen[camera] = _Sight(pose, self._render(camera, pose))

@@ -64,6 +64,7 @@ class PeopleBot:
         self._encoder_noise = stream(seed, "odometry.noise")
         self._command = (0.0, 0.0)
         self._target = (0.0, 0.0)
+        self._is_emergency = False
         x, y = config.at_m
         half = config.heading_rad / 2.0
         bullet.add_urdf(
@@ -78,8 +79,10 @@ class PeopleBot:
         self._turned = self._wheel_angles()
         self.odometry = Planar(x, y, config.heading_rad)
 
-    def command(self, linear: float, angular: float) -> None:
+    def command(self, linear: float, angular: float, *, is_emergency: bool = False) -> None:
         """Ask for a velocity [m/s, rad/s], clipped to the robot's limits; it is approached, not jumped to.
+
+        In an emergency the forward speed falls at its own, higher rate.
 
         Raises:
             BadInput: the command is not finite.
@@ -87,14 +90,17 @@ class PeopleBot:
         if not (math.isfinite(linear) and math.isfinite(angular)):
             raise BadInput(f"velocity command ({linear}, {angular}) must be finite")
         self._target = limit_command(linear, angular, self._limits)
+        self._is_emergency = is_emergency
 
     def drive(self, dt_s: float) -> None:
         """Move the wheel speeds towards the command, as far as the acceleration limits allow in dt_s."""
         if self._command == self._target:
             return
+        limits = self._limits
+        linear_m_s2 = limits.emergency_m_s2 if self._is_emergency else limits.linear_acceleration_m_s2
         self._command = (
-            _approach(self._command[0], self._target[0], self._limits.linear_acceleration_m_s2 * dt_s),
-            _approach(self._command[1], self._target[1], self._limits.angular_acceleration_rad_s2 * dt_s),
+            _approach(self._command[0], self._target[0], linear_m_s2 * dt_s),
+            _approach(self._command[1], self._target[1], limits.angular_acceleration_rad_s2 * dt_s),
         )
         self._turn_wheels()
 
@@ -134,11 +140,7 @@ class PeopleBot:
 
     def gap_to(self, x: float, y: float) -> float:
         """Distance [m] on the floor between its outline and a point, world frame; 0 inside."""
-        pose = self.pose()
-        cos, sin = math.cos(pose.heading), math.sin(pose.heading)
-        ahead = cos * (x - pose.x) + sin * (y - pose.y)
-        aside = cos * (y - pose.y) - sin * (x - pose.x)
-        return math.hypot(max(_REAR_M - ahead, ahead - _FRONT_M, 0.0), max(abs(aside) - _HALF_WIDTH_M, 0.0))
+        return outline_gap(self.pose(), (x, y))
 
     def velocity(self) -> tuple[float, float]:
         """Return the true forward speed [m/s] and turn rate [rad/s]."""
@@ -157,6 +159,14 @@ class PeopleBot:
     def _wheel_angles(self) -> NDArray[np.float64]:
         angles, _ = self._bullet.joint_states(NAME, _JOINTS)
         return angles
+
+
+def outline_gap(pose: Planar, point_m: tuple[float, float]) -> float:
+    """Distance [m] on the floor between the outline of a robot at a pose and a point; 0 inside."""
+    cos, sin = math.cos(pose.heading), math.sin(pose.heading)
+    x, y = point_m[0] - pose.x, point_m[1] - pose.y
+    ahead, aside = cos * x + sin * y, cos * y - sin * x
+    return math.hypot(max(_REAR_M - ahead, ahead - _FRONT_M, 0.0), max(abs(aside) - _HALF_WIDTH_M, 0.0))
 
 
 def _approach(value: float, target: float, step: float) -> float:

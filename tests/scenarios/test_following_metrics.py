@@ -6,27 +6,28 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bad_input import BadInput
-from scenarios.following_metrics import FollowingTask, score_following
+from scenarios.following_metrics import FollowingRun, FollowingTask, score_following
 from scenarios.load import load_scenario
 from scenarios.score import following_task
 
 STEP_S = 0.5
 
 
-def score(distance, *, bearing=0.0, tracked=None, contact=None, heading=0.7, task=None):
+def score(distance, *, bearing=0.0, tracked=None, contact=None, heading=0.7, task=None, **more):
     """A robot at (1, 2) with a person at these distances and bearings from its nose."""
     distance = np.array(distance, float)
     frames = len(distance)
     angle = heading + np.broadcast_to(bearing, frames)
     person = np.stack([1.0 + distance * np.cos(angle), 2.0 + distance * np.sin(angle)], axis=1)
-    return score_following(
+    run = FollowingRun(
         time_s=10.0 + STEP_S * np.arange(frames),
         robot=np.tile([1.0, 2.0, heading], (frames, 1)),
         person=person,
         is_tracked=np.array([True] * frames if tracked is None else tracked),
         is_contact=np.array([False] * frames if contact is None else contact),
-        task=task,
+        **more,
     )
+    return score_following(run, task)
 
 
 def test_a_run_without_fault_scores_full():
@@ -83,7 +84,7 @@ def test_whoever_is_never_tracked_was_not_found():
     assert math.isnan(result.time_to_find_s)
     assert math.isnan(result.followed)
     assert result.times_lost == 0
-    assert len(result.rows()) == 12
+    assert len(result.rows()) == 20
 
 
 def test_frames_without_the_person_do_not_count():
@@ -118,9 +119,37 @@ def test_arrays_of_different_lengths_and_standing_time_are_refused():
         "is_contact": np.zeros(3, bool),
     }
     with pytest.raises(BadInput, match="shapes"):
-        score_following(**{**good, "person": np.ones((2, 2))})
+        FollowingRun(**{**good, "person": np.ones((2, 2))})
     with pytest.raises(BadInput, match="rise"):
-        score_following(**{**good, "time_s": np.zeros(3)})
+        FollowingRun(**{**good, "time_s": np.zeros(3)})
+
+
+def test_a_person_lost_or_exchanged_in_the_last_seconds_was_not_followed_to_the_end():
+    tracked = [True] * 20
+    assert score([3.0] * 20, tracked=tracked).followed_to_end
+    assert not score([3.0] * 20, tracked=[True] * 13 + [False] * 7).followed_to_end
+    assert score([3.0] * 20, tracked=[False] * 13 + [True] * 7).followed_to_end
+    assert not score([3.0] * 20, is_wrong=np.arange(20) == 16).followed_to_end
+    assert score([3.0] * 20, is_wrong=np.arange(20) == 3).wrong_person_s == STEP_S
+
+
+def test_new_numbers_of_the_track_and_intrusions_are_counted():
+    result = score([3.0] * 6, track=np.array([0, 4, 4, 0, 4, 7]), gap_m=np.array([2.0, 1, 0.4, 1, 0.4, 2]))
+    assert result.identity_changes == 1
+    assert (result.intimate_intrusions, result.personal_intrusions) == (2, 1)
+
+
+def test_a_detour_to_the_person_halves_the_efficiency_and_a_steady_run_has_no_jerk():
+    frames = 9
+    time_s, x = STEP_S * np.arange(frames), 0.1 * np.arange(frames)
+    robot = np.stack([x, np.where(np.arange(frames) % 2, 0.1 * math.sqrt(3.0), 0.0), 0.0 * x], axis=1)
+    person = np.stack([x + 9.0, 0.0 * x], axis=1)
+    person[-1, 0] = x[-1] + 3.0
+    seen = np.ones(frames, bool)
+    run = FollowingRun(time_s=time_s, robot=robot, person=person, is_tracked=seen, is_contact=~seen)
+    assert score_following(run).path_efficiency == pytest.approx(0.5)
+    assert score_following(run).jerk_m_s3 == pytest.approx(0.0, abs=1e-9)
+    assert score_following(run).mean_heading_error_rad < 0.05
 
 
 def test_the_distance_to_keep_is_the_one_that_shows_the_person_as_tall_as_asked() -> None:
