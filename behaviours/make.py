@@ -8,7 +8,9 @@ from bad_input import BadInput
 from behaviours.arbitrate import Guarded
 from behaviours.behaviour import Behaviour
 from behaviours.command import Command
+from behaviours.follow_corridor import CorridorConfig, FollowCorridor
 from behaviours.follow_person import FollowConfig, FollowPerson
+from behaviours.patrol import Patrol
 from behaviours.safety import SafetyConfig
 from behaviours.scripted import Scripted, Stand
 
@@ -18,14 +20,16 @@ def make_behaviour(
     *,
     script: Sequence[tuple[float, Command]] = (),
     follow: FollowConfig | None = None,
+    corridor: CorridorConfig | None = None,
     safety: SafetyConfig | None = None,
 ) -> Guarded:
     """Make a behaviour by its name; whatever it commands, the sonars limit.
 
     Args:
-        name: "stand", "follow_person" or "scripted".
+        name: "stand", "follow_person", "follow_corridor", "patrol" or "scripted".
         script: for "scripted", pairs of a time [s] and the command from then on.
         follow: for "follow_person", its gains and limits.
+        corridor: for "follow_corridor", its sense, gains and limits.
         safety: the robot's limits and outline.
 
     Raises:
@@ -34,6 +38,8 @@ def make_behaviour(
     makers: dict[str, Callable[[], Behaviour]] = {
         "stand": Stand,
         "follow_person": lambda: FollowPerson(follow),
+        "follow_corridor": lambda: FollowCorridor(corridor),
+        "patrol": lambda: Patrol(FollowCorridor(corridor), follow),
         "scripted": lambda: Scripted(script),
     }
     if name not in makers:

@@ -52,6 +52,7 @@ class Sight:
         sonar_angle_rad: (N,) [rad] direction of each sonar in the robot's frame, positive to the left.
         linear_m_s: [m/s] forward speed from the wheels.
         angular_rad_s: [rad/s] turn rate from the wheels, positive to the left.
+        colour: (H, W, 3) uint8 sRGB, the colour camera's image; None where there is none.
         image_age_s: [s] since the newest image came in; `people` are those of that image.
         fault: why nobody can be seen just now, such as a tracker's error; empty if all is well.
 
@@ -65,6 +66,7 @@ class Sight:
     sonar_angle_rad: Ranges
     linear_m_s: float
     angular_rad_s: float
+    colour: NDArray[np.uint8] | None = None
     image_age_s: float = 0.0
     fault: str = ""
 

@@ -152,6 +152,8 @@ def _check_robot(spec: ScenarioSpec, ground: Ground) -> None:
         )
     if spec.robot.keep_height is not None and spec.robot.behaviour != "follow_person":
         raise BadInput("robot.keep_height: only a robot that is to 'follow_person' takes it")
+    if spec.robot.walls_by is not None and spec.robot.behaviour != "follow_corridor":
+        raise BadInput("robot.walls_by: only a robot that is to 'follow_corridor' takes it")
     _check_order("robot.commands", "from_s", [command.from_s for command in spec.robot.commands])
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bad_input import BadInput
-from scenarios.show_scores import print_following, print_scores, print_spread
+from scenarios.show_scores import print_corridor, print_following, print_scores, print_spread
 
 if TYPE_CHECKING:
     from scenarios.run import RunOptions
@@ -123,6 +123,8 @@ def run(
     print_scores(scores.people)
     if scores.following is not None:
         print_following(scores.following)
+    if scores.corridor is not None:
+        print_corridor(scores.corridor)
     for path in sorted(options.out.iterdir()):
         click.echo(path)
 

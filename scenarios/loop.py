@@ -162,6 +162,7 @@ def make_sight(
         sonar_angle_rad=SONAR_ANGLE_RAD,
         linear_m_s=(left + right) / 2.0,
         angular_rad_s=(right - left) / WHEEL_DISTANCE_M,
+        colour=observation.colour,
         image_age_s=image_age_s,
         fault=fault,
     )

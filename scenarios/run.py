@@ -85,7 +85,10 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         if scenario.robot.behaviour == "follow_person" and config.people:
             task = following_task(config, scenario.follow_config().keep_height)
             following = watchers.following.score(task)
-        scores = score_run(options.out, frames, following)
+        corridor = None
+        if scenario.robot.behaviour == "follow_corridor":
+            corridor = watchers.corridor.score(scenario.plan)
+        scores = score_run(options.out, frames, following, corridor)
         watchers.save(options.out)
         folder.complete(scores.to_json())
     return scores

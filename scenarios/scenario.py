@@ -11,6 +11,8 @@ from typing import Any
 from bad_input import BadInput
 from behaviours.behaviour import Behaviour
 from behaviours.command import Command
+from behaviours.corridor_from_image import CameraView
+from behaviours.follow_corridor import CorridorConfig
 from behaviours.follow_person import FollowConfig
 from behaviours.make import make_behaviour
 from scenarios.build_place import make_floor_plan, make_place
@@ -103,6 +105,11 @@ class Scenario:
         """The same scenario, but the robot repeats recorded commands."""
         return replace(self, drive=tuple(drive))
 
+    def steered_by(self, behaviour: str) -> Scenario:
+        """The same scenario, but another behaviour drives the robot."""
+        robot = self.robot.model_copy(update={"behaviour": behaviour})
+        return replace(self, spec=self.spec.model_copy(update={"robot": robot}))
+
     def make_behaviour(self) -> Behaviour:
         """What drives the robot, fresh from the start."""
         if self.drive is not None:
@@ -111,12 +118,20 @@ class Scenario:
             (c.from_s, Command(linear_m_s=c.linear_m_s, angular_rad_s=math.radians(c.angular_deg_s)))
             for c in self.robot.commands
         ]
-        return make_behaviour(self.robot.behaviour, script=script, follow=self.follow_config())
+        return make_behaviour(
+            self.robot.behaviour, script=script, follow=self.follow_config(), corridor=self.corridor_config()
+        )
 
     def follow_config(self) -> FollowConfig:
         """Gains and heights of a robot that follows a person."""
         keep_height = self.robot.keep_height
         return FollowConfig() if keep_height is None else FollowConfig(keep_height=keep_height)
+
+    def corridor_config(self) -> CorridorConfig:
+        """The sense that tells a robot the walls of a corridor, and its colour camera."""
+        camera = equip_robot(self.robot).colour.camera
+        view = CameraView(focal_px=camera.focal_px, position_m=camera.position_m)
+        return CorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
 
     def resolved(self, seed: int, versions: dict[str, str] | None = None) -> dict[str, Any]:
         """The scenario as plain data with everything drawn; reading it again gives the same world.

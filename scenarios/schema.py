@@ -274,11 +274,13 @@ class RobotSpec(Strict):
 
     at_m: Point
     heading_deg: Degrees = 0.0
-    behaviour: Literal["stand", "follow_person", "scripted"] = "stand"
+    behaviour: Literal["stand", "follow_person", "follow_corridor", "scripted"] = "stand"
     commands: Annotated[tuple[CommandSpec, ...], Field(strict=False)] = ()
     """of a scripted robot, in the order of time"""
     keep_height: Annotated[float, Field(gt=0.05, le=1.5)] | None = None
     """of a following robot: the person's height in the image, in image heights, at which it stops"""
+    walls_by: Literal["sonar", "image"] | None = None
+    """of a robot that follows corridors: the sense that tells it the walls; left out, the sonar"""
     thermal: ThermalSpec = ThermalSpec()
     colour: CameraSpec = CameraSpec()
 

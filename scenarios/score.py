@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from scenarios.corridor_metrics import CorridorScore
 from scenarios.following_metrics import FollowingRun, FollowingScore, FollowingTask, score_following
 from scenarios.loop import Tick
 from sim.config import WorldConfig
@@ -30,19 +31,22 @@ class RunScores:
     Attributes:
         people: detection, localisation and identity; from the files of the run.
         following: of the first person in the scenario; None if the robot was not to follow anybody.
+        corridor: of the way along corridors; None if the robot was not to follow any.
     """
 
     people: Scores
     following: FollowingScore | None
+    corridor: CorridorScore | None = None
 
     def to_json(self) -> dict[str, Any]:
         """Give all figures as JSON can hold them: None for what is undefined."""
         groups: dict[str, Any] = dict(to_json(self.people))
-        if self.following is not None:
-            groups["following"] = {
-                name: None if isinstance(value, float) and math.isnan(value) else value
-                for name, value in asdict(self.following).items()
-            }
+        for group, score in (("following", self.following), ("corridor", self.corridor)):
+            if score is not None:
+                groups[group] = {
+                    name: None if isinstance(value, float) and math.isnan(value) else value
+                    for name, value in asdict(score).items()
+                }
         return groups
 
 
@@ -110,7 +114,9 @@ def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:
     return FollowingTask(keep_m=keep_m, band_m=(keep_m - BAND_M, keep_m + BAND_M))
 
 
-def score_run(folder: Path, frames: int, following: FollowingScore | None) -> RunScores:
+def score_run(
+    folder: Path, frames: int, following: FollowingScore | None, corridor: CorridorScore | None = None
+) -> RunScores:
     """Score a run from the truth and tracks in its folder."""
     truth, tracks = read_truth(folder / "truth" / "gt.txt"), read_tracks(folder / "tracks.txt")
-    return RunScores(evaluate(truth, tracks, frames=frames), following)
+    return RunScores(evaluate(truth, tracks, frames=frames), following, corridor)

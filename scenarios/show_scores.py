@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.table import Table
 
-from scenarios.following_metrics import FollowingScore
+from scenarios.corridor_metrics import CorridorScore
+from scenarios.following_metrics import FollowingScore, Row
 from tracker.evaluation.evaluate import Scores, combine
 from tracker.evaluation.table import rows, spread
 
@@ -24,8 +25,17 @@ def print_scores(scores: Scores) -> None:
 
 def print_following(score: FollowingScore) -> None:
     """Print how well one person was followed."""
-    table = _table("following", "figure", "value", "meaning")
-    for name, value, unit, meaning in score.rows():
+    _print_rows("following", score.rows())
+
+
+def print_corridor(score: CorridorScore) -> None:
+    """Print how well corridors were followed."""
+    _print_rows("corridor", score.rows())
+
+
+def _print_rows(title: str, rows: Sequence[Row]) -> None:
+    table = _table(title, "figure", "value", "meaning")
+    for name, value, unit, meaning in rows:
         table.add_row(name, _number(value, unit), meaning)
     _print(table)
 

@@ -6,6 +6,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from scenarios.contact_sheet import ContactSheet
+from scenarios.corridor_score import CorridorLog
 from scenarios.loop import Tick
 from scenarios.record import Recorder
 from scenarios.run_events import LogLine, RunEvents
@@ -18,6 +19,7 @@ class Watchers:
 
     def __init__(self, stack: ExitStack, config: WorldConfig, title: str, recording: Path | None) -> None:
         self.following = FollowingLog()
+        self.corridor = CorridorLog()
         self._events = RunEvents()
         self._sheet = ContactSheet(title, config.robot)
         self._recorder = (
@@ -28,6 +30,7 @@ class Watchers:
         """Look at one tick and return what happened at it."""
         events = self._events.update(tick)
         self.following.add(tick)
+        self.corridor.add(tick)
         self._sheet.add(tick, events)
         if self._recorder is not None:
             self._recorder.log(tick, events)

@@ -136,7 +136,7 @@ def test_a_following_robot_and_a_scripted_one_get_their_behaviour() -> None:
     for name in NAMES:
         scenario = load_scenario(name)
         assert scenario.make_behaviour() is not scenario.make_behaviour()
-        assert scenario.robot.behaviour in ("stand", "follow_person", "scripted")
+        assert scenario.robot.behaviour in ("stand", "follow_person", "follow_corridor", "scripted")
 
 
 @pytest.mark.parametrize(("seed", "renderer"), [(-1, "raycast"), (0, "opengl")])
