@@ -11,23 +11,32 @@ from sim.robot.peoplebot import Planar
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Observation:
-    """The robot's senses at one instant.
+class Senses:
+    """What the robot senses at one instant without its eyes.
 
     Attributes:
         time_s: [s] since the start.
-        thermal: (H, W) uint8 grey, linear over 24..36 degC: the robot's view.
-        thermal_c: (H, W) float32 [degC], the same before it is encoded.
-        colour: (H, W, 3) uint8 sRGB.
         sonar_m: (16,) [m].
         odometry: pose that the wheels' encoders add up to, world frame, exact at the start.
         wheel_speeds_m_s: rim speeds [m/s] of the left and right wheel.
     """
 
     time_s: float
-    thermal: NDArray[np.uint8]
-    thermal_c: NDArray[np.float32]
-    colour: NDArray[np.uint8]
     sonar_m: NDArray[np.float64]
     odometry: Planar
     wheel_speeds_m_s: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Observation(Senses):
+    """All the robot's senses at one instant.
+
+    Attributes:
+        thermal: (H, W) uint8 grey, linear over 24..36 degC: the robot's view.
+        thermal_c: (H, W) float32 [degC], the same before it is encoded.
+        colour: (H, W, 3) uint8 sRGB.
+    """
+
+    thermal: NDArray[np.uint8]
+    thermal_c: NDArray[np.float32]
+    colour: NDArray[np.uint8]

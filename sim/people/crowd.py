@@ -16,7 +16,7 @@ from sim.physics.bullet import Bullet
 from sim.places.place import Place
 from sim.random_streams import stream
 from sim.robot.peoplebot import RADIUS_M, PeopleBot
-from sim.shapes import UPRIGHT, Shape, ShapeKind
+from sim.shapes import UPRIGHT, Part, Shape, ShapeKind
 
 # What robots bump into and sonars hear: an upright capsule, which no camera sees.
 _SOLID = "solid"
@@ -27,11 +27,15 @@ class Crowd:
 
     Each visible part is a body of its own, put where the gait says it is. Contacts and sonar meet one
     upright capsule per person instead, which moves in every physics step. Who appears where the robot stands
-    is passed through until they are apart, as physics would throw the robot away.
+    is passed through until they are apart, as physics would throw the robot away. Where nobody looks, people
+    are made of that capsule alone.
     """
 
-    def __init__(self, bullet: Bullet, configs: Sequence[PersonConfig], place: Place, seed: int) -> None:
+    def __init__(
+        self, bullet: Bullet, configs: Sequence[PersonConfig], place: Place, seed: int, *, is_visible: bool
+    ) -> None:
         self._bullet = bullet
+        self._is_visible = is_visible
         self._obstacles = place.obstacles
         self.people = tuple(Person(config, stream(seed, f"person.{config.name}")) for config in configs)
         self.looks: dict[str, Look] = {}
@@ -70,7 +74,7 @@ class Crowd:
                 self._make_solid(person, robot)
 
     def _add(self, person: Person) -> None:
-        for part in person.parts:
+        for part in self._visible_parts(person):
             name = f"{person.name}/{part.name}"
             self._bullet.add_part(name, part.shapes, solid=False)
             self.looks[name] = part.look
@@ -82,7 +86,7 @@ class Crowd:
 
     def _set_shown(self, person: Person, is_shown: bool) -> None:
         self._is_shown[person.name] = is_shown
-        for part in person.parts:
+        for part in self._visible_parts(person):
             self._bullet.set_hidden(f"{person.name}/{part.name}", not is_shown)
         if not is_shown:
             self._solid.discard(person.name)
@@ -94,13 +98,18 @@ class Crowd:
             self._solid.add(person.name)
             self._bullet.set_hidden(f"{person.name}/{_SOLID}", False)
 
+    def _visible_parts(self, person: Person) -> tuple[Part, ...]:
+        return person.parts if self._is_visible else ()
+
     def _pose(self, person: Person) -> None:
+        self._place_solid(person, person.position)
+        if not self._is_visible:
+            return
         poses = person.poses()
         orientations = Rotation.from_matrix(poses[:, :3, :3]).as_quat().tolist()
         positions = poses[:, :3, 3].tolist()
         for part, position, orientation in zip(person.parts, positions, orientations, strict=True):
             self._bullet.set_pose(f"{person.name}/{part.name}", tuple(position), tuple(orientation))
-        self._place_solid(person, person.position)
 
     def _place_solid(self, person: Person, position: NDArray[np.float64]) -> None:
         at = (float(position[0]), float(position[1]), person.config.height_m / 2.0)

@@ -68,10 +68,16 @@ class Body:
 
 
 class Bodies:
-    """All bodies of one world, by name, and their parts in the order of creation."""
+    """All bodies of one world, by name, and their parts in the order of creation.
+
+    Attributes:
+        parts: what each part is.
+        moving: the bodies that physics moves.
+    """
 
     def __init__(self) -> None:
         self.parts: list[PartKey] = []
+        self.moving: list[Body] = []
         self._bodies: dict[str, Body] = {}
         self._body_of_id: dict[int, Body] = {}
         self._part_of_link: dict[tuple[int, int], int] = {}
@@ -99,6 +105,8 @@ class Bodies:
     def add(self, body: Body, link_names: Sequence[str]) -> None:
         """Take in a body whose base and links have these names."""
         self._bodies[body.name] = body
+        if body.moves_by_itself:
+            self.moving.append(body)
         self.parts.extend(PartKey(body.name, link - 1, name) for link, name in enumerate(link_names))
         for number in body.ids:
             self._body_of_id[number] = body

@@ -89,6 +89,7 @@ class Bullet:
         self._bodies = Bodies()
         self._poses = np.zeros((0, 4, 4))
         self._moved: dict[str, Body] = {}
+        self._known: dict[str, Matrix] = {}  # poses of bodies since they last moved
         self._client.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1
         )
@@ -178,6 +179,7 @@ class Bullet:
         body = self._bodies[name]
         if body.hidden_at is not None:
             body.hidden_at = (position, orientation)
+            self._known.pop(name, None)
         else:
             self._put(body, (position, orientation))
 
@@ -205,7 +207,9 @@ class Bullet:
     def step(self) -> None:
         """Advance the world by one physics step."""
         self._client.stepSimulation()
-        self._moved.update({body.name: body for body in self._bodies if body.moves_by_itself})
+        for body in self._bodies.moving:
+            self._moved[body.name] = body
+            self._known.pop(body.name, None)
 
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
         """Drive joints at speeds [rad/s, or m/s if they slide] with at most this torque [N m, or N] each.
@@ -244,9 +248,11 @@ class Bullet:
         return tuple(self._bodies.parts)
 
     def pose(self, name: str) -> Matrix:
-        """(4, 4) world from the frame of the body's base; where it will reappear if it is hidden."""
-        body = self._bodies[name]
-        return pose_matrices(*(body.hidden_at or self._base_place(body)))
+        """(4, 4) world from the frame of the body's base, a copy; where it will reappear if it is hidden."""
+        if name not in self._known:
+            body = self._bodies[name]
+            self._known[name] = pose_matrices(*(body.hidden_at or self._base_place(body)))
+        return self._known[name].copy()
 
     def part_poses(self) -> Matrix:
         """(P, 4, 4) world from part, a copy; hidden parts are far below the floor."""
@@ -277,11 +283,21 @@ class Bullet:
             fraction: (R,) of the way at which a ray hits, 1 where it hits nothing.
             part: (R,) part that is hit, -1 where none.
         """
-        mask = _ALL if ignore is None else ~self._group_of(self._bodies[ignore])
-        starts, ends = np.asarray(from_m, np.float64).tolist(), np.asarray(to_m, np.float64).tolist()
-        hits = self._client.rayTestBatch(starts, ends, numThreads=1, collisionFilterMask=mask)
+        hits = self._ray_hits(from_m, to_m, ignore)
         fractions = np.array([hit[2] for hit in hits])
         return fractions, np.array([self._bodies.part_of(hit[0], hit[1]) for hit in hits], np.int64)
+
+    def ray_fractions(self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None) -> Matrix:
+        """The first part of what `cast_rays` gives: how far rays come, not what they hit."""
+        return np.array([hit[2] for hit in self._ray_hits(from_m, to_m, ignore)])
+
+    def _ray_hits(self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None) -> Sequence[Sequence[Any]]:
+        mask = _ALL if ignore is None else ~self._group_of(self._bodies[ignore])
+        starts, ends = np.asarray(from_m, np.float64).tolist(), np.asarray(to_m, np.float64).tolist()
+        hits: Sequence[Sequence[Any]] = self._client.rayTestBatch(
+            starts, ends, numThreads=1, collisionFilterMask=mask
+        )
+        return hits
 
     def contacts(self, name: str) -> list[Contact]:
         """Where the body touched others during the last step."""
@@ -374,6 +390,7 @@ class Bullet:
         for number in body.ids:
             self._client.resetBasePositionAndOrientation(number, *place)
         self._moved[body.name] = body
+        self._known.pop(body.name, None)
 
     def _base_place(self, body: Body) -> Place:
         place: Place = self._client.getBasePositionAndOrientation(body.ids[0])

@@ -16,6 +16,7 @@ from sim.rendering.raycast import draw
 from sim.rendering.shape_table import ShapeTable
 
 NOBODY = -1
+BLIND = "none"  # in place of a renderer's name: a world without images
 _MOST_PEOPLE = 64
 
 
