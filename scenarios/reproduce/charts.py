@@ -12,10 +12,11 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from scenarios.reproduce.compare import mean_and_spread
-from scenarios.reproduce.experiment import Experiment, Line, Samples
+from scenarios.reproduce.experiment import Experiment, Samples
 from scenarios.reproduce.source import SOURCE, SourceTable
 
 COLOURS = {SOURCE: "#1a1a1a", "literal": "#d95f02", "literal, strict": "#f4a76a", "default": "#1f78b4"}
+Series = dict[str, dict[str, tuple[float, float | None]]]
 _OTHERS = ("#1f78b4", "#66a61e", "#7570b3")
 
 
@@ -24,12 +25,8 @@ def draw(experiment: Experiment, samples: Samples, table: SourceTable) -> str | 
     if experiment.chart == "none":
         return None
     if experiment.chart == "lines":
-        figure = _lines(experiment.plotted[0], samples, table)
-    elif len(experiment.plotted) > 1:
-        figure = _bars_by_metric(experiment.plotted, samples, table)
-    else:
-        figure = _bars_by_group(experiment.plotted[0], samples, table)
-    return _address(figure)
+        return _address(_lines(experiment.plotted[0], samples, table))
+    return _address(_bars(experiment.plotted, samples, table))
 
 
 def source_figures(table: SourceTable, column: str) -> dict[str, tuple[float, float | None]]:
@@ -69,34 +66,18 @@ def _lines(column: str, samples: Samples, table: SourceTable) -> Figure:
     return figure
 
 
-def _bars_by_group(column: str, samples: Samples, table: SourceTable) -> Figure:
-    """Draw one cluster of bars a group."""
-    series = {SOURCE: source_figures(table, column)}
-    groups = list(dict.fromkeys([*series[SOURCE], *(line.group for line in samples)]))
-    figure, axes = _canvas(6.0)
-    series |= {who: _ours(samples, column, who) for who in _names(samples)}
-    _cluster(axes, groups, series)
-    axes.set_ylabel(column if "%" in column else f"{column} [%]")
-    _finish(axes)
-    return figure
-
-
-def _bars_by_metric(columns: Sequence[str], samples: Samples, table: SourceTable) -> Figure:
-    """Draw one plot a group, with a cluster of bars a metric."""
-    groups = list(dict.fromkeys(line.group for line in samples))
-    figure = Figure(figsize=(6.0, 2.3 * len(groups)), layout="constrained")
+def _bars(columns: Sequence[str], samples: Samples, table: SourceTable) -> Figure:
+    """Draw clusters of bars: of all columns in one plot a group, or of all groups in one plot a column."""
+    groups = _groups(samples, columns, table)
+    by_column = {column: _series(samples, column, table) for column in columns}
+    plots, clusters = (groups, columns) if len(columns) > len(groups) else (columns, groups)
+    figure = Figure(figsize=(6.0, 0.7 + 2.3 * len(plots)), layout="constrained")
     FigureCanvasSVG(figure)
-    for number, group in enumerate(groups):
-        axes = figure.add_subplot(len(groups), 1, number + 1)
-        series = {
-            SOURCE: {c: points[group] for c in columns if group in (points := source_figures(table, c))}
-        }
-        for who in _names(samples):
-            figures = samples.get(Line(group, who), {})
-            series[who] = {c: mean_and_spread(figures[c]) for c in columns if c in figures}
-        _cluster(axes, columns, series)
-        axes.set_title(group, fontsize=9, loc="left")
-        axes.set_ylabel("%")
+    for number, title in enumerate(plots):
+        axes = figure.add_subplot(len(plots), 1, number + 1)
+        _cluster(axes, clusters, by_column[title] if plots is columns else _of_group(by_column, title))
+        axes.set_title(title if len(plots) > 1 else "", fontsize=9, loc="left")
+        axes.set_ylabel(columns[0] if "%" in columns[0] else "%")
         _finish(axes, with_legend=False)
         if number == 0:
             handles, labels = axes.get_legend_handles_labels()
@@ -104,9 +85,28 @@ def _bars_by_metric(columns: Sequence[str], samples: Samples, table: SourceTable
     return figure
 
 
-def _cluster(
-    axes: Axes, groups: Sequence[str], series: dict[str, dict[str, tuple[float, float | None]]]
-) -> None:
+def _groups(samples: Samples, columns: Sequence[str], table: SourceTable) -> list[str]:
+    """List the groups of the source and ours, in the source's order."""
+    theirs = [group for column in columns for group in source_figures(table, column)]
+    return list(dict.fromkeys([*theirs, *(line.group for line in samples)]))
+
+
+def _series(samples: Samples, column: str, table: SourceTable) -> Series:
+    """Give a column's figures by whose they are, then by group; the source's come first."""
+    ours = {who: _ours(samples, column, who) for who in _names(samples)}
+    return {SOURCE: source_figures(table, column)} | ours
+
+
+def _of_group(by_column: dict[str, Series], group: str) -> Series:
+    """Give a group's figures by whose they are, then by column."""
+    names = dict.fromkeys(who for series in by_column.values() for who in series)
+    return {
+        who: {c: series[who][group] for c, series in by_column.items() if group in series.get(who, {})}
+        for who in names
+    }
+
+
+def _cluster(axes: Axes, groups: Sequence[str], series: Series) -> None:
     drawn = {who: points for who, points in series.items() if points}
     width = 0.8 / max(len(drawn), 1)
     for number, (who, points) in enumerate(drawn.items()):

@@ -90,8 +90,8 @@ def _verdict(claim: Claim, who: str, one: Floats, other: Floats) -> Verdict:
 def _outcome(claim: Claim, by: float, p: float) -> Outcome:
     """Compare a difference with a claim; where the source tests, ours has to be significant as well."""
     is_clear = p < SIGNIFICANT or not claim.tested
-    if claim.expect == "alike":
-        if abs(by) <= ALIKE:
+    if claim.expect in ("alike", "no less"):
+        if by >= -ALIKE and (by <= ALIKE or claim.expect == "no less"):
             return Outcome.HOLDS
         return Outcome.UNCLEAR if claim.tested and p >= SIGNIFICANT else Outcome.FAILS
     ways = {"more": by > 0, "less": by < 0, "differs": by != 0}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ from scenarios.reproduce.settings import Setting
 from scenarios.reproduce.units import FilmUnit, Unit
 
 RATE_HZ = 15
+COLUMNS = ("frames", "s", "found in 2 s [%]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +23,7 @@ class Delay:
     """Frames until somebody in plain view is detected, by a tracker that has just been switched on.
 
     Attributes:
-        suites: data sets with one person, taken together.
+        suites: data sets with one person.
         trackers: who is tried, by the name of the line.
     """
 
@@ -35,31 +36,28 @@ class Delay:
     def wants(self, plan: Plan, done: Done) -> list[Unit]:
         """Films first, then who sees them."""
         films = [FilmUnit(play, plan.cache) for name in self.suites for play in plan.suites[name]]
-        return missing(films, done) or missing(
-            [
-                unit
-                for r in range(plan.repeats)
-                for who in self.trackers
-                for unit in self._units(plan, who, r)
-            ],
-            done,
-        )
+        tries = [
+            unit for line in self._lines() for r in range(plan.repeats) for unit in self._units(plan, line, r)
+        ]
+        return missing(films, done) or missing(tries, done)
 
     def samples(self, plan: Plan, done: Done) -> Samples:
         """Take the means over all starts, repeat by repeat."""
-        return {Line("one person", who): self._figures(plan, done, who) for who in self.trackers}
+        return {line: self._figures(plan, done, line) for line in self._lines()}
 
-    def _units(self, plan: Plan, who: str, repeat: int) -> Iterator[DelayUnit]:
-        for name in self.suites:
-            for play in plan.suites[name]:
-                yield DelayUnit(play, plan.cache, self.trackers[who], repeat)
+    def _lines(self) -> list[Line]:
+        return [Line(suite, who) for suite in self.suites for who in self.trackers]
 
-    def _figures(self, plan: Plan, done: Done, who: str) -> dict[str, NDArray[np.float64]]:
+    def _units(self, plan: Plan, line: Line, repeat: int) -> list[DelayUnit]:
+        setting = self.trackers[line.who]
+        return [DelayUnit(play, plan.cache, setting, repeat) for play in plan.suites[line.group]]
+
+    def _figures(self, plan: Plan, done: Done, line: Line) -> dict[str, NDArray[np.float64]]:
         rows = []
         for repeat in range(plan.repeats):
-            results = [done[unit.key] for unit in self._units(plan, who, repeat)]
+            results = [done[unit.key] for unit in self._units(plan, line, repeat)]
             needed = [frames for result in results for frames in result["needed"]]
             starts = sum(result["starts"] for result in results)
             frames = float(np.mean(needed)) if needed else float("nan")
             rows.append((frames, frames / RATE_HZ, 100 * len(needed) / max(starts, 1)))
-        return dict(zip(("frames", "s", "found in 2 s [%]"), np.array(rows).T, strict=True))
+        return dict(zip(COLUMNS, np.array(rows).T, strict=True))

@@ -18,7 +18,7 @@ from scenarios.reproduce.source import Claim, SourceTable, source_tables
 
 HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"
-MAIN = ("default", "held out")
+MAIN = {"literal": ("literal",), "default": ("default", "held out")}
 
 Figures = Mapping[str, tuple[float, float | None]]
 
@@ -54,12 +54,10 @@ class Section:
     checked: tuple[Checked, ...]
     why: str
 
-    @property
-    def summary(self) -> str:
-        """How the source's claims fare with the main tracker, in a few words."""
-        count = Counter(
-            verdict.outcome.value for item in self.checked for verdict in item.verdicts if verdict.who in MAIN
-        )
+    def summary(self, main: str) -> str:
+        """How the source's claims fare with a main tracker, in a few words."""
+        verdicts = (verdict for item in self.checked for verdict in item.verdicts)
+        count = Counter(verdict.outcome.value for verdict in verdicts if verdict.who in MAIN[main])
         return ", ".join(f"{word}: {number}" for word, number in count.items())
 
 

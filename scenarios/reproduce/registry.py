@@ -16,7 +16,7 @@ from tracker.evaluation.uncounted import Rule
 from tracker.occlusion.pair_features import COLOUR, FEATURES, THERMAL
 
 LITERAL, STRICT, OURS = "literal", "literal, strict", "default"
-"""The source's tracker to the letter; the same, with candidates on uncounted people as false alarms; ours."""
+"""The source's tracker; the same, with candidates on uncounted people as false alarms; ours."""
 
 SINGLE = ("dataset1", "dataset2")
 SEVERAL = ("dataset3", "dataset4")

@@ -33,7 +33,7 @@ BASES: Mapping[str, TrackerConfig] = {
     # The default's contour with the thesis's colour model, whose descriptions can be exchanged.
     "peopleboy-moments": replace(PEOPLEBOY, colour=THESIS_COLOUR.colour, looks=None, occlusion=_OPEN),
 }
-"""Every tracker that the sources report on, to the letter, and the default with as much as each of them."""
+"""Every tracker that the sources report on, and the default with as much as each of them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,7 +48,7 @@ class Claim(Strict):
     """column that it is about"""
     groups: Annotated[tuple[str, str], Field(strict=False)]
     """the first compared with the second"""
-    expect: Literal["more", "less", "alike", "differs"]
+    expect: Literal["more", "less", "alike", "no less", "differs"]
     """what the first is, or that they differ either way"""
     by: Number | None = None
     """difference in points that the source gives"""

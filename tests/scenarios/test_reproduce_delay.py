@@ -104,10 +104,10 @@ def test_means_are_over_all_starts_and_the_blind_find_nobody(tmp_path: Path) -> 
     while wanted := experiment.wants(plan, done):
         done |= {unit.key: unit.run() for unit in wanted}
     samples = experiment.samples(plan, done)
-    figures = samples[Line("one person", "late")]
+    figures = samples[Line("dataset1", "late")]
     assert figures["frames"].tolist() == [3.0, 3.0]
     assert figures["s"].tolist() == [0.2, 0.2]
     assert figures["found in 2 s [%]"].tolist() == [100.0, 100.0]
-    nobody = samples[Line("one person", "blind")]
+    nobody = samples[Line("dataset1", "blind")]
     assert np.isnan(nobody["frames"]).all()
     assert nobody["found in 2 s [%]"].tolist() == [0.0, 0.0]
