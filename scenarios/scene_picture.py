@@ -57,8 +57,8 @@ class ScenePicture:
 
     def _pixels(self, point: tuple[float, float]) -> NDArray[np.float64]:
         """(2,) pixel of the whole plan."""
-        from_corner: NDArray[np.float64] = np.array(point) - self._corner
-        return from_corner * np.array([_PX_PER_M, -_PX_PER_M])
+        pixels: NDArray[np.float64] = (np.array(point) - self._corner) * [_PX_PER_M, -_PX_PER_M]
+        return pixels
 
 
 def _draw_place(plan: FloorPlan, place: Place) -> Picture:
