@@ -201,7 +201,10 @@ def _update_target(state: FollowState, sight: Sight, step_s: float, config: Foll
     gap_s = 0.0 if known is None else sight.time_s - known.seen_s
     person = recognise(sight.people, known, state.others, gap_s, config.identity, config.target)
     if person is None:
-        return state
+        if known is None:
+            return state
+        strangers = company(sight.people, known.id, state.others)
+        return replace(state, others=strangers) if gap_s <= config.identity.place_s else state
     if known is None or gap_s > config.wait_s:
         seen = first_sight(person, sight.time_s, config.target)
     else:
@@ -218,7 +221,7 @@ def _seen_at(
     return replace(
         state,
         target=seen,
-        others=company(sight.people, person, state.others),
+        others=company(sight.people, person.id, state.others),
         side=1 if later >= 0.0 else -1,
         has_left=max(abs(seen.bearing_rad), abs(soon)) > config.leaving_rad,
         place=place_of(seen, config.place),

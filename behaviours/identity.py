@@ -64,9 +64,12 @@ def recognise(
     return min(fitting, key=lambda person: _off(person, target, view), default=None)
 
 
-def company(people: tuple[SeenPerson, ...], person: SeenPerson, others: frozenset[int]) -> frozenset[int]:
-    """Add everybody who is seen beside the followed person to those who are somebody else."""
-    return (others | {p.id for p in people if p.is_visible}) - {person.id}
+def company(people: tuple[SeenPerson, ...], target: int, others: frozenset[int]) -> frozenset[int]:
+    """Add everybody else who is seen to those who are somebody else than the followed person.
+
+    That is true beside the person, and also soon after it was lost, of those who are where it cannot be.
+    """
+    return (others | {person.id for person in people if person.is_visible}) - {target}
 
 
 def _fits(

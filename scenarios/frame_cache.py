@@ -88,7 +88,7 @@ def film(
     Raises:
         BadInput: the robot follows what a tracker sees, and has no recorded drive.
     """
-    if scenario.robot.behaviour == "follow_person" and scenario.drive is None:
+    if scenario.robot.behaviour not in ("stand", "scripted") and scenario.drive is None:
         raise BadInput(
             f"{scenario.name}: its robot goes where the tracker sees a person, so frames cannot be kept; "
             "take a scenario whose robot stands or is scripted"

@@ -17,6 +17,8 @@ from scenarios.true_eyes import check_eyes, make_eyes
 from scenarios.watchers import Watchers
 from sim.world import World
 
+FOLLOWERS = ("follow_person", "patrol")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunOptions:
@@ -82,7 +84,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
             report(tick, frames)
         folder.flush()
         following = None
-        if scenario.robot.behaviour == "follow_person" and config.people:
+        if scenario.robot.behaviour in FOLLOWERS and config.people:
             task = following_task(config, scenario.follow_config().keep_height)
             following = watchers.following.score(task)
         corridor = None

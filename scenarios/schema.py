@@ -274,7 +274,7 @@ class RobotSpec(Strict):
 
     at_m: Point
     heading_deg: Degrees = 0.0
-    behaviour: Literal["stand", "follow_person", "follow_corridor", "scripted"] = "stand"
+    behaviour: Literal["stand", "follow_person", "follow_corridor", "patrol", "scripted"] = "stand"
     commands: Annotated[tuple[CommandSpec, ...], Field(strict=False)] = ()
     """of a scripted robot, in the order of time"""
     keep_height: Annotated[float, Field(gt=0.05, le=1.5)] | None = None

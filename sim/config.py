@@ -96,7 +96,8 @@ class DriveConfig:
         max_angular_rad_s: [rad/s] turn rate limit.
         linear_acceleration_m_s2: [m/s2] rate at which the forward speed changes.
         angular_acceleration_rad_s2: [rad/s2] rate at which the turn rate changes.
-        emergency_m_s2: [m/s2] rate at which the forward speed falls in an emergency stop.
+        emergency_m_s2: [m/s2] rate at which the forward speed falls in an emergency stop; from 1.6 on the
+            robot, which is tall and has its castor behind, tips forwards at full speed.
         encoder_noise_m: [m] standard deviation of the way that a wheel's encoder counts on 1 m; it grows with
             the square root of the way.
     """
@@ -105,7 +106,7 @@ class DriveConfig:
     max_angular_rad_s: float = math.radians(150.0)
     linear_acceleration_m_s2: float = 0.6
     angular_acceleration_rad_s2: float = math.radians(200.0)
-    emergency_m_s2: float = 5.0
+    emergency_m_s2: float = 1.3
     encoder_noise_m: float = 0.002
 
 

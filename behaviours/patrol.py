@@ -1,0 +1,134 @@
+"""Patrol: go along the corridor, follow who turns up for a while, then go on the way that it was going."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from behaviours.behaviour import Behaviour
+from behaviours.command import Command
+from behaviours.follow_person import FollowConfig, FollowPerson
+from behaviours.sight import SeenPerson, Sight
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PatrolConfig:
+    """When the robot leaves its round for a person, and when it returns.
+
+    Attributes:
+        notice_height: [image heights] people at least as tall are noticed: 0.25 is 8.7 m for 1.75 m ...
+        notice_s: [s] ... when they have been seen for this long.
+        follow_s: [s] nobody is followed for longer.
+        lost_s: [s] a person who is not seen for this long is given up.
+        min_confidence: people of lower confidence are not noticed.
+        return_rad: [rad] the robot has turned back when it is this near to its old heading.
+        return_gain: [1/s] turn rate per angle on the way back.
+        return_rad_s: [rad/s] highest turn rate for that.
+        return_s: [s] a turn back that takes longer is left to the corridor following.
+    """
+
+    notice_height: float = 0.25
+    notice_s: float = 0.6
+    follow_s: float = 20.0
+    lost_s: float = 8.0
+    min_confidence: float = 0.5
+    return_rad: float = math.radians(6.0)
+    return_gain: float = 1.5
+    return_rad_s: float = 0.8
+    return_s: float = 8.0
+
+
+class Patrol:
+    """Composes a behaviour that goes round, such as corridor following, with person following."""
+
+    def __init__(
+        self, round_: Behaviour, follow: FollowConfig | None = None, config: PatrolConfig | None = None
+    ) -> None:
+        self._round = round_
+        self._follow_config = follow
+        self._config = PatrolConfig() if config is None else config
+        self._follower: FollowPerson | None = None
+        self._known: frozenset[int] = frozenset()
+        self._noticed_s = 0.0
+        self._followed_s = 0.0
+        self._lost_s = 0.0
+        self._away_rad = 0.0
+        self._returning_s: float | None = None
+        self._time_s: float | None = None
+        self._why = ""
+
+    @property
+    def mode(self) -> str:
+        """That of the part at work, or "return"."""
+        if self._follower is not None:
+            return self._follower.mode
+        return self._round.mode if self._returning_s is None else "return"
+
+    @property
+    def reason(self) -> str:
+        """Why the robot left its round, returns to it, or what the part at work says."""
+        if self._follower is not None:
+            return self._follower.reason
+        return self._round.reason if self._returning_s is None else self._why
+
+    @property
+    def following(self) -> int | None:
+        """Whom the robot follows; nobody on its round."""
+        return None if self._follower is None else self._follower.following
+
+    def command(self, sight: Sight) -> Command:
+        """Give the command of the part whose turn it is."""
+        step_s = 0.0 if self._time_s is None else max(sight.time_s - self._time_s, 0.0)
+        self._time_s = sight.time_s
+        self._away_rad = math.remainder(self._away_rad + sight.angular_rad_s * step_s, math.tau)
+        if self._follower is not None:
+            return self._go_after(self._follower, sight, step_s)
+        self._noticed_s = self._noticed_s + step_s if self._notices(sight) else 0.0
+        if self._noticed_s >= self._config.notice_s:
+            if self._returning_s is None:
+                self._away_rad = 0.0
+            self._follower, self._returning_s = FollowPerson(self._follow_config), None
+            self._followed_s = self._lost_s = 0.0
+            return self._go_after(self._follower, sight, step_s)
+        if self._returning_s is not None:
+            return self._return(self._returning_s, sight, step_s)
+        return self._round.command(sight)
+
+    def _notices(self, sight: Sight) -> bool:
+        """Tell whether there is somebody whom the robot has not followed yet."""
+        return any(self._is_new(person) for person in sight.people)
+
+    def _is_new(self, person: SeenPerson) -> bool:
+        return (
+            person.is_sound
+            and person.is_visible
+            and person.id not in self._known
+            and person.confidence >= self._config.min_confidence
+            and person.height >= self._config.notice_height
+        )
+
+    def _go_after(self, follower: FollowPerson, sight: Sight, step_s: float) -> Command:
+        """Follow, until it has been long enough or the person is lost; then begin to return."""
+        people = tuple(person for person in sight.people if person.id not in self._known)
+        command = follower.command(replace(sight, people=people))
+        target = follower.state.target
+        self._followed_s += step_s
+        self._lost_s = 0.0 if follower.mode == "follow" else self._lost_s + step_s
+        is_long = self._followed_s > self._config.follow_s
+        if not (is_long or self._lost_s > self._config.lost_s):
+            return command
+        self._why = "followed for long enough" if is_long else "the person is lost"
+        if target is not None:
+            self._known |= {target.id}
+        self._follower, self._returning_s = None, 0.0
+        return self._return(0.0, sight, step_s)
+
+    def _return(self, returning_s: float, sight: Sight, step_s: float) -> Command:
+        """Turn back to the heading that the robot had on its round, and go on from there."""
+        self._returning_s = returning_s + step_s
+        if abs(self._away_rad) < self._config.return_rad or self._returning_s > self._config.return_s:
+            self._returning_s = None
+            return self._round.command(sight)
+        limit = self._config.return_rad_s
+        turn = min(max(-self._config.return_gain * self._away_rad, -limit), limit)
+        return Command(linear_m_s=0.0, angular_rad_s=turn)
