@@ -18,6 +18,7 @@ class EndConfig:
 
     Attributes:
         beam: how a beam hears a wall; across, only those that look ahead count.
+        side_beam: the same for the walls at the sides, whose echoes are none of a wall across.
         farthest_m: [m] a wall across is looked for up to here.
         agree_m: [m] the echoes of one wall lie within this of their middle.
         least_echoes: of the four sonars ahead; a person is heard by two.
@@ -26,6 +27,7 @@ class EndConfig:
     """
 
     beam: BeamConfig = field(default_factory=lambda: BeamConfig(slant_rad=math.radians(35.0)))
+    side_beam: BeamConfig = field(default_factory=BeamConfig)
     farthest_m: float = 3.0
     agree_m: float = 0.12
     least_echoes: int = 3
@@ -36,7 +38,9 @@ class EndConfig:
 def wall_ahead(sight: Sight, corridor: Corridor, config: EndConfig) -> float | None:
     """Give the distance [m] along the corridor to a wall across it; None if there is none near."""
     distances, can_be = wall_distances(sight, np.array([-corridor.heading_rad]), config.beam)
-    heard = distances[0][can_be[0]]
+    to_sides, can_be_side = wall_distances(sight, side_walls(corridor)[:, 0], config.side_beam)
+    is_side = can_be_side & (np.abs(to_sides - side_walls(corridor)[:, 1:]) < config.agree_m)
+    heard = distances[0][can_be[0] & ~is_side.any(axis=0)]
     if len(heard) < config.least_echoes:
         return None
     middle = float(np.median(heard))

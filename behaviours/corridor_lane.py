@@ -19,7 +19,9 @@ class LaneConfig:
         ahead_m: [m] up to here people are driven round.
         behind_m: [m] and until they are this far behind.
         wish_m: [m] between the robot's middle and the nearest echo of a person, where there is room for it.
-        least_m: [m] the same, the least; a lane with less is blocked.
+        least_m: [m] the same, the least; a lane with less is blocked ...
+        squeeze_m: [m] ... but one on which the robot is already passing only with less than this: beams are
+            wide, and from nearby a person's echoes spread.
         wall_m: [m] between the robot's middle and a wall, the least.
         step_m: [m] between lanes.
     """
@@ -28,6 +30,7 @@ class LaneConfig:
     behind_m: float = 0.35
     wish_m: float = 0.75
     least_m: float = 0.55
+    squeeze_m: float = 0.35
     wall_m: float = 0.55
     step_m: float = 0.05
 
@@ -66,17 +69,18 @@ def middle_lane(people: Points) -> Lane:
     return Lane(offset_m=0.0, clearance_m=float(np.min(np.abs(people[:, 1]), initial=np.inf)))
 
 
-def best_lane(people: Points, corridor: Corridor, config: LaneConfig) -> Lane:
+def best_lane(people: Points, corridor: Corridor, config: LaneConfig, side: int = 0) -> Lane:
     """Take the lane with the wished clearance that is nearest to the centre line; else the clearest one.
 
     Args:
         people: (M, 2) [m] ahead of the robot, and left of the centre line.
         corridor: for its width.
         config: room to leave.
+        side: +1 for lanes to the left of the centre line only, -1 for those to the right, 0 for all.
     """
     room = max(corridor.width_m / 2.0 - config.wall_m, 0.0)
     steps = math.floor(room / config.step_m)
-    lanes = config.step_m * np.arange(-steps, steps + 1)
+    lanes = config.step_m * np.arange(-steps if side <= 0 else 0, (steps if side >= 0 else 0) + 1)
     clearance = np.abs(lanes[:, None] - people[:, 1]).min(axis=1, initial=np.inf)
     missing = np.maximum(config.wish_m - clearance, 0.0)
     # First the clearance, then the way to the centre line.

@@ -89,6 +89,7 @@ class CorridorState:
         image_s: [s] ... and when by the image.
         image_fault: why the image could not tell, empty if it could.
         blocked_s: [s] since when people have been in the middle lane; None if nobody is.
+        side: +1 while it passes people on their left, -1 on their right, 0 while it does not.
         ended_s: [s] since when the robot has stood before a wall; None if it does not.
         open_frames: images in which the left and the right side were open, since a wall was heard ahead.
         people: echoes of what is no wall.
@@ -102,6 +103,7 @@ class CorridorState:
     image_s: float = -math.inf
     image_fault: str = ""
     blocked_s: float | None = None
+    side: int = 0
     ended_s: float | None = None
     open_frames: tuple[int, int] = (0, 0)
     people: EchoMemory = field(default_factory=EchoMemory)
@@ -258,13 +260,14 @@ def _go_along(
         return _driving(state, config), _steer(corridor, lane, config.cruise_m_s, ahead_m, config)
     since_s = state.time_s if state.blocked_s is None else state.blocked_s
     state = replace(state, blocked_s=since_s)
-    lane = best_lane(people, corridor, config.lane)
-    is_free = lane.clearance_m >= config.lane.least_m
-    if is_free and (state.mode == "pass" or state.time_s - since_s > config.patience_s):
-        state = replace(state, mode="pass", reason="somebody stays in the way")
+    lane = best_lane(people, corridor, config.lane, state.side)
+    is_free = lane.clearance_m >= (config.lane.squeeze_m if state.side else config.lane.least_m)
+    if is_free and (state.side or state.time_s - since_s > config.patience_s):
+        side = state.side or (1 if lane.offset_m > 0.0 else -1)
+        state = replace(state, mode="pass", reason="somebody stays in the way", side=side)
         return state, _steer(corridor, lane, config.pass_m_s, ahead_m, config)
     reason = "somebody is in the way" if is_free else "people stand across the way"
-    state = replace(state, mode="wait", reason=reason)
+    state = replace(state, mode="wait", reason=reason, side=0)
     nearest_m = float(np.min(ahead[:, 0]))
     speed = min(config.brake_gain * max(nearest_m - config.stop_m, 0.0), config.cruise_m_s)
     here = Lane(offset_m=corridor.offset_m, clearance_m=0.0)
@@ -273,10 +276,11 @@ def _go_along(
 
 def _driving(state: CorridorState, config: CorridorConfig) -> CorridorState:
     """Name mode and reason of plain driving, by the sense that steers it."""
+    state = replace(state, blocked_s=None, side=0)
     if config.sense == "image" and state.time_s - state.image_s > config.image_s:
         reason = f"the image does not tell: {state.image_fault}"
-        return replace(state, mode="sonar", reason=reason, blocked_s=None)
-    return replace(state, mode="corridor", reason=f"walls told by the {config.sense}", blocked_s=None)
+        return replace(state, mode="sonar", reason=reason)
+    return replace(state, mode="corridor", reason=f"walls told by the {config.sense}")
 
 
 def _steer(
