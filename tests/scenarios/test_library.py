@@ -3,6 +3,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import yaml
 from bad_input import BadInput
 from scenarios.load import LIBRARY, library, load_scenario, parse_scenario
 from scenarios.plan import draw_plan
-from scenarios.schema import json_schema
+from scenarios.schema import RobotSpec, json_schema
 from sim.config import WorldConfig
 from sim.people.timetable import timetable
 
@@ -136,7 +137,7 @@ def test_a_following_robot_and_a_scripted_one_get_their_behaviour() -> None:
     for name in NAMES:
         scenario = load_scenario(name)
         assert scenario.make_behaviour() is not scenario.make_behaviour()
-        assert scenario.robot.behaviour in ("stand", "follow_person", "follow_corridor", "scripted")
+        assert scenario.robot.behaviour in get_args(RobotSpec.model_fields["behaviour"].annotation)
 
 
 @pytest.mark.parametrize(("seed", "renderer"), [(-1, "raycast"), (0, "opengl")])
