@@ -48,7 +48,7 @@ def _label(name: str) -> str:
             stem, unit = stem.removesuffix(ending), written
             break
     words = stem.replace("_", " ")
-    return f"{words} [{unit}]" if unit else words
+    return f"{words}, {unit}" if unit else words
 
 
 def _scale(name: str) -> float:
