@@ -27,6 +27,10 @@ class AvoidConfig:
     widest_rad: float = math.radians(24.0)
 
 
+# For a robot that has nobody to keep in view.
+WIDELY = AvoidConfig(half_width_m=0.5, reach_m=1.5, fade_m=0.5, widest_rad=math.radians(75.0))
+
+
 def swerve(bearing_rad: float, points: Points, config: AvoidConfig) -> float:
     """Give how far beside the goal [rad, positive left] to aim, so that the lane ahead is free.
 

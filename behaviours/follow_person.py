@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from behaviours.avoid import AvoidConfig, swerve
+from behaviours.avoid import WIDELY, AvoidConfig, swerve
 from behaviours.command import STOP, Command
 from behaviours.echoes import echoes
 from behaviours.identity import IdentityConfig, company, recognise
@@ -61,6 +61,7 @@ class FollowConfig:
         identity: who is taken for the followed person.
         place: where a person was seen last.
         avoid: steering along walls.
+        avoid_alone: the same on the way to where a person was seen last, when there is nobody to look at.
     """
 
     keep_height: float = 0.58
@@ -92,6 +93,7 @@ class FollowConfig:
     identity: IdentityConfig = field(default_factory=IdentityConfig)
     place: PlaceConfig = field(default_factory=PlaceConfig)
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
+    avoid_alone: AvoidConfig = WIDELY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -276,10 +278,9 @@ def _recover(
     if end:
         state = replace(state, mode="recover", reason=end, place=None, searched_rad=0.0)
         return _search(state, sight, step_s, config)
-    aim = place.bearing_rad
-    speed = _facing_share(aim, config) * min(config.recover_1_s * place.distance_m, config.max_linear_m_s)
-    share = min(speed / config.swerve_from_m_s, 1.0)
-    turn = config.facing_gain * (aim + share * swerve(aim, echoes(sight), config.avoid))
+    aim = place.bearing_rad + swerve(place.bearing_rad, echoes(sight), config.avoid_alone)
+    speed = min(config.recover_1_s * place.distance_m, config.max_linear_m_s)
+    speed, turn = _facing_share(aim, config) * speed, config.facing_gain * aim
     state = replace(state, mode="recover", reason="to where the person was seen last", place=place)
     return state, Command(linear_m_s=speed, angular_rad_s=_clip(turn, config.max_turn_rad_s))
 

@@ -24,7 +24,7 @@ class PlaceConfig:
     whole_m: float = 1.75 / (2.0 * math.tan(math.radians(22.0)))
     camera_m: float = 0.14
     arrive_m: float = 0.6
-    blocked_s: float = 1.5
+    blocked_s: float = 4.0
     longest_s: float = 14.0
 
 
@@ -71,7 +71,7 @@ def carry_place(place: LastPlace, sight: Sight, step_s: float) -> LastPlace:
 
 def on_the_way(place: LastPlace, sight: Sight, step_s: float) -> LastPlace:
     """Count the time on the way, and that without getting on."""
-    stands = abs(sight.linear_m_s) < 0.03 and abs(sight.angular_rad_s) < 0.1
+    stands = abs(sight.linear_m_s) < 0.03
     return replace(
         place,
         driven_s=place.driven_s + step_s,
