@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from scenarios.run import RunOptions
 
 BAD_INPUT = 2
+SEED = "[default: 0, or that of a run's own scenario.yaml]"
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -38,20 +39,18 @@ def list_command() -> None:
 
 @cli.command()
 @click.argument("scenario")
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="What is drawn follows from it."
-)
+@click.option("--seed", type=click.IntRange(min=0), help=f"What is drawn follows from it.  {SEED}")
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Picture to write.  [default: SCENARIO-plan.png]"
 )
-def show(scenario: str, seed: int, out: Path | None) -> None:
+def show(scenario: str, seed: int | None, out: Path | None) -> None:
     """Draw the plan of a scenario, with paths and times."""
     from scenarios.load import load_scenario
     from scenarios.plan import draw_plan
 
     loaded = load_scenario(scenario)
     path = out if out is not None else Path(f"{loaded.name}-plan.png")
-    draw_plan(loaded, seed, path)
+    draw_plan(loaded, loaded.seed if seed is None else seed, path)
     click.echo(path)
 
 
@@ -67,15 +66,11 @@ def schema() -> None:
 
 @cli.command()
 @click.argument("scenario")
+@click.option("--seed", type=click.IntRange(min=0), help=f"All that is random follows from it.  {SEED}")
 @click.option(
-    "--seed",
-    type=click.IntRange(min=0),
-    default=0,
-    show_default=True,
-    help="All that is random follows from it.",
-)
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder of the run.  [default: runs/SCENARIO-SEED]"
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER for another tracker]",
 )
 @click.option("--frames", is_flag=True, help="Write every thermal and colour image as PNG too.")
 @click.option("--tracker", default="peopleboy", show_default=True, help="A wrong name lists them all.")
@@ -84,7 +79,7 @@ def schema() -> None:
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
 def run(
     scenario: str,
-    seed: int,
+    seed: int | None,
     out: Path | None,
     frames: bool,
     tracker: str,
@@ -101,12 +96,18 @@ def run(
     from scenarios.progress import run_with_progress
     from scenarios.run import RunOptions
     from scenarios.suite import suite_names
+    from tracker.people import DEFAULT_TRACKER
 
     is_suite = scenario in suite_names()
+    if is_suite and seed is not None:
+        raise BadInput(f"--seed {seed}: suite {scenario} has seeds of its own; leave it out")
     loaded = None if is_suite else load_scenario(scenario)
-    name = scenario if loaded is None else f"{loaded.name}-{seed}"
+    number = seed if seed is not None else 0 if loaded is None else loaded.seed
+    name = scenario if loaded is None else f"{loaded.name}-{number}"
+    if tracker != DEFAULT_TRACKER:
+        name += f"-{tracker}"
     options = RunOptions(
-        seed=seed,
+        seed=number,
         out=out if out is not None else Path("runs") / name,
         frames=frames,
         tracker=tracker,
@@ -115,8 +116,6 @@ def run(
         overwrite=overwrite,
     )
     if loaded is None:
-        if seed != 0:
-            raise BadInput(f"--seed {seed}: suite {scenario} has seeds of its own; leave it out")
         _run_suite(scenario, options)
         return
     scores = run_with_progress(loaded, options)
@@ -180,14 +179,14 @@ def datasets(suites: Sequence[str], films: Path) -> None:
 def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None, min_visible: float) -> None:
     """Score tracks against truth: one pair of files, or the folders of any number of runs.
 
-    Several runs give mean and standard deviation over them, beside the figure of all their frames.
+    A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs give mean and standard deviation over them, beside the figure of all their frames.
     """
-    from scenarios.evaluate_runs import evaluate_files, evaluate_runs
+    from scenarios.evaluate_runs import evaluate_files, evaluate_runs, runs_in
 
     if bool(runs) == (truth is not None or tracks is not None):
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
     if runs:
-        print_spread(evaluate_runs(runs, min_visible))
+        print_spread(evaluate_runs([run for folder in runs for run in runs_in(folder)], min_visible))
     elif truth is None or tracks is None:
         raise BadInput("evaluate: --truth and --tracks go together")
     else:
@@ -346,6 +345,9 @@ def main(arguments: Sequence[str] | None = None) -> Any:
     """Run the command line; a user's mistake is one line on standard error and exit code 2."""
     try:
         code = cli.main(args=arguments, prog_name="peopleboy", standalone_mode=False)
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+        code = BAD_INPUT
     except click.ClickException as error:
         code = _complain(error.format_message())
     except click.Abort:

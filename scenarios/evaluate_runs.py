@@ -34,6 +34,18 @@ def evaluate_runs(folders: Sequence[Path], min_visible: float = MIN_VISIBLE) -> 
     ]
 
 
+def runs_in(folder: Path) -> list[Path]:
+    """List the folders of runs that a folder stands for: itself, or those in it.
+
+    Raises:
+        BadInput: there is no such folder.
+    """
+    if not folder.is_dir():
+        raise BadInput(f"{folder}: there is no such folder; give the folder of a finished run")
+    inner = sorted(path.parent for path in folder.glob("*/run.json"))
+    return inner if inner and not (folder / "run.json").exists() else [folder]
+
+
 def read_run(folder: Path) -> dict[str, Any]:
     """Read what run.json says of a complete run.
 

@@ -14,6 +14,7 @@ from scenarios.scenario import Scenario, make_scenario
 from scenarios.schema import ScenarioSpec
 
 LIBRARY = Path(__file__).parent / "library"
+SUITES = Path(__file__).parent / "suites"
 
 
 def load_scenario(name_or_path: str | Path) -> Scenario:
@@ -75,6 +76,8 @@ def _find(name_or_path: str | Path) -> Path:
 
 def _find_in_library(name: str, key: str = "") -> Path:
     known = [path.stem for path in LIBRARY.glob("*.yaml")]
+    if (SUITES / f"{name}.yaml").is_file():
+        raise BadInput(f"{key}{name} is a suite of scenarios, which only `peopleboy run` takes whole")
     if name not in known:
         raise BadInput(f"{key}unknown scenario {name!r}; {hint(name, known)}; a file's path ends in .yaml")
     return LIBRARY / f"{name}.yaml"

@@ -64,6 +64,11 @@ class Scenario:
         return self.spec.duration_s
 
     @property
+    def seed(self) -> int:
+        """The seed that everything was drawn from, in a run's own scenario file; 0 in any other."""
+        return 0 if self.spec.drawn is None else self.spec.drawn.seed
+
+    @property
     def robot(self) -> RobotSpec:
         """What the file says about the robot."""
         return self.spec.robot

@@ -12,12 +12,11 @@ from pydantic import Field, ValidationError
 from bad_input import BadInput
 from scenarios.drives import read_drive
 from scenarios.explain import explain, hint
-from scenarios.load import load_scenario
+from scenarios.load import SUITES, load_scenario
 from scenarios.read_yaml import read_yaml
 from scenarios.scenario import Scenario
 from scenarios.schema import Key, Strict
 
-SUITES = Path(__file__).parent / "suites"
 DRIVES = SUITES / "drives"
 
 

@@ -109,9 +109,7 @@ def test_a_fresh_process_gives_the_same_bytes_and_another_seed_does_not(
 
 
 def test_the_resolved_scenario_gives_the_same_world_again(finished: Path, tmp_path: Path) -> None:
-    assert (
-        run_cli("run", finished / "scenario.yaml", "--out", tmp_path / "again", "--seed", 5, "--no-rrd") == 0
-    )
+    assert run_cli("run", finished / "scenario.yaml", "--out", tmp_path / "again", "--no-rrd") == 0
     again = digests(tmp_path / "again")
     assert {name: again[name] for name in ("truth/gt.txt", "tracks.txt")} == {
         name: digests(finished)[name] for name in ("truth/gt.txt", "tracks.txt")
@@ -126,6 +124,8 @@ def test_evaluate_prints_the_same_scores_for_a_run_and_for_its_files(
     alone = capsys.readouterr().out
     assert run_cli("evaluate", finished) == 0
     together = capsys.readouterr().out
+    assert run_cli("evaluate", finished.parent) == 0
+    assert capsys.readouterr().out == together
     for figure in ("CP", "AA", "HOTA"):
         value = next(line.split()[1] for line in alone.splitlines() if line.startswith(figure))
         assert next(line.split()[1] for line in together.splitlines() if line.startswith(figure)) == value
@@ -199,6 +199,19 @@ def test_a_mistake_in_the_file_is_one_line_and_leaves_nothing(
     assert not (tmp_path / "run").exists()
 
 
+def test_no_command_prints_the_commands(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_cli() == 2
+    assert "  sweep  " in capsys.readouterr().out
+
+
+def test_another_tracker_has_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = write_scene(tmp_path / "tiny.yaml", duration_s=0.2)
+    for tracker in ("peopleboy", "paper"):
+        assert run_cli("run", path, "--tracker", tracker, "--no-rrd") == 0
+    assert {folder.name for folder in (tmp_path / "runs").iterdir()} == {"tiny-0", "tiny-0-paper"}
+
+
 @pytest.mark.parametrize(
     ("arguments", "clue"),
     [
@@ -211,7 +224,9 @@ def test_a_mistake_in_the_file_is_one_line_and_leaves_nothing(
         (("run", "empty_room", "--out", "/dev/null/run"), "/dev/null/run"),
         (("evaluate", "--truth", "gt.txt"), "--tracks"),
         (("evaluate",), "--truth"),
-        (("evaluate", "no_run"), "no_run"),
+        (("evaluate", "no_run"), "no such folder"),
+        (("show", "dataset1"), "suite"),
+        (("run", "dataset1", "--seed", "1"), "seeds of its own"),
         (("view", "no_run"), "no_run"),
         (("show", "empty_room", "--out", "/dev/null/plan.png"), "/dev/null/plan.png"),
     ],
