@@ -6,6 +6,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.closed_loop import loop_speed, peak_memory_mb, run_speed
+from benchmarks.environments import CASES, bullet_rate, reset_growth, step_rate, step_rates
 from benchmarks.filter_step import step_time_ms
 from benchmarks.memory import long_run
 from benchmarks.render import render_times
@@ -14,6 +15,7 @@ from benchmarks.whole_tracker import whole_tracker
 COUNTS = (300, 1000)
 SCENARIOS = ("single_follow", "crossing_pair")
 MEMORY_FRAMES = 10_000
+RESETS = 100
 
 
 def main() -> None:
@@ -33,7 +35,19 @@ def main() -> None:
     _add_tracker(table)
     growth = long_run(MEMORY_FRAMES).bytes_per_frame
     table.add_row(f"growth of memory over {MEMORY_FRAMES} frames", f"{growth:.0f} bytes a frame", "none")
+    _add_environments(table)
     Console(width=100).print(table)
+
+
+def _add_environments(table: Table) -> None:
+    for case in CASES:
+        goal = f"at least {case.goal}"
+        table.add_row(f"environment, {case.name}", f"{step_rate(case):.0f} steps/s", goal)
+        table.add_row(f"environment, {case.name}, 2 processes", f"{step_rates(case, 2):.0f} steps/s", "")
+    for size in ((320, 240), (80, 60)):
+        name = f"PyBullet's getCameraImage twice a step, {size[0]} x {size[1]}"
+        table.add_row(name, f"{bullet_rate(size):.0f} steps/s", "")
+    table.add_row(f"growth of memory over {RESETS} resets", f"{reset_growth(RESETS):.0f} bytes each", "none")
 
 
 def _add_tracker(table: Table) -> None:

@@ -44,7 +44,7 @@ def play(env: PeopleBoyEnv, steps: int, action: tuple[float, float] = (0.2, 0.3)
 
 def test_the_three_names_are_known_to_who_imports_gymnasium_alone() -> None:
     prefix = "" if gymnasium.__version__ < "1" else "scenarios.register:"
-    code = f"import gymnasium; [gymnasium.spec('{prefix}' + name) for name in {list(ENVIRONMENTS)}]"
+    code = f"import gymnasium; [gymnasium.make('{prefix}' + name) for name in {list(ENVIRONMENTS)}]"
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True, timeout=120)
 
 

@@ -1,0 +1,125 @@
+"""Environment steps per second, beside PyBullet's own way to images; and what resets leave behind."""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
+
+from benchmarks.memory import resident_mb
+from scenarios.environment import PHYSICS_HZ, PeopleBoyEnv
+from scenarios.load import load_scenario
+from sim.physics.opengl import projection_matrix, view_matrix
+from sim.rendering.bounds import FAR_M, NEAR_M
+from sim.world import World
+
+SCENARIO = "single_follow"
+ACTION = (0.0, 0.13)
+WARM_UP = 10
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """One way to observe, how many steps a second it should reach, and how many to time."""
+
+    observation: str
+    image_size: tuple[int, int]
+    goal: int
+    steps: int
+
+    @property
+    def name(self) -> str:
+        """What it is called in the table."""
+        width, height = self.image_size
+        return f"{self.observation}, {width} x {height}" if self.observation == "pixels" else self.observation
+
+
+CASES = (
+    Case(observation="pixels", image_size=(320, 240), goal=60, steps=200),
+    Case(observation="pixels", image_size=(80, 60), goal=600, steps=600),
+    Case(observation="tracks", image_size=(320, 240), goal=100, steps=300),
+    Case(observation="truth", image_size=(320, 240), goal=1500, steps=1000),
+)
+
+
+def step_rate(case: Case) -> float:
+    """Return environment steps per second of CPU time, of one process."""
+    env = PeopleBoyEnv(SCENARIO, observation=case.observation, image_size=case.image_size)
+    env.reset(seed=0)
+    for _ in range(WARM_UP):
+        env.step(ACTION)
+    start = time.process_time()
+    for _ in range(case.steps):
+        *_, terminated, truncated, _ = env.step(ACTION)
+        if terminated or truncated:
+            env.reset()
+    spent = time.process_time() - start
+    env.close()
+    return case.steps / spent
+
+
+def step_rates(case: Case, processes: int) -> float:
+    """Return the same of several processes at once, added up."""
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        return sum(pool.map(step_rate, [case] * processes))
+
+
+def bullet_rate(image_size: tuple[int, int], steps: int = 20) -> float:
+    """Return steps per second of the same world with two plain calls of getCameraImage a step."""
+    config = replace(load_scenario(SCENARIO).world(0), physics_hz=PHYSICS_HZ)
+    cameras = [
+        replace(camera, width=image_size[0], height=image_size[1])
+        for camera in (config.robot.thermal.camera, config.robot.colour.camera)
+    ]
+    with World(config) as world:
+        client, robot = world._bullet._client, world._robot
+        start = time.process_time()
+        for _ in range(steps):
+            world.step(0.0, 0.3)
+            for camera in cameras:
+                view = view_matrix(robot.world_from_robot() @ camera.robot_from_camera)
+                client.getCameraImage(*image_size, view, projection_matrix(camera, NEAR_M, FAR_M))
+        return steps / (time.process_time() - start)
+
+
+def reset_growth(resets: int) -> float:
+    """Return by how many bytes the memory of a process of its own grows with each reset."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as process:
+        return process.submit(_reset_growth, resets).result()
+
+
+def _reset_growth(resets: int) -> float:
+    env = PeopleBoyEnv(SCENARIO, observation="truth")
+    for seed in range(resets // 4):
+        env.reset(seed=seed)
+    before = _held_mb()
+    for seed in range(resets):
+        env.reset(seed=seed)
+    grown = _held_mb() - before
+    env.close()
+    return 1e6 * grown / resets
+
+
+def _held_mb() -> float:
+    gc.collect()
+    return resident_mb()
+
+
+def main() -> None:
+    """Measure, and print a line each."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.environments", description=__doc__)
+    parser.add_argument("--resets", type=int, default=1000)
+    options = parser.parse_args()
+    for case in CASES:
+        one, two = step_rate(case), step_rates(case, 2)
+        print(f"{case.name:18s} {one:7.0f} steps/s, goal {case.goal}; 2 processes {two:7.0f}", flush=True)
+    for size in ((320, 240), (80, 60)):
+        print(f"getCameraImage twice, {size[0]} x {size[1]}: {bullet_rate(size):.0f} steps/s", flush=True)
+    print(f"growth over {options.resets} resets: {reset_growth(options.resets):.0f} bytes a reset")
+
+
+if __name__ == "__main__":
+    main()
