@@ -179,7 +179,8 @@ def datasets(suites: Sequence[str], films: Path) -> None:
 def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None, min_visible: float) -> None:
     """Score tracks against truth: one pair of files, or the folders of any number of runs.
 
-    A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs give mean and standard deviation over them, beside the figure of all their frames.
+    A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs give mean and
+    standard deviation over them, beside the figure of all their frames.
     """
     from scenarios.evaluate_runs import evaluate_files, evaluate_runs, runs_in
 
