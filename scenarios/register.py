@@ -15,7 +15,7 @@ from gymnasium.envs.registration import register, registry
 ENVIRONMENTS: Final[Mapping[str, Mapping[str, str]]] = {
     "peopleboy/PersonFollowing-v0": {"scenario": "single_follow", "task": "follow"},
     "peopleboy/CorridorFollowing-v0": {"scenario": "corridor_straight", "task": "corridor"},
-    "peopleboy/Patrol-v0": {"scenario": "corridor_meeting", "task": "patrol"},
+    "peopleboy/Patrol-v0": {"scenario": "patrol_corridor", "task": "patrol"},
 }
 """Each environment's scenario and task by its name."""
 
