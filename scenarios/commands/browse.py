@@ -1,0 +1,48 @@
+"""Commands that look at the library: `list`, `show`, `schema`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from scenarios.commands.options import SEED
+
+
+@click.command("list")
+def list_command() -> None:
+    """List the scenarios of the library, and the suites."""
+    from scenarios.load import library
+    from scenarios.suite import load_suite, suite_names
+
+    for name, description in library().items():
+        click.echo(f"{name:20} {description}")
+    for name in suite_names():
+        click.echo(f"{name:20} suite: {' '.join(load_suite(name).description.split())}")
+
+
+@click.command()
+@click.argument("scenario")
+@click.option("--seed", type=click.IntRange(min=0), help=f"What is drawn follows from it.  {SEED}")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Picture to write.  [default: SCENARIO-plan.png]"
+)
+def show(scenario: str, seed: int | None, out: Path | None) -> None:
+    """Draw the plan of a scenario, with paths and times."""
+    from scenarios.load import load_scenario
+    from scenarios.plan import draw_plan
+
+    loaded = load_scenario(scenario)
+    path = out if out is not None else Path(f"{loaded.name}-plan.png")
+    draw_plan(loaded, loaded.seed if seed is None else seed, path)
+    click.echo(path)
+
+
+@click.command()
+def schema() -> None:
+    """Print the JSON schema of scenario files, for editors."""
+    import json
+
+    from scenarios.schema import json_schema
+
+    click.echo(json.dumps(json_schema(), indent=2))

@@ -1,0 +1,44 @@
+"""The command `evaluate`: score tracks against truth."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from bad_input import BadInput
+from scenarios.show_scores import print_scores, print_spread
+
+
+@click.command()
+@click.argument("runs", nargs=-1, type=click.Path(path_type=Path))
+@click.option(
+    "--truth", type=click.Path(path_type=Path), help="MOTChallenge truth, such as RUN/truth/gt.txt."
+)
+@click.option(
+    "--tracks", type=click.Path(path_type=Path), help="MOTChallenge results, such as RUN/tracks.txt."
+)
+@click.option(
+    "--min-visible",
+    type=click.FloatRange(0.0, 1.0, max_open=True),
+    default=0.0,
+    show_default=True,
+    help="People count if more than this share of them is seen; 0.3 leaves out slivers at the border.",
+)
+def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None, min_visible: float) -> None:
+    """Score tracks against truth: one pair of files, or the folders of any number of runs.
+
+    A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs give mean and
+    standard deviation over them, beside the figure of all their frames.
+    """
+    from scenarios.evaluate_runs import evaluate_files, evaluate_runs, runs_in
+
+    if bool(runs) == (truth is not None or tracks is not None):
+        raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
+    if runs:
+        print_spread(evaluate_runs([run for folder in runs for run in runs_in(folder)], min_visible))
+    elif truth is None or tracks is None:
+        raise BadInput("evaluate: --truth and --tracks go together")
+    else:
+        print_scores(evaluate_files(truth, tracks, min_visible=min_visible))

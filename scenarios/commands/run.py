@@ -1,0 +1,89 @@
+"""The command `run`: one scenario, or a suite."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bad_input import BadInput
+from scenarios.commands.options import SEED
+from scenarios.show_scores import print_corridor, print_following, print_scores, print_spread
+
+if TYPE_CHECKING:
+    from scenarios.run import RunOptions
+
+
+@click.command()
+@click.argument("scenario")
+@click.option("--seed", type=click.IntRange(min=0), help=f"All that is random follows from it.  {SEED}")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER for another tracker]",
+)
+@click.option("--frames", is_flag=True, help="Write every thermal and colour image as PNG too.")
+@click.option("--tracker", default="peopleboy", show_default=True, help="A wrong name lists them all.")
+@click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
+@click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
+@click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
+def run(
+    scenario: str,
+    seed: int | None,
+    out: Path | None,
+    frames: bool,
+    tracker: str,
+    renderer: str,
+    no_rrd: bool,
+    overwrite: bool,
+) -> None:
+    """Run a scenario headless, and leave a folder with truth, tracks, scores and a recording.
+
+    SCENARIO is a name from `peopleboy list` or the path of a YAML file; or a suite, such as dataset1, whose
+    runs have seeds of their own and leave no recordings. A suite that was killed goes on where it was.
+    """
+    from scenarios.load import load_scenario
+    from scenarios.progress import run_with_progress
+    from scenarios.run import RunOptions
+    from scenarios.suite import suite_names
+    from tracker.people import DEFAULT_TRACKER
+
+    is_suite = scenario in suite_names()
+    if is_suite and seed is not None:
+        raise BadInput(f"--seed {seed}: suite {scenario} has seeds of its own; leave it out")
+    loaded = None if is_suite else load_scenario(scenario)
+    number = seed if seed is not None else 0 if loaded is None else loaded.seed
+    name = scenario if loaded is None else f"{loaded.name}-{number}"
+    if tracker != DEFAULT_TRACKER:
+        name += f"-{tracker}"
+    options = RunOptions(
+        seed=number,
+        out=out if out is not None else Path("runs") / name,
+        frames=frames,
+        tracker=tracker,
+        renderer=renderer,
+        record=not no_rrd,
+        overwrite=overwrite,
+    )
+    if loaded is None:
+        _run_suite(scenario, options)
+        return
+    scores = run_with_progress(loaded, options)
+    print_scores(scores.people)
+    if scores.following is not None:
+        print_following(scores.following)
+    if scores.corridor is not None:
+        print_corridor(scores.corridor)
+    for path in sorted(options.out.iterdir()):
+        click.echo(path)
+
+
+def _run_suite(name: str, options: RunOptions) -> None:
+    from scenarios.evaluate_runs import evaluate_runs
+    from scenarios.run_suite import run_suite
+
+    folders = run_suite(name, options)
+    print_spread(evaluate_runs(folders))
+    for path in folders:
+        click.echo(path)

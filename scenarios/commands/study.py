@@ -1,0 +1,104 @@
+"""Commands that follow the sources: `datasets`, `train-occlusion`, `reproduce`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from bad_input import BadInput
+
+
+@click.command()
+@click.argument("suites", nargs=-1)
+@click.option(
+    "--films",
+    type=click.Path(path_type=Path),
+    default=Path("runs/films"),
+    show_default=True,
+    help="Where rendered frames are kept; for a cluster, a folder that all share.",
+)
+def datasets(suites: Sequence[str], films: Path) -> None:
+    """Count what the data sets hold, beside table 3.1 of the thesis; their frames are rendered and kept.
+
+    SUITES are any of dataset1 to dataset4; without a name, all of them.
+    """
+    from scenarios.show_contents import print_contents
+    from scenarios.suite_table import THESIS
+
+    for name in suites:
+        if name not in THESIS:
+            raise BadInput(f"datasets: unknown data set {name!r}; there are {', '.join(THESIS)}")
+    print_contents(suites or tuple(THESIS), films)
+
+
+@click.command("train-occlusion")
+@click.option("--tracker", default="peopleboy", show_default=True, help="Whom to teach: peopleboy or thesis.")
+@click.option(
+    "--seeds",
+    type=click.IntRange(min=1),
+    default=5,
+    show_default=True,
+    help="Runs of each scenario.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder for the examples and the learned table.  [default: runs/occlusion-TRACKER]",
+)
+@click.option("--again", is_flag=True, help="Run the scenarios even if the examples are there.")
+@click.option("--triplets/--no-triplets", default=True, help="Try weighted triplets as well (a minute).")
+@click.option("--ship", is_flag=True, help="Put the learned table in the place of the tracker's own.")
+def train_occlusion(
+    tracker: str, seeds: int, out: Path | None, again: bool, triplets: bool, ship: bool
+) -> None:
+    """Learn from scenarios which of two overlapping people is in front, and compare with the thesis.
+
+    One set of scenarios is learned from, another one is for testing. Needs scikit-learn: peopleboy[train].
+    """
+    from scenarios.occlusion_lesson import give_lesson
+
+    folder = out if out is not None else Path("runs") / f"occlusion-{tracker}"
+    click.echo(give_lesson(folder, tracker, seeds, triplets=triplets, again=again, ship=ship))
+
+
+@click.command()
+@click.argument("names", metavar="[ID]...", nargs=-1)
+@click.option("--quick", is_flag=True, help="A little of everything, in minutes.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder of the page and the results.  [default: runs/reproduce, or runs/reproduce-quick]",
+)
+@click.option(
+    "--films",
+    type=click.Path(path_type=Path),
+    default=Path("runs") / "films",
+    show_default=True,
+    help="Where rendered frames are kept; for a cluster, a folder that all share.",
+)
+@click.option("--jobs", type=click.IntRange(min=1), help="Processes at the same time.  [default: one a core]")
+@click.option("--scheduler", metavar="tcp://...", help="Work on the cluster of this Dask scheduler.")
+@click.option("--list", "lists", is_flag=True, help="List tables and figures, and do nothing.")
+def reproduce(
+    names: Sequence[str],
+    quick: bool,
+    out: Path | None,
+    films: Path,
+    jobs: int | None,
+    scheduler: str | None,
+    lists: bool,
+) -> None:
+    """Measure every table and figure of the sources again, and write one page about it.
+
+    ID is one of `--list`, or its number: 4.9 stands for figures 4.9a and 4.9b. A killed call goes on where it
+    was when it is given again.
+    """
+    from scenarios.reproduce.show import list_experiments, reproduce_with_progress
+
+    if lists:
+        list_experiments(names)
+    else:
+        folder = out if out is not None else Path("runs") / ("reproduce-quick" if quick else "reproduce")
+        click.echo(reproduce_with_progress(names, folder, films, jobs, scheduler, quick=quick))
