@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from bad_input import BadInput
+from scenarios.finished import is_finished
 from scenarios.frame_cache import Film, film
 from scenarios.loop import Tick
 from scenarios.run import RunOptions, run
@@ -22,7 +21,7 @@ _RATE_HZ = 15
 def run_suite(name: str, options: RunOptions) -> list[Path]:
     """Run a suite, with a bar on standard error; a suite that was killed goes on where it was.
 
-    Complete runs of the same tracker stay; those that were cut off are done again.
+    Complete runs stay; those that were cut off are done again.
 
     Args:
         name: of the suite.
@@ -32,38 +31,23 @@ def run_suite(name: str, options: RunOptions) -> list[Path]:
         The runs' folders, in the suite's order.
 
     Raises:
-        BadInput: there is no such suite, or a complete run is that of another tracker.
+        BadInput: there is no such suite, or a complete run in its place is another one.
     """
     runs = list(runs_of(load_suite(name)))
-    folders = [options.out / one.name for one in runs]
-    waiting = [(one, path) for one, path in zip(runs, folders, strict=True) if not _is_done(path, options)]
+    own = [replace(options, seed=one.seed, out=options.out / one.name, record=False) for one in runs]
+    waiting = [pair for pair in zip(runs, own, strict=True) if not is_finished(pair[0].scenario, pair[1])]
     with _bar() as progress:
         task = progress.add_task(name, total=sum(_frames(one) for one, _ in waiting), run="")
-        for one, path in waiting:
+        for one, its in waiting:
             progress.update(task, run=one.name)
-            one_run = replace(options, seed=one.seed, out=path, record=False, overwrite=True)
-            run(one.scenario, one_run, _advance(progress, task))
-    return folders
+            run(one.scenario, replace(its, overwrite=True), _advance(progress, task))
+    return [its.out for its in own]
 
 
 def films_of(name: str, folder: Path) -> Iterator[Film]:
     """Yield the frames of every run of a suite; each is rendered once and then kept."""
     for one in runs_of(load_suite(name)):
         yield film(one.scenario, one.seed, folder)
-
-
-def _is_done(folder: Path, options: RunOptions) -> bool:
-    try:
-        about = json.loads((folder / "run.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return False
-    if options.overwrite or about.get("status") != "complete":
-        return False
-    if about["tracker"] != options.tracker:
-        raise BadInput(
-            f"{folder}: was run with tracker {about['tracker']!r}; give --overwrite, or another --out"
-        )
-    return True
 
 
 def _frames(one: SuiteRun) -> int:

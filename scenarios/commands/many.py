@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from scenarios.commands.options import tracker_option
 from scenarios.show_scores import print_spread
 
 
@@ -22,7 +23,7 @@ from scenarios.show_scores import print_spread
     show_default=True,
     help="Where the runs' folders go.",
 )
-@click.option("--tracker", default="peopleboy", show_default=True, help="A wrong name lists them all.")
+@tracker_option
 @click.option(
     "--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Runs at the same time."
 )

@@ -1,3 +1,11 @@
-"""Help texts that several commands share."""
+"""Options and help texts that several commands share."""
+
+from __future__ import annotations
+
+import click
 
 SEED = "[default: 0, or that of a run's own scenario.yaml]"
+
+# Spelled out, since the trackers themselves take a second to load, which --help should not.
+TRACKERS = "peopleboy, learned, footage, thesis, colour, thermal, paper, or truth: the true boxes"
+tracker_option = click.option("--tracker", default="peopleboy", show_default=True, help=f"One of {TRACKERS}.")

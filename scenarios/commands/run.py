@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bad_input import BadInput
-from scenarios.commands.options import SEED
+from scenarios.commands.options import SEED, tracker_option
 from scenarios.show_scores import print_corridor, print_following, print_scores, print_spread
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     help="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER for another tracker]",
 )
 @click.option("--frames", is_flag=True, help="Write every thermal and colour image as PNG too.")
-@click.option("--tracker", default="peopleboy", show_default=True, help="A wrong name lists them all.")
+@tracker_option
 @click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")

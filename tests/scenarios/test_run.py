@@ -14,6 +14,7 @@ from scenarios.cli import main
 from scenarios.evaluate_runs import evaluate_files, evaluate_runs
 from scenarios.load import load_scenario, parse_scenario
 from scenarios.run import RunOptions, run
+from tracker.people import TRACKERS
 
 SCENE = {
     "name": "tiny",
@@ -199,6 +200,12 @@ def test_a_mistake_in_the_file_is_one_line_and_leaves_nothing(
     assert not (tmp_path / "run").exists()
 
 
+def test_help_names_every_tracker(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_cli("run", "--help") == 0
+    text = capsys.readouterr().out
+    assert [name for name in (*TRACKERS, "truth") if name not in text] == []
+
+
 def test_no_command_prints_the_commands(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_cli() == 2
     assert "  sweep  " in capsys.readouterr().out
@@ -271,3 +278,23 @@ def test_every_library_scenario_runs_a_little(tmp_path: Path) -> None:
         short = replace(loaded, spec=loaded.spec.model_copy(update={"duration_s": 0.3}))
         run(short, RunOptions(seed=1, out=tmp_path / name, record=False), lambda _tick, _frames: None)
         assert (tmp_path / name / "contact_sheet.png").stat().st_size > 10_000
+
+
+def test_a_sweep_goes_on_where_it_was_and_takes_no_other_run_for_its_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = write_scene(tmp_path / "tiny.yaml", duration_s=0.2)
+    out = tmp_path / "runs"
+    assert run_cli("sweep", scenario, "--seeds", 1, "--out", out) == 0
+    stamp = (out / "tiny-0" / "run.json").stat().st_mtime_ns
+    assert run_cli("sweep", scenario, "--seeds", 2, "--out", out) == 0
+    assert (out / "tiny-0" / "run.json").stat().st_mtime_ns == stamp
+    for folder in out.iterdir():
+        about = json.loads((folder / "run.json").read_text())
+        (folder / "run.json").write_text(json.dumps(about | {"status": "running"}))
+    assert run_cli("sweep", scenario, "--seeds", 2, "--out", out) == 0
+    assert (out / "tiny-0" / "run.json").stat().st_mtime_ns != stamp
+    capsys.readouterr()
+    write_scene(tmp_path / "tiny.yaml", duration_s=0.4)
+    assert run_cli("sweep", scenario, "--seeds", 2, "--out", out) == 2
+    assert "another scenario" in capsys.readouterr().err
