@@ -42,6 +42,9 @@ def _print_rows(title: str, rows: Sequence[Row]) -> None:
 
 def print_spread(sequences: Sequence[Scores]) -> None:
     """Print every figure over several runs: of all frames together, and mean and deviation over runs."""
+    if len(sequences) == 1:
+        print_scores(sequences[0])
+        return
     table = _table(
         f"people, {len(sequences)} runs", "figure", "all frames", "mean of runs", "deviation", "meaning"
     )

@@ -43,6 +43,7 @@ def run(
     SCENARIO is a name from `peopleboy list` or the path of a YAML file; or a suite, such as dataset1, whose
     runs have seeds of their own and leave no recordings. A suite that was killed goes on where it was.
     """
+    from scenarios.headline import headline
     from scenarios.load import load_scenario
     from scenarios.progress import run_with_progress
     from scenarios.run import RunOptions
@@ -75,8 +76,10 @@ def run(
         print_following(scores.following)
     if scores.corridor is not None:
         print_corridor(scores.corridor)
-    for path in sorted(options.out.iterdir()):
-        click.echo(path)
+    click.echo(headline(scores))
+    click.echo(f"{options.out / 'contact_sheet.png'} shows the key moments.")
+    if options.record:
+        click.echo(f"peopleboy view {options.out} plays the recording.")
 
 
 def _run_suite(name: str, options: RunOptions) -> None:
