@@ -11,7 +11,9 @@ import click
 from bad_input import BadInput
 from scenarios.commands.browse import list_command, schema, show
 from scenarios.commands.evaluate import evaluate
+from scenarios.commands.export import export
 from scenarios.commands.many import compare, sweep
+from scenarios.commands.render import render
 from scenarios.commands.run import run
 from scenarios.commands.study import datasets, reproduce, train_occlusion
 from scenarios.commands.view import view
@@ -23,9 +25,11 @@ COMMANDS = (
     schema,
     run,
     sweep,
+    render,
     evaluate,
     compare,
     view,
+    export,
     datasets,
     train_occlusion,
     reproduce,

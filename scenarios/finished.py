@@ -13,7 +13,9 @@ from scenarios.scenario import Scenario
 
 
 def is_finished(scenario: Scenario, options: RunOptions) -> bool:
-    """Tell whether the folder holds this very run, complete; never if it is to be replaced.
+    """Tell whether the folder holds this very run, complete, with its images if they are wanted.
+
+    Never, if it is to be replaced.
 
     Raises:
         BadInput: it holds a complete run of another scenario, seed, tracker or version.
@@ -29,6 +31,8 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
         raise BadInput(
             f"{options.out}: was run with tracker {about['tracker']!r}; give --overwrite, or another --out"
         )
+    if options.frames and not about["images"]:
+        return False
     if (played, about["renderer"]) != (
         _as_read(scenario.resolved(options.seed, versions())),
         options.renderer,

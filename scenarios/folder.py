@@ -22,7 +22,7 @@ from sim.images.thermal import encode_16bit
 from tracker.evaluation.mot_files import track_line, truth_line
 from tracker.track import Status
 
-_IMAGES = ("thermal", "thermal16", "colour")
+IMAGES = ("thermal", "thermal16", "colour")
 _VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet", "scipy")
 
 
@@ -48,7 +48,7 @@ class RunFolder:
         (path / "scenario.yaml").write_text(
             yaml.safe_dump(dict(scenario), sort_keys=False, allow_unicode=True), encoding="utf-8"
         )
-        for name in ("truth", *(_IMAGES if frames else ())):
+        for name in ("truth", *(IMAGES if frames else ())):
             (path / name).mkdir()
         self._gt = self._open("truth/gt.txt")
         self._results = self._open("tracks.txt")

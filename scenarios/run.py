@@ -64,6 +64,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         "tracker": options.tracker,
         "renderer": options.renderer,
         "rate_hz": config.control_hz,
+        "images": options.frames,
     }
     with ExitStack() as stack:
         world = stack.enter_context(World(config))

@@ -1,0 +1,59 @@
+"""The command `render`: data sets for others to train and test on."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from scenarios.commands.options import TRACKERS
+
+FAILED = 1
+
+
+@click.command()
+@click.argument("scenarios", metavar="SCENARIO...", nargs=-1, required=True)
+@click.option("--frames", is_flag=True, help="Write every image too, as for `run`; else truth alone.")
+@click.option(
+    "--seeds", type=click.IntRange(min=1), default=100, show_default=True, help="How many, from 0 on."
+)
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder of the set.  [default: sets/SCENARIO-SCENARIO...]"
+)
+@click.option(
+    "--tracker",
+    default="truth",
+    show_default=True,
+    help=f"Whose eyes steer robots that follow people: {TRACKERS}.",
+)
+@click.option("--jobs", type=click.IntRange(min=1), help="Runs at the same time.  [default: one a core]")
+def render(
+    scenarios: Sequence[str], frames: bool, seeds: int, out: Path | None, tracker: str, jobs: int | None
+) -> None:
+    """Render a data set: scenarios with many seeds, split, counted and checked, with a datasheet.
+
+    A killed call goes on where it was; with more --seeds the set grows, and no run changes its split.
+    """
+    import os
+
+    from scenarios.load import load_scenario
+    from scenarios.rendered_set.make import render_set
+
+    names = [load_scenario(scenario).name for scenario in scenarios]
+    folder = out if out is not None else Path("sets") / "-".join(names)
+    processes = jobs if jobs is not None else os.cpu_count() or 1
+    done = render_set(scenarios, seeds, folder, frames=frames, tracker=tracker, processes=processes)
+    for check in done.checks:
+        click.echo(f"{'holds' if not check.failures else 'FAILS'}: {check.what}")
+        for failure in check.failures[:5]:
+            click.echo(f"       {failure}")
+    content = done.statistics["all"].content
+    click.echo(
+        f"{len(done.runs)} runs, {content['frames']} frames, {content['detections']} people to detect, "
+        f"{done.size_mb:.0f} MB"
+    )
+    click.echo(folder / "README.md")
+    if not done.is_sound:
+        sys.exit(FAILED)

@@ -1,0 +1,49 @@
+"""The README of a rendered set, under the questions of a datasheet.
+
+The questions are those of Gebru et al., "Datasheets for Datasets", 2021.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from scenarios.rendered_set.checks import Check
+from scenarios.rendered_set.statistics import Bin, Statistics
+from scenarios.scenario import Scenario
+
+_TEMPLATE = Path(__file__).parent / "datasheet.md.jinja"
+
+
+def write_datasheet(
+    path: Path,
+    statistics: Mapping[str, Statistics],
+    checks: Sequence[Check],
+    about: Mapping[str, Any],
+    scenarios: Sequence[Scenario],
+    size_mb: float,
+) -> None:
+    """Write the datasheet of a set.
+
+    Args:
+        path: the file.
+        statistics: of all, and of each split that has runs.
+        checks: what was looked at.
+        about: scenarios, seeds, images, tracker and versions.
+        scenarios: what was played.
+        size_mb: [MB] on disk.
+    """
+    environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment.filters["span"] = _span
+    template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
+    text = template.render(
+        statistics=statistics, checks=checks, about=about, scenarios=scenarios, size_mb=size_mb
+    )
+    path.write_text(text, encoding="utf-8")
+
+
+def _span(one: Bin) -> str:
+    return f"{one.start:g} and more" if one.end == float("inf") else f"{one.start:g} to {one.end:g}"
