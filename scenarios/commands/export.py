@@ -1,0 +1,39 @@
+"""The command `export`: runs in the formats of others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+FORMATS = ("mot", "coco", "viper", "mcap", "mp4")
+
+
+@click.command()
+@click.argument("runs", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--format", "form", type=click.Choice(FORMATS), required=True, help="What to write.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder to leave.  [default: beside the run, RUN-FORMAT; of several, export-FORMAT]",
+)
+@click.option("--overwrite", is_flag=True, help="Replace an earlier export in the folder.")
+def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -> None:
+    """Hand runs over to other tools; a folder that holds folders of runs stands for all of them.
+
+    mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. viper: ViPER XML. mcap: ROS 2 bags. mp4:
+    films. Images and masks are rendered again, and are those of the run. mcap and mp4 need peopleboy[export].
+    """
+    from scenarios.evaluate_runs import runs_in
+    from scenarios.export.finished_run import open_runs
+    from scenarios.export.formats import export as write
+    from scenarios.export.progress import bar
+
+    opened = open_runs([run for folder in runs for run in runs_in(folder)])
+    first = opened[0].folder
+    name = f"{first.name}-{form}" if len(opened) == 1 else f"export-{form}"
+    folder = out if out is not None else first.parent / name
+    with bar(form, opened) as play:
+        write(opened, form, folder, play, overwrite=overwrite)
+    click.echo(folder)

@@ -1,0 +1,22 @@
+"""Packages that only some formats need."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from bad_input import BadInput
+
+
+def need(package: str, form: str) -> Any:
+    """Import a package of the extra `export`.
+
+    Raises:
+        BadInput: it is not installed.
+    """
+    try:
+        return import_module(package)
+    except ImportError as error:
+        raise BadInput(
+            f"--format {form} needs the package {package.split('.')[0]}: pip install 'peopleboy[export]'"
+        ) from error

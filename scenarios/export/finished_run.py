@@ -1,0 +1,148 @@
+"""A finished run as it lies on disk: its scenario, and its tables by frame."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from bad_input import BadInput
+from scenarios.evaluate_runs import read_run
+from scenarios.load import load_scenario
+from scenarios.scenario import Scenario
+from scenarios.tables import ROBOT, TRACKS, TRUTH, Row
+from sim.config import RobotConfig, WorldConfig
+from tracker.track import Ellipse, Status, Track
+
+_BOX = ("left_px", "top_px", "width_px", "height_px")
+_STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FinishedRun:
+    """One complete run.
+
+    Attributes:
+        folder: where it lies.
+        scenario: what was played, everything drawn.
+        seed: of the run.
+        tracker: its name.
+        frames: how many.
+        rate_hz: frames a second.
+        versions: packages that made it, by name.
+        world: settings of its world.
+    """
+
+    folder: Path
+    scenario: Scenario
+    seed: int
+    tracker: str
+    frames: int
+    rate_hz: int
+    versions: dict[str, str]
+    world: WorldConfig
+
+    @property
+    def name(self) -> str:
+        """Its folder's name."""
+        return self.folder.resolve().name
+
+    @property
+    def robot(self) -> RobotConfig:
+        """The robot and its cameras."""
+        return self.world.robot
+
+    def truth_rows(self) -> dict[int, list[Row]]:
+        """Give the rows of truth.parquet, by frame."""
+        return _by_frame(_read(self.folder / "truth.parquet", TRUTH))
+
+    def robot_rows(self) -> list[Row]:
+        """Give the rows of robot.parquet, one a frame."""
+        return _read(self.folder / "robot.parquet", ROBOT)
+
+    def tracks(self) -> dict[int, list[Track]]:
+        """Give what the tracker said, by frame, tentative tracks too."""
+        rows = _by_frame(_read(self.folder / "tracks.parquet", TRACKS))
+        return defaultdict(list, {frame: [_track(row) for row in here] for frame, here in rows.items()})
+
+
+def open_runs(folders: Sequence[Path]) -> list[FinishedRun]:
+    """Open complete runs by their folders.
+
+    Raises:
+        BadInput: there is no complete run in a folder, or two have the same name.
+    """
+    runs = [open_run(folder) for folder in folders]
+    seen: dict[str, Path] = {}
+    for run in runs:
+        if run.name in seen:
+            raise BadInput(
+                f"{run.folder}: {seen[run.name]} is called {run.name} too; leave one out, or rename it"
+            )
+        seen[run.name] = run.folder
+    return runs
+
+
+def open_run(folder: Path) -> FinishedRun:
+    """Open a complete run by its folder.
+
+    Raises:
+        BadInput: there is none.
+    """
+    about = read_run(folder)
+    path = folder / "scenario.yaml"
+    if not path.is_file():
+        raise BadInput(f"{path}: there is no such file; only runs of scenarios can be exported")
+    scenario = load_scenario(path)
+    try:
+        seed, renderer = int(about["seed"]), str(about["renderer"])
+        tracker, frames, rate_hz = str(about["tracker"]), int(about["frames"]), int(about["rate_hz"])
+    except (KeyError, ValueError) as error:
+        raise BadInput(f"{folder / 'run.json'}: lacks {error}; run the scenario again") from error
+    return FinishedRun(
+        folder=folder,
+        scenario=scenario,
+        seed=seed,
+        tracker=tracker,
+        frames=frames,
+        rate_hz=rate_hz,
+        versions=dict(about.get("versions", {})),
+        world=scenario.world(seed, renderer),
+    )
+
+
+def _read(path: Path, schema: pa.Schema) -> list[Row]:
+    try:
+        table = pq.read_table(path)
+    except (OSError, pa.ArrowException) as error:
+        raise BadInput(f"{path}: cannot be read as a table of a run; run the scenario again") from error
+    lacking = [name for name in schema.names if name not in table.column_names]
+    if lacking:
+        raise BadInput(f"{path}: lacks the column {lacking[0]!r} of this version; run the scenario again")
+    rows: list[Row] = table.select(schema.names).to_pylist()
+    return rows
+
+
+def _by_frame(rows: Sequence[Row]) -> dict[int, list[Row]]:
+    found: dict[int, list[Row]] = defaultdict(list)
+    for row in rows:
+        found[row["frame"]].append(row)
+    return found
+
+
+def _track(row: Row) -> Track:
+    box: Any = tuple(row[name] for name in _BOX)
+    return Track(
+        id=row["id"],
+        ellipse=Ellipse(**{name: row[name] for name in _STATE}),
+        box=box,
+        confidence=row["confidence"],
+        status=Status(row["status"]),
+        age_s=row["age_s"],
+        uncertainty_px2=row["uncertainty_px2"],
+    )

@@ -1,0 +1,45 @@
+"""The formats, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from scenarios.export.coco import write_coco
+from scenarios.export.finished_run import FinishedRun
+from scenarios.export.mot import write_mot
+from scenarios.export.replay import Play
+from scenarios.export.ros_bag import write_mcap
+from scenarios.export.video import write_mp4
+from scenarios.export.viper import write_viper
+from scenarios.export.whole_folder import whole_folder
+from scenarios.folder import versions
+
+Writer = Callable[[Sequence[FinishedRun], Path, Play], None]
+
+WRITERS: dict[str, Writer] = {
+    "mot": write_mot,
+    "coco": write_coco,
+    "viper": write_viper,
+    "mcap": write_mcap,
+    "mp4": write_mp4,
+}
+
+
+def export(runs: Sequence[FinishedRun], form: str, out: Path, play: Play, *, overwrite: bool) -> None:
+    """Write runs in one of `WRITERS`, whole or not at all.
+
+    Args:
+        runs: which.
+        form: name of the format.
+        out: the folder to leave.
+        play: gives a run's ticks, as `replay` does.
+        overwrite: whether an earlier export there may be replaced.
+
+    Raises:
+        BadInput: the runs cannot be written so, or there.
+    """
+    about: dict[str, Any] = {"format": form, "runs": [run.name for run in runs], "versions": versions()}
+    with whole_folder(out, about, overwrite=overwrite) as folder:
+        WRITERS[form](runs, folder, play)

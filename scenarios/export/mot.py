@@ -1,0 +1,103 @@
+"""MOTChallenge: folders as TrackEval and everybody's trackers read them.
+
+gt/mot_challenge/seqmaps/peopleboy-all.txt               names of the sequences
+gt/mot_challenge/peopleboy-all/SEQUENCE/seqinfo.ini      length, frame rate, size
+/gt/gt.txt        truth
+/img1/000001.png  thermal images
+trackers/mot_challenge/peopleboy-all/TRACKER/data/SEQUENCE.txt
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from bad_input import BadInput
+from scenarios.export.finished_run import FinishedRun
+from scenarios.export.picture_file import write_png
+from scenarios.export.replay import Play
+
+BENCHMARK, SPLIT = "peopleboy", "all"
+_SET = f"{BENCHMARK}-{SPLIT}"
+
+# Class 8 of MOTChallenge, a distractor: neither missed nor, if a tracker finds it, a false alarm.
+_DISTRACTOR = 8
+_COUNTED, _CLASS, _VISIBLE = 6, 7, 8
+
+
+def write_mot(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
+    """Write runs as sequences; runs of several trackers on the same seed are one sequence.
+
+    Raises:
+        BadInput: two runs are the same, or the trackers have not seen the same sequences.
+    """
+    sequences = _sequences(runs)
+    truth, results = folder / "gt" / "mot_challenge", folder / "trackers" / "mot_challenge" / _SET
+    (truth / "seqmaps").mkdir(parents=True)
+    lines = "".join(f"{name}\n" for name in ("name", *sequences))
+    (truth / "seqmaps" / f"{_SET}.txt").write_text(lines, encoding="utf-8")
+    for name, own in sequences.items():
+        _write_sequence(name, next(iter(own.values())), truth / _SET / name, play)
+        for tracker, run in own.items():
+            data = results / tracker / "data"
+            data.mkdir(parents=True, exist_ok=True)
+            (data / f"{name}.txt").write_bytes((run.folder / "tracks.txt").read_bytes())
+
+
+def gt_text(run: FinishedRun) -> str:
+    """Give a run's truth with everybody whom our own scores leave out marked as a distractor.
+
+    These are people nearer than 3 m or farther than 10 m, and those of whom nothing is visible.
+    """
+    lines = (run.folder / "truth" / "gt.txt").read_text(encoding="utf-8").splitlines()
+    return "".join(f"{','.join(_judged(line.split(',')))}\n" for line in lines)
+
+
+def _sequences(runs: Sequence[FinishedRun]) -> dict[str, dict[str, FinishedRun]]:
+    """Sort runs by sequence and tracker."""
+    found: dict[str, dict[str, FinishedRun]] = {}
+    for run in runs:
+        own = found.setdefault(f"{run.scenario.name}-{run.seed}", {})
+        if run.tracker in own:
+            raise BadInput(
+                f"{run.folder}: same scenario, seed and tracker as {own[run.tracker].folder}; leave one out"
+            )
+        if any(gt_text(run) != gt_text(other) for other in own.values()):
+            raise BadInput(
+                f"{run.folder}: with tracker {run.tracker} the robot went elsewhere, so the images differ; "
+                "export one tracker at a time"
+            )
+        own[run.tracker] = run
+    everybody = {run.tracker for run in runs}
+    for name, own in found.items():
+        for lacking in sorted(everybody - own.keys()):
+            raise BadInput(
+                f"{name}: there is no run of it with tracker {lacking}; export one tracker at a time"
+            )
+    return found
+
+
+def _write_sequence(name: str, run: FinishedRun, folder: Path, play: Play) -> None:
+    for part in ("gt", "img1"):
+        (folder / part).mkdir(parents=True)
+    camera = run.robot.thermal.camera
+    settings = {
+        "name": name,
+        "imDir": "img1",
+        "frameRate": run.rate_hz,
+        "seqLength": run.frames,
+        "imWidth": camera.width,
+        "imHeight": camera.height,
+        "imExt": ".png",
+    }
+    lines = "".join(f"{key}={value}\n" for key, value in settings.items())
+    (folder / "seqinfo.ini").write_text(f"[Sequence]\n{lines}", encoding="utf-8")
+    (folder / "gt" / "gt.txt").write_text(gt_text(run), encoding="utf-8")
+    for tick in play(run):
+        write_png(folder / "img1" / f"{tick.frame:06d}.png", tick.observation.thermal)
+
+
+def _judged(cells: list[str]) -> list[str]:
+    if cells[_COUNTED] == "1" and float(cells[_VISIBLE]) > 0.0:
+        return cells
+    return [*cells[:_COUNTED], "0", str(_DISTRACTOR), cells[_VISIBLE]]

@@ -1,0 +1,98 @@
+"""A run once more: its world built again and the robot driven by the commands that it was given then.
+
+The images are not kept unless a run is asked to, and the masks never are; but the same scenario, seed and
+versions give the same bytes. No tracker is needed for that: commands and tracks are those of the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bad_input import BadInput
+from behaviours.command import Command
+from scenarios.export.finished_run import FinishedRun
+from scenarios.faults import FaultySensors
+from scenarios.folder import versions
+from scenarios.loop import Tick
+from scenarios.tables import Row, truth_rows
+from sim.world import World
+
+Play = Callable[[FinishedRun], Iterator[Tick]]
+
+# What must come out as it was; a hundredth of a pixel is what the labels promise.
+_COMPARED = ("id", "x_m", "y_m", "left_px", "top_px", "width_px", "height_px", "visible_px", "whole_px")
+_TOLERANCE = 0.01
+
+
+def replay(run: FinishedRun) -> Iterator[Tick]:
+    """Yield the ticks of a finished run, with images and masks, but without particles.
+
+    Raises:
+        BadInput: the world does not come out as it was in the run.
+    """
+    tracks, people = run.tracks(), run.truth_rows()
+    with World(run.world) as world:
+        stage = FaultySensors(world, run.scenario.spec.faults, run.robot.sonar.farthest_m)
+        for row in run.robot_rows():
+            frame = row["frame"]
+            command = _command(row)
+            tick = Tick(
+                frame=frame,
+                observation=stage.observe(),
+                truth=world.truth(),
+                tracks=tuple(tracks[frame]),
+                particles={},
+                mode=row["mode"],
+                command=command,
+            )
+            _compare(tick, row, people.get(frame, []), run)
+            yield tick
+            if frame < run.frames:
+                stage.step(command.linear_m_s, command.angular_rad_s, is_emergency=command.is_emergency)
+
+
+def _command(row: Row) -> Command:
+    return Command(
+        linear_m_s=row["command_linear_m_s"],
+        angular_rad_s=row["command_angular_rad_s"],
+        is_emergency=row["command_is_emergency"],
+    )
+
+
+def _compare(tick: Tick, robot: Row, people: Sequence[Row], run: FinishedRun) -> None:
+    pose = tick.truth.robot
+    was, now = (robot["x_m"], robot["y_m"], robot["heading_rad"]), (pose.x, pose.y, pose.heading)
+    is_same = np.allclose(was, now, rtol=0.0, atol=_TOLERANCE) and np.array_equal(
+        *_aligned(_numbers(people), _numbers(truth_rows(tick)))
+    )
+    if not is_same:
+        raise BadInput(
+            f"{run.folder}: frame {tick.frame} does not come out as in this run{_why(run)}; run it again"
+        )
+
+
+def _aligned(
+    was: NDArray[np.float64], now: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give both with what is within the tolerance made equal."""
+    if was.shape != now.shape:
+        return was, now
+    is_close = np.isclose(was, now, rtol=0.0, atol=_TOLERANCE, equal_nan=True)
+    return np.where(is_close, 0.0, was), np.where(is_close, 0.0, now)
+
+
+def _numbers(rows: Sequence[Row]) -> NDArray[np.float64]:
+    table = [[np.nan if row[name] is None else row[name] for name in _COMPARED] for row in rows]
+    return np.array(table, np.float64).reshape(len(rows), len(_COMPARED))
+
+
+def _why(run: FinishedRun) -> str:
+    """Name the packages that have changed since."""
+    now = versions()
+    changed = [
+        f"{name} {was}, now {now[name]}" for name, was in run.versions.items() if now.get(name, was) != was
+    ]
+    return f" (made with {'; '.join(changed)})" if changed else ""

@@ -1,0 +1,239 @@
+"""ROS 2 messages of one tick: images, cameras, truth, tracks, odometry and frames.
+
+Frames as in REP 105: map -> odom -> base_link -> thermal_optical, colour_optical; a frame per person, too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
+from scipy.spatial.transform import Rotation
+
+from scenarios.loop import Tick
+from scenarios.overlay import encode_jpeg
+from sim.camera import Camera
+from sim.config import RobotConfig
+from sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
+from sim.truth import Box
+from tracker.track import Status
+
+Message = tuple[str, str, Any]  # topic, type, content
+
+JPEG_QUALITY: Final = 90
+_MAP, _ODOM, _BASE = "map", "odom", "base_link"
+_OPTICAL: Final = {"thermal": "thermal_optical", "colour": "colour_optical"}
+
+# vision_msgs 4, which no ROS distribution ships with its base.
+_VISION: Final = {
+    "Point2D": "float64 x\nfloat64 y",
+    "Pose2D": "vision_msgs/Point2D position\nfloat64 theta",
+    "BoundingBox2D": "vision_msgs/Pose2D center\nfloat64 size_x\nfloat64 size_y",
+    "ObjectHypothesis": "string class_id\nfloat64 score",
+    "ObjectHypothesisWithPose": (
+        "vision_msgs/ObjectHypothesis hypothesis\ngeometry_msgs/PoseWithCovariance pose"
+    ),
+    "Detection2D": (
+        "std_msgs/Header header\nvision_msgs/ObjectHypothesisWithPose[] results\n"
+        "vision_msgs/BoundingBox2D bbox\nstring id"
+    ),
+    "Detection2DArray": "std_msgs/Header header\nvision_msgs/Detection2D[] detections",
+}
+
+
+def message_types() -> Typestore:
+    """Give all message types in use."""
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in _VISION.items():
+        store.register(get_types_from_msg(text, f"vision_msgs/msg/{name}"))
+    return store
+
+
+class Messenger:
+    """Turns ticks into messages.
+
+    Args:
+        robot: whose cameras they are.
+        types: from `message_types`.
+    """
+
+    def __init__(self, robot: RobotConfig, types: Typestore) -> None:
+        self._types = types.types
+        self._cameras = {"thermal": robot.thermal.camera, "colour": robot.colour.camera}
+
+    def fixed(self, time_s: float) -> Iterator[Message]:
+        """Say once where the cameras are on the robot."""
+        poses = [self._camera_pose(name, camera, time_s) for name, camera in self._cameras.items()]
+        yield "/tf_static", "tf2_msgs/msg/TFMessage", self._make("tf2_msgs/TFMessage", transforms=poses)
+
+    def tick(self, tick: Tick) -> Iterator[Message]:
+        """Say all about one tick."""
+        senses, time_s = tick.observation, tick.observation.time_s
+        thermal = cv2.imencode(".png", senses.thermal)[1].tobytes()
+        yield self._image("thermal", "mono8; png compressed mono8", thermal, time_s)
+        yield self._image(
+            "colour", "rgb8; jpeg compressed bgr8", encode_jpeg(senses.colour, JPEG_QUALITY), time_s
+        )
+        for name, camera in self._cameras.items():
+            yield (
+                f"/{name}/camera_info",
+                "sensor_msgs/msg/CameraInfo",
+                self._camera_info(name, camera, time_s),
+            )
+        people = [
+            (p.name, p.box, p.visible_fraction)
+            for p in tick.truth.people
+            if p.box is not None and p.is_in_image
+        ]
+        yield self._detections("/truth/people", people, time_s)
+        tracks = [(str(t.id), t.box, t.confidence) for t in tick.tracks if t.status is not Status.TENTATIVE]
+        yield self._detections("/tracks", tracks, time_s)
+        yield "/odom", "nav_msgs/msg/Odometry", self._odometry(tick)
+        yield "/tf", "tf2_msgs/msg/TFMessage", self._make("tf2_msgs/TFMessage", transforms=self._frames(tick))
+
+    def _make(self, kind: str, **fields: Any) -> Any:
+        package, name = kind.split("/")
+        return self._types[f"{package}/msg/{name}"](**fields)
+
+    def _header(self, frame: str, time_s: float) -> Any:
+        sec, nanosec = divmod(nanoseconds(time_s), 1_000_000_000)
+        stamp = self._make("builtin_interfaces/Time", sec=sec, nanosec=nanosec)
+        return self._make("std_msgs/Header", stamp=stamp, frame_id=frame)
+
+    def _image(self, camera: str, form: str, data: bytes, time_s: float) -> Message:
+        content = self._make(
+            "sensor_msgs/CompressedImage",
+            header=self._header(_OPTICAL[camera], time_s),
+            format=form,
+            data=np.frombuffer(data, np.uint8),
+        )
+        return f"/{camera}/image/compressed", "sensor_msgs/msg/CompressedImage", content
+
+    def _camera_info(self, name: str, camera: Camera, time_s: float) -> Any:
+        projection = np.hstack([camera.intrinsics, np.zeros((3, 1))])
+        whole = self._make(
+            "sensor_msgs/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
+        )
+        return self._make(
+            "sensor_msgs/CameraInfo",
+            header=self._header(_OPTICAL[name], time_s),
+            height=camera.height,
+            width=camera.width,
+            distortion_model="plumb_bob",
+            d=np.zeros(5),
+            k=camera.intrinsics.ravel(),
+            r=np.eye(3).ravel(),
+            p=projection.ravel(),
+            binning_x=0,
+            binning_y=0,
+            roi=whole,
+        )
+
+    def _detections(self, topic: str, found: list[tuple[str, Box, float]], time_s: float) -> Message:
+        header = self._header(_OPTICAL["thermal"], time_s)
+        detections = [self._detection(header, *one) for one in found]
+        content = self._make("vision_msgs/Detection2DArray", header=header, detections=detections)
+        return topic, "vision_msgs/msg/Detection2DArray", content
+
+    def _detection(self, header: Any, name: str, box: Box, score: float) -> Any:
+        left, top, width, height = box
+        middle = self._make("vision_msgs/Point2D", x=left + width / 2.0, y=top + height / 2.0)
+        centre = self._make("vision_msgs/Pose2D", position=middle, theta=0.0)
+        hypothesis = self._make("vision_msgs/ObjectHypothesis", class_id="person", score=score)
+        nowhere = self._pose_with_covariance(Planar(0.0, 0.0, 0.0))
+        return self._make(
+            "vision_msgs/Detection2D",
+            header=header,
+            results=[self._make("vision_msgs/ObjectHypothesisWithPose", hypothesis=hypothesis, pose=nowhere)],
+            bbox=self._make("vision_msgs/BoundingBox2D", center=centre, size_x=width, size_y=height),
+            id=name,
+        )
+
+    def _odometry(self, tick: Tick) -> Any:
+        left, right = tick.observation.wheel_speeds_m_s
+        twist = self._make(
+            "geometry_msgs/Twist",
+            linear=self._vector((left + right) / 2.0, 0.0, 0.0),
+            angular=self._vector(0.0, 0.0, (right - left) / WHEEL_DISTANCE_M),
+        )
+        return self._make(
+            "nav_msgs/Odometry",
+            header=self._header(_ODOM, tick.observation.time_s),
+            child_frame_id=_BASE,
+            pose=self._pose_with_covariance(tick.observation.odometry),
+            twist=self._make("geometry_msgs/TwistWithCovariance", twist=twist, covariance=np.zeros(36)),
+        )
+
+    def _frames(self, tick: Tick) -> list[Any]:
+        """Place odometry in the world so that the robot comes to be where it is in truth, and people."""
+        time_s, odometry = tick.observation.time_s, tick.observation.odometry
+        frames = [
+            self._transform(_MAP, _ODOM, drift(tick.truth.robot, odometry), time_s),
+            self._transform(_ODOM, _BASE, odometry, time_s),
+        ]
+        for person in tick.truth.people:
+            place = Planar(*person.position_m, person.heading_rad)
+            frames.append(self._transform(_MAP, f"people/{person.name}", place, time_s))
+        return frames
+
+    def _transform(self, parent: str, child: str, pose: Planar, time_s: float) -> Any:
+        turn = Rotation.from_euler("z", pose.heading).as_quat()
+        return self._stamped(parent, child, (pose.x, pose.y, 0.0), turn, time_s)
+
+    def _camera_pose(self, name: str, camera: Camera, time_s: float) -> Any:
+        turn = Rotation.from_matrix(camera.robot_from_camera[:3, :3]).as_quat()
+        return self._stamped(_BASE, _OPTICAL[name], camera.position_m, turn, time_s)
+
+    def _stamped(
+        self,
+        parent: str,
+        child: str,
+        place: tuple[float, float, float],
+        turn: NDArray[np.float64],
+        time_s: float,
+    ) -> Any:
+        transform = self._make(
+            "geometry_msgs/Transform", translation=self._vector(*place), rotation=self._quaternion(turn)
+        )
+        return self._make(
+            "geometry_msgs/TransformStamped",
+            header=self._header(parent, time_s),
+            child_frame_id=child,
+            transform=transform,
+        )
+
+    def _pose_with_covariance(self, pose: Planar) -> Any:
+        turn = self._quaternion(Rotation.from_euler("z", pose.heading).as_quat())
+        place = self._make("geometry_msgs/Point", x=pose.x, y=pose.y, z=0.0)
+        return self._make(
+            "geometry_msgs/PoseWithCovariance",
+            pose=self._make("geometry_msgs/Pose", position=place, orientation=turn),
+            covariance=np.zeros(36),
+        )
+
+    def _vector(self, x: float, y: float, z: float) -> Any:
+        return self._make("geometry_msgs/Vector3", x=x, y=y, z=z)
+
+    def _quaternion(self, turn: NDArray[np.float64]) -> Any:
+        x, y, z, w = map(float, turn)
+        return self._make("geometry_msgs/Quaternion", x=x, y=y, z=z, w=w)
+
+
+def nanoseconds(time_s: float) -> int:
+    """Give a time [s] in whole nanoseconds."""
+    return round(time_s * 1e9)
+
+
+def drift(true: Planar, odometry: Planar) -> Planar:
+    """Give the pose of the odometry's frame in the world: with the odometry on top it gives the true pose."""
+    heading = math.remainder(true.heading - odometry.heading, math.tau)
+    cos, sin = math.cos(heading), math.sin(heading)
+    return Planar(
+        true.x - cos * odometry.x + sin * odometry.y, true.y - sin * odometry.x - cos * odometry.y, heading
+    )

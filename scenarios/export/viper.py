@@ -1,0 +1,166 @@
+"""ViPER XML, the format of the sources' evaluation tool: RUN/truth.xgtf and RUN/tracks.xgtf.
+
+People and tracks are objects whose attributes change from frame to frame. ViPER's schema allows whole pixels
+inside the image only in a `bbox`; the four decimal attributes beside it hold the box as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.etree import ElementTree
+
+from scenarios.export.finished_run import FinishedRun
+from scenarios.export.replay import Play
+from sim.truth import Box
+from tracker.evaluation.mot_files import read_tracks, read_truth
+
+VIPER, DATA = "http://lamp.cfar.umd.edu/viper#", "http://lamp.cfar.umd.edu/viperdata#"
+
+_EDGES = ("LEFT", "TOP", "WIDTH", "HEIGHT")
+_FILE = {
+    "SOURCETYPE": "lvalue",
+    "NUMFRAMES": "dvalue",
+    "FRAMERATE": "fvalue",
+    "H-FRAME-SIZE": "dvalue",
+    "V-FRAME-SIZE": "dvalue",
+}
+_SOURCE_TYPES = ("SEQUENCE", "FRAMES")
+_OBJECT = {"NAME": "svalue", "LOCATION": "bbox", **dict.fromkeys(_EDGES, "fvalue")}
+_TRUTH = {"COUNTED": "bvalue", "VISIBLE": "fvalue"}
+_TRACK = {"CONFIDENCE": "fvalue"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Person:
+    """What is said about one person or track, by frame."""
+
+    name: str
+    boxes: dict[int, Box] = field(default_factory=dict)
+    others: dict[str, dict[int, str]] = field(default_factory=dict)
+
+    def add(self, frame: int, box: Iterable[float], **others: str) -> None:
+        left, top, width, height = map(float, box)
+        self.boxes[frame] = (left, top, width, height)
+        for name, value in others.items():
+            self.others.setdefault(name, {})[frame] = value
+
+
+def write_viper(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:  # noqa: ARG001
+    """Write a file of truth and one of results for each run."""
+    ElementTree.register_namespace("", VIPER)
+    ElementTree.register_namespace("data", DATA)
+    for run in runs:
+        (folder / run.name).mkdir()
+        _write(folder / run.name / "truth.xgtf", run, _people(run), _TRUTH)
+        _write(folder / run.name / "tracks.xgtf", run, _tracks(run), _TRACK)
+
+
+def whole_pixels(box: Box, width: int, height: int) -> tuple[int, int, int, int] | None:
+    """Give the pixels inside the image that a box touches: x, y, width, height; None if there are none."""
+    left, top, right, bottom = box[0] + 0.5, box[1] + 0.5, box[0] + box[2] + 0.5, box[1] + box[3] + 0.5
+    x, y = max(int(left // 1), 0), max(int(top // 1), 0)
+    w, h = min(-int(-right // 1), width) - x, min(-int(-bottom // 1), height) - y
+    return (x, y, w, h) if w > 0 and h > 0 else None
+
+
+def _people(run: FinishedRun) -> dict[int, _Person]:
+    truth = read_truth(run.folder / "truth" / "gt.txt")
+    names = {row["id"]: row["name"] for rows in run.truth_rows().values() for row in rows}
+    found: dict[int, _Person] = {}
+    columns = (truth.frame, truth.id, truth.box, truth.counted, truth.visible)
+    for frame, number, box, counted, visible in zip(*columns, strict=True):
+        person = found.setdefault(int(number), _Person(names[int(number)]))
+        person.add(int(frame), box, COUNTED=str(bool(counted)).lower(), VISIBLE=f"{visible:.4f}")
+    return found
+
+
+def _tracks(run: FinishedRun) -> dict[int, _Person]:
+    tracks = read_tracks(run.folder / "tracks.txt")
+    found: dict[int, _Person] = {}
+    for frame, number, box, confidence in zip(
+        tracks.frame, tracks.id, tracks.box, tracks.confidence, strict=True
+    ):
+        track = found.setdefault(int(number), _Person(f"track {number}"))
+        track.add(int(frame), box, CONFIDENCE=f"{confidence:.4f}")
+    return found
+
+
+def _write(path: Path, run: FinishedRun, people: Mapping[int, _Person], others: Mapping[str, str]) -> None:
+    root = ElementTree.Element(f"{{{VIPER}}}viper")
+    config = _child(root, "config")
+    _descriptor(config, "Information", "FILE", _FILE, dynamic=())
+    _descriptor(config, "PERSON", "OBJECT", {**_OBJECT, **others}, dynamic=("LOCATION", *_EDGES, *others))
+    source = _child(_child(root, "data"), "sourcefile", filename=run.name)
+    _file(source, run)
+    for number, person in sorted(people.items()):
+        _object(source, number, person, run, others)
+    ElementTree.indent(root)
+    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def _descriptor(
+    config: ElementTree.Element, name: str, kind: str, attributes: Mapping[str, str], dynamic: Sequence[str]
+) -> None:
+    descriptor = _child(config, "descriptor", name=name, type=kind)
+    for attribute, value in attributes.items():
+        is_dynamic = str(attribute in dynamic).lower()
+        made = _child(descriptor, "attribute", dynamic=is_dynamic, name=attribute, type=f"{DATA}{value}")
+        if value == "lvalue":
+            possibles = _value(made, "lvalue-possibles")
+            for word in _SOURCE_TYPES:
+                _value(possibles, "lvalue-enum", value=word)
+
+
+def _file(source: ElementTree.Element, run: FinishedRun) -> None:
+    camera = run.robot.thermal.camera
+    values = ("FRAMES", str(run.frames), str(float(run.rate_hz)), str(camera.width), str(camera.height))
+    file = _child(source, "file", id="0", name="Information")
+    for (name, kind), value in zip(_FILE.items(), values, strict=True):
+        _value(_child(file, "attribute", name=name), kind, value=value)
+
+
+def _object(
+    source: ElementTree.Element, number: int, person: _Person, run: FinishedRun, others: Mapping[str, str]
+) -> None:
+    spans = _framespan(person.boxes)
+    thing = _child(source, "object", framespan=spans, id=str(number), name="PERSON")
+    _value(_child(thing, "attribute", name="NAME"), "svalue", value=person.name)
+    _location(_child(thing, "attribute", name="LOCATION"), person, run)
+    for k, edge in enumerate(_EDGES):
+        attribute = _child(thing, "attribute", name=edge)
+        for frame, box in person.boxes.items():
+            _value(attribute, "fvalue", framespan=f"{frame}:{frame}", value=f"{box[k]:.2f}")
+    for name, kind in others.items():
+        attribute = _child(thing, "attribute", name=name)
+        for frame, value in person.others[name].items():
+            _value(attribute, kind, framespan=f"{frame}:{frame}", value=value)
+
+
+def _location(attribute: ElementTree.Element, person: _Person, run: FinishedRun) -> None:
+    camera = run.robot.thermal.camera
+    for frame, box in person.boxes.items():
+        pixels = whole_pixels(box, camera.width, camera.height)
+        if pixels is not None:
+            edges = dict(zip(("x", "y", "width", "height"), map(str, pixels), strict=True))
+            _value(attribute, "bbox", framespan=f"{frame}:{frame}", **edges)
+
+
+def _framespan(frames: Iterable[int]) -> str:
+    """Write frames as ViPER does: 3:7 12:40."""
+    spans: list[list[int]] = []
+    for frame in sorted(frames):
+        if spans and frame == spans[-1][1] + 1:
+            spans[-1][1] = frame
+        else:
+            spans.append([frame, frame])
+    return " ".join(f"{first}:{last}" for first, last in spans)
+
+
+def _child(parent: ElementTree.Element, tag: str, /, **attributes: str) -> ElementTree.Element:
+    return ElementTree.SubElement(parent, f"{{{VIPER}}}{tag}", attributes)
+
+
+def _value(parent: ElementTree.Element, kind: str, /, **attributes: str) -> ElementTree.Element:
+    return ElementTree.SubElement(parent, f"{{{DATA}}}{kind}", attributes)

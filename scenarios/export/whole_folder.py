@@ -1,0 +1,53 @@
+"""A folder that is there whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from bad_input import BadInput
+
+ABOUT = "export.json"
+
+
+@contextmanager
+def whole_folder(path: Path, about: dict[str, Any], *, overwrite: bool) -> Iterator[Path]:
+    """Give a folder to write to, beside the one asked for, whose place it takes when the block ends well.
+
+    Nothing of it is left if the block ends otherwise. A file `export.json` says what the folder is.
+
+    Args:
+        path: the folder asked for.
+        about: what `export.json` is to say.
+        overwrite: whether an earlier export there may be replaced.
+
+    Raises:
+        BadInput: there is something at this path that must not be replaced, or it cannot be written to.
+    """
+    _check(path, overwrite)
+    part = path.parent / f".{path.name}.{os.getpid()}"
+    try:
+        part.mkdir(parents=True)
+        yield part
+        (part / ABOUT).write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
+        if path.exists():
+            shutil.rmtree(path)
+        part.rename(path)
+    except OSError as error:
+        raise BadInput(f"{path}: cannot write here: {error.strerror or error}; give another --out") from error
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+def _check(path: Path, overwrite: bool) -> None:
+    if not path.exists() or (path.is_dir() and not any(path.iterdir())):
+        return
+    if not overwrite:
+        raise BadInput(f"{path}: exists already; give --overwrite to replace this export, or another --out")
+    if not (path / ABOUT).is_file():
+        raise BadInput(f"{path}: is no export and will not be replaced; give another --out")
