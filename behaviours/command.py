@@ -15,7 +15,7 @@ class Command:
     Attributes:
         linear_m_s: [m/s] forward speed, negative drives backwards.
         angular_rad_s: [rad/s] turn rate, positive turns left.
-        is_emergency: whether the robot is to lose its forward speed as fast as it can.
+        is_emergency: whether the robot is to lose its speeds as fast as it can.
 
     Raises:
         BadInput: a value is not finite.

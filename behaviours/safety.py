@@ -32,7 +32,8 @@ class SafetyConfig:
         corner_m: [m] from the origin to the farthest corner of the hull, which sweeps round in a turn.
         free_turn_m: [m] an obstacle farther from the origin than this does not limit turning.
         tight_turn_rad_s: [rad/s] turn rate with an obstacle at the corner's distance.
-        latest_image_s: [s] without a new image for longer than this the robot stops: two at 15 Hz.
+        latest_image_s: [s] without a new image for longer than this the robot stops: at 15 Hz the first one
+            that stays out.
     """
 
     max_linear_m_s: float = 0.8
@@ -46,7 +47,7 @@ class SafetyConfig:
     corner_m: float = 0.36
     free_turn_m: float = 0.55
     tight_turn_rad_s: float = 0.3
-    latest_image_s: float = 0.1
+    latest_image_s: float = 0.05
 
 
 def limit(

@@ -137,7 +137,7 @@ class World:
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
         """Drive the robot by a velocity command for one control step; people and light move on too.
 
-        In an emergency the robot loses its forward speed at a higher rate.
+        In an emergency the robot loses its speeds at higher rates.
 
         Raises:
             BadInput: the command is not finite.

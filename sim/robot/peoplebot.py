@@ -82,7 +82,7 @@ class PeopleBot:
     def command(self, linear: float, angular: float, *, is_emergency: bool = False) -> None:
         """Ask for a velocity [m/s, rad/s], clipped to the robot's limits; it is approached, not jumped to.
 
-        In an emergency the forward speed falls at its own, higher rate.
+        In an emergency the speeds fall at their own, higher rates.
 
         Raises:
             BadInput: the command is not finite.
@@ -97,10 +97,14 @@ class PeopleBot:
         if self._command == self._target:
             return
         limits = self._limits
-        linear_m_s2 = limits.emergency_m_s2 if self._is_emergency else limits.linear_acceleration_m_s2
+        linear_m_s2, angular_rad_s2 = (
+            (limits.emergency_m_s2, limits.emergency_rad_s2)
+            if self._is_emergency
+            else (limits.linear_acceleration_m_s2, limits.angular_acceleration_rad_s2)
+        )
         self._command = (
             _approach(self._command[0], self._target[0], linear_m_s2 * dt_s),
-            _approach(self._command[1], self._target[1], limits.angular_acceleration_rad_s2 * dt_s),
+            _approach(self._command[1], self._target[1], angular_rad_s2 * dt_s),
         )
         self._turn_wheels()
 

@@ -134,6 +134,23 @@ def test_no_command_makes_it_tip_over(seed: int) -> None:
             assert abs(poses[-1][2, 3]) < 0.005
 
 
+@pytest.mark.parametrize("turn", [-1.2, 0.0, 1.2])
+def test_an_emergency_stop_from_full_speed_takes_two_fifths_of_a_second_and_lifts_nothing(turn: float) -> None:
+    with on_a_floor() as (bullet, robot):
+        drive(bullet, robot, (0.8, turn), 3.0)
+        robot.command(0.0, 0.0, is_emergency=True)
+        poses, moves = [], []
+        for _ in range(96):
+            robot.drive(1.0 / 240.0)
+            bullet.step()
+            poses.append(robot.world_from_robot())
+            moves.append(robot.velocity())
+        speed, turn_rate = np.abs(moves).T
+    assert speed[round(0.35 * 240) :].max() < 0.05
+    assert turn_rate[round(0.35 * 240) :].max() < 0.1
+    assert tilt_deg(poses) < 0.5
+
+
 def test_at_rest_it_stays_where_it_is() -> None:
     with on_a_floor() as (bullet, robot):
         poses = drive(bullet, robot, (0.0, 0.0), 10.0)
