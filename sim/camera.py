@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,15 +55,8 @@ class Camera:
 
     @property
     def robot_from_camera(self) -> Matrix:
-        """(4, 4) optical frame to robot frame."""
-        cy, sy = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
-        cp, sp = math.cos(self.pitch_rad), math.sin(self.pitch_rad)
-        yaw = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
-        pitch = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
-        pose = np.eye(4)
-        pose[:3, :3] = yaw @ pitch @ _BODY_FROM_OPTICAL
-        pose[:3, 3] = self.position_m
-        return pose
+        """(4, 4) optical frame to robot frame; read-only."""
+        return _robot_from_camera(self)
 
     def project(self, camera_points: Matrix) -> Matrix:
         """Project points of the optical frame to the image.
@@ -79,6 +73,19 @@ class Camera:
             [self.focal_px * camera_points[..., 0] / z + u, self.focal_px * camera_points[..., 1] / z + v],
             axis=-1,
         )
+
+
+@lru_cache(maxsize=16)
+def _robot_from_camera(camera: Camera) -> Matrix:
+    cy, sy = math.cos(camera.yaw_rad), math.sin(camera.yaw_rad)
+    cp, sp = math.cos(camera.pitch_rad), math.sin(camera.pitch_rad)
+    yaw = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+    pitch = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+    pose = np.eye(4)
+    pose[:3, :3] = yaw @ pitch @ _BODY_FROM_OPTICAL
+    pose[:3, 3] = camera.position_m
+    pose.setflags(write=False)
+    return pose
 
 
 def invert_pose(pose: Matrix) -> Matrix:

@@ -138,7 +138,7 @@ def _visible_share(person: Person, bullet: Bullet, camera: Camera, world_from_ca
     u, v = camera.project(transform(invert_pose(world_from_camera), points)).T
     is_inside = (u > -0.5) & (u < camera.width - 0.5) & (v > -0.5) & (v < camera.height - 0.5)
     eye = np.tile(world_from_camera[:3, 3], (len(points), 1))
-    fraction = bullet.ray_fractions(eye, points, ignore=NAME)
+    fraction, _ = bullet.cast_rays(eye, points, ignore=NAME)
     # A ray ends within the person's own capsule, which it meets a radius before.
     short = np.linalg.norm(points - eye, axis=1) * (1.0 - fraction)
     is_free = short <= 1.5 * person.radius_m

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -35,8 +36,7 @@ def rotation_blur(image: Image, camera: Camera, turned_rad: float) -> Image:
     Returns:
         An image of the same shape, each pixel the mean over its sweep, which is centred on the pixel.
     """
-    x = (np.arange(camera.width) - camera.centre_px[0]) / camera.focal_px
-    sweep = camera.focal_px * (1.0 + x * x) * abs(turned_rad)
+    sweep = _sweep_of_one_rad(camera) * abs(turned_rad)
     if sweep.max() < 0.05:
         return image
     lines = image.reshape(image.shape[0], -1)
@@ -45,24 +45,40 @@ def rotation_blur(image: Image, camera: Camera, turned_rad: float) -> Image:
     return _weighted_sum(lines, weights, channels).reshape(image.shape)
 
 
+@lru_cache(maxsize=16)
+def _sweep_of_one_rad(camera: Camera) -> NDArray[np.float64]:
+    """(W,) [px] that each column would sweep if the camera turned by 1 rad at this rate."""
+    x = (np.arange(camera.width) - camera.centre_px[0]) / camera.focal_px
+    sweep: NDArray[np.float64] = camera.focal_px * (1.0 + x * x)
+    sweep.setflags(write=False)
+    return sweep
+
+
+@njit(cache=True)
 def _sweep_weights(sweep: NDArray[np.float64]) -> Image:
     """(2 K + 1, W) weight of the pixels -K..K columns away in the mean of each column over its sweep [px].
 
     Between pixels the image is taken as linear, so a weight is the mean of a hat function over the sweep.
     Pixels beyond the border have none.
     """
-    farthest = math.ceil(sweep.max() / 2.0)
-    away = np.arange(-farthest, farthest + 1)[:, None]
-    weights = (_hat_integral(sweep / 2.0 - away) - _hat_integral(-sweep / 2.0 - away)) / sweep
-    column = np.arange(len(sweep)) + away
-    weights[(column < 0) | (column >= len(sweep))] = 0.0
-    return np.asarray(weights / weights.sum(axis=0), np.float32)
+    farthest, columns = math.ceil(sweep.max() / 2.0), len(sweep)
+    weights = np.empty((2 * farthest + 1, columns), np.float32)
+    column = np.empty(2 * farthest + 1)
+    for u in range(columns):
+        for k in range(2 * farthest + 1):
+            away, half = k - farthest, sweep[u] / 2.0
+            is_inside = 0 <= u + away < columns
+            area = _hat_integral(half - away) - _hat_integral(-half - away)
+            column[k] = area / sweep[u] if is_inside else 0.0
+        weights[:, u] = column / column.sum()
+    return weights
 
 
-def _hat_integral(end: NDArray[np.float64]) -> NDArray[np.float64]:
+@njit(cache=True)
+def _hat_integral(end: float) -> float:
     """Integral up to `end` of the function that falls from 1 at 0 to 0 at -1 and 1."""
-    end = np.clip(end, -1.0, 1.0)
-    return 0.5 + end - 0.5 * end * np.abs(end)
+    end = min(max(end, -1.0), 1.0)
+    return 0.5 + end - 0.5 * end * abs(end)
 
 
 @njit(cache=True, fastmath=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -72,13 +73,20 @@ def part_from_pixel(camera: Camera, world_from_camera: Matrix, world_from_part: 
     Returns:
         (P, 3, 4): the point of part p at pixel (u, v) and depth z is M[:, :3] @ (u z, v z, z) + M[:, 3].
     """
-    rays = np.linalg.inv(camera.intrinsics)
     rotation = np.swapaxes(world_from_part[:, :3, :3], 1, 2)
     matrices = np.empty((len(world_from_part), 3, 4))
-    matrices[:, :, :3] = rotation @ (world_from_camera[:3, :3] @ rays)
+    matrices[:, :, :3] = rotation @ (world_from_camera[:3, :3] @ _rays(camera))
     offset = world_from_camera[:3, 3] - world_from_part[:, :3, 3]
     matrices[:, :, 3] = np.einsum("pij,pj->pi", rotation, offset)
     return matrices
+
+
+@lru_cache(maxsize=16)
+def _rays(camera: Camera) -> Matrix:
+    """(3, 3): the ray through pixel (u, v) in the optical frame is this @ (u, v, 1)."""
+    rays = np.asarray(np.linalg.inv(camera.intrinsics), np.float64)
+    rays.setflags(write=False)
+    return rays
 
 
 @njit(cache=True, fastmath=True)

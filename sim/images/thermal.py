@@ -7,6 +7,7 @@ rotation blur -> apparent temperature -> detector noise -> 8 bit over 24..36 deg
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -47,6 +48,12 @@ def _tables() -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
 
 
 _RADIANCE, _TEMPERATURE, _DIMMEST, _BRIGHTEST = _tables()
+
+
+@lru_cache(maxsize=16)
+def _mirrored(surroundings_c: float) -> float:
+    """Band radiance of the surroundings, the same in every image of a run."""
+    return float(band_radiance(np.array([surroundings_c]))[0])
 
 
 @njit(cache=True, fastmath=True)
@@ -147,10 +154,9 @@ def surface_image(
         (H, W) [degC].
     """
     matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
-    mirrored = float(band_radiance(np.array([surroundings_c]))[0])
     radiance = _radiance_image(
         view.part, view.depth, matrices, looks.thermal, looks.kind, looks.period, looks.phase,
-        _RADIANCE, mirrored, (_LOWEST_C, _HIGHEST_C),
+        _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
     )  # fmt: skip
     radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)
     radiance = np.ascontiguousarray(radiance)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from sim.looks import Look
 from sim.people.person import Person
@@ -16,6 +15,7 @@ from sim.physics.bullet import Bullet
 from sim.places.place import Place
 from sim.random_streams import stream
 from sim.robot.peoplebot import RADIUS_M, PeopleBot
+from sim.rotations import quaternions
 from sim.shapes import UPRIGHT, Part, Shape, ShapeKind
 
 # What robots bump into and sonars hear: an upright capsule, which no camera sees.
@@ -106,7 +106,7 @@ class Crowd:
         if not self._is_visible:
             return
         poses = person.poses()
-        orientations = Rotation.from_matrix(poses[:, :3, :3]).as_quat().tolist()
+        orientations = quaternions(poses).tolist()
         positions = poses[:, :3, 3].tolist()
         for part, position, orientation in zip(person.parts, positions, orientations, strict=True):
             self._bullet.set_pose(f"{person.name}/{part.name}", tuple(position), tuple(orientation))

@@ -18,6 +18,7 @@ from sim.physics.bodies import Bodies, Body, PartKey, Place
 from sim.physics.bullet_shapes import shape_arguments, visual_shape
 from sim.physics.opengl import metric_depth, projection_matrix, view_matrix
 from sim.physics.quiet import quiet
+from sim.physics.solid_boxes import SolidBoxes
 from sim.rendering.bounds import FAR_M, NEAR_M
 from sim.rendering.shape_table import VisualShape
 from sim.rotations import pose_matrices
@@ -90,6 +91,7 @@ class Bullet:
         self._poses = np.zeros((0, 4, 4))
         self._moved: dict[str, Body] = {}
         self._known: dict[str, Matrix] = {}  # poses of bodies since they last moved
+        self._solids = SolidBoxes(self._client.getAABB)
         self._client.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1
         )
@@ -208,8 +210,7 @@ class Bullet:
         """Advance the world by one physics step."""
         self._client.stepSimulation()
         for body in self._bodies.moving:
-            self._moved[body.name] = body
-            self._known.pop(body.name, None)
+            self._note_move(body)
 
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
         """Drive joints at speeds [rad/s, or m/s if they slide] with at most this torque [N m, or N] each.
@@ -283,21 +284,17 @@ class Bullet:
             fraction: (R,) of the way at which a ray hits, 1 where it hits nothing.
             part: (R,) part that is hit, -1 where none.
         """
-        hits = self._ray_hits(from_m, to_m, ignore)
-        fractions = np.array([hit[2] for hit in hits])
-        return fractions, np.array([self._bodies.part_of(hit[0], hit[1]) for hit in hits], np.int64)
-
-    def ray_fractions(self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None) -> Matrix:
-        """The first part of what `cast_rays` gives: how far rays come, not what they hit."""
-        return np.array([hit[2] for hit in self._ray_hits(from_m, to_m, ignore)])
-
-    def _ray_hits(self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None) -> Sequence[Sequence[Any]]:
+        starts, ends = np.asarray(from_m, np.float64), np.asarray(to_m, np.float64)
         mask = _ALL if ignore is None else ~self._group_of(self._bodies[ignore])
-        starts, ends = np.asarray(from_m, np.float64).tolist(), np.asarray(to_m, np.float64).tolist()
-        hits: Sequence[Sequence[Any]] = self._client.rayTestBatch(
-            starts, ends, numThreads=1, collisionFilterMask=mask
-        )
-        return hits
+        near = self._solids.find_near(starts, ends, ignore)
+        fraction, part = np.ones(len(starts)), np.full(len(starts), -1, np.int64)
+        if len(near):
+            hits = self._client.rayTestBatch(
+                starts[near].tolist(), ends[near].tolist(), numThreads=1, collisionFilterMask=mask
+            )
+            fraction[near] = [hit[2] for hit in hits]
+            part[near] = [self._bodies.part_of(hit[0], hit[1]) for hit in hits]
+        return fraction, part
 
     def contacts(self, name: str) -> list[Contact]:
         """Where the body touched others during the last step."""
@@ -381,6 +378,8 @@ class Bullet:
             visible_links=[(row[0], row[1]) for row in self._visual_rows(ids)],
         )
         self._bodies.add(body, names)
+        links = [(number, link) for number in ids for link in range(-1, len(joints))]
+        self._solids.add(name, [link for link in links if self._client.getCollisionShapeData(*link)])
         self._poses = np.concatenate([self._poses, np.zeros((len(names), 4, 4))])
 
     def _put(self, body: Body, base: Place) -> None:
@@ -389,8 +388,12 @@ class Bullet:
             place = pybullet.multiplyTransforms(*base, *body.base_from_inertia)
         for number in body.ids:
             self._client.resetBasePositionAndOrientation(number, *place)
+        self._note_move(body)
+
+    def _note_move(self, body: Body) -> None:
         self._moved[body.name] = body
         self._known.pop(body.name, None)
+        self._solids.forget(body.name)
 
     def _base_place(self, body: Body) -> Place:
         place: Place = self._client.getBasePositionAndOrientation(body.ids[0])

@@ -83,7 +83,7 @@ class SonarRing:
         """
         starts = transform(world_from_robot, self._starts).reshape(-1, 3)
         ends = transform(world_from_robot, self._ends).reshape(-1, 3)
-        fraction = self._bullet.ray_fractions(starts, ends, ignore=self._owner).reshape(self._reach.shape)
+        fraction = self._bullet.cast_rays(starts, ends, ignore=self._owner)[0].reshape(self._reach.shape)
         nearest = np.where(fraction < 1.0, fraction * self._reach, np.inf).min(axis=1)
         noise = self._rng.normal(0.0, self._config.noise_m, len(_UNITS))
         is_lost = self._rng.random(len(_UNITS)) < self._config.drop_out

@@ -143,6 +143,28 @@ def test_rays_pass_what_is_ignored_hidden_or_not_solid_and_stop_at_the_invisible
         assert bullet.cast_rays(*ray, ignore="own")[0][0] == pytest.approx(0.25)
 
 
+def test_rays_that_pass_far_from_everything_are_told_as_if_pybullet_had_been_asked() -> None:
+    rng = np.random.default_rng(5)
+    capsule = Shape(kind=ShapeKind.CAPSULE, size=(1.0, 0.2, 0.0))
+    plane = Shape(kind=ShapeKind.PLANE, size=(0.0, 0.0, 0.0))
+    with Bullet() as bullet:
+        bullet.add_part("ground", [plane], position=(0.0, 0.0, -2.0))
+        bullet.add_urdf("car", "racecar/racecar.urdf", fixed=False)
+        for name in ("a", "b", "c"):
+            bullet.add_part(name, [CUBE, capsule], position=tuple(rng.uniform(-2, 2, 3)), orientation=TILTED)
+        for ignore in (None, "car", "a", None):
+            bullet.set_pose("b", tuple(rng.uniform(-2.0, 2.0, 3)), TILTED)
+            bullet.step()
+            starts, ends = rng.uniform(-3.0, 3.0, (2, 300, 3))
+            ends[::4, 2] = starts[::4, 2]  # level, as most rays are
+            fraction, part = bullet.cast_rays(starts, ends, ignore)
+            mask = -1 if ignore is None else ~bullet._group_of(bullet._bodies[ignore])
+            hits = bullet._client.rayTestBatch(starts.tolist(), ends.tolist(), collisionFilterMask=mask)
+            np.testing.assert_array_equal(fraction, [hit[2] for hit in hits])
+            np.testing.assert_array_equal(part, [bullet._bodies.part_of(*hit[:2]) for hit in hits])
+            assert 20 < np.sum(part >= 0) < 200
+
+
 def test_a_hidden_body_keeps_its_place_and_may_be_moved_meanwhile() -> None:
     with Bullet() as bullet:
         bullet.add_part("cube", [CUBE], position=(1.0, 0.0, 0.0))
