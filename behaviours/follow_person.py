@@ -8,13 +8,14 @@ from dataclasses import dataclass, field, replace
 from behaviours.avoid import WIDELY, AvoidConfig, swerve
 from behaviours.command import STOP, Command
 from behaviours.echoes import echoes
+from behaviours.hidden import HiddenConfig, hider, keep_behind
 from behaviours.identity import IdentityConfig, company, recognise
 from behaviours.last_place import LastPlace, PlaceConfig, carry_place, end_of_way, on_the_way, place_of
+from behaviours.memory import EchoMemory, MemoryConfig, remember
 from behaviours.sight import SeenPerson, Sight
 from behaviours.target import (
     Target,
     TargetConfig,
-    bearing,
     carry_on,
     first_sight,
     forget_drift,
@@ -53,15 +54,16 @@ class FollowConfig:
         patience_s: [s] how long to wait for a person who is hidden behind another one.
         gone_s: [s] the same for one lost in the middle of the image with nobody in front: it went behind a
             wall, or the tracker missed it; then the robot goes to where it was seen last.
-        behind_rad: [rad] farthest off the person that somebody who hides it can be.
         recover_1_s: [1/s] speed per distance on the way there.
         give_up_s: [s] a person out of sight for this long is given up; the robot looks for anybody then.
         leaving_rad: [rad] a person seen farther off the nose, or about to be, has left the image.
         target: smoothing of what is seen.
         identity: who is taken for the followed person.
+        hidden: who can hide it.
         place: where a person was seen last.
         avoid: steering along walls.
         avoid_alone: the same on the way to where a person was seen last, when there is nobody to look at.
+        heard: what is remembered of echoes for that: an edge vanishes in the gaps between the sonars' cones.
     """
 
     keep_height: float = 0.58
@@ -83,17 +85,18 @@ class FollowConfig:
     wait_turn_rad_s: float = 0.5
     max_age_s: float = 0.3
     wait_s: float = 1.2
-    patience_s: float = 3.0
+    patience_s: float = 5.0
     gone_s: float = 0.7
-    behind_rad: float = math.radians(9.0)
     recover_1_s: float = 0.6
     give_up_s: float = 30.0
     leaving_rad: float = math.radians(19.0)
     target: TargetConfig = field(default_factory=TargetConfig)
     identity: IdentityConfig = field(default_factory=IdentityConfig)
+    hidden: HiddenConfig = field(default_factory=HiddenConfig)
     place: PlaceConfig = field(default_factory=PlaceConfig)
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
     avoid_alone: AvoidConfig = WIDELY
+    heard: MemoryConfig = field(default_factory=lambda: MemoryConfig(keep_s=4.0, within_m=1.5))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,6 +116,7 @@ class FollowState:
         place: where the person was last seen; None once the robot has been there.
         searched_rad: [rad] by how much the search has turned.
         stalled_s: [s] for how long the search has not turned: an obstacle is in the way.
+        heard: echoes of the last seconds.
     """
 
     mode: str = "search"
@@ -126,6 +130,7 @@ class FollowState:
     place: LastPlace | None = None
     searched_rad: float = 0.0
     stalled_s: float = 0.0
+    heard: EchoMemory = field(default_factory=EchoMemory)
 
 
 class FollowPerson:
@@ -169,7 +174,8 @@ def follow(state: FollowState, sight: Sight, config: FollowConfig) -> tuple[Foll
     step_s = sight.time_s - state.time_s
     if not (sight.is_sound and step_s > 0.0):
         return replace(state, mode="blind", reason="senseless or old input"), STOP
-    state = replace(_update_target(state, sight, step_s, config), time_s=sight.time_s)
+    heard = remember(state.heard, sight, config.heard)
+    state = replace(_update_target(state, sight, step_s, config), time_s=sight.time_s, heard=heard)
     if state.target is None:
         return _search(state, sight, step_s, config)
     gap_s = sight.time_s - state.target.seen_s
@@ -197,8 +203,10 @@ def _update_target(state: FollowState, sight: Sight, step_s: float, config: Foll
         state = replace(state, target=None, others=frozenset(), place=None)
     else:
         known = carry_on(known, sight.angular_rad_s, step_s)
-        gone = forget_drift(known, step_s, config.target)
         place = None if state.place is None else carry_place(state.place, sight, step_s)
+        gone = forget_drift(known, step_s, config.target)
+        if config.max_age_s < sight.time_s - known.seen_s < config.patience_s:
+            gone = keep_behind(gone, sight.people, config.hidden, config.target)
         state = replace(state, target=gone, place=place)
     gap_s = 0.0 if known is None else sight.time_s - known.seen_s
     person = recognise(sight.people, known, state.others, gap_s, config.identity, config.target)
@@ -235,16 +243,10 @@ def _patience(state: FollowState, target: Target, sight: Sight, config: FollowCo
     """Tell how the person was lost, and how long [s] to wait for it where the robot is."""
     if state.has_left:
         return f"track {target.id} left the image", config.wait_s
-    for other in sight.people:
-        if other.is_visible and other.id != target.id and _is_in_front(other, target, config):
-            return f"track {target.id} is hidden behind track {other.id}", config.patience_s
+    front = hider(sight.people, target, config.hidden, config.target)
+    if front is not None:
+        return f"track {target.id} is hidden behind track {front.id}", config.patience_s
     return f"track {target.id} is out of sight", config.gone_s
-
-
-def _is_in_front(other: SeenPerson, target: Target, config: FollowConfig) -> bool:
-    """Tell whether somebody is nearer than the followed person and about where it should be."""
-    off_rad = abs(bearing(other.x, config.target) - target.bearing_rad)
-    return other.is_sound and other.height > 0.9 * target.height and off_rad < config.behind_rad
 
 
 def _search(
@@ -278,7 +280,7 @@ def _recover(
     if end:
         state = replace(state, mode="recover", reason=end, place=None, searched_rad=0.0)
         return _search(state, sight, step_s, config)
-    aim = place.bearing_rad + swerve(place.bearing_rad, echoes(sight), config.avoid_alone)
+    aim = place.bearing_rad + swerve(place.bearing_rad, state.heard.points, config.avoid_alone)
     speed = min(config.recover_1_s * place.distance_m, config.max_linear_m_s)
     speed, turn = _facing_share(aim, config) * speed, config.facing_gain * aim
     state = replace(state, mode="recover", reason="to where the person was seen last", place=place)
