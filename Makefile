@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-heavy lint format bench peers clean
+.PHONY: demo test test-heavy lint format bench peers docs clean
 
 demo: $(READY)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -31,6 +31,11 @@ peers: $(READY)
 	# Both ask for opencv-python as well, see below.
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps trackers supervision
 	$(BIN)/python -m benchmarks.peers
+
+# Strictly: a warning is an error. Leaves build/docs/index.html, which needs no server and no network.
+docs: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 
 # numba looks only at a kernel's own file: after editing one that others inline, throw its cache away.
 clean:

@@ -1,0 +1,37 @@
+"""The command line, from the commands themselves."""
+
+from __future__ import annotations
+
+import inspect
+import re
+
+import click
+
+from docs.generate.markdown import table
+from scenarios.cli import cli
+
+
+def commands() -> str:
+    """List every command, and then each with its usage, help and options."""
+    context = click.Context(cli, info_name="peopleboy")
+    names = cli.list_commands(context)
+    links = [
+        (f"[`{name}`](#peopleboy-{name})", cli.commands[name].get_short_help_str(limit=200)) for name in names
+    ]
+    sections = [_section(cli.commands[name], context) for name in names]
+    return "\n".join([table(("command", "what it does"), links), *sections])
+
+
+def _section(command: click.Command, parent: click.Context) -> str:
+    context = click.Context(command, info_name=command.name, parent=parent)
+    usage = f"{context.command_path} {' '.join(command.collect_usage_pieces(context))}"
+    options = [_option(option, context) for option in command.params if isinstance(option, click.Option)]
+    listed = table(("option", "what it is for"), options) if options else ""
+    about = inspect.cleandoc(command.help or "")
+    return f"## peopleboy {command.name}\n\n```text\n{usage}\n```\n\n{about}\n\n{listed}"
+
+
+def _option(option: click.Option, context: click.Context) -> tuple[str, str]:
+    names, about = option.get_help_record(context) or ("", "")
+    about = re.sub(r"  +", " ", about).replace("[", r"\[")
+    return f"`{names}`", about

@@ -1,0 +1,85 @@
+"""The keys of scenario files, from their JSON schema."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from docs.generate.json_types import default_text, models_in, title, type_text
+from docs.generate.markdown import sentence, table
+from docs.generate.plain_keys import PLAIN_KEYS
+from scenarios import schema
+from scenarios.schema import ScenarioSpec
+
+UNITS = {
+    "_deg_s": "deg/s",
+    "_m_s": "m/s",
+    "_deg": "deg",
+    "_px": "px",
+    "_m": "m",
+    "_s": "s",
+    "_c": "°C",
+    "_k": "K",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """One key of one part of a scenario file."""
+
+    part: str
+    name: str
+    unit: str
+    values: str
+    default: str
+    meaning: str
+
+
+def scenario_keys() -> str:
+    """List the keys of every part under a heading of its own."""
+    return "\n".join(_section(name, part) for name, part in _parts().items())
+
+
+def keys() -> Iterator[Key]:
+    """List every key of every part of a scenario file."""
+    for part, model in _parts().items():
+        for name, field in model["properties"].items():
+            is_required = name in model.get("required", ())
+            yield Key(
+                part=part,
+                name=name,
+                unit=next((unit for end, unit in UNITS.items() if name.endswith(end)), ""),
+                values=type_text(field),
+                default="**required**" if is_required else default_text(field),
+                meaning=sentence(field.get("description") or plain_meaning(part, name)),
+            )
+
+
+def plain_meaning(part: str, name: str) -> str:
+    """Say what a key means that the schema leaves to its name; empty if nobody has said it."""
+    classes = [kind.__name__ for kind in getattr(schema, part).__mro__]
+    return next((PLAIN_KEYS[f"{kind}.{name}"] for kind in classes if f"{kind}.{name}" in PLAIN_KEYS), "")
+
+
+def _parts() -> Mapping[str, dict[str, Any]]:
+    """Find the parts of a scenario file by class name, each after the one that it is first used in."""
+    whole = ScenarioSpec.model_json_schema()
+    parts = {"ScenarioSpec": whole}
+    waiting = ["ScenarioSpec"]
+    while waiting:
+        found = [name for name in models_in(parts[waiting.pop(0)]["properties"]) if name not in parts]
+        parts |= {name: whole["$defs"][name] for name in found}
+        waiting += found
+    return parts
+
+
+def _section(name: str, model: Mapping[str, Any]) -> str:
+    heading = "The whole file" if name == "ScenarioSpec" else title(name)
+    rows = [
+        (f"`{key.name}`", key.unit, key.values, key.default, key.meaning)
+        for key in keys()
+        if key.part == name
+    ]
+    head = ("key", "unit", "values", "left out", "meaning")
+    return f"## {heading}\n\n{sentence(model['description'])}\n\n{table(head, rows)}"

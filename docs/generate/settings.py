@@ -1,0 +1,97 @@
+"""The tracker's settings: what each is for, and its value in the main trackers."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
+
+from docs.generate.markdown import table
+from tracker import config as source
+from tracker.config import FilterConfig, LimitsConfig, TrackerConfig
+from tracker.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS_OCCLUSION
+
+COLUMNS: Mapping[str, TrackerConfig] = {
+    "thesis": THESIS_OCCLUSION,
+    "paper": PAPER,
+    "peopleboy": PEOPLEBOY,
+    "footage": FOOTAGE,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """One field of a settings class: its name, default and the comment beside or above it."""
+
+    name: str
+    default: str
+    comment: str
+
+
+def settings() -> str:
+    """List every setting, its meaning, and its value in the main trackers."""
+    text = inspect.getsource(source)
+    parts = []
+    for part in fields(TrackerConfig):
+        given = {name: getattr(config, part.name) for name, config in COLUMNS.items()}
+        kind = next(type(value) for value in given.values() if value is not None)
+        if kind.__module__ == source.__name__:
+            parts.append(_section(part.name, kind, settings_of(text, kind.__name__), given))
+        if kind is FilterConfig:
+            limits = {name: config.limits for name, config in given.items()}
+            parts.append(
+                _section(f"{part.name}.limits", LimitsConfig, settings_of(text, "LimitsConfig"), limits)
+            )
+    return "\n".join(parts)
+
+
+def settings_of(text: str, kind: str) -> list[Setting]:
+    """Read the fields of a class and their comments from its source."""
+    lines = text.splitlines()
+    body = next(
+        node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == kind
+    ).body
+    found = []
+    for node in body:
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            default = "" if node.value is None else ast.unparse(node.value)
+            found.append(Setting(node.target.id, default, _comment(lines, node)))
+    return found
+
+
+def _section(name: str, kind: type[Any], found: list[Setting], given: Mapping[str, Any]) -> str:
+    rows = []
+    for setting in found:
+        values = [_value(config, setting.name, kind) for config in given.values()]
+        rows.append((f"`{setting.name}`", setting.comment, *values))
+    about = inspect.cleandoc(kind.__doc__ or "")
+    return f"## `{name}`\n\n{about}\n\n{table(('setting', 'meaning', *given), rows)}"
+
+
+def _comment(lines: list[str], node: ast.AnnAssign) -> str:
+    """Join the comment lines right above a field and the one behind it."""
+    first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
+    above: list[str] = []
+    while lines[first - 1].lstrip().startswith("# "):
+        first -= 1
+        above.insert(0, lines[first].strip("# "))
+    inside = [line.partition("  # ")[2] for line in lines[node.lineno - 1 : last + 1]]
+    return " ".join([*above, *inside]).strip()
+
+
+def _value(config: Any, name: str, kind: type[Any]) -> str:
+    if config is None:
+        return "off"
+    value = getattr(config, name)
+    if is_dataclass(value):
+        return "below"
+    text = ", ".join(f"{part:g}" for part in value) if isinstance(value, tuple) else _plain(value)
+    return text if value == getattr(kind(), name) else f"**{text}**"
+
+
+def _plain(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.3g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,36 @@
+"""The trackers, from the names that there are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from docs.generate.markdown import table
+from tracker.people import TRACKERS
+
+ABOUT: Mapping[str, tuple[str, str]] = {
+    "peopleboy": (
+        "the default",
+        "Particles, contour, colour and thermal looks. People who overlap are sorted by depth, those in "
+        "front are explained away, hidden people walk on. It knows how the robot moved.",
+    ),
+    "learned": (
+        "the default, taught",
+        "The same, but who is in front is told by the classifier that `peopleboy train-occlusion` learned.",
+    ),
+    "footage": (
+        "recorded video",
+        "For a standing camera and one person at a time, who may be anywhere in the image; no colour.",
+    ),
+    "thesis": (
+        "thesis, chapters 4 to 7",
+        "As it is written: independent filters, colour moments, occlusion handling.",
+    ),
+    "thermal": ("thesis, chapters 4 and 5", "Thermal image alone."),
+    "colour": ("thesis, chapters 4 to 6", "With colour, without occlusion handling."),
+    "paper": ("the 2005 paper", "Its measurement model, its 30 % best samples, three frames to detect."),
+}
+
+
+def trackers() -> str:
+    """List every tracker, what it follows, and what it is."""
+    return table(("`--tracker`", "follows", "what it is"), [(f"`{name}`", *ABOUT[name]) for name in TRACKERS])
