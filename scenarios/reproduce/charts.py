@@ -39,7 +39,10 @@ def source_figures(table: SourceTable, column: str) -> dict[str, tuple[float, fl
 
 
 def _lines(column: str, samples: Samples, table: SourceTable) -> Figure:
-    """Draw a sweep: one curve each for the source and the trackers."""
+    """Draw a sweep: one curve each for the source and the trackers.
+
+    Titles of sweeps say after the comma what is varied.
+    """
     figure, axes = _canvas(6.0)
     groups = list(dict.fromkeys([*(line.group for line in samples), *source_figures(table, column)]))
     groups.sort(key=_number)
@@ -61,7 +64,9 @@ def _lines(column: str, samples: Samples, table: SourceTable) -> Figure:
             linestyle="--" if who == SOURCE else "-",
         )
     axes.set_xticks(range(len(groups)), groups)
+    axes.set_xlabel(table.title.split(", ", 1)[-1])
     axes.set_ylabel(f"{column} [%]")
+    axes.set_ylim(bottom=max(0.0, axes.get_ylim()[0]))
     _finish(axes)
     return figure
 
@@ -121,6 +126,7 @@ def _cluster(axes: Axes, groups: Sequence[str], series: Series) -> None:
             error_kw={"linewidth": 0.8},
         )
     axes.set_xticks(range(len(groups)), groups)
+    axes.set_xlim(-0.6, len(groups) - 0.4)
     axes.set_ylim(0, 105)
 
 

@@ -24,7 +24,7 @@ class Outcome(StrEnum):
     """How a claim fares."""
 
     HOLDS = "holds"
-    UNCLEAR = "not significant"
+    UNCLEAR = "undecided"
     FAILS = "does not hold"
     BLIND = "finds too few people to tell"
     UNKNOWN = "not measured"

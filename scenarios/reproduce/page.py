@@ -12,7 +12,7 @@ import jinja2
 
 from scenarios.read_yaml import read_yaml
 from scenarios.reproduce.charts import draw
-from scenarios.reproduce.compare import SIGNIFICANT, Verdict, judge, mean_and_spread
+from scenarios.reproduce.compare import SIGNIFICANT, Outcome, Verdict, judge, mean_and_spread
 from scenarios.reproduce.experiment import Experiment, Samples
 from scenarios.reproduce.source import Claim, SourceTable, source_tables
 
@@ -57,8 +57,8 @@ class Section:
     def summary(self, main: str) -> str:
         """How the source's claims fare with a main tracker, in a few words."""
         verdicts = (verdict for item in self.checked for verdict in item.verdicts)
-        count = Counter(verdict.outcome.value for verdict in verdicts if verdict.who in MAIN[main])
-        return ", ".join(f"{word}: {number}" for word, number in count.items())
+        count = Counter(verdict.outcome for verdict in verdicts if verdict.who in MAIN[main])
+        return ", ".join(f"{outcome.value}: {count[outcome]}" for outcome in Outcome if count[outcome])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
