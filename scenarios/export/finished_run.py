@@ -19,6 +19,9 @@ from scenarios.tables import ROBOT, TRACKS, TRUTH, Row
 from sim.config import RobotConfig, WorldConfig
 from tracker.track import Ellipse, Status, Track
 
+_FILES = (
+    "scenario.yaml", "truth/gt.txt", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",
+)  # fmt: skip
 _BOX = ("left_px", "top_px", "width_px", "height_px")
 _STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
 
@@ -95,10 +98,12 @@ def open_run(folder: Path) -> FinishedRun:
         BadInput: there is none.
     """
     about = read_run(folder)
-    path = folder / "scenario.yaml"
-    if not path.is_file():
-        raise BadInput(f"{path}: there is no such file; only runs of scenarios can be exported")
-    scenario = load_scenario(path)
+    for name in _FILES:
+        if not (folder / name).is_file():
+            raise BadInput(
+                f"{folder / name}: there is no such file; only whole runs of scenarios can be exported"
+            )
+    scenario = load_scenario(folder / "scenario.yaml")
     try:
         seed, renderer = int(about["seed"]), str(about["renderer"])
         tracker, frames, rate_hz = str(about["tracker"]), int(about["frames"]), int(about["rate_hz"])

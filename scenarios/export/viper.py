@@ -27,9 +27,9 @@ _FILE = {
     "V-FRAME-SIZE": "dvalue",
 }
 _SOURCE_TYPES = ("SEQUENCE", "FRAMES")
-_OBJECT = {"NAME": "svalue", "LOCATION": "bbox", **dict.fromkeys(_EDGES, "fvalue")}
-_TRUTH = {"COUNTED": "bvalue", "VISIBLE": "fvalue"}
-_TRACK = {"CONFIDENCE": "fvalue"}
+OBJECT = {"NAME": "svalue", "LOCATION": "bbox", **dict.fromkeys(_EDGES, "fvalue")}
+TRUTH = {"COUNTED": "bvalue", "VISIBLE": "fvalue"}
+TRACK = {"CONFIDENCE": "fvalue"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +53,8 @@ def write_viper(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None: 
     ElementTree.register_namespace("data", DATA)
     for run in runs:
         (folder / run.name).mkdir()
-        _write(folder / run.name / "truth.xgtf", run, _people(run), _TRUTH)
-        _write(folder / run.name / "tracks.xgtf", run, _tracks(run), _TRACK)
+        _write(folder / run.name / "truth.xgtf", run, _people(run), TRUTH)
+        _write(folder / run.name / "tracks.xgtf", run, _tracks(run), TRACK)
 
 
 def whole_pixels(box: Box, width: int, height: int) -> tuple[int, int, int, int] | None:
@@ -91,7 +91,7 @@ def _write(path: Path, run: FinishedRun, people: Mapping[int, _Person], others: 
     root = ElementTree.Element(f"{{{VIPER}}}viper")
     config = _child(root, "config")
     _descriptor(config, "Information", "FILE", _FILE, dynamic=())
-    _descriptor(config, "PERSON", "OBJECT", {**_OBJECT, **others}, dynamic=("LOCATION", *_EDGES, *others))
+    _descriptor(config, "PERSON", "OBJECT", {**OBJECT, **others}, dynamic=("LOCATION", *_EDGES, *others))
     source = _child(_child(root, "data"), "sourcefile", filename=run.name)
     _file(source, run)
     for number, person in sorted(people.items()):

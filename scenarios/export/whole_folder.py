@@ -39,7 +39,7 @@ def whole_folder(path: Path, about: dict[str, Any], *, overwrite: bool) -> Itera
             shutil.rmtree(path)
         part.rename(path)
     except OSError as error:
-        raise BadInput(f"{path}: cannot write here: {error.strerror or error}; give another --out") from error
+        raise BadInput(f"{path}: cannot write this export: {error}") from error
     finally:
         shutil.rmtree(part, ignore_errors=True)
 

@@ -1,0 +1,154 @@
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from exported import export
+from hypothesis import given
+from hypothesis import strategies as st
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+from rosbags.highlevel import AnyReader
+from scipy.spatial.transform import Rotation
+
+from scenarios.export.finished_run import open_run
+from scenarios.export.ros_messages import drift
+from sim.robot.peoplebot import Planar
+
+TOPICS = {
+    "/thermal/image/compressed", "/colour/image/compressed", "/thermal/camera_info", "/colour/camera_info",
+    "/truth/people", "/tracks", "/odom", "/tf",
+}  # fmt: skip
+
+lengths, turns = st.floats(-20.0, 20.0), st.floats(-math.pi, math.pi)
+poses = st.builds(Planar, lengths, lengths, turns)
+
+
+@pytest.fixture(scope="module")
+def bag(crossing: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return export(crossing, "mcap", tmp_path_factory.mktemp("mcap") / "set") / "tiny-3"
+
+
+@pytest.fixture(scope="module")
+def messages(bag: Path) -> dict[str, list[Any]]:
+    """All messages by topic, read by another library than the one that wrote them."""
+    found = defaultdict(list)
+    with (bag / "tiny-3.mcap").open("rb") as file:
+        for _, channel, _, message in make_reader(
+            file, decoder_factories=[DecoderFactory()]
+        ).iter_decoded_messages():
+            found[channel.topic].append(message)
+    return found
+
+
+def seconds(message: Any) -> float:
+    return message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
+
+
+def pose(transform: Any) -> np.ndarray:
+    matrix = np.eye(4)
+    turn, place = transform.rotation, transform.translation
+    matrix[:3, :3] = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).as_matrix()
+    matrix[:3, 3] = (place.x, place.y, place.z)
+    return matrix
+
+
+def test_every_topic_has_a_message_a_frame(messages: dict[str, list[Any]]) -> None:
+    assert {topic: len(found) for topic, found in messages.items()} == dict.fromkeys(TOPICS, 60) | {
+        "/tf_static": 1
+    }
+    for topic in TOPICS - {"/tf"}:
+        assert [seconds(message) for message in messages[topic]] == pytest.approx(np.arange(60) / 15.0)
+
+
+def test_the_images_are_those_of_the_run(messages: dict[str, list[Any]], crossing: Path) -> None:
+    for frame in (1, 40):
+        name = f"{frame:06d}.png"
+        thermal = np.frombuffer(messages["/thermal/image/compressed"][frame - 1].data, np.uint8)
+        stored = cv2.imread(str(crossing / "thermal" / name), cv2.IMREAD_UNCHANGED)
+        assert np.array_equal(cv2.imdecode(thermal, cv2.IMREAD_UNCHANGED), stored)
+        colour = np.frombuffer(messages["/colour/image/compressed"][frame - 1].data, np.uint8)
+        lost = cv2.absdiff(
+            cv2.imdecode(colour, cv2.IMREAD_COLOR), cv2.imread(str(crossing / "colour" / name))
+        )
+        assert lost.mean() < 5.0
+
+
+def test_boxes_are_those_of_truth_and_tracks(messages: dict[str, list[Any]], crossing: Path) -> None:
+    for topic, file in (("/truth/people", "truth/gt.txt"), ("/tracks", "tracks.txt")):
+        table = np.loadtxt(crossing / file, delimiter=",")
+        found = []
+        for frame, message in enumerate(messages[topic], start=1):
+            for one in message.detections:
+                middle, width, height = one.bbox.center.position, one.bbox.size_x, one.bbox.size_y
+                score = one.results[0].hypothesis.score
+                found.append((frame, middle.x - width / 2, middle.y - height / 2, width, height, score))
+        columns = [0, 2, 3, 4, 5, 8 if topic == "/truth/people" else 6]
+        assert np.array(found) == pytest.approx(table[:, columns], abs=0.0051)
+
+
+def test_the_frames_lead_from_the_camera_to_where_the_robot_truly_is(
+    messages: dict[str, list[Any]], crossing: Path
+) -> None:
+    (fixed,) = messages["/tf_static"]
+    camera = pose(next(t.transform for t in fixed.transforms if t.child_frame_id == "thermal_optical"))
+    run = open_run(crossing)
+    assert camera == pytest.approx(run.robot.thermal.camera.robot_from_camera)
+    for message, row in zip(messages["/tf"], run.robot_rows(), strict=True):
+        frames = {
+            one.child_frame_id: (one.header.frame_id, pose(one.transform)) for one in message.transforms
+        }
+        assert (frames["odom"][0], frames["base_link"][0], frames["people/anna"][0]) == ("map", "odom", "map")
+        robot = frames["odom"][1] @ frames["base_link"][1]
+        assert robot[:2, 3] == pytest.approx([row["x_m"], row["y_m"]])
+        assert math.atan2(robot[1, 0], robot[0, 0]) == pytest.approx(row["heading_rad"])
+
+
+def test_the_odometry_is_that_of_the_run(messages: dict[str, list[Any]], crossing: Path) -> None:
+    rows = pq.read_table(crossing / "robot.parquet").to_pylist()
+    for message, row in zip(messages["/odom"], rows, strict=True):
+        place = message.pose.pose.position
+        assert (place.x, place.y) == (row["odometry_x_m"], row["odometry_y_m"])
+        speed = (row["left_wheel_m_s"] + row["right_wheel_m_s"]) / 2.0
+        assert message.twist.twist.linear.x == pytest.approx(speed)
+
+
+def test_the_folder_is_a_bag_of_ros_2(bag: Path) -> None:
+    assert {path.name for path in bag.iterdir()} == {"tiny-3.mcap", "metadata.yaml"}
+    with AnyReader([bag]) as reader:
+        assert set(reader.topics) == TOPICS | {"/tf_static"}
+        assert reader.message_count == 60 * len(TOPICS) + 1
+
+
+def test_rerun_understands_the_file(bag: Path, tmp_path: Path) -> None:
+    def rerun(*arguments: object) -> str:
+        call = [sys.executable, "-m", "rerun", *map(str, arguments)]
+        done = subprocess.run(call, check=True, capture_output=True, text=True)
+        return done.stdout + done.stderr
+
+    checked = [line.split() for line in rerun("mcap", "check", bag / "tiny-3.mcap").splitlines()]
+    assert {line[3] for line in checked if line and line[0] == "ok"} == TOPICS | {"/tf_static"}
+    rerun("mcap", "convert", bag / "tiny-3.mcap", "--output", tmp_path / "tiny.rrd")
+    told = rerun("rrd", "print", tmp_path / "tiny.rrd")
+    for kind in ("EncodedImage:blob", "Pinhole:image_from_camera", "Transform3D:quaternion"):
+        assert kind in told
+
+
+@given(true=poses, odometry=poses)
+def test_the_drift_and_the_odometry_make_the_true_pose(true: Planar, odometry: Planar) -> None:
+    off = drift(true, odometry)
+    cos, sin = math.cos(off.heading), math.sin(off.heading)
+    x = off.x + cos * odometry.x - sin * odometry.y
+    y = off.y + sin * odometry.x + cos * odometry.y
+    assert (x, y) == pytest.approx((true.x, true.y), abs=1e-9)
+    assert math.remainder(off.heading + odometry.heading - true.heading, math.tau) == pytest.approx(
+        0.0, abs=1e-9
+    )
