@@ -37,7 +37,12 @@ class Labels:
         self.write_at((x, y, x, y), text, size=size, **style)
 
     def write_at(self, box: Box, text: str, *, size: float = 7.0, **style: Any) -> None:
-        """Write a word in a box if it fits, else beside it, where it covers least of what is there."""
+        """Write a word in a box if it fits, else beside it, where it covers least of what is there.
+
+        Of what lies outside the axes nothing is written.
+        """
+        if not self._shows(*_middle(box)):
+            return
         unit = self._metres_per_point() * size
         lines = text.split("\n")
         extent = (_LETTER * unit * max(map(len, lines)), _LINE * unit * len(lines))
@@ -70,6 +75,10 @@ class Labels:
         covered = sum(_shared(place, other) for other in self.taken)
         outside = _area(place) - _shared(place, self._view())
         return 20.0 * covered + 50.0 * outside + 0.02 * math.dist(_middle(place), (x, y))
+
+    def _shows(self, x: float, y: float) -> bool:
+        left, low, right, high = self._view()
+        return left <= x <= right and low <= y <= high
 
     def _view(self) -> Box:
         (left, right), (low, high) = self.axes.get_xlim(), self.axes.get_ylim()

@@ -12,16 +12,17 @@ from matplotlib.figure import Figure
 
 from bad_input import BadInput
 from scenarios.labels import Labels
+from scenarios.plan_legend import draw_legend
 from scenarios.plan_people import draw_person
 from scenarios.plan_place import SPAN_C, WARMTH, draw_floor, draw_things, draw_walls, label_things
 from scenarios.plan_robot import draw_robot
+from scenarios.plan_sheet import INK, PAPER, lay_out, sections
 from scenarios.scenario import Scenario
+from sim.config import WorldConfig
 
-PAPER, INK = "#fbfaf7", "#2b2d30"
 _PEOPLE = ("#1f6fb4", "#2f7d32", "#7b3fa0", "#a8327a", "#00798c", "#5d4a1f")
-_WIDTH_IN, _HEAD_IN, _FOOT_IN, _SIDE_IN, _DPI = 11.0, 0.85, 0.45, 0.25, 130
+_WIDTH_IN, _HEAD_IN, _FOOT_IN, _SIDE_IN, _DPI = 11.0, 0.85, 1.3, 0.25, 130
 _BAR_IN = 0.9  # for the scale of temperatures on the right
-_MARGIN_M = 0.4
 
 
 def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
@@ -33,7 +34,28 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
         path: of the picture, such as plan.png.
     """
     config = scenario.world(seed)
-    figure, axes = _paper(scenario)
+    figure = Figure(dpi=_DPI, facecolor=PAPER)
+    FigureCanvasAgg(figure)
+    found = lay_out(
+        figure,
+        sections(scenario.place.bounds),
+        _WIDTH_IN,
+        head_in=_HEAD_IN,
+        foot_in=_FOOT_IN,
+        side_in=(_SIDE_IN, _SIDE_IN + _BAR_IN),
+    )
+    for axes in found:
+        _draw_section(axes, scenario, config)
+    _caption(figure, scenario, seed)
+    _temperatures(figure, found)
+    draw_legend(figure, _SIDE_IN)
+    try:
+        figure.savefig(path, dpi=_DPI)
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot write the plan: {error}; give a path that ends in .png") from error
+
+
+def _draw_section(axes: Axes, scenario: Scenario, config: WorldConfig) -> None:
     labels = Labels(axes)
     draw_floor(axes, scenario.plan)
     draw_walls(axes, labels, scenario.place)
@@ -42,34 +64,9 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
     for index, person in enumerate(config.people):
         draw_person(axes, labels, person, scenario.duration_s, _PEOPLE[index % len(_PEOPLE)])
     label_things(labels, scenario.place)
-    _caption(figure, axes, scenario, seed)
-    try:
-        figure.savefig(path, dpi=_DPI)
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: cannot write the plan: {error}; give a path that ends in .png") from error
 
 
-def _paper(scenario: Scenario) -> tuple[Figure, Axes]:
-    """A sheet whose height follows from the place's shape, one scale for both axes."""
-    min_x, min_y, max_x, max_y = scenario.place.bounds
-    width_m, height_m = max_x - min_x + 2.0 * _MARGIN_M, max_y - min_y + 2.0 * _MARGIN_M
-    inner = _WIDTH_IN - 2.0 * _SIDE_IN - _BAR_IN
-    drawn = min(inner * height_m / width_m, 8.5)
-    total = drawn + _HEAD_IN + _FOOT_IN
-    figure = Figure(figsize=(_WIDTH_IN, total), dpi=_DPI, facecolor=PAPER)
-    FigureCanvasAgg(figure)
-    used = drawn * width_m / height_m
-    left = _SIDE_IN + (inner - used) / 2.0
-    axes = figure.add_axes(
-        (left / _WIDTH_IN, _FOOT_IN / total, used / _WIDTH_IN, drawn / total), facecolor=PAPER
-    )
-    axes.set_xlim(min_x - _MARGIN_M, max_x + _MARGIN_M)
-    axes.set_ylim(min_y - _MARGIN_M, max_y + _MARGIN_M)
-    axes.set_axis_off()
-    return figure, axes
-
-
-def _caption(figure: Figure, axes: Axes, scenario: Scenario, seed: int) -> None:
+def _caption(figure: Figure, scenario: Scenario, seed: int) -> None:
     height = figure.get_figheight()
     left = _SIDE_IN / _WIDTH_IN
     figure.text(left, 1.0 - 0.26 / height, scenario.name, size=15, weight="bold", color=INK, va="center")
@@ -79,21 +76,13 @@ def _caption(figure: Figure, axes: Axes, scenario: Scenario, seed: int) -> None:
     facts = [f"seed {seed}", f"{scenario.duration_s:g} s", f"robot: {scenario.robot.behaviour}"]
     note = "   ·   ".join([*facts, *([f"light: {lights}"] if lights else [])])
     figure.text(1.0 - left, 1.0 - 0.26 / height, note, size=8.5, color=INK, va="center", ha="right")
-    _scale_bar(axes)
-    box = axes.get_position()
-    bar = figure.add_axes(
-        (1.0 - 0.72 / _WIDTH_IN, box.y0 + 0.15 * box.height, 0.12 / _WIDTH_IN, 0.7 * box.height)
-    )
+
+
+def _temperatures(figure: Figure, found: list[Axes]) -> None:
+    """What the colours of things mean, beside the plan."""
+    top, bottom = found[0].get_position().y1, found[-1].get_position().y0
+    height = min(0.85 * (top - bottom), 3.5 / figure.get_figheight())
+    bar = figure.add_axes((1.0 - 0.72 / _WIDTH_IN, (top + bottom - height) / 2.0, 0.12 / _WIDTH_IN, height))
     figure.colorbar(ScalarMappable(SPAN_C, WARMTH), cax=bar, extend="both")
-    bar.set_title("°C", size=8, color=INK)
+    bar.set_title("things, °C", size=8, color=INK)
     bar.tick_params(labelsize=7, colors=INK)
-
-
-def _scale_bar(axes: Axes) -> None:
-    """Two metres, below the plan."""
-    (left, _), (low, _) = axes.get_xlim(), axes.get_ylim()
-    x = left + _MARGIN_M
-    axes.plot([x, x + 2.0], [low, low], color=INK, lw=2.0, solid_capstyle="butt", clip_on=False)
-    axes.annotate(
-        "2 m", (x + 1.0, low), (0, -4), textcoords="offset points", size=7, ha="center", va="top", color=INK
-    )

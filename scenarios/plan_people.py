@@ -1,4 +1,4 @@
-"""People's ways on a plan: the line they walk, a mark every five seconds, and their pauses."""
+"""People's ways on a plan: the line they walk, a mark every five seconds, their pauses, and the end."""
 
 from __future__ import annotations
 
@@ -17,14 +17,16 @@ from sim.people.walk import ALONE, Walker
 _STEP_S = 0.05
 _MARK_EVERY_S = 5.0
 _SHORTEST_PAUSE_S = 0.5
+_ARRIVED_M = 0.05
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Way:
-    """Where a person that nobody disturbs is: times (T,) [s] and places (T, 2) [m]."""
+    """Where a person that nobody disturbs is: times (T,) [s] and places (T, 2) [m], and how it ends."""
 
     times: NDArray[np.float64]
     places: NDArray[np.float64]
+    end: str
 
 
 def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, colour: str) -> None:
@@ -52,7 +54,8 @@ def _walk(person: PersonConfig, end_s: float) -> _Way:
         walker.step(_STEP_S, ALONE)
         places.append(walker.position.copy())
     times = person.enter_s + _STEP_S * np.arange(len(places), dtype=np.float64)
-    return _Way(times=times, places=np.array(places))
+    leaves = person.leave_s is not None and person.leave_s < end_s
+    return _Way(times=times, places=np.array(places), end="leaves at" if leaves else "run ends at")
 
 
 def _draw_arrows(axes: Axes, way: _Way, colour: str) -> None:
@@ -83,18 +86,27 @@ def _draw_pauses(axes: Axes, labels: Labels, person: PersonConfig, way: _Way, co
         labels.block(*waypoint.at_m, 0.16)
         what = "" if waypoint.posture == "standing" else f" {waypoint.posture.replace('_', ' ')}"
         facing = f", faces {waypoint.face}" if isinstance(waypoint.face, str) else ""
-        labels.write(
-            *waypoint.at_m, f"{waypoint.pause_s:g} s{what}{facing}", size=6.5, color=colour, style="italic"
-        )
+        text = f"pauses {waypoint.pause_s:g} s{what}{facing}"
+        labels.write(*waypoint.at_m, text, size=6.5, color=colour, style="italic")
 
 
 def _draw_times(axes: Axes, labels: Labels, way: _Way, colour: str) -> None:
-    """Dots at whole multiples of five seconds, but for those at which the person stands as before."""
+    """Dots at whole multiples of five seconds on the way, and what becomes of the person at its end."""
+    far = np.linalg.norm(way.places - way.places[-1], axis=1)
+    on_the_way = np.flatnonzero(far > _ARRIVED_M)
+    if len(on_the_way) == 0:
+        return
+    arrival = int(on_the_way[-1]) + 1
     before = way.places[0]
     first = math.floor(way.times[0] / _MARK_EVERY_S) + 1
-    for time_s in np.arange(first * _MARK_EVERY_S, way.times[-1] + 1e-6, _MARK_EVERY_S):
-        place = way.places[min(round((time_s - way.times[0]) / _STEP_S), len(way.places) - 1)]
+    for time_s in np.arange(first * _MARK_EVERY_S, way.times[arrival] - 0.5, _MARK_EVERY_S):
+        place = way.places[round((time_s - way.times[0]) / _STEP_S)]
         if math.dist(place, before) > 0.1:
             axes.plot(*place, "o", ms=4.0, mfc="white", mec=colour, mew=1.1, zorder=8)
             labels.write(place[0], place[1], f"{time_s:g} s", size=6.8, color=colour)
         before = place
+    x, y = way.places[-1]
+    axes.plot(x, y, "s", ms=4.5, mfc=colour, mec="white", mew=0.8, zorder=8)
+    stays = way.times[-1] - way.times[arrival] > _SHORTEST_PAUSE_S
+    what = f"stays from {way.times[arrival]:.0f} s" if stays else f"{way.end} {way.times[-1]:.0f} s"
+    labels.write(x, y, what, size=6.8, color=colour, weight="bold")
