@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Final
 
 import matplotlib
 from PIL import Image, ImageDraw, ImageFont
+from PIL.PngImagePlugin import PngInfo
 
 from bad_input import BadInput
 from scenarios.key_moments import KeyMoments, Moment
 from scenarios.loop import Tick
-from scenarios.overlay import Picture, draw_tracks, draw_truth, enlarge, show_thermal
-from scenarios.palette import TRUTH, Rgb
+from scenarios.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
+from scenarios.palette import TRUTH, Rgb, track_colour
 from scenarios.run_events import LogLine
 from sim.alignment import affine_between
 from sim.config import RobotConfig
@@ -27,11 +30,24 @@ MOMENTS: Final = 12
 _MARGIN, _GAP, _TITLE, _CAPTION = 24, 14, 76, 46
 _TILE: Final = (WIDTH_PX - 2 * _MARGIN - (COLUMNS - 1) * _GAP) // COLUMNS
 _TYPICAL_DEPTH_M = 4.0
+_NOTE: Final = "Moments"  # of the PNG: where each tile is, and what it shows
+_LEGEND: Final = (
+    "dashed: truth, with the share that is visible",
+    "solid: tracks, with number and confidence; dim, with ?: not yet confirmed",
+)
 
 _PAGE: Final[Rgb] = (22, 24, 28)
 _STRONG: Final[Rgb] = (240, 240, 240)
 _WEAK: Final[Rgb] = (165, 170, 178)
 _CHIP: Final[Rgb] = (58, 64, 74)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tile:
+    """One moment of a sheet that was read back: its images without the caption, and what that says."""
+
+    picture: Image.Image
+    words: str
 
 
 class ContactSheet:
@@ -64,7 +80,7 @@ class ContactSheet:
             BadInput: it cannot be written there.
         """
         try:
-            self.draw().save(path, compress_level=3)
+            self.draw().save(path, compress_level=3, pnginfo=self._note())
         except OSError as error:
             raise BadInput(f"{path}: cannot write the contact sheet: {error}") from error
 
@@ -83,6 +99,21 @@ class ContactSheet:
             top += height + _GAP
         return page
 
+    def _note(self) -> PngInfo:
+        """Where the images of each moment are: left, top, right, bottom, and what they show."""
+        note, top, tiles = PngInfo(), _TITLE, []
+        moments = self._moments.choose(MOMENTS)
+        for start in range(0, len(moments), COLUMNS):
+            row = moments[start : start + COLUMNS]
+            bottom = top + max(self._tile(moment).height for moment in row)
+            for column, moment in enumerate(row):
+                left = _MARGIN + column * (_TILE + _GAP)
+                words = f"{moment.time_s:.1f} s: {'; '.join(moment.words)}"
+                tiles.append({"box": [left, top + _CAPTION, left + _TILE, bottom], "words": words})
+            top = bottom + _GAP
+        note.add_text(_NOTE, json.dumps(tiles))
+        return note
+
     def _head(self, page: Image.Image) -> None:
         draw = ImageDraw.Draw(page)
         draw.text((_MARGIN, 34), self._title, _STRONG, _font(26, is_bold=True), anchor="lm")
@@ -90,8 +121,9 @@ class ContactSheet:
             return
         length = f"{self._last.frame} frames, {self._last.observation.time_s:.1f} s"
         right = WIDTH_PX - _MARGIN
-        draw.text((right, 24), length, _WEAK, _font(15), anchor="rm")
-        draw.text((right, 46), "dashed: truth, with the share that is visible", TRUTH, _font(15), anchor="rm")
+        draw.text((right, 16), length, _WEAK, _font(15), anchor="rm")
+        draw.text((right, 37), _LEGEND[0], TRUTH, _font(15), anchor="rm")
+        draw.text((right, 58), _LEGEND[1], track_colour(1), _font(15), anchor="rm")
 
     def _tile(self, moment: Moment) -> Image.Image:
         """Draw one moment: caption, thermal, colour."""
@@ -105,13 +137,31 @@ class ContactSheet:
 
     def _thermal_picture(self, moment: Moment) -> Picture:
         scale = _TILE / moment.thermal.shape[1]
-        picture = draw_truth(enlarge(show_thermal(moment.thermal), scale), moment.people, scale)
-        return draw_tracks(picture, moment.tracks, scale, self._contour)
+        picture = enlarge(show_thermal(moment.thermal), scale)
+        plates: list[Plate] = []
+        picture = draw_tracks(picture, moment.tracks, scale, self._contour, plates=plates)
+        return draw_truth(picture, moment.people, scale, plates=plates)
 
     def _colour_picture(self, moment: Moment) -> Picture:
         scale = _TILE / moment.colour.shape[1]
         affine = affine_between(self._robot.thermal.camera, self._robot.colour.camera, _TYPICAL_DEPTH_M)
         return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, self._contour, affine)
+
+
+def read_tiles(path: Path) -> list[Tile]:
+    """Cut a sheet that was saved into its tiles; the whole sheet is one if it does not say where they are.
+
+    Raises:
+        BadInput: there is no such picture.
+    """
+    try:
+        with Image.open(path) as opened:
+            sheet = opened.convert("RGB")
+            note = json.loads(opened.info.get(_NOTE, "[]"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read as a contact sheet: {error}") from error
+    tiles = [Tile(sheet.crop(tuple(one["box"])), one["words"]) for one in note]
+    return tiles or [Tile(sheet, "key moments of the run")]
 
 
 def _caption(tile: Image.Image, moment: Moment) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import pairwise
+from typing import Protocol
 
 import cv2
 import numpy as np
@@ -15,13 +16,13 @@ from numpy.typing import NDArray
 
 from scenarios.palette import TRUTH, Rgb, faded, track_colour
 from sim.camera import Matrix
-from sim.truth import PersonTruth
 from tracker.config import ContourConfig
 from tracker.ellipse import outline
 from tracker.track import Status, Track
 
 Picture = NDArray[np.uint8]  # (H, W, 3) RGB
 Box = tuple[float, float, float, float]
+Plate = tuple[int, int, int, int]  # left, top, right, bottom of a label on the enlarged picture
 
 SCALE = 2
 
@@ -32,6 +33,28 @@ _FONT = cv2.FONT_HERSHEY_SIMPLEX
 _DASH_PX = 8.0
 _EDGE: Rgb = (20, 20, 20)
 _UNTURNED = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+_DIM = 0.6  # of a tentative track
+_MOVES = (0, 1, 2, 3, -1, -2, 4, 5)  # rows by which a label gives way to others, away from its box first
+_SHORT = {Status.PARTLY_OCCLUDED: " partly", Status.TOTALLY_OCCLUDED: " hidden"}
+
+
+class TrueBox(Protocol):
+    """What is drawn of the truth about a person."""
+
+    @property
+    def name(self) -> str:
+        """As in the scenario."""
+        ...
+
+    @property
+    def box(self) -> Box | None:
+        """The truth box; None behind the camera."""
+        ...
+
+    @property
+    def visible_fraction(self) -> float:
+        """Share of the whole silhouette that is seen."""
+        ...
 
 
 def enlarge(image: Picture, scale: float = SCALE) -> Picture:
@@ -60,8 +83,11 @@ def draw_tracks(
     scale: float = SCALE,
     contour: ContourConfig | None = None,
     affine: Matrix | None = None,
+    plates: list[Plate] | None = None,
 ) -> Picture:
-    """Draw ellipses, boxes, ids and status of tracks; tentative ones are dim and have no label.
+    """Draw ellipses, boxes, ids, confidence and status of tracks.
+
+    Tentative ones are dim, and their label is their id with a question mark.
 
     Args:
         picture: the camera's image, `scale` times enlarged; it stays as it is.
@@ -69,13 +95,15 @@ def draw_tracks(
         scale: how much the picture is enlarged.
         contour: whose outline to draw; the default proportions if None.
         affine: (2, 3) thermal pixels to the picture's, before enlarging; None for the thermal image itself.
+        plates: where labels are already, which these give way to; theirs are added.
     """
-    canvas = picture.copy()
+    canvas, tracks = picture.copy(), tuple(tracks)
+    taken = [] if plates is None else plates
     mapping = _UNTURNED if affine is None else affine
     body = max(round(scale), 1)
     for track in tracks:
         is_sure = track.status is not Status.TENTATIVE
-        colour = track_colour(track.id) if is_sure else faded(track_colour(track.id), 0.6)
+        colour = track_colour(track.id) if is_sure else faded(track_colour(track.id), _DIM)
         box = map_box(track.box, mapping)
         outlines = outline(track.ellipse, ContourConfig() if contour is None else contour)
         lines = [box_corners(box), *(line @ mapping[:, :2].T + mapping[:, 2] for line in outlines)]
@@ -83,16 +111,22 @@ def draw_tracks(
         for shade, extra in ((_EDGE, 1), (colour, 0)):
             for line, thickness in zip(lines, (1, body, body), strict=True):
                 draw_line(canvas, line, shade, scale, thickness + extra)
-        if is_sure:
-            _label(canvas, _track_text(track), box, colour, scale)
+    for track in tracks:
+        box = map_box(track.box, mapping)
+        _label(canvas, _track_text(track), box, track_colour(track.id), scale, taken)
     return canvas
 
 
 def draw_truth(
-    picture: Picture, people: Iterable[PersonTruth], scale: float = SCALE, affine: Matrix | None = None
+    picture: Picture,
+    people: Iterable[TrueBox],
+    scale: float = SCALE,
+    affine: Matrix | None = None,
+    plates: list[Plate] | None = None,
 ) -> Picture:
     """Draw thin dashed boxes, with name and visible share under them; arguments as in `draw_tracks`."""
     canvas = picture.copy()
+    taken = [] if plates is None else plates
     for person in people:
         if person.box is None:
             continue
@@ -101,7 +135,8 @@ def draw_truth(
             continue
         for dash in _dashes(box_corners(box), _DASH_PX / scale):
             draw_line(canvas, dash, TRUTH, scale, thickness=1)
-        _label(canvas, f"{person.name} {person.visible_fraction:.0%}", box, TRUTH, scale, is_below=True)
+        text = f"{person.name} {person.visible_fraction:.0%}"
+        _label(canvas, text, box, TRUTH, scale, taken, is_below=True)
     return canvas
 
 
@@ -136,8 +171,9 @@ def _is_inside(box: Box, canvas: Picture, scale: float) -> bool:
 
 
 def _track_text(track: Track) -> str:
-    status = "" if track.status is Status.TRACKED else f" {track.status}"
-    return f"{track.id}: {track.confidence:.2f}{status}"
+    if track.status is Status.TENTATIVE:
+        return f"{track.id}?"
+    return f"{track.id}: {track.confidence:.2f}{_SHORT.get(track.status, '')}"
 
 
 def _dashes(line: NDArray[np.float64], length: float) -> Iterable[NDArray[np.float64]]:
@@ -147,15 +183,34 @@ def _dashes(line: NDArray[np.float64], length: float) -> Iterable[NDArray[np.flo
         yield from (marks[k : k + 2] for k in range(0, count, 2))
 
 
-def _label(canvas: Picture, text: str, box: Box, colour: Rgb, scale: float, is_below: bool = False) -> None:
-    """Write on a dark plate above or below a box, moved as far as it must to be inside the picture."""
+def _label(
+    canvas: Picture,
+    text: str,
+    box: Box,
+    colour: Rgb,
+    scale: float,
+    taken: list[Plate],
+    is_below: bool = False,
+) -> None:
+    """Write on a dark plate above or below a box, inside the picture and clear of other plates."""
     size = max(0.2 * scale, 0.4)
     (width, height), descent = cv2.getTextSize(text, _FONT, size, 1)
+    line = height + descent + 3
     left, top = box[0] * scale, box[1] * scale
-    bottom = (box[1] + box[3]) * scale + height + descent + 4 if is_below else top - 4
+    bottom = (box[1] + box[3]) * scale + line if is_below else top - 4
     rows, columns = canvas.shape[:2]
     x = round(min(max(left, 2.0), max(columns - width - 2.0, 2.0)))
-    y = round(min(max(bottom, height + 3.0), rows - descent - 2.0))
-    plate = canvas[max(y - height - 2, 0) : y + descent + 1, max(x - 2, 0) : x + width + 2]
-    plate[:] = plate // 3
-    cv2.putText(canvas, text, (x, y), _FONT, size, colour, 1, cv2.LINE_AA)
+    places = []
+    for move in _MOVES:
+        wanted = bottom + (line if is_below else -line) * move
+        y = round(min(max(wanted, height + 3.0), rows - descent - 2.0))
+        places.append((x - 2, y - height - 2, x + width + 2, y + descent + 1))
+    plate = next((place for place in places if not any(_touch(place, other) for other in taken)), places[0])
+    taken.append(plate)
+    under = canvas[max(plate[1], 0) : plate[3], max(plate[0], 0) : plate[2]]
+    under[:] = under // 3
+    cv2.putText(canvas, text, (x, plate[3] - descent - 1), _FONT, size, colour, 1, cv2.LINE_AA)
+
+
+def _touch(one: Plate, other: Plate) -> bool:
+    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from bad_input import BadInput
-from scenarios.contact_sheet import COLUMNS, MOMENTS, WIDTH_PX, ContactSheet
+from scenarios.contact_sheet import COLUMNS, MOMENTS, WIDTH_PX, ContactSheet, read_tiles
 from scenarios.key_moments import KeyMoments
 from scenarios.palette import track_colour
 
@@ -45,6 +45,20 @@ def test_tracks_are_drawn_in(tmp_path: Path) -> None:
     sheet().save(tmp_path / "sheet.png")
     like_track = np.abs(pixels(tmp_path / "sheet.png").astype(int) - track_colour(1)).max(axis=2) < 30
     assert like_track.sum() > 5000
+
+
+def test_the_tiles_of_a_saved_sheet_can_be_read_back_with_their_words(tmp_path: Path) -> None:
+    sheet().save(tmp_path / "sheet.png")
+    tiles = read_tiles(tmp_path / "sheet.png")
+    moments = chosen().choose(MOMENTS)
+    assert [tile.words for tile in tiles] == [f"{m.time_s:.1f} s: {'; '.join(m.words)}" for m in moments]
+    assert len({tile.picture.size for tile in tiles}) == 1
+
+
+def test_a_sheet_that_does_not_say_where_its_tiles_are_is_one_tile(tmp_path: Path) -> None:
+    Image.new("RGB", (40, 30)).save(tmp_path / "sheet.png")
+    (tile,) = read_tiles(tmp_path / "sheet.png")
+    assert tile.picture.size == (40, 30)
 
 
 def test_the_same_run_gives_the_same_bytes(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 
 import cv2
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from scenarios.overlay import (
     PALETTES,
+    Plate,
     draw_line,
     draw_tracks,
     draw_truth,
@@ -62,10 +64,22 @@ def test_tracks_of_different_ids_have_different_colours() -> None:
     assert len({track_colour(number) for number in range(1, 7)}) == 6
 
 
-def test_a_tentative_track_is_dim_and_has_no_label() -> None:
+def test_a_tentative_track_is_dim_and_its_short_label_is_a_question() -> None:
     sure, tentative = (draw_tracks(GREY, [made.with_status(s)]) for s in (Status.TRACKED, Status.TENTATIVE))
-    assert tentative.max() < sure.max()
-    assert (tentative != GREY).any(axis=2).sum() < (sure != GREY).any(axis=2).sum()
+    outline_rows = slice(110, 430)  # below the labels
+    assert tentative[outline_rows].max() < sure[outline_rows].max()
+    label_rows = slice(0, 94)
+    drawn = [(picture[label_rows] != GREY[label_rows]).any(axis=2).sum() for picture in (tentative, sure)]
+    assert 0 < drawn[0] < drawn[1]
+
+
+def test_labels_give_way_to_each_other() -> None:
+    plates: list[Plate] = []
+    people = [made.person(1, "anna", 4.0), made.person(2, "ben", 6.0)]
+    draw_truth(draw_tracks(GREY, [made.TRACK] * 3, plates=plates), people, plates=plates)
+    assert len(plates) == 5
+    for one, other in combinations(plates, 2):
+        assert one[2] <= other[0] or other[2] <= one[0] or one[3] <= other[1] or other[3] <= one[1]
 
 
 def test_truth_is_dashed_along_the_box() -> None:
