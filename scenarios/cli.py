@@ -14,6 +14,7 @@ from scenarios.commands.evaluate import evaluate
 from scenarios.commands.export import export
 from scenarios.commands.many import compare, sweep
 from scenarios.commands.render import render
+from scenarios.commands.report import report
 from scenarios.commands.run import run
 from scenarios.commands.study import datasets, reproduce, train_occlusion
 from scenarios.commands.view import view
@@ -29,6 +30,7 @@ COMMANDS = (
     evaluate,
     compare,
     view,
+    report,
     export,
     datasets,
     train_occlusion,

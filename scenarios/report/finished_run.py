@@ -1,0 +1,123 @@
+"""A finished run, read back from its folder."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from bad_input import BadInput
+from scenarios.evaluate_runs import read_run
+from scenarios.read_yaml import read_yaml
+from scenarios.run_events import LogLine
+from tracker.evaluation.mot_files import read_tracks, read_truth
+from tracker.evaluation.sequence import Tracks, Truth
+
+_NEEDED = ("scenario", "seed", "tracker", "renderer", "rate_hz", "versions", "frames")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FinishedRun:
+    """All that a page needs of a run but its images.
+
+    Attributes:
+        folder: where it lies.
+        about: what run.json says.
+        played: what scenario.yaml says.
+        metrics: what metrics.json says, by group.
+        events: what events.jsonl says.
+        truth: the people of the sequence.
+        tracks: what the tracker claimed.
+        people: `scenarios.tables.TRUTH`.
+        beliefs: `scenarios.tables.TRACKS`.
+        robot: `scenarios.tables.ROBOT`.
+    """
+
+    folder: Path
+    about: Mapping[str, Any]
+    played: Mapping[str, Any]
+    metrics: Mapping[str, Any]
+    events: tuple[LogLine, ...]
+    truth: Truth
+    tracks: Tracks
+    people: pa.Table
+    beliefs: pa.Table
+    robot: pa.Table
+
+    @property
+    def frames(self) -> int:
+        """How many there are; the first is 1."""
+        return int(self.about["frames"])
+
+    @property
+    def rate_hz(self) -> float:
+        """Frames a second."""
+        return float(self.about["rate_hz"])
+
+    @property
+    def duration_s(self) -> float:
+        """From the first frame to the end of the last."""
+        return self.frames / self.rate_hz
+
+    @property
+    def name(self) -> str:
+        """Scenario and seed."""
+        return f"{self.about['scenario']}, seed {self.about['seed']}"
+
+    def time_s(self, frame: int) -> float:
+        """When a frame was taken, from the start."""
+        return (frame - 1) / self.rate_hz
+
+
+def read_finished(folder: Path) -> FinishedRun:
+    """Read a run's folder.
+
+    Raises:
+        BadInput: it holds no run, or one that was cut off, or a file of it is missing or spoilt.
+    """
+    about = read_run(folder)
+    for key in _NEEDED:
+        if key not in about:
+            raise BadInput(f"{folder / 'run.json'}: key {key!r} is missing; run the scenario again")
+    return FinishedRun(
+        folder=folder,
+        about=about,
+        played=read_yaml(folder / "scenario.yaml"),
+        metrics=_read_json(folder / "metrics.json"),
+        events=_read_events(folder / "events.jsonl"),
+        truth=read_truth(folder / "truth" / "gt.txt"),
+        tracks=read_tracks(folder / "tracks.txt"),
+        people=_read_table(folder / "truth.parquet"),
+        beliefs=_read_table(folder / "tracks.parquet"),
+        robot=_read_table(folder / "robot.parquet"),
+    )
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read; give the folder of a finished run") from error
+    if not isinstance(data, dict):
+        raise BadInput(f"{path}: holds a {type(data).__name__}, not figures by name; run the scenario again")
+    return data
+
+
+def _read_events(path: Path) -> tuple[LogLine, ...]:
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        return tuple(LogLine(**json.loads(line)) for line in lines)
+    except (OSError, ValueError, TypeError) as error:
+        raise BadInput(f"{path}: cannot be read as an event log; run the scenario again") from error
+
+
+def _read_table(path: Path) -> pa.Table:
+    try:
+        return pq.read_table(path)
+    except (OSError, pa.ArrowException) as error:
+        raise BadInput(f"{path}: cannot be read as a table; run the scenario again") from error

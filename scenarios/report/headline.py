@@ -1,0 +1,101 @@
+"""What came out, in one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from scenarios.report.finished_run import FinishedRun
+from scenarios.report.identities import (
+    Change,
+    Loss,
+    Stray,
+    find_changes,
+    find_losses,
+    find_strays,
+    tracked_to_end,
+)
+from scenarios.report.story import Story, tell_stories
+from scenarios.report.wording import listed, seconds, some, spoken, times
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Outcome:
+    """A run, and what is found out about it."""
+
+    run: FinishedRun
+    stories: tuple[Story, ...]
+    changes: tuple[Change, ...]
+    losses: tuple[Loss, ...]
+    strays: tuple[Stray, ...]
+
+    @property
+    def due(self) -> int:
+        """How many people were to be tracked at some time."""
+        return sum(bool(story.is_due.any()) for story in self.stories)
+
+    @property
+    def to_the_end(self) -> int:
+        """How many of them were tracked to the end."""
+        return sum(tracked_to_end(self.run, story) is True for story in self.stories)
+
+    @property
+    def touched(self) -> list[tuple[float, str]]:
+        """When [s] the robot touched whom or what."""
+        return [(line.time_s, line.other) for line in self.run.events if line.kind == "contact starts"]
+
+
+def look_into(run: FinishedRun) -> Outcome:
+    """Find out what became of everybody in a run."""
+    stories = tell_stories(run)
+    return Outcome(
+        run=run,
+        stories=tuple(stories),
+        changes=tuple(find_changes(run, stories)),
+        losses=tuple(find_losses(run, stories)),
+        strays=tuple(find_strays(run, stories)),
+    )
+
+
+def headline(outcome: Outcome) -> str:
+    """Say of one run who was tracked to the end, and where identities were lost."""
+    parts = [_people(outcome), _identities(outcome)] if outcome.due else ["Nobody was there to be found"]
+    if outcome.strays:
+        parts.append(f"{some(len(outcome.strays), 'track')} on nobody")
+    if outcome.touched:
+        first_s, _ = outcome.touched[0]
+        names = listed(list(dict.fromkeys(spoken(who) for _, who in outcome.touched)))
+        parts.append(f"the robot touched {names}, first at {seconds(first_s)}")
+    return "; ".join(parts) + "."
+
+
+def headline_of_many(outcomes: Sequence[Outcome]) -> str:
+    """Say the same of several runs."""
+    due, tracked = sum(o.due for o in outcomes), sum(o.to_the_end for o in outcomes)
+    changed = sum(len(o.changes) for o in outcomes)
+    where = sum(bool(o.changes) for o in outcomes)
+    strays, touches = sum(len(o.strays) for o in outcomes), sum(len(o.touched) for o in outcomes)
+    identities = f"identity lost {times(changed)}, in {some(where, 'run')}" if changed else "no identity lost"
+    parts = [f"{some(len(outcomes), 'run')}: of {some(due, 'person', 'people')} {tracked} tracked to the end"]
+    parts += [identities, f"{some(strays, 'track')} on nobody"]
+    parts += [f"{some(touches, 'contact')} of the robot"] if touches else []
+    return "; ".join(parts) + "."
+
+
+def _people(outcome: Outcome) -> str:
+    due, tracked = outcome.due, outcome.to_the_end
+    never = len(outcome.stories) - due
+    aside = f" ({never} more never came within 3 to 10 m in sight)" if never else ""
+    if due == 1:
+        return f"1 person, {'' if tracked else 'not '}tracked to the end{aside}"
+    which = {0: "none", due: "both" if due == 2 else "all"}.get(tracked, f"{tracked} of them")
+    return f"{due} people, {which} tracked to the end{aside}"
+
+
+def _identities(outcome: Outcome) -> str:
+    if not outcome.changes:
+        return "no identity lost"
+    first = outcome.changes[0]
+    when = f"at {seconds(first.time_s)}, when {spoken(first.person)} {first.why}"
+    count = len(outcome.changes)
+    return f"identity lost once, {when}" if count == 1 else f"identity lost {times(count)}, first {when}"
