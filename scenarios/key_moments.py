@@ -26,6 +26,7 @@ _KINDS = {
     "occlusion ends": 4,
     "mode": 6,
     "lost": 3,
+    "re-identified": 3,
     "enters view": 4,
     "leaves view": 4,
 }

@@ -11,11 +11,13 @@ from bad_input import BadInput
 from scenarios.faults import FaultySensors, FaultyTracker
 from scenarios.folder import RunFolder, claim_folder, versions
 from scenarios.loop import Tick, closed_loop
+from scenarios.recording.recorder import Recorder
 from scenarios.scenario import Scenario
 from scenarios.score import RunScores, following_task, score_run
 from scenarios.true_eyes import check_eyes, make_eyes
 from scenarios.watchers import Watchers
 from sim.world import World
+from tracker.people import TRACKERS
 
 FOLLOWERS = ("follow_person", "patrol")
 
@@ -31,6 +33,7 @@ class RunOptions:
         tracker: name of the tracker, or "truth".
         renderer: "raycast" or "bullet".
         record: whether to write recording.rrd.
+        viewer: address of a viewer to show the recording at once; None for none.
         overwrite: whether an earlier run in that folder may be replaced.
     """
 
@@ -40,6 +43,7 @@ class RunOptions:
     tracker: str = "peopleboy"
     renderer: str = "raycast"
     record: bool = True
+    viewer: str | None = None
     overwrite: bool = False
 
 
@@ -74,8 +78,18 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
             RunFolder(options.out, scenario.resolved(options.seed, versions()), about, frames=options.frames)
         )
         title = f"{scenario.name}, seed {options.seed}, tracker {options.tracker}"
-        recording = options.out / "recording.rrd" if options.record else None
-        watchers = Watchers(stack, config, title, recording)
+        recorder = None
+        if options.record:
+            recorder = stack.enter_context(
+                Recorder(
+                    options.out / "recording.rrd",
+                    config,
+                    title=title,
+                    tracker=TRACKERS.get(options.tracker),
+                    viewer=options.viewer,
+                )
+            )
+        watchers = Watchers(config, title, recorder)
         frames = round(scenario.duration_s * config.control_hz)
         stage = FaultySensors(world, scenario.spec.faults, config.robot.sonar.farthest_m)
         eyes = FaultyTracker(tracker, scenario.spec.faults)

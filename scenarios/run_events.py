@@ -6,8 +6,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from scenarios.loop import Tick
+from scenarios.track_events import TrackEvents
 from sim.events import EventLog
-from tracker.track import Status
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,10 +17,10 @@ class LogLine:
     Attributes:
         frame: 1, 2, ...
         time_s: [s] since the start.
-        kind: what happened; those of `sim.events.Event`, and "detected", "lost" and "mode".
+        kind: what happened; those of `sim.events.Event` and `TrackEvent`, and "mode".
         who: a person, "robot", or "track 3".
         other: who or what else takes part: an occluder, what is touched, or the new mode.
-        why: of a change of mode, its reason.
+        why: of a change of mode and of a lost track, the reason; of a re-identified one, since when.
     """
 
     frame: int
@@ -43,30 +43,20 @@ class RunEvents:
 
     def __init__(self) -> None:
         self._world = EventLog()
-        self._tracks: frozenset[int] = frozenset()
+        self._tracks = TrackEvents()
         self._mode = ""
 
     def update(self, tick: Tick) -> list[LogLine]:
         """Return what is new at this tick."""
-        found = [(event.kind, event.person, event.other) for event in self._world.update(tick.truth)]
-        tracks = frozenset(track.id for track in tick.tracks if track.status is not Status.TENTATIVE)
-        found += [("detected", f"track {number}", "") for number in sorted(tracks - self._tracks)]
-        found += [("lost", f"track {number}", "") for number in sorted(self._tracks - tracks)]
-        time_s = tick.truth.time_s
-        lines = [
-            LogLine(frame=tick.frame, time_s=time_s, kind=kind, who=who, other=other)
-            for kind, who, other in found
-        ]
+        time_s, width = tick.truth.time_s, tick.observation.thermal.shape[1]
+        found = [(event.kind, event.person, event.other, "") for event in self._world.update(tick.truth)]
+        for event in self._tracks.update(tick.tracks, time_s, width):
+            by = "" if event.by is None else f"track {event.by}"
+            found.append((event.kind, f"track {event.track}", by, event.why))
         if tick.mode != self._mode:
-            lines.append(
-                LogLine(
-                    frame=tick.frame,
-                    time_s=time_s,
-                    kind="mode",
-                    who="robot",
-                    other=tick.mode,
-                    why=tick.reason,
-                )
-            )
-        self._tracks, self._mode = tracks, tick.mode
-        return lines
+            found.append(("mode", "robot", tick.mode, tick.reason))
+        self._mode = tick.mode
+        return [
+            LogLine(frame=tick.frame, time_s=time_s, kind=kind, who=who, other=other, why=why)
+            for kind, who, other, why in found
+        ]

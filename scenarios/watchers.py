@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from pathlib import Path
 
 from scenarios.contact_sheet import ContactSheet
 from scenarios.corridor_score import CorridorLog
 from scenarios.loop import Tick
-from scenarios.record import Recorder
+from scenarios.recording.recorder import Recorder
 from scenarios.run_events import LogLine, RunEvents
 from scenarios.score import FollowingLog
 from sim.config import WorldConfig
 
 
 class Watchers:
-    """Hands each tick to all who look on."""
+    """Hands each tick to all who look on; a recorder only if there is one."""
 
-    def __init__(self, stack: ExitStack, config: WorldConfig, title: str, recording: Path | None) -> None:
+    def __init__(self, config: WorldConfig, title: str, recorder: Recorder | None) -> None:
         self.following = FollowingLog()
         self.corridor = CorridorLog()
         self._events = RunEvents()
         self._sheet = ContactSheet(title, config.robot)
-        self._recorder = (
-            None if recording is None else stack.enter_context(Recorder(recording, config, title=title))
-        )
+        self._recorder = recorder
 
     def update(self, tick: Tick) -> list[LogLine]:
         """Look at one tick and return what happened at it."""

@@ -11,5 +11,12 @@ def describe(line: LogLine) -> str:
         return f"{line.who}: {line.other}"
     if not line.other:
         return f"{line.who}: {line.kind}"
+    if line.kind in ("occluded", "hidden"):
+        return f"{line.who}: {line.kind} by {line.other}"
     what, _, turn = line.kind.rpartition(" ")
     return f"{line.who}: {what} {'with' if what == 'contact' else 'by'} {line.other} {turn}"
+
+
+def describe_fully(line: LogLine) -> str:
+    """Say what happened and why, such as "track 2: lost (left the image on the left)"."""
+    return f"{describe(line)} ({line.why})" if line.why else describe(line)

@@ -6,7 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracker.config import BoxConfig, ContourConfig
-from tracker.contour import body_points, head_points
+from tracker.contour import (
+    FEET,
+    HEAD_LEFT,
+    HEAD_RIGHT,
+    HEAD_TOP,
+    body_points,
+    head_points,
+    section_angles,
+)
 from tracker.track import Ellipse
 
 Box = tuple[float, float, float, float]
@@ -35,3 +43,19 @@ def outline(
     return centre + body_points(angle, nothing, 0.0) @ mix, centre + head_points(
         angle, config, nothing, 0.0
     ) @ mix
+
+
+def section_lines(ellipse: Ellipse, config: ContourConfig, count: int = 6) -> list[NDArray[np.float64]]:
+    """Give a line (count, 2) [px] along every section, in their order, the last one under the feet."""
+    mix = np.array([ellipse.d, ellipse.w, ellipse.h, 1.0])
+    centre, nothing = np.array([ellipse.x, ellipse.y]), np.zeros(count)
+    lines = []
+    for section, (start, end) in sorted(section_angles(config).items()):
+        angle = np.linspace(start, end, count)
+        is_head = section in (HEAD_LEFT, HEAD_TOP, HEAD_RIGHT)
+        points = head_points(angle, config, nothing, 0.0) if is_head else body_points(angle, nothing, 0.0)
+        lines.append(centre + points @ mix)
+    assert len(lines) == FEET
+    across = np.linspace(-config.feet_span, config.feet_span, count)
+    feet = np.stack([across, np.full(count, config.feet_line)], axis=1) * ellipse.h
+    return [*lines, centre + feet]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
 
 from bad_input import BadInput
+from tracker.config import TrackerConfig
 from tracker.frame import Frame
 from tracker.occlusion.learned_order import shipped_order
 from tracker.particles import Particles
@@ -29,16 +30,16 @@ class Tracker(Protocol):
         ...
 
 
-TRACKERS: Mapping[str, Callable[[np.random.Generator], Tracker]] = {
-    "peopleboy": lambda rng: PeopleTracker(PEOPLEBOY, rng),
-    "learned": lambda rng: PeopleTracker(PEOPLEBOY, rng, shipped_order()),
-    "footage": lambda rng: PeopleTracker(FOOTAGE, rng),
-    "thesis": lambda rng: PeopleTracker(THESIS_OCCLUSION, rng),
-    "thermal": lambda rng: PeopleTracker(THESIS, rng),
-    "colour": lambda rng: PeopleTracker(THESIS_COLOUR, rng),
-    "paper": lambda rng: PeopleTracker(PAPER, rng),
+TRACKERS: Mapping[str, TrackerConfig] = {
+    "peopleboy": PEOPLEBOY,
+    "learned": PEOPLEBOY,
+    "footage": FOOTAGE,
+    "thesis": THESIS_OCCLUSION,
+    "thermal": THESIS,
+    "colour": THESIS_COLOUR,
+    "paper": PAPER,
 }
-"""Each tracker's maker by name; the first is the default."""
+"""Each tracker's settings by name; the first is the default. `learned` also has a learned order in depth."""
 
 DEFAULT_TRACKER = "peopleboy"
 
@@ -51,4 +52,4 @@ def make_tracker(name: str, rng: np.random.Generator) -> Tracker:
     """
     if name not in TRACKERS:
         raise BadInput(f"unknown tracker {name!r}; there are: {', '.join(TRACKERS)}")
-    return TRACKERS[name](rng)
+    return PeopleTracker(TRACKERS[name], rng, shipped_order() if name == "learned" else None)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +15,7 @@ from scenarios.show_scores import print_corridor, print_following, print_scores,
 
 if TYPE_CHECKING:
     from scenarios.run import RunOptions
+    from scenarios.scenario import Scenario
 
 
 @click.command()
@@ -27,6 +30,9 @@ if TYPE_CHECKING:
 @tracker_option
 @click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
+@click.option(
+    "--live", is_flag=True, help="Show it in the rerun viewer as it goes, or on a page of this machine."
+)
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
 def run(
     scenario: str,
@@ -36,6 +42,7 @@ def run(
     tracker: str,
     renderer: str,
     no_rrd: bool,
+    live: bool,
     overwrite: bool,
 ) -> None:
     """Run a scenario headless, and leave a folder with truth, tracks, scores and a recording.
@@ -43,9 +50,8 @@ def run(
     SCENARIO is a name from `peopleboy list` or the path of a YAML file; or a suite, such as dataset1, whose
     runs have seeds of their own and leave no recordings. A suite that was killed goes on where it was.
     """
-    from scenarios.headline import headline
     from scenarios.load import load_scenario
-    from scenarios.progress import run_with_progress
+    from scenarios.recording.viewer import live_viewer
     from scenarios.run import RunOptions
     from scenarios.suite import suite_names
     from tracker.people import DEFAULT_TRACKER
@@ -67,10 +73,23 @@ def run(
         record=not no_rrd,
         overwrite=overwrite,
     )
+    if live and (loaded is None or no_rrd):
+        raise BadInput("--live: shows the recording of one run; give one scenario, without --no-rrd")
     if loaded is None:
         _run_suite(scenario, options)
         return
-    scores = run_with_progress(loaded, options)
+    with ExitStack() as stack:
+        if live:
+            viewer = stack.enter_context(live_viewer(click.echo))
+            options = replace(options, viewer=viewer)
+        _run_one(loaded, options)
+
+
+def _run_one(scenario: Scenario, options: RunOptions) -> None:
+    from scenarios.headline import headline
+    from scenarios.progress import run_with_progress
+
+    scores = run_with_progress(scenario, options)
     print_scores(scores.people)
     if scores.following is not None:
         print_following(scores.following)

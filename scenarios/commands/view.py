@@ -9,8 +9,13 @@ import click
 
 @click.command()
 @click.argument("folder", metavar="RUN", type=click.Path(path_type=Path))
-def view(folder: Path) -> None:
+@click.option("--web", is_flag=True, help="Serve it to a browser on this machine, until Ctrl-C.")
+def view(folder: Path, web: bool) -> None:
     """Open the recording of a run in the rerun viewer."""
-    from scenarios.record import open_viewer
+    from scenarios.recording.viewer import open_viewer, serve
 
-    open_viewer(folder / "recording.rrd")
+    recording = folder / "recording.rrd"
+    if web:
+        serve(recording, lambda address: click.echo(f"{address} shows it; Ctrl-C ends that."))
+    else:
+        open_viewer(recording)

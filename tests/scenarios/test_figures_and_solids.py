@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial.transform import Rotation
 
-from scenarios.figures import body_capsules, stick_figure, turn_z_to
-from scenarios.solids import fixture_solids, group_fixtures, urdf_solids
+from scenarios.recording.figures import body_capsules, stick_figure, turn_z_to
+from scenarios.recording.solids import fixture_solids, group_fixtures, urdf_solids
 from sim.places.extent import fixture_extent
 from sim.robot.peoplebot import URDF
 from sim.shapes import ShapeKind

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import synthetic_ticks as made
 
-from scenarios.marks import (
+from scenarios.palette import track_colour
+from scenarios.recording.marks import (
     PARTICLES_A_FILTER,
     PARTICLES_AT_MOST,
     Trails,
@@ -14,17 +17,16 @@ from scenarios.marks import (
     track_offset,
     truth_boxes,
 )
-from scenarios.palette import track_colour
 from tracker.config import ContourConfig
 from tracker.track import Status
 
 
-def test_boxes_of_tracks_say_id_confidence_and_what_is_unusual() -> None:
-    tracks = [made.TRACK, made.with_status(Status.PARTLY_OCCLUDED)]
-    boxes = track_boxes(tracks)
-    assert boxes.label == ["1: 0.90", "1: 0.90 partly occluded"]
-    assert boxes.box == pytest.approx(np.array([made.TRACK.box] * 2), rel=1e-6)
-    assert boxes.colour.tolist() == [list(track_colour(1))] * 2
+def test_boxes_of_tracks_say_the_id_and_what_is_unusual() -> None:
+    hidden = replace(made.with_status(Status.TOTALLY_OCCLUDED), occluder=2)
+    boxes = track_boxes([made.TRACK, made.with_status(Status.TENTATIVE), hidden])
+    assert boxes.label == ["1", "1 doubtful", "1 hidden behind 2"]
+    assert boxes.box == pytest.approx(np.array([made.TRACK.box] * 3), rel=1e-6)
+    assert boxes.colour.tolist() == [list(track_colour(1))] * 3
 
 
 def test_true_boxes_are_mapped_at_the_distance_of_each_person() -> None:

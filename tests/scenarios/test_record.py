@@ -13,10 +13,10 @@ import pytest
 import synthetic_ticks as made
 from rerun.chunk import RrdReader
 
-from bad_input import BadInput
-from scenarios.record import Recorder, open_viewer
+from scenarios.recording.recorder import Recorder
 from sim.alignment import affine_between
 from sim.config import WorldConfig
+from tracker.people import TRACKERS
 
 THERMAL, COLOUR = "/world/robot/thermal", "/world/robot/colour"
 FRAMES = 75
@@ -42,7 +42,9 @@ class Recording:
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     path = tmp_path_factory.mktemp("run") / "recording.rrd"
-    with Recorder(path, made.config(), title="made, seed 7, tracker peopleboy") as recorder:
+    with Recorder(
+        path, made.config(), title="made, seed 7, tracker peopleboy", tracker=TRACKERS["peopleboy"]
+    ) as recorder:
         for tick, events in made.make_run(FRAMES):
             recorder.log(tick, events)
     return Recording(path)
@@ -52,9 +54,10 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     "path",
     [
         f"{THERMAL}/image", f"{THERMAL}/tracks/boxes", f"{THERMAL}/tracks/contours", f"{THERMAL}/truth/boxes",
+        f"{THERMAL}/tracks/evidence", f"{THERMAL}/tracks/occlusions", f"{THERMAL}/truth/occlusions",
         f"{THERMAL}/particles/people", f"{THERMAL}/particles/detector", f"{COLOUR}/image",
         f"{COLOUR}/tracks/boxes", f"{COLOUR}/truth/boxes", "/world/robot", "/world/trails",
-        "/world/people/anna/body", "/world/people/ben/skeleton", "/curves/visible", "/curves/motion/speed",
+        "/world/occlusions", "/world/people/anna/body", "/world/people/ben/skeleton", "/curves/visible", "/curves/motion/speed",
         "/curves/motion/turn_rate",
     ],
 )  # fmt: skip
@@ -118,6 +121,15 @@ def test_world_and_cameras_are_there_once(recording: Recording) -> None:
     assert {"Pinhole:image_from_camera", "Transform3D:translation"} <= names
 
 
+def test_an_arrow_points_from_who_hides_to_who_is_hidden(recording: Recording) -> None:
+    labels = recording.column("/world/occlusions", "Arrows3D:labels")
+    assert [len(label or []) for label in labels] == [20 <= frame < 40 for frame in range(1, FRAMES + 1)]  # type: ignore[arg-type]
+    assert labels[29] == ["95%"]
+    # Anna stands at x = 4, ben at 6.
+    assert recording.column("/world/occlusions", "Arrows3D:origins")[29] == [pytest.approx([4.0, 0.0, 1.3])]
+    assert recording.column("/world/occlusions", "Arrows3D:vectors")[29] == [pytest.approx([2.0, 0.0, 0.0])]
+
+
 def test_events_are_in_the_log(recording: Recording) -> None:
     texts = [text for (text,) in recording.column("/events", "TextLog:text")]  # type: ignore[misc]
     assert texts == [
@@ -150,7 +162,7 @@ def test_a_world_without_people_and_tracks_is_recorded(tmp_path: Path) -> None:
 _KILLED = """
 import os, signal, sys
 from pathlib import Path
-from scenarios.record import Recorder
+from scenarios.recording.recorder import Recorder
 import synthetic_ticks as made
 
 recorder = Recorder(Path(sys.argv[1]), made.config(), title="killed")
@@ -173,8 +185,3 @@ def test_a_killed_run_leaves_a_recording_that_opens(tmp_path: Path) -> None:
     frames = Recording(path).column(f"{THERMAL}/image", "frame")
     assert len(frames) >= 30
     assert frames == list(range(1, len(frames) + 1))
-
-
-def test_a_missing_recording_is_a_user_s_mistake(tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match="there is no recording"):
-        open_viewer(tmp_path / "recording.rrd")

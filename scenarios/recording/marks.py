@@ -73,14 +73,18 @@ def track_boxes(tracks: Sequence[Track], affine: Matrix | None = None) -> Boxes:
     """Give the boxes of tracks, mapped to the other camera's image if (2, 3) `affine` says how."""
     boxes = [track.box if affine is None else map_box(track.box, affine) for track in tracks]
     return Boxes(
-        _boxes(boxes), _colours(track_colour(t.id) for t in tracks), [track_label(t) for t in tracks]
+        _boxes(boxes), colours_of(track_colour(t.id) for t in tracks), [track_label(t) for t in tracks]
     )
 
 
+_STANDINGS = {Status.TENTATIVE: "doubtful", Status.PARTLY_OCCLUDED: "", Status.TOTALLY_OCCLUDED: "hidden"}
+
+
 def track_label(track: Track) -> str:
-    """Say id and confidence, and the status if there is more to it than being tracked."""
-    status = "" if track.status is Status.TRACKED else f" {track.status}"
-    return f"{track.id}: {track.confidence:.2f}{status}"
+    """Say the id, and what there is more to it than being tracked, such as "3 hidden behind 1"."""
+    standing = _STANDINGS.get(track.status, "")
+    behind = "" if track.occluder is None else f"behind {track.occluder}"
+    return " ".join(word for word in (str(track.id), standing, behind) if word)
 
 
 def track_contours(tracks: Sequence[Track], contour: ContourConfig) -> Lines:
@@ -88,7 +92,7 @@ def track_contours(tracks: Sequence[Track], contour: ContourConfig) -> Lines:
     lines = [
         line.astype(np.float32) for track in tracks for line in outline(track.ellipse, contour, count=24)
     ]
-    return Lines(lines, _colours(track_colour(track.id) for track in tracks for _ in range(2)))
+    return Lines(lines, colours_of(track_colour(track.id) for track in tracks for _ in range(2)))
 
 
 def truth_boxes(people: Iterable[PersonTruth], affine_at: Callable[[float], Matrix] | None = None) -> Boxes:
@@ -101,7 +105,7 @@ def truth_boxes(people: Iterable[PersonTruth], affine_at: Callable[[float], Matr
     seen = [(person, person.box) for person in people if person.box is not None]
     boxes = [box if affine_at is None else map_box(box, affine_at(person.distance_m)) for person, box in seen]
     labels = [f"{person.name} {person.visible_fraction:.0%}" for person, _ in seen]
-    return Boxes(_boxes(boxes), _colours(TRUTH for _ in seen), labels)
+    return Boxes(_boxes(boxes), colours_of(TRUTH for _ in seen), labels)
 
 
 def particle_points(particles: Mapping[int, Particles]) -> Points:
@@ -139,7 +143,7 @@ class Trails:
         moved = [number for number in places if number in self._last]
         lines = [np.array([[*self._last[n], 0.02], [*places[n], 0.02]], np.float32) for n in moved]
         self._last = places
-        return Lines(lines, _colours(person_colour(n) if n > 0 else ROBOT for n in moved))
+        return Lines(lines, colours_of(person_colour(n) if n > 0 else ROBOT for n in moved))
 
 
 def visible_fractions(tick: Tick, names: Iterable[str]) -> list[float]:
@@ -157,5 +161,6 @@ def _boxes(boxes: Sequence[tuple[float, float, float, float]]) -> Floats:
     return np.reshape(np.array(boxes, np.float32), (-1, 4))
 
 
-def _colours(colours: Iterable[Rgb]) -> Colours:
+def colours_of(colours: Iterable[Rgb]) -> Colours:
+    """Stack colours (K, 3)."""
     return np.reshape(np.array(list(colours), np.uint8), (-1, 3))

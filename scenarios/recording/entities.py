@@ -1,0 +1,42 @@
+"""Where things are in a recording, and what is drawn on the cameras' images.
+
+world/place/...             floor, walls and things; the ceiling is there, but not shown at first
+world/robot                 its pose; below it body and cameras, with what is drawn on their images:
+world/robot/thermal/...     image, tracks with evidence, particles, truth
+world/robot/colour/...      image, tracks, truth
+world/people/NAME/...       body and skeleton
+world/occlusions            arrows from who hides to who is hidden
+world/trails                where robot and people went
+curves/..., events          what the lower row of views shows
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import rerun as rr
+
+THERMAL: Final = "world/robot/thermal"
+COLOUR: Final = "world/robot/colour"
+OCCLUSIONS: Final = "world/occlusions"
+TRAILS: Final = "world/trails"
+EVENTS: Final = "events"
+
+# What a layer on an image is made of, and its radius in points of the screen.
+LAYERS: Final[dict[str, tuple[Any, float]]] = {
+    "truth/boxes": (rr.Boxes2D, 0.6),
+    "truth/names": (rr.Points2D, 0.0),
+    "truth/occlusions": (rr.Arrows2D, 1.2),
+    "tracks/boxes": (rr.Boxes2D, 1.0),
+    "tracks/contours": (rr.LineStrips2D, 0.6),
+    "tracks/evidence": (rr.LineStrips2D, 1.8),
+    "tracks/occlusions": (rr.Arrows2D, 1.2),
+    "particles/people": (rr.Points2D, 1.5),
+    "particles/detector": (rr.Points2D, 1.5),
+}
+ON_COLOUR: Final = ("truth/boxes", "truth/names", "tracks/boxes")
+
+
+def person_path(name: str) -> str:
+    """Give the entity of a person."""
+    return f"world/people/{rr.escape_entity_path_part(name)}"

@@ -1,0 +1,73 @@
+"""How a recording is laid out when it is opened."""
+
+from __future__ import annotations
+
+import rerun as rr
+import rerun.blueprint as rrb
+
+from scenarios.recording.entities import COLOUR, EVENTS, LAYERS, THERMAL, TRAILS
+from sim.camera import Camera
+from sim.config import WorldConfig
+
+
+def lay_out(config: WorldConfig) -> rrb.Blueprint:
+    """Lay out: thermal on the left, colour, events and the world in 3-D on the right, curves below."""
+    thermal = _image_view(THERMAL, "Thermal: tracks, evidence, particles, truth", config.robot.thermal.camera)
+    colour = _image_view(COLOUR, "Colour: tracks, truth", config.robot.colour.camera)
+    events = rrb.TextLogView(
+        origin=EVENTS, name="Events", columns=rrb.TextLogColumns(text_log_columns=["LogLevel", "Body"])
+    )
+    plots = [
+        _plot("confidence", "Confidence of tracks", (-0.05, 1.05), has_legend=False),
+        _plot("visible", "Visible fraction of people", (-0.05, 1.05)),
+        _plot("offset", "Offset of tracks [half widths]", (-1.05, 1.05), has_legend=False),
+        _plot("motion", "Speed and turn rate", (-1.6, 1.6)),
+    ]
+    right = rrb.Vertical(
+        rrb.Horizontal(colour, events, column_shares=[1.0, 1.0]), _world_view(config.place.bounds)
+    )
+    above = rrb.Horizontal(thermal, right, column_shares=[1.0, 1.0])
+    return rrb.Blueprint(
+        rrb.Vertical(above, rrb.Horizontal(*plots), row_shares=[3.0, 1.0]),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        rrb.TimePanel(state="collapsed", timeline="time"),
+    )
+
+
+def _image_view(path: str, name: str, camera: Camera) -> rrb.Spatial2DView:
+    bounds = rrb.VisualBounds2D(x_range=(0.0, camera.width), y_range=(0.0, camera.height))
+    return rrb.Spatial2DView(origin=path, name=name, visual_bounds=bounds)
+
+
+def _world_view(bounds: tuple[float, float, float, float]) -> rrb.Spatial3DView:
+    """Look at the whole place from above and aside; trails are shown from the start up to now."""
+    min_x, min_y, max_x, max_y = bounds
+    x, y, size = (min_x + max_x) / 2, (min_y + max_y) / 2, max(max_x - min_x, max_y - min_y)
+    start, now = rr.TimeRangeBoundary.infinite(), rr.TimeRangeBoundary.cursor_relative()
+    so_far = rrb.VisibleTimeRanges(
+        [rr.VisibleTimeRange(timeline, start=start, end=now) for timeline in ("frame", "time")]
+    )
+    # Boxes of people who are near reach far out of the image, and would cross the whole world.
+    overlays = [f"- {path}/{layer}" for path in (THERMAL, COLOUR) for layer in LAYERS]
+    return rrb.Spatial3DView(
+        origin="world",
+        contents=["$origin/**", "- $origin/place/ceiling/**", *overlays],
+        name="World",
+        overrides={TRAILS: so_far},
+        eye_controls=rrb.EyeControls3D(
+            position=(x - 0.3 * size, y - 0.5 * size, 0.45 * size),
+            look_target=(x, y, 0.0),
+            eye_up=(0.0, 0.0, 1.0),
+        ),
+    )
+
+
+def _plot(kind: str, name: str, span: tuple[float, float], *, has_legend: bool = True) -> rrb.TimeSeriesView:
+    """Plot curves; those of tracks have the colours of the tracks on the images, and need no legend."""
+    return rrb.TimeSeriesView(
+        origin=f"curves/{kind}",
+        name=name,
+        axis_y=rrb.ScalarAxis(range=span),
+        plot_legend=rrb.PlotLegend(visible=has_legend),
+    )

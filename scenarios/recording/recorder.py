@@ -1,0 +1,219 @@
+"""Write a run as a rerun recording, tick by tick; `entities` tells what is in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from scenarios.loop import Tick
+from scenarios.overlay import encode_jpeg
+from scenarios.recording import marks
+from scenarios.recording.arrows import Arrows, believed_arrows, true_arrows, world_arrows
+from scenarios.recording.entities import COLOUR, EVENTS, OCCLUSIONS, THERMAL, TRAILS, person_path
+from scenarios.recording.figures import NOBODY, body_capsules, stick_figure
+from scenarios.recording.layout import lay_out
+from scenarios.recording.rows import Rows
+from scenarios.recording.sections import section_marks
+from scenarios.recording.still import Still
+from scenarios.run_events import LogLine
+from scenarios.wording import describe_fully
+from sim.alignment import affine_between
+from sim.camera import Matrix
+from sim.config import WorldConfig
+from sim.robot.peoplebot import Planar
+from tracker.config import TrackerConfig
+from tracker.evidence import evidence_of
+
+APPLICATION = "peopleboy"
+
+# A track has no depth: its box is mapped to the colour image as if the person were so far away.
+TYPICAL_DEPTH_M = 4.0
+
+_FRAMES_SENT_TOGETHER = 30
+_NAME_HEIGHT_PX = 16.0
+_GRAVE = ("contact", "lost")
+
+
+class Recorder:
+    """Writes one recording as the run goes; use it as a context manager.
+
+    Every 30 frames everything since the last time goes to the file, so that a run that is killed leaves a
+    file that opens and lacks those frames at most.
+
+    Args:
+        path: the file to write.
+        config: the world that is recorded.
+        title: name of the recording; the same title gives the same recording id.
+        tracker: settings of the tracker, by which the evidence for its contours is measured; None for one
+            that measures no contours, whose tracks are drawn without.
+        viewer: address of a viewer that is to show it at once; None for none.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        config: WorldConfig,
+        *,
+        title: str,
+        tracker: TrackerConfig | None = None,
+        viewer: str | None = None,
+    ) -> None:
+        self._tracker = tracker
+        self._thermal = config.robot.thermal.camera
+        self._affine_at = partial(affine_between, self._thermal, config.robot.colour.camera)
+        self._names = [person.name for person in config.people]
+        self._trails = marks.Trails()
+        self._tracks_named: set[int] = set()
+        self._rows = Rows()
+        self._stream = rr.RecordingStream(
+            APPLICATION, recording_id=title.replace(", ", "-").replace(" ", "-")
+        )
+        sinks = [rr.FileSink(path)] if viewer is None else [rr.FileSink(path), rr.GrpcSink(viewer)]
+        self._stream.set_sinks(*sinks, default_blueprint=lay_out(config))
+        self._stream.send_recording_name(title)
+        self._still = Still(self._stream)
+        self._still.log_world(config)
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def log(self, tick: Tick, events: Sequence[LogLine]) -> None:
+        """Add one tick and what happened at it."""
+        self._rows.begin(tick.frame, tick.observation.time_s)
+        self._log_images(tick)
+        self._log_tracks(tick)
+        self._log_evidence(tick)
+        self._log_particles(tick)
+        self._log_truth(tick)
+        self._log_world(tick)
+        self._log_curves(tick)
+        for line in events:
+            level = "WARN" if line.kind.startswith(_GRAVE) else "INFO"
+            self._rows.add(EVENTS, rr.TextLog, text=[describe_fully(line)], level=[level])
+        if self._rows.frames >= _FRAMES_SENT_TOGETHER:
+            self._send()
+
+    def close(self) -> None:
+        """Write what is left, and close the file."""
+        self._send()
+        self._stream.disconnect()
+
+    def _send(self) -> None:
+        for rows in self._rows.take():
+            frames = rr.TimeColumn("frame", sequence=rows.frames)
+            times = rr.TimeColumn("time", duration=np.array(rows.times_s))
+            columns = rows.kind.columns(**rows.columns).partition(rows.lengths)
+            self._stream.send_columns(rows.path, [frames, times], columns, strict=True)
+
+    def _log_images(self, tick: Tick) -> None:
+        senses = tick.observation
+        for path, image, quality in ((THERMAL, senses.thermal, 80), (COLOUR, senses.colour, 65)):
+            self._rows.add(f"{path}/image", rr.EncodedImage, blob=[encode_jpeg(image, quality)])
+
+    def _log_tracks(self, tick: Tick) -> None:
+        contour = TrackerConfig().contour if self._tracker is None else self._tracker.contour
+        self._log_lines("tracks/contours", marks.track_contours(tick.tracks, contour))
+        on_thermal = marks.track_boxes(tick.tracks)
+        on_colour = marks.track_boxes(tick.tracks, self._affine_at(TYPICAL_DEPTH_M))
+        for path, boxes in ((THERMAL, on_thermal), (COLOUR, on_colour)):
+            self._log_boxes(f"{path}/tracks/boxes", boxes, labels=boxes.label)
+        self._log_arrows("tracks/occlusions", believed_arrows(tick.tracks))
+
+    def _log_evidence(self, tick: Tick) -> None:
+        if self._tracker is not None:
+            evidence = evidence_of(tick.observation.thermal, tick.tracks, self._tracker)
+            self._log_lines("tracks/evidence", section_marks(tick.tracks, evidence, self._tracker))
+
+    def _log_lines(self, layer: str, lines: marks.Lines) -> None:
+        strips = [_from_corner(line) for line in lines.line]
+        self._rows.add(f"{THERMAL}/{layer}", rr.LineStrips2D, strips=strips, colors=lines.colour)
+
+    def _log_arrows(self, layer: str, arrows: Arrows) -> None:
+        self._rows.add(
+            f"{THERMAL}/{layer}", rr.Arrows2D, origins=_from_corner(arrows.start), vectors=arrows.vector,
+            colors=arrows.colour, labels=arrows.label,
+        )  # fmt: skip
+
+    def _log_particles(self, tick: Tick) -> None:
+        people = {number: cloud for number, cloud in tick.particles.items() if number > 0}
+        detector = {number: cloud for number, cloud in tick.particles.items() if number == 0}
+        for name, clouds in (("people", people), ("detector", detector)):
+            points = marks.particle_points(clouds)
+            place, colour = _from_corner(points.place), points.colour
+            self._rows.add(f"{THERMAL}/particles/{name}", rr.Points2D, positions=place, colors=colour)
+
+    def _log_truth(self, tick: Tick) -> None:
+        on_thermal = marks.truth_boxes(tick.truth.people)
+        on_colour = marks.truth_boxes(tick.truth.people, lambda away_m: self._affine_at(max(away_m, 0.3)))
+        for path, boxes in ((THERMAL, on_thermal), (COLOUR, on_colour)):
+            self._log_boxes(f"{path}/truth/boxes", boxes)
+            above = _from_corner(boxes.box[:, :2]) + boxes.box[:, 2:] * (0.5, 0.0) - (0.0, _NAME_HEIGHT_PX)
+            self._rows.add(
+                f"{path}/truth/names", rr.Points2D, positions=above, colors=boxes.colour, labels=boxes.label
+            )
+
+        self._log_arrows("truth/occlusions", true_arrows(tick.truth.people))
+
+    def _log_boxes(self, path: str, boxes: marks.Boxes, **labels: list[str]) -> None:
+        half = boxes.box[:, 2:] / 2.0
+        centre = _from_corner(boxes.box[:, :2]) + half
+        self._rows.add(path, rr.Boxes2D, centers=centre, half_sizes=half, colors=boxes.colour, **labels)
+
+    def _log_world(self, tick: Tick) -> None:
+        self._rows.add("world/robot", rr.Transform3D, **_planar(tick.truth.robot))
+        trails, arrows = self._trails.update(tick), world_arrows(tick.truth.people)
+        self._rows.add(TRAILS, rr.LineStrips3D, strips=trails.line, colors=trails.colour)
+        self._rows.add(
+            OCCLUSIONS, rr.Arrows3D, origins=arrows.start, vectors=arrows.vector, colors=arrows.colour,
+            labels=arrows.label,
+        )  # fmt: skip
+        joints = {person.name: person.joints_m for person in tick.truth.people}
+        for name in self._names:
+            self._log_person(person_path(name), joints.get(name))
+
+    def _log_person(self, path: str, joints: Matrix | None) -> None:
+        lines = [] if joints is None else [np.float32(line) for line in stick_figure(joints)]
+        body = NOBODY if joints is None else body_capsules(joints)
+        self._rows.add(f"{path}/skeleton", rr.LineStrips3D, strips=lines)
+        self._rows.add(
+            f"{path}/body", rr.Capsules3D, translations=body.start, quaternions=body.quaternion,
+            lengths=body.length, radii=body.radius,
+        )  # fmt: skip
+
+    def _log_curves(self, tick: Tick) -> None:
+        linear, angular = tick.truth.robot_velocity
+        curves = {
+            "curves/visible": marks.visible_fractions(tick, self._names),
+            "curves/motion/speed": [linear, tick.command.linear_m_s],
+            "curves/motion/turn_rate": [angular, tick.command.angular_rad_s],
+        }
+        for track in tick.tracks:
+            if track.id not in self._tracks_named:
+                self._tracks_named.add(track.id)
+                self._still.log_track(track.id)
+            curves[f"curves/confidence/track_{track.id}"] = [track.confidence]
+            curves[f"curves/offset/track_{track.id}"] = [marks.track_offset(track, self._thermal.width)]
+        for path, values in curves.items():
+            self._rows.add(path, rr.Scalars, scalars=np.array(values, np.float64))
+
+
+def _from_corner(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Count pixels from the corner of the image, as rerun does, not from the middle of the first one."""
+    return pixels + np.float32(0.5)
+
+
+def _planar(pose: Planar) -> dict[str, Any]:
+    turn = (0.0, 0.0, np.sin(pose.heading / 2.0), np.cos(pose.heading / 2.0))
+    return {"translation": np.array([(pose.x, pose.y, 0.0)]), "quaternion": np.array([turn])}

@@ -1,0 +1,110 @@
+"""What of a recording never changes: the place, the robot's body, its cameras, and how things look."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import rerun as rr
+from rerun.components import FillMode
+
+from scenarios.palette import person_colour, track_colour
+from scenarios.recording.entities import (
+    COLOUR,
+    LAYERS,
+    OCCLUSIONS,
+    ON_COLOUR,
+    THERMAL,
+    TRAILS,
+    person_path,
+)
+from scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
+from sim.camera import Camera
+from sim.config import WorldConfig
+from sim.robot.peoplebot import URDF
+from sim.shapes import ShapeKind
+
+_ROBOT_CURVES = {
+    "curves/motion/speed": (("speed [m/s]", "speed asked for"), ((86, 180, 233), (52, 108, 140))),
+    "curves/motion/turn_rate": (("turn rate [rad/s]", "turn rate asked for"), ((230, 159, 0), (138, 95, 0))),
+}
+
+
+class Still:
+    """Logs to a stream what holds for the whole recording."""
+
+    def __init__(self, stream: rr.RecordingStream) -> None:
+        self._stream = stream
+
+    def log_world(self, config: WorldConfig) -> None:
+        """Log the place, the robot and who will be there."""
+        self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        for group, fixtures in group_fixtures(config.place.fixtures).items():
+            # Whoever looks in from outside looks through the walls.
+            fill = FillMode.TransparentFillMajorWireframe if group == "walls" else FillMode.Solid
+            self._log_solids(f"world/place/{group}", [s for f in fixtures for s in fixture_solids(f)], fill)
+        self._log_solids("world/robot/body", urdf_solids(URDF), FillMode.Solid)
+        # The colour camera's picture hangs nearer: it covers the middle of the thermal one.
+        self._log_camera(THERMAL, config.robot.thermal.camera, tuple(LAYERS), reach_m=1.0)
+        self._log_camera(COLOUR, config.robot.colour.camera, ON_COLOUR, reach_m=0.6)
+        self._log(TRAILS, rr.LineStrips3D.from_fields(radii=[0.02]))
+        self._log(OCCLUSIONS, rr.Arrows3D.from_fields(radii=[0.03]))
+        for curve, (labels, shades) in _ROBOT_CURVES.items():
+            self._log(curve, rr.SeriesLines(names=labels, colors=shades))
+        self._log_people([person.name for person in config.people])
+
+    def log_track(self, number: int) -> None:
+        """Name the curves of a track."""
+        line = rr.SeriesLines(names=[f"track {number}"], colors=[track_colour(number)])
+        for kind in ("confidence", "offset"):
+            self._log(f"curves/{kind}/track_{number}", line)
+
+    def _log_people(self, names: Sequence[str]) -> None:
+        colours = [person_colour(number) for number, _ in enumerate(names, start=1)]
+        for name, colour in zip(names, colours, strict=True):
+            body = rr.Capsules3D.from_fields(colors=[colour], fill_mode=FillMode.Solid)
+            self._log(f"{person_path(name)}/body", body)
+            skeleton = rr.LineStrips3D.from_fields(colors=[(255, 255, 255)], radii=[0.012], labels=[name])
+            self._log(f"{person_path(name)}/skeleton", skeleton)
+        self._log("curves/visible", rr.SeriesLines(names=names, colors=colours))
+
+    def _log(self, path: str, *what: Any) -> None:
+        self._stream.log(path, *what, static=True, strict=True)
+
+    def _log_solids(self, path: str, solids: Sequence[Solid], fill: FillMode) -> None:
+        for kind in sorted({solid.kind for solid in solids}):
+            alike = [solid for solid in solids if solid.kind is kind]
+            self._log(f"{path}/{kind.name.lower()}", _shape(kind, alike, fill))
+
+    def _log_camera(self, path: str, camera: Camera, layers: Sequence[str], reach_m: float) -> None:
+        pose, (u, v) = camera.robot_from_camera, camera.centre_px
+        pinhole = rr.Pinhole(
+            focal_length=camera.focal_px,
+            principal_point=(u + 0.5, v + 0.5),
+            resolution=(camera.width, camera.height),
+            camera_xyz=rr.ViewCoordinates.RDF,
+            image_plane_distance=reach_m,
+        )
+        self._log(path, rr.Transform3D(translation=pose[:3, 3], mat3x3=pose[:3, :3]), pinhole)
+        self._log(f"{path}/image", rr.EncodedImage.from_fields(media_type="image/jpeg"))
+        for layer in layers:
+            archetype, radius = LAYERS[layer]
+            more = {"show_labels": False} if archetype is rr.Arrows2D else {}
+            self._log(f"{path}/{layer}", archetype.from_fields(radii=rr.Radius.ui_points([radius]), **more))
+
+
+def _shape(kind: ShapeKind, solids: Sequence[Solid], fill: FillMode) -> rr.AsComponents:
+    """Turn solids of one kind into rerun's."""
+    size = np.array([solid.size for solid in solids])
+    common: Any = {
+        "centers": [solid.position for solid in solids],
+        "quaternions": [solid.orientation for solid in solids],
+        "colors": [solid.colour for solid in solids],
+        "fill_mode": fill,
+    }
+    if kind is ShapeKind.BOX:
+        return rr.Boxes3D(sizes=size, **common)
+    if kind is ShapeKind.SPHERE:
+        return rr.Ellipsoids3D(radii=size[:, 0], **common)
+    return rr.Cylinders3D(lengths=size[:, 0], radii=size[:, 1], **common)

@@ -1,0 +1,107 @@
+"""What rerun itself shows cannot be looked at here; that it is served, to whom, and that it ends, can."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import unquote
+from urllib.request import urlopen
+
+import pytest
+import synthetic_ticks as made
+
+from bad_input import BadInput
+from scenarios.recording.recorder import Recorder
+from scenarios.recording.viewer import NO_SCREEN, live_viewer, open_viewer, serve
+
+LISTENING = "0A"  # in Linux's table of sockets
+ON_LINUX = pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="reads Linux's table of sockets")
+
+
+@pytest.fixture(autouse=True)
+def no_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "linux")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("run")
+    with Recorder(folder / "recording.rrd", made.config(), title="made") as recorder:
+        for tick, events in made.make_run(3):
+            recorder.log(tick, events)
+    return folder
+
+
+@pytest.fixture
+def page(run: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """`peopleboy view --web` in a process of its own, and the address that it prints."""
+    command = [sys.executable, "-m", "scenarios", "view", str(run), "--web"]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2]
+    )
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    yield process, line.split()[0]
+    process.kill()
+    process.communicate()
+
+
+def listeners(port: int) -> set[str]:
+    """Addresses of this machine at which something listens on a port."""
+    found = set()
+    for table in ("tcp", "tcp6"):
+        for line in Path("/proc/net", table).read_text().splitlines()[1:]:
+            address, hexadecimal = line.split()[1].split(":")
+            if int(hexadecimal, 16) == port and line.split()[3] == LISTENING:
+                found.add(address)
+    return found
+
+
+@ON_LINUX
+def test_a_recording_is_served_to_this_machine_alone_until_interrupted(
+    page: tuple[subprocess.Popen[str], str],
+) -> None:
+    process, address = page
+    assert b"<html" in urlopen(address, timeout=10).read().lower()
+    ports = [int(port) for port in re.findall(r"127\.0\.0\.1:(\d+)", unquote(address))]
+    assert len(ports) == 2
+    assert {address for port in ports for address in listeners(port)} == {"0100007F"}
+    process.send_signal(signal.SIGTERM)
+    assert process.communicate(timeout=20) == ("", "")
+    assert process.returncode == 0
+    assert [listeners(port) for port in ports] == [set(), set()]
+
+
+def test_a_viewer_shows_a_run_while_it_is_recorded_and_the_file_is_written_too(tmp_path: Path) -> None:
+    said: list[str] = []
+    path = tmp_path / "recording.rrd"
+
+    def run() -> None:
+        with live_viewer(said.append) as source:
+            assert source.startswith("rerun+http://127.0.0.1:")
+            with Recorder(path, made.config(), title="made", viewer=source) as recorder:
+                for tick, events in made.make_run(40):
+                    recorder.log(tick, events)
+            raise InterruptedError  # as if by Ctrl-C, or the page would be served for ever
+
+    with pytest.raises(InterruptedError):
+        run()
+    assert len(said) == 1
+    assert path.stat().st_size > 100_000
+
+
+def test_without_a_screen_the_native_viewer_says_so_in_one_line(run: Path) -> None:
+    with pytest.raises(BadInput, match=f"^{NO_SCREEN}$"):
+        open_viewer(run / "recording.rrd")
+
+
+def test_a_missing_recording_is_a_user_s_mistake(tmp_path: Path) -> None:
+    for show in (open_viewer, lambda path: serve(path, print)):
+        with pytest.raises(BadInput, match="there is no recording"):
+            show(tmp_path / "recording.rrd")
