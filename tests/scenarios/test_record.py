@@ -57,8 +57,8 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
         f"{THERMAL}/tracks/evidence", f"{THERMAL}/tracks/occlusions", f"{THERMAL}/truth/occlusions",
         f"{THERMAL}/particles/people", f"{THERMAL}/particles/detector", f"{COLOUR}/image",
         f"{COLOUR}/tracks/boxes", f"{COLOUR}/truth/boxes", "/world/robot", "/world/trails",
-        "/world/occlusions", "/world/people/anna/body", "/world/people/ben/skeleton", "/curves/visible", "/curves/motion/speed",
-        "/curves/motion/turn_rate",
+        "/world/occlusions", "/world/people/anna/body", "/world/people/ben/skeleton", "/curves/visible",
+        "/curves/motion/speed", "/curves/motion/turn_rate",
     ],
 )  # fmt: skip
 def test_every_layer_has_a_row_for_every_frame_on_both_timelines(recording: Recording, path: str) -> None:
