@@ -14,7 +14,7 @@ from scenarios.export.extra import need
 from scenarios.export.finished_run import FinishedRun
 from scenarios.export.replay import Play
 from scenarios.loop import Tick
-from scenarios.overlay import Picture, draw_tracks, draw_truth, enlarge, show_thermal
+from scenarios.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
 from scenarios.palette import TRUTH, Rgb
 from sim.alignment import affine_between
 from sim.config import RobotConfig
@@ -73,17 +73,20 @@ def draw_film_frame(tick: Tick, robot: RobotConfig, title: str) -> Picture:
 
 def _thermal(tick: Tick) -> Picture:
     scale = HEIGHT_PX / tick.observation.thermal.shape[0]
-    picture = draw_truth(enlarge(show_thermal(tick.observation.thermal), scale), tick.truth.people, scale)
-    return _even(draw_tracks(picture, tick.tracks, scale))
+    picture, plates = enlarge(show_thermal(tick.observation.thermal), scale), list[Plate]()
+    picture = draw_tracks(picture, tick.tracks, scale, plates=plates)
+    return _even(draw_truth(picture, tick.truth.people, scale, plates=plates))
 
 
 def _colour(tick: Tick, robot: RobotConfig) -> Picture:
     affine_at = partial(affine_between, robot.thermal.camera, robot.colour.camera)
     scale = HEIGHT_PX / tick.observation.colour.shape[0]
-    picture = enlarge(tick.observation.colour, scale)
+    picture, plates = enlarge(tick.observation.colour, scale), list[Plate]()
+    picture = draw_tracks(picture, tick.tracks, scale, affine=affine_at(_TYPICAL_DEPTH_M), plates=plates)
     for person in tick.truth.people:
-        picture = draw_truth(picture, [person], scale, affine_at(max(person.distance_m, _NEAREST_M)))
-    return _even(draw_tracks(picture, tick.tracks, scale, affine=affine_at(_TYPICAL_DEPTH_M)))
+        affine = affine_at(max(person.distance_m, _NEAREST_M))
+        picture = draw_truth(picture, [person], scale, affine, plates=plates)
+    return _even(picture)
 
 
 def _even(picture: Picture) -> Picture:
