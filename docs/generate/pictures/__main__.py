@@ -1,0 +1,33 @@
+"""Draw every picture again, or those whose names are given, into docs/pictures."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from matplotlib.figure import Figure
+from PIL.Image import Image
+
+from docs.generate.pictures import occlusion, rays, runs, thermal, tracker
+from docs.generate.pictures.paper import save
+
+FOLDER = Path(__file__).parents[2] / "pictures"
+
+PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
+    "first_run": runs.first_run,
+    "my_scene": runs.my_scene,
+    "thermal_steps": thermal.steps,
+    "thermal_bars": thermal.bars,
+    "thermal_mirror": thermal.mirror,
+    "rays": rays.layers,
+    "silhouettes": rays.silhouettes,
+    "detector": tracker.detector,
+    "contour": tracker.contour,
+    "explained_away": occlusion.explained_away,
+    "walking_on": occlusion.walking_on,
+    "timeline": occlusion.timeline,
+}
+
+for name in sys.argv[1:] or PICTURES:
+    print(save(PICTURES[name](), FOLDER / f"{name}.png"))

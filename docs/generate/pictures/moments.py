@@ -1,0 +1,60 @@
+"""Moments of runs that pictures show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from behaviours.scripted import Stand
+from scenarios.load import load_scenario
+from scenarios.loop import Tick, closed_loop
+from sim.random_streams import stream
+from sim.world import World
+from tracker.people import make_tracker
+from tracker.track import Track
+
+CROSSING = ("crossing_2", 3)
+"""Scenario and seed: nina, who is near, walks in front of olaf, who is far off."""
+
+
+def ticks(scenario: str, seed: int, frames: int) -> Iterator[tuple[World, Tick]]:
+    """Play the first frames of a scenario with a standing robot, as `peopleboy run` does."""
+    with World(load_scenario(scenario).world(seed)) as world:
+        tracker = make_tracker("peopleboy", stream(seed, "tracker"))
+        for tick in closed_loop(world, tracker, Stand(), frames):
+            yield world, tick
+
+
+def world_at(scenario: str, seed: int, time_s: float) -> World:
+    """Give a world that has come to a time; the caller closes it."""
+    config = load_scenario(scenario).world(seed)
+    world = World(config)
+    for _ in range(round(time_s * config.control_hz)):
+        world.step(0.0, 0.0)
+    return world
+
+
+def state_of(track: Track) -> NDArray[np.float64]:
+    """Give a track's contour as a state (9,)."""
+    ellipse = track.ellipse
+    order = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
+    return np.array([getattr(ellipse, name) for name in order])
+
+
+@dataclass(slots=True)
+class History:
+    """What is true of one person and what its track says, over time."""
+
+    time_s: list[float] = field(default_factory=list)
+    visible: list[float] = field(default_factory=list)
+    status: list[str] = field(default_factory=list)
+
+    def add(self, tick: Tick, person: str, track: int) -> None:
+        """Take in the next tick."""
+        self.time_s.append(tick.truth.time_s)
+        self.visible += [one.visible_fraction for one in tick.truth.people if one.name == person]
+        found = [one.status.value for one in tick.tracks if one.id == track]
+        self.status.append(found[0] if found else "not there")

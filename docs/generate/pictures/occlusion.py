@@ -1,0 +1,118 @@
+"""What becomes of a person behind another one."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from docs.generate.pictures.moments import CROSSING, History, state_of, ticks
+from docs.generate.pictures.paper import panels, plot, show, zoom
+from docs.generate.pictures.tracker import place_probes
+from scenarios.loop import Tick
+from scenarios.palette import track_colour
+from tracker.contour import COVERED, pixels_under
+from tracker.cover import covered_by
+from tracker.ellipse import outline
+from tracker.measure import ContourModel
+from tracker.track import Status, Track
+from tracker.variants import PEOPLEBOY
+
+NEAR, FAR = 1, 2  # tracks of nina and olaf
+PARTLY = 51
+WALK = (48, 52, 55, 58)
+NOWHERE = "not there"
+COLOURS = {
+    Status.TRACKED.value: "#009e73",
+    Status.PARTLY_OCCLUDED.value: "#f0e442",
+    Status.TOTALLY_OCCLUDED.value: "#d55e00",
+    Status.TENTATIVE.value: "0.7",
+    NOWHERE: "0.85",
+}
+
+
+def explained_away() -> Figure:
+    """What the filter of the person behind is compared with, once the one in front is taken out."""
+    *_, (_, tick) = ticks(*CROSSING, frames=PARTLY)
+    tracks = {track.id: track for track in tick.tracks}
+    model = ContourModel.build(tick.observation.thermal.shape, PEOPLEBOY.contour)
+    image = model.prepare(tick.observation.thermal)
+    front = [state_of(tracks[NEAR])]
+    marked = covered_by(image, front, PEOPLEBOY.contour, PEOPLEBOY.occlusion.growth)
+    figure, axes = panels(("two people, two tracks", "what the filter of the one behind is shown"), 5.0)
+    show(axes[0], image)
+    for track in tracks.values():
+        _outlined(axes[0], track)
+    picture = np.stack([marked] * 3, axis=-1)
+    picture[marked == COVERED] = (40, 60, 110)
+    show(axes[1], picture)
+    state = state_of(tracks[FAR])
+    at = pixels_under(state.astype(np.float32), model.probes, marked.shape)
+    is_open = (at >= 0) & (marked.reshape(-1)[at] != COVERED)
+    pairs = is_open[: len(is_open) // 2] & is_open[len(is_open) // 2 :]
+    for points in place_probes(model.probes, state):
+        axes[1].scatter(
+            points[pairs, 0], points[pairs, 1], s=14, color=_hex(FAR), edgecolors="black", linewidths=0.4
+        )
+        axes[1].scatter(
+            points[~pairs, 0], points[~pairs, 1], s=14, facecolors="none", edgecolors="0.7", linewidths=0.8
+        )
+    for panel in axes:
+        zoom(panel, tracks[NEAR].box, 16.0, 1.1)
+    return figure
+
+
+def walking_on() -> Figure:
+    """Four moments of an occlusion."""
+    figure, axes = panels([""] * len(WALK), 3.4)
+    chosen = dict(zip(WALK, axes, strict=True))
+    for _, tick in ticks(*CROSSING, frames=WALK[-1]):
+        if tick.frame in chosen:
+            _moment(chosen[tick.frame], tick)
+    return figure
+
+
+def timeline() -> Figure:
+    """How much of olaf is seen, and what his track says."""
+    history = History()
+    for _, tick in ticks(*CROSSING, frames=240):
+        history.add(tick, "olaf", FAR)
+    figure, axes = plot(2.6)
+    time = np.array(history.time_s)
+    axes.fill_between(time, 100.0 * np.array(history.visible), color="#56b4e9", step="post", linewidth=0)
+    for k, status in enumerate(history.status):
+        axes.axvspan(time[k], time[k] + 1 / 15, 0.0, 0.07, color=COLOURS[status], linewidth=0)
+    axes.set(xlim=(0, time[-1]), ylim=(-8, 102), xlabel="time [s]", ylabel="of olaf is seen [%]")
+    found = [status for status in COLOURS if status in history.status]
+    patches = [Patch(color=COLOURS[status], label=f"track {FAR}: {status}") for status in found]
+    axes.legend(
+        handles=patches, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=len(found), frameon=False
+    )
+    return figure
+
+
+def _moment(panel: Axes, tick: Tick) -> None:
+    show(panel, tick.observation.thermal)
+    for track in tick.tracks:
+        _outlined(panel, track)
+    olaf = next(person for person in tick.truth.people if person.name == "olaf")
+    says = next((track.status.value for track in tick.tracks if track.id == FAR), NOWHERE)
+    seen = f"{tick.truth.time_s:.1f} s: {olaf.visible_fraction:.0%} of olaf is seen"
+    panel.set_title(f"{seen}\ntrack {FAR}: {says}", fontsize=10)
+    panel.set_xlim(70, 230)
+    panel.set_ylim(235, 65)
+
+
+def _outlined(panel: Axes, track: Track) -> None:
+    """Draw a contour; dashed if its person is hidden."""
+    style = ":" if track.status is Status.TOTALLY_OCCLUDED else "-"
+    for line in outline(track.ellipse, PEOPLEBOY.contour):
+        panel.plot(*line.T, style, color=_hex(track.id), linewidth=1.8)
+    left, top, *_ = track.box
+    panel.text(left, top - 3, str(track.id), color=_hex(track.id), fontsize=11, fontweight="bold")
+
+
+def _hex(number: int) -> str:
+    red, green, blue = track_colour(number)
+    return f"#{red:02x}{green:02x}{blue:02x}"

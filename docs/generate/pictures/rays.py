@@ -1,0 +1,70 @@
+"""What the ray caster says of every pixel."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from docs.generate.pictures.moments import world_at
+from docs.generate.pictures.paper import panels, show, zoom
+from scenarios.palette import person_colour
+
+SCENE = ("crossing_4", 0, 3.2)
+
+
+def layers() -> Figure:
+    """Depth, part numbers and normals of one frame, beside the images that are made of them."""
+    titles = ("depth", "part", "normal", "thermal image", "colour image", "body parts and persons")
+    figure, axes = panels(titles, 5.6, columns=3)
+    with world_at(*SCENE) as world:
+        view = world._look(world.config.robot.thermal.camera).view
+        observation, truth = world.observe(), world.truth()
+    show(axes[0], np.minimum(view.depth, 12.0), cmap="viridis_r")
+    show(axes[1], _shuffled(view.part))
+    show(axes[2], (view.normal + 1.0) / 2.0)
+    show(axes[3], observation.thermal)
+    show(axes[4], observation.colour)
+    show(axes[5], _parts(truth.instance, truth.body_part))
+    return figure
+
+
+def silhouettes() -> Figure:
+    """Everybody's whole silhouette, and what is seen of it."""
+    with world_at(*SCENE) as world:
+        view = world._look(world.config.robot.thermal.camera).view
+        truth = world.truth()
+    rows, columns = np.nonzero(view.cover)
+    everybody = (float(columns.min()), float(rows.min()), float(np.ptp(columns)), float(np.ptp(rows)))
+    people = sorted(truth.people, key=lambda person: person.distance_m)
+    titles = [f"{one.name}: {one.visible_fraction:.0%} seen" for one in people]
+    figure, axes = panels(titles, 2.75)
+    for panel, person in zip(axes, people, strict=True):
+        whole = ((view.cover >> np.uint64(person.id - 1)) & np.uint64(1)).astype(bool)
+        picture = np.full((*whole.shape, 3), 30, np.uint8)
+        picture[whole] = (150, 60, 60)
+        picture[truth.instance == person.id] = person_colour(person.id)
+        show(panel, picture)
+        zoom(panel, everybody, 10.0, 1.25)
+        hidden = ", ".join(f"{name} {share:.0%}" for name, share in person.hidden_by.items() if share > 0.005)
+        panel.text(
+            0.5, -0.02, hidden and f"hidden by {hidden}", ha="center", va="top", transform=panel.transAxes
+        )
+    return figure
+
+
+def _shuffled(part: NDArray[np.int32]) -> NDArray[np.uint8]:
+    """Give every part number a colour of its own."""
+    colours = np.random.default_rng(4).integers(40, 255, (part.max() + 2, 3), dtype=np.uint8)
+    colours[0] = 0
+    return np.asarray(colours[part + 1])
+
+
+def _parts(instance: NDArray[np.uint8], body_part: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Colour persons, and their parts by brightness."""
+    picture = np.full((*instance.shape, 3), 30, np.uint8)
+    for person in np.unique(instance[instance > 0]):
+        mask = instance == person
+        shade = 0.55 + 0.45 * (body_part[mask] % 5) / 4.0
+        picture[mask] = (shade[:, None] * np.array(person_colour(int(person)))).astype(np.uint8)
+    return picture

@@ -1,0 +1,93 @@
+"""How temperatures become a grey image."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from docs.generate.pictures.moments import world_at
+from docs.generate.pictures.paper import panels, plot, show
+from sim.images.thermal import band_radiance, detect, encode_8bit, make_detector, surface_image
+from sim.people.clothes import BOTTOMS, SKIN_C, TOPS
+from sim.places.things import KINDS
+
+SCALE = {"cmap": "inferno", "vmin": 18.0, "vmax": 38.0}
+ROOM_C = 21.0
+CLOTH, SKIN, PAINT = 0.95, 0.98, 0.93
+
+
+def steps() -> Figure:
+    """One image on its way: surface temperature, radiance through the optics, noise, grey."""
+    titles = ("surface temperature", "through emissivity and optics", "with the detector's noise", "8 bit")
+    figure, axes = panels(titles, 2.45)
+    with world_at("crossing_4", 0, 4.0) as world:
+        # The surfaces alone: what every part would look like if it were black and the lens perfect.
+        config, sight = world.config.robot.thermal, world._look(world.config.robot.thermal.camera)
+        black = replace(world._looks, thermal=world._looks.thermal.copy())
+        black.thermal[:, 1] = 1.0
+        place = (sight.world_from_camera, world._poses, world.config.place.surroundings_c, 0.0)
+        surface = surface_image(sight.view, black, replace(config, blur_px=0.0), *place)
+        apparent = surface_image(sight.view, world._looks, config, *place)
+    rng = np.random.default_rng(0)
+    noisy = detect(apparent, make_detector(config, rng), config, rng)
+    for panel, image in zip(axes, (surface, apparent, noisy), strict=False):
+        shown = show(panel, image, **SCALE)
+    show(axes[3], encode_8bit(noisy))
+    figure.colorbar(shown, ax=axes[:3], label="°C", shrink=0.8, extend="both", pad=0.01)
+    return figure
+
+
+def bars() -> Figure:
+    """What everyday surfaces look like: temperature, apparent temperature, grey."""
+    surfaces = _surfaces()
+    names = list(surfaces)
+    true = np.array([temperature for temperature, _ in surfaces.values()])
+    seen = apparent_c(true, np.array([emissivity for _, emissivity in surfaces.values()]))
+    grey = encode_8bit(seen.astype(np.float32))
+    figure, axes = plot(5.2)
+    rows = np.arange(len(names))[::-1]
+    shades = [str(value / 255.0) for value in grey]
+    axes.barh(rows, np.minimum(seen, 40.0) - 14.0, left=14.0, color=shades, edgecolor="0.4", height=0.75)
+    axes.plot(np.minimum(true, 40.3), rows, "o", color="#d55e00", markersize=5, label="surface temperature")
+    for row, value, c in zip(rows, grey, seen, strict=True):
+        axes.text(40.8, row, f"grey {value}" + (f" ({c:.0f} °C)" if c > 40 else ""), va="center", fontsize=9)
+    axes.axvspan(24.0, 36.0, color="#0072b2", alpha=0.12, zorder=0, label="what 8 bits hold: 24 to 36 °C")
+    axes.set(yticks=rows, yticklabels=names, xlim=(14.0, 45.0), xlabel="apparent temperature [°C]")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.45, 1.0), ncol=2, frameon=False, fontsize=9)
+    return figure
+
+
+def mirror() -> Figure:
+    """How emissivity and the surroundings decide what a surface seems to be."""
+    figure, axes = plot(3.4)
+    true = np.linspace(10.0, 60.0, 101)
+    for emissivity, colour in ((1.0, "0.2"), (CLOTH, "#009e73"), (0.6, "#0072b2"), (0.2, "#d55e00")):
+        seen = apparent_c(true, np.full_like(true, emissivity))
+        axes.plot(true, seen, color=colour, label=f"emissivity {emissivity:g}")
+    axes.axhspan(24.0, 36.0, color="#0072b2", alpha=0.12, zorder=0)
+    axes.text(10.5, 34.3, "24 to 36 °C", fontsize=9)
+    axes.set(xlabel="surface temperature [°C]", ylabel="seems to be [°C]", xlim=(10, 60), ylim=(10, 60))
+    axes.legend(frameon=False, loc="upper left", bbox_to_anchor=(0.1, 1.0))
+    return figure
+
+
+def apparent_c(true_c: NDArray[np.float64], emissivity: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Tell what surfaces (N,) [degC] in a room seem to be, by the same radiance that images are made of."""
+    radiance = emissivity * band_radiance(true_c)
+    radiance += (1.0 - emissivity) * band_radiance(np.array([ROOM_C]))
+    table = np.linspace(-40.0, 160.0, 4001)
+    return np.interp(radiance, band_radiance(table), table)
+
+
+def _surfaces() -> dict[str, tuple[float, float]]:
+    """Temperature [degC] and emissivity of what stands about in a scene."""
+    found = {name: (SKIN_C[name], SKIN) for name in ("head", "hand")}
+    for name in ("t_shirt", "shirt", "wool_jumper", "fleece", "jacket"):
+        found[name] = (TOPS[name].temperature_c, CLOTH)
+    found["jeans"] = (BOTTOMS["jeans"].temperature_c, CLOTH)
+    for name in ("ceiling_lamp", "radiator", "monitor", "robot", "table", "window"):
+        found[name] = (KINDS[name].temperature_c, PAINT)
+    return found

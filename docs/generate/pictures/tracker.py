@@ -1,0 +1,104 @@
+"""How a person is found and followed: samples, and the contour that each of them is judged by."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from docs.generate.pictures.moments import CROSSING, state_of, ticks
+from docs.generate.pictures.paper import panels, show, zoom
+from scenarios.loop import Tick
+from tracker.contour import Probes
+from tracker.ellipse import outline
+from tracker.measure import ContourModel
+from tracker.particles import Particles
+from tracker.several import DETECTOR_KEY
+from tracker.variants import PEOPLEBOY
+
+SHOWN = (1, 3, 4, 24)
+FRAME = 45
+
+
+def detector() -> Figure:
+    """From chance to a person: the samples of the first frames."""
+    figure, axes = panels([f"frame {frame}" for frame in SHOWN], 2.4)
+    chosen = dict(zip(SHOWN, axes, strict=True))
+    for _, tick in ticks(*CROSSING, frames=SHOWN[-1]):
+        if tick.frame in chosen:
+            _cloud(chosen[tick.frame], tick)
+    return figure
+
+
+def contour() -> Figure:
+    """The points that a contour is compared at, and what each section says, of a good sample and another."""
+    *_, (_, tick) = ticks(*CROSSING, frames=FRAME)
+    track = min(tick.tracks, key=lambda one: one.id)
+    good = state_of(track)
+    shifted = good + np.array([-1.2 * good[2], *np.zeros(8)])
+    figure, axes = panels(("a sample on the person", "one beside the person"), 5.0)
+    model = ContourModel.build(tick.observation.thermal.shape, PEOPLEBOY.contour)
+    image = model.prepare(tick.observation.thermal)
+    for panel, state in zip(axes, (good, shifted), strict=True):
+        show(panel, image)
+        points = _judged(panel, model, image, state)
+        zoom(panel, track.box, 24.0, 0.98)
+    figure.colorbar(
+        points, ax=axes, label="what the section says: -1 against a person, 1 for one", shrink=0.8
+    )
+    return figure
+
+
+def place_probes(
+    probes: Probes, state: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Place inner and outer points (P, 2) [px] of a state's contour."""
+    x, y, w, h, d = state[:5]
+    mix = np.array([d, w, h, 1.0])
+    return np.array([x, y]) + probes.inner @ mix, np.array([x, y]) + probes.outer @ mix
+
+
+def _judged(
+    panel: Axes, model: ContourModel, image: NDArray[np.uint8], state: NDArray[np.float64]
+) -> PathCollection:
+    """Draw pairs of points in the colour of what their section says; gives the drawing, for a scale."""
+    differences = model.differences(image, state.astype(np.float32)[None])[0]
+    inner, outer = place_probes(model.probes, state)
+    for a, b in zip(inner, outer, strict=True):
+        panel.plot(*np.stack([a, b], axis=1), color="0.6", linewidth=0.5)
+    says = differences[model.probes.section]
+    style: dict[str, Any] = {
+        "c": says,
+        "cmap": "RdYlGn",
+        "norm": Normalize(-1.0, 1.0),
+        "edgecolors": "black",
+        "linewidths": 0.4,
+    }
+    panel.scatter(inner[:, 0], inner[:, 1], s=14, marker="o", **style)
+    drawn = panel.scatter(outer[:, 0], outer[:, 1], s=22, marker="s", **style)
+    panel.set_title(f"{panel.get_title()}: fitness {differences @ model.weights:.2f}", fontsize=11)
+    return drawn
+
+
+def _cloud(panel: Axes, tick: Tick) -> None:
+    show(panel, tick.observation.thermal)
+    for key, cloud in tick.particles.items():
+        _samples(panel, cloud, "#56b4e9" if key == DETECTOR_KEY else "#e69f00")
+    for track in tick.tracks:
+        for line in outline(track.ellipse, PEOPLEBOY.contour):
+            panel.plot(*line.T, color="#e69f00", linewidth=1.4)
+    panel.set_xlim(-0.5, 319.5)
+    panel.set_ylim(239.5, -0.5)
+
+
+def _samples(panel: Axes, cloud: Particles, colour: str) -> None:
+    """Draw the bodies' centres, the heavier the more solid."""
+    share = cloud.weight / cloud.weight.max()
+    panel.scatter(
+        cloud.state[:, 0], cloud.state[:, 1], s=5, color=colour, alpha=0.4 + 0.6 * share, linewidths=0
+    )
