@@ -8,10 +8,13 @@ from dataclasses import replace
 from behaviours.behaviour import Behaviour
 from behaviours.command import EMERGENCY_STOP, STOP, Command
 from behaviours.deafness import Deafness
-from behaviours.echoes import Points, fill_drop_outs
+from behaviours.echoes import BESIDE_RAD, Points, fill_drop_outs
 from behaviours.memory import EchoMemory, MemoryConfig, remember
 from behaviours.safety import SafetyConfig, limit
 from behaviours.sight import Sight
+
+# As long as something takes from one beam through the gap to the next; people have moved on by then.
+PASSING = MemoryConfig(keep_s=2.0, within_m=1.1)
 
 
 class Guarded:
@@ -29,6 +32,7 @@ class Guarded:
         self._config = SafetyConfig() if config is None else config
         self._recent: deque[Points] = deque(maxlen=readings)
         self._memory = EchoMemory()
+        self._passing = EchoMemory()
         self._deafness = Deafness()
         self._fault = ""
         self.is_limited = False
@@ -61,7 +65,8 @@ class Guarded:
             return STOP
         wanted = self._behaviour.command(steady)
         self._memory = remember(self._memory, steady, MemoryConfig())
-        safe = limit(wanted, steady, self._config, self._memory.points)
+        self._passing = remember(self._passing, steady, PASSING, BESIDE_RAD)
+        safe = limit(wanted, steady, self._config, self._memory.points, self._passing.points)
         self.is_limited = safe != wanted
         return safe
 

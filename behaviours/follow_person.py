@@ -96,7 +96,7 @@ class FollowConfig:
     place: PlaceConfig = field(default_factory=PlaceConfig)
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
     avoid_alone: AvoidConfig = WIDELY
-    heard: MemoryConfig = field(default_factory=lambda: MemoryConfig(keep_s=4.0, within_m=1.5))
+    heard: MemoryConfig = field(default_factory=lambda: MemoryConfig(keep_s=4.0, within_m=1.7))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -39,14 +39,14 @@ class EchoMemory:
     heard_s: Ranges = field(default_factory=lambda: np.zeros(0))
 
 
-def remember(memory: EchoMemory, sight: Sight, config: MemoryConfig) -> EchoMemory:
+def remember(memory: EchoMemory, sight: Sight, config: MemoryConfig, spread_rad: float = 0.0) -> EchoMemory:
     """Move the echoes by the wheels' motion, forget the old and the far, take in the new.
 
-    Senseless input leaves the memory as it is.
+    Senseless input leaves the memory as it is. Echoes are placed spread_rad [rad] off the beams' axes.
     """
     if not sight.is_sound:
         return memory
-    heard = echoes(sight)
+    heard = echoes(sight, spread_rad)
     points = np.concatenate([_moved(memory, sight), heard])
     heard_s = np.concatenate([memory.heard_s, np.full(len(heard), sight.time_s)])
     is_kept = (np.hypot(points[:, 0], points[:, 1]) < config.within_m) & (

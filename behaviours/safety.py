@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from behaviours.command import STOP, Command
-from behaviours.echoes import Points, echoes
+from behaviours.echoes import BESIDE_RAD, Points, echoes
 from behaviours.sight import Sight
 
 NOTHING_REMEMBERED: Points = np.zeros((0, 2))
 NOTHING_REMEMBERED.setflags(write=False)
+_ARC_M = np.arange(1, 19) * 0.05  # ways at which room is looked for; from 0.8 m/s it stops in 0.84 m
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +27,12 @@ class SafetyConfig:
         max_angular_rad_s: [rad/s] turn rate limit.
         braking_m_s2: [m/s2] deceleration to count on; less than the drive's 0.6, in reserve.
         reaction_s: [s] from an echo until the brakes act: a frame of latency, and a drive still speeding up.
-        margin_m: [m] room left between the hull and an obstacle straight ahead or behind.
+        margin_m: [m] room left between the hull and any obstacle by driving; a turn on the spot may swing the
+            tail nearer, as a robot beside a wall must be able to turn off it.
+        shallow_m, closest_m: [m] the margin may shrink by the former at a time, down to the latter: sonars
+            are not exact enough to tell a wall beside the way from one that slowly draws near.
+        off_middle_m: [m] in a passage too narrow for the margin the robot keeps this near to the middle.
+        hull_m: [m] half the hull's width.
         front_m, rear_m: [m] from the origin to the hull's front and rear edge.
         half_width_m: [m] half of the lane that must be free: half the hull plus a hand's breadth.
         corner_m: [m] from the origin to the farthest corner of the hull, which sweeps round in a turn.
@@ -41,6 +47,10 @@ class SafetyConfig:
     braking_m_s2: float = 0.5
     reaction_s: float = 0.25
     margin_m: float = 0.45
+    shallow_m: float = 0.03
+    closest_m: float = 0.3
+    off_middle_m: float = 0.1
+    hull_m: float = 0.19
     front_m: float = 0.23
     rear_m: float = 0.32
     half_width_m: float = 0.27
@@ -51,7 +61,11 @@ class SafetyConfig:
 
 
 def limit(
-    command: Command, sight: Sight, config: SafetyConfig, remembered: Points = NOTHING_REMEMBERED
+    command: Command,
+    sight: Sight,
+    config: SafetyConfig,
+    remembered: Points = NOTHING_REMEMBERED,
+    passing: Points = NOTHING_REMEMBERED,
 ) -> Command:
     """Change a command as little as needed so that the robot can always stop before what its sonars see.
 
@@ -64,12 +78,14 @@ def limit(
         config: limits and outline.
         remembered: (N, 2) [m] further obstacles, robot frame, which limit turning: a corner of the hull
             swings through the gaps between the sonars' cones.
+        passing: (M, 2) [m] obstacles of the last moment, robot frame, beside which the robot drives.
     """
     if not sight.is_sound:
         return STOP
     points = echoes(sight)
+    arc = _free_arc(command, np.concatenate([echoes(sight, spread_rad=BESIDE_RAD), passing]), config)
     ahead, behind = _free_way(points, config)
-    backwards, forwards = -safe_speed(behind, config), safe_speed(ahead, config)
+    backwards, forwards = -safe_speed(min(behind, arc), config), safe_speed(min(ahead, arc), config)
     turn = _safe_turn(command.angular_rad_s, np.concatenate([points, remembered]), config)
     return Command(
         linear_m_s=min(max(command.linear_m_s, backwards), forwards),
@@ -94,6 +110,44 @@ def _free_way(points: Points, config: SafetyConfig) -> tuple[float, float]:
     ahead = np.min(x[x > 0.0], initial=np.inf) - config.front_m
     behind = np.min(-x[x <= 0.0], initial=np.inf) - config.rear_m
     return float(ahead) - config.margin_m, float(behind) - config.margin_m
+
+
+def _free_arc(command: Command, points: Points, config: SafetyConfig) -> float:
+    """Give the way [m] along the commanded arc until the hull comes too near to something, or inf.
+
+    Too near is nearer than the margin, and nearer than it is now.
+    """
+    if command.linear_m_s == 0.0:
+        return math.inf
+    bend = command.angular_rad_s / abs(command.linear_m_s)  # [rad/m]
+    ways = _ARC_M[np.abs(bend) * _ARC_M < math.pi / 2.0]
+    now = float(np.min(_gaps(points, config), initial=math.inf))
+    too_near = min(_side_margin(points, config), max(now - config.shallow_m, min(now, config.closest_m)))
+    turned = bend * ways
+    chord = math.copysign(1.0, command.linear_m_s) * ways * np.sinc(turned / math.tau)
+    moved = points[None] - (chord * np.stack([np.cos(turned / 2.0), np.sin(turned / 2.0)])).T[:, None]
+    cos, sin = np.cos(turned)[:, None], np.sin(turned)[:, None]
+    x, y = moved[..., 0], moved[..., 1]
+    then = _gaps(np.stack([cos * x + sin * y, cos * y - sin * x], axis=-1), config)  # (K, N)
+    is_too_near = (then < too_near).any(axis=1)
+    return float(ways[np.argmax(is_too_near)]) - 0.05 if is_too_near.any() else math.inf
+
+
+def _side_margin(points: Points, config: SafetyConfig) -> float:
+    """Give the margin [m]; in a passage too narrow for it, as a door is, what is left in the middle."""
+    x, y = points.T
+    left = np.min(y[(x > -config.rear_m) & (y > config.hull_m)], initial=math.inf)
+    right = np.min(-y[(x > -config.rear_m) & (y < -config.hull_m)], initial=math.inf)
+    middle = float(left + right) / 2.0 - config.hull_m
+    return min(config.margin_m, max(middle - config.off_middle_m, 0.0))
+
+
+def _gaps(points: Points, config: SafetyConfig) -> Points:
+    """Give the distance [m] of points (..., 2) from the hull."""
+    x, y = points[..., 0], points[..., 1]
+    along = np.maximum(np.maximum(x - config.front_m, -config.rear_m - x), 0.0)
+    gaps: Points = np.hypot(along, np.maximum(np.abs(y) - config.hull_m, 0.0))
+    return gaps
 
 
 def _safe_turn(wanted_rad_s: float, points: Points, config: SafetyConfig) -> float:

@@ -96,8 +96,8 @@ class DriveConfig:
         max_angular_rad_s: [rad/s] turn rate limit.
         linear_acceleration_m_s2: [m/s2] rate at which the forward speed changes.
         angular_acceleration_rad_s2: [rad/s2] rate at which the turn rate changes.
-        emergency_m_s2, emergency_rad_s2: [m/s2], [rad/s2] rates at which the speeds fall in an emergency stop; the
-            robot, which is tall and has its castor behind, lifts its tail when it brakes harder.
+        emergency_m_s2, emergency_rad_s2: [m/s2], [rad/s2] rates at which the speeds fall in an emergency
+            stop; the robot, which is tall and has its castor behind, lifts its tail when it brakes harder.
         encoder_noise_m: [m] standard deviation of the way that a wheel's encoder counts on 1 m; it grows with
             the square root of the way.
     """

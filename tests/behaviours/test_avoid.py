@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from behaviours.avoid import AvoidConfig, swerve
+from behaviours.avoid import WIDELY, AvoidConfig, swerve
 
 CONFIG = AvoidConfig()
 points = st.lists(st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)), max_size=16).map(
@@ -35,10 +35,10 @@ def test_an_echo_on_the_left_moves_the_aim_right(distance):
 def test_the_swerve_clears_the_echo_by_half_the_lane():
     config = AvoidConfig(widest_rad=math.pi)
     aside = swerve(0.0, polar(0.7, 0.3), config)
-    assert 0.7 * math.sin(0.3 - aside) == pytest.approx(config.half_width_m)
+    assert math.sin(0.3 - aside) == pytest.approx(config.half_width_m / 0.7, abs=0.03)
 
 
-@pytest.mark.parametrize("echo", [polar(1.3, 0.05), polar(0.8, 1.0), polar(0.3, math.pi), np.zeros((0, 2))])
+@pytest.mark.parametrize("echo", [polar(1.5, 0.05), polar(0.8, 1.2), polar(0.3, math.pi), np.zeros((0, 2))])
 def test_far_wide_or_rear_echoes_do_not_matter(echo):
     assert swerve(0.0, echo, CONFIG) == 0.0
 
@@ -46,3 +46,11 @@ def test_far_wide_or_rear_echoes_do_not_matter(echo):
 def test_between_equal_door_posts_the_aim_stays():
     posts = np.array([[0.6, 0.3], [0.6, -0.3]])
     assert swerve(0.0, posts, CONFIG) == pytest.approx(0.0)
+
+
+@given(st.floats(0.95, 1.2), st.floats(0.5, 0.9))
+def test_before_a_wall_that_ends_on_the_right_the_aim_goes_past_its_end_though_it_lies_on_both_sides(
+    ahead, reach
+):
+    wall = np.stack([np.full(40, ahead), np.linspace(-0.15, reach, 40)], axis=1)
+    assert swerve(0.0, wall, WIDELY) < -0.1

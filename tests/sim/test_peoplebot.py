@@ -135,7 +135,9 @@ def test_no_command_makes_it_tip_over(seed: int) -> None:
 
 
 @pytest.mark.parametrize("turn", [-1.2, 0.0, 1.2])
-def test_an_emergency_stop_from_full_speed_takes_two_fifths_of_a_second_and_lifts_nothing(turn: float) -> None:
+def test_an_emergency_stop_from_full_speed_takes_two_fifths_of_a_second_and_lifts_nothing(
+    turn: float,
+) -> None:
     with on_a_floor() as (bullet, robot):
         drive(bullet, robot, (0.8, turn), 3.0)
         robot.command(0.0, 0.0, is_emergency=True)
