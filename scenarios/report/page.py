@@ -44,13 +44,14 @@ from scenarios.report.headline import Outcome, headline
 from scenarios.report.moments import BadMoment, common_frames, worst_moments
 from scenarios.report.pictures import Shown, show_frames
 from scenarios.report.trajectories import draw_trajectories
-from scenarios.report.wording import seconds, spoken
+from scenarios.report.wording import listed, seconds, spoken
 
 HERE = Path(__file__).parent
 _JPEG_QUALITY = 80
 _TILE_QUALITY = 72
 _MOMENTS = 6  # of one run; of two side by side, each has half as many
 _RUNS_SHOWN = 4  # of many runs, of which the worst moment is shown
+_NAMED = 4  # scenarios in a title
 _LONGEST_TABLE = 40  # runs that are listed one by one
 
 
@@ -131,9 +132,7 @@ def render(columns: Sequence[Column]) -> str:
     singles = [column for column in columns if column.is_single]
     return environment.get_template("page.html.jinja").render(
         columns=columns,
-        title=" and ".join(dict.fromkeys(column.run.name for column in columns))
-        if len(singles) == len(columns)
-        else f"{', '.join(column.label for column in columns)}: many runs",
+        title=_title(columns),
         singles=singles,
         crowds=[column for column in columns if not column.is_single],
         sheets=[(column.label, _tiles(column)) for column in singles],
@@ -149,6 +148,16 @@ def render(columns: Sequence[Column]) -> str:
         most_runs=_LONGEST_TABLE,
         settings=[(column.label, _settings(column)) for column in columns],
     )
+
+
+def _title(columns: Sequence[Column]) -> str:
+    """Name the scenes: scenario and seed of single runs, else the scenarios and how many runs there are."""
+    if all(column.is_single for column in columns):
+        return listed(list(dict.fromkeys(column.run.name for column in columns)))
+    outcomes = [outcome for column in columns for outcome in column.outcomes]
+    names = list(dict.fromkeys(str(outcome.run.about["scenario"]) for outcome in outcomes))
+    shown = listed(names) if len(names) <= _NAMED else f"{len(names)} scenarios"
+    return f"{shown}: {len(outcomes)} runs"
 
 
 def _tiles(column: Column) -> list[Picture]:

@@ -127,7 +127,8 @@ def _tell(
     rows = run.people.filter(np.asarray(run.people["id"].to_numpy() == person))
     at = rows["frame"].to_numpy() - 1
     shares = [dict(hidden) for hidden in rows["hidden_by"].to_pylist()]
-    inside = _column(run, at, [1.0 - share.get(BORDER, 0.0) for share in shares])
+    is_ahead = rows["whole_px"].to_numpy() > 0
+    inside = _column(run, at, is_ahead * [1.0 - share.get(BORDER, 0.0) for share in shares])
     occluded = _column(run, at, rows["occluded_fraction"].to_numpy())
     counted = _column(run, at, rows["is_counted"].to_numpy(zero_copy_only=False)) > 0.0
     hider = [""] * run.frames

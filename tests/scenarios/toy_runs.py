@@ -1,0 +1,97 @@
+"""Folders of small made-up runs: two people side by side, and tracks that lie where a test wants them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import synthetic_ticks as made
+
+from scenarios.contact_sheet import ContactSheet
+from scenarios.folder import RunFolder
+from scenarios.loop import Tick
+from scenarios.run_events import RunEvents
+from scenarios.score import score_run
+from sim.truth import PersonTruth
+from tracker.track import Track
+
+ANNA, BEN, NOWHERE = (60.0, 50.0, 40.0, 170.0), (220.0, 50.0, 40.0, 170.0), (140.0, 20.0, 20.0, 60.0)
+FRAMES = 90
+
+Boxes = Mapping[int, tuple[float, float, float, float]]  # of tracks, by number
+Hidden = Callable[[int], float]  # share of ben that anna hides, by frame
+
+
+def steady(frame: int) -> Boxes:  # noqa: ARG001
+    """Everybody has one number."""
+    return {1: ANNA, 2: BEN}
+
+
+def swapped(frame: int) -> Boxes:
+    """The two numbers change places at frame 46."""
+    return {1: ANNA, 2: BEN} if frame < 46 else {1: BEN, 2: ANNA}
+
+
+def renumbered(frame: int) -> Boxes:
+    """Ben is lost at frame 40 and found as number 3 at frame 61; number 4 lies on nobody from 70 to 79."""
+    boxes = {1: ANNA}
+    if frame < 40:
+        boxes[2] = BEN
+    if frame > 60:
+        boxes[3] = BEN
+    if 70 <= frame < 80:
+        boxes[4] = NOWHERE
+    return boxes
+
+
+def hidden_from_40_to_60(frame: int) -> float:
+    """Ben is wholly hidden in between."""
+    return 1.0 if 40 <= frame < 60 else 0.0
+
+
+def write_run(
+    folder: Path,
+    boxes: Callable[[int], Boxes] = steady,
+    hidden: Hidden = lambda _frame: 0.0,
+    scenario: Mapping[str, Any] | None = None,
+    **about: Any,
+) -> Path:
+    """Write a complete run and return its folder; `about` goes into run.json."""
+    folder.mkdir(parents=True)
+    known = {
+        "scenario": "toy",
+        "seed": 0,
+        "tracker": "peopleboy",
+        "renderer": "raycast",
+        "rate_hz": 15,
+    } | about
+    played = {"name": "toy", "description": "Two people stand."} if scenario is None else dict(scenario)
+    events, sheet = RunEvents(), ContactSheet("toy")
+    with RunFolder(folder, played, known, frames=False) as run:
+        for frame in range(1, FRAMES + 1):
+            tick = _tick(frame, boxes(frame), hidden(frame))
+            lines = events.update(tick)
+            sheet.add(tick, lines)
+            run.write(tick, [line.to_json() for line in lines])
+        run.flush()
+        sheet.save(folder / "contact_sheet.png")
+        run.complete(score_run(folder, FRAMES, None).to_json())
+    return folder
+
+
+def _tick(frame: int, boxes: Boxes, hidden: float) -> Tick:
+    tick = made.make_tick(frame)
+    people = (_at(made.person(1, "anna", 4.0), ANNA), _at(made.person(2, "ben", 6.0, hidden), BEN))
+    tracks = tuple(_track(number, box) for number, box in boxes.items())
+    return replace(tick, truth=replace(tick.truth, people=people), tracks=tracks)
+
+
+def _at(person: PersonTruth, box: tuple[float, float, float, float]) -> PersonTruth:
+    return replace(person, box=box, whole_box=box, visible_box=box)
+
+
+def _track(number: int, box: tuple[float, float, float, float]) -> Track:
+    ellipse = replace(made.ELLIPSE, x=box[0] + box[2] / 2.0)
+    return replace(made.TRACK, id=number, box=box, ellipse=ellipse)
