@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-heavy lint format bench peers docs clean
+.PHONY: demo test test-heavy lint format bench peers rl docs clean
 
 demo: $(READY)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -31,6 +31,11 @@ peers: $(READY)
 	# Both ask for opencv-python as well, see below.
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps trackers supervision
 	$(BIN)/python -m benchmarks.peers
+
+# For examples/train_follower.py. PyPI's torch would bring gigabytes of CUDA along.
+rl: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps --index-url https://download.pytorch.org/whl/cpu torch
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[rl]'
 
 # Strictly: a warning is an error. Leaves build/docs/index.html, which needs no server and no network.
 docs: $(READY)

@@ -1,0 +1,1 @@
+"""Controllers of your own, learned and written, run from the root of the repository."""
