@@ -30,14 +30,15 @@ def whole_folder(path: Path, about: dict[str, Any], *, overwrite: bool) -> Itera
         BadInput: there is something at this path that must not be replaced, or it cannot be written to.
     """
     _check(path, overwrite)
-    part = path.parent / f".{path.name}.{os.getpid()}"
+    part, old = (path.parent / f".{path.name}.{os.getpid()}.{state}" for state in ("new", "old"))
     try:
         part.mkdir(parents=True)
         yield part
         (part / ABOUT).write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
         if path.exists():
-            shutil.rmtree(path)
+            path.rename(old)
         part.rename(path)
+        shutil.rmtree(old, ignore_errors=True)
     except OSError as error:
         raise BadInput(f"{path}: cannot write this export: {error}") from error
     finally:
