@@ -53,7 +53,7 @@ class Column:
     def by_badness(self) -> list[tuple[Outcome, Scores]]:
         """Its runs with their scores, most lost identities first."""
         pairs = zip(self.outcomes, self.scores, strict=True)
-        return sorted(pairs, key=lambda pair: (-len(pair[0].changes), pair[1].mot.identity.idf1))
+        return sorted(pairs, key=lambda pair: (-len(pair[0].lost), pair[1].mot.identity.idf1))
 
     def name_of(self, person: int) -> str:
         """Name a person of the first run."""

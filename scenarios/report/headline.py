@@ -40,6 +40,16 @@ class Outcome:
         return sum(tracked_to_end(self.run, story) is True for story in self.stories)
 
     @property
+    def lost(self) -> list[Change]:
+        """Changes of numbers of people who had been in the image nearly all the time."""
+        return [change for change in self.changes if not change.is_return]
+
+    @property
+    def returned(self) -> list[Change]:
+        """New numbers of people who came back into the image."""
+        return [change for change in self.changes if change.is_return]
+
+    @property
     def touched(self) -> list[tuple[float, str]]:
         """When [s] the robot touched whom or what."""
         return [(line.time_s, line.other) for line in self.run.events if line.kind == "contact starts"]
@@ -60,6 +70,8 @@ def look_into(run: FinishedRun) -> Outcome:
 def headline(outcome: Outcome) -> str:
     """Say of one run who was tracked to the end, and where identities were lost."""
     parts = [_people(outcome), _identities(outcome)] if outcome.due else ["Nobody was there to be found"]
+    if outcome.returned:
+        parts.append(_returns(len(outcome.returned)))
     if outcome.strays:
         parts.append(f"{some(len(outcome.strays), 'track')} on nobody")
     if outcome.touched:
@@ -72,14 +84,18 @@ def headline(outcome: Outcome) -> str:
 def headline_of_many(outcomes: Sequence[Outcome]) -> str:
     """Say the same of several runs."""
     due, tracked = sum(o.due for o in outcomes), sum(o.to_the_end for o in outcomes)
-    changed = sum(len(o.changes) for o in outcomes)
-    where = sum(bool(o.changes) for o in outcomes)
+    lost, returned = sum(len(o.lost) for o in outcomes), sum(len(o.returned) for o in outcomes)
+    where = sum(bool(o.lost) for o in outcomes)
     strays, touches = sum(len(o.strays) for o in outcomes), sum(len(o.touched) for o in outcomes)
-    identities = f"identity lost {times(changed)}, in {some(where, 'run')}" if changed else "no identity lost"
+    identities = f"identity lost {times(lost)}, in {some(where, 'run')}" if lost else "no identity lost"
     parts = [f"{some(len(outcomes), 'run')}: of {some(due, 'person', 'people')} {tracked} tracked to the end"]
-    parts += [identities, f"{some(strays, 'track')} on nobody"]
+    parts += [identities, *([_returns(returned)] if returned else []), f"{some(strays, 'track')} on nobody"]
     parts += [f"{some(touches, 'contact')} of the robot"] if touches else []
     return "; ".join(parts) + "."
+
+
+def _returns(count: int) -> str:
+    return f"{times(count)} somebody came back into the image under a new number"
 
 
 def _people(outcome: Outcome) -> str:
@@ -93,9 +109,9 @@ def _people(outcome: Outcome) -> str:
 
 
 def _identities(outcome: Outcome) -> str:
-    if not outcome.changes:
+    if not outcome.lost:
         return "no identity lost"
-    first = outcome.changes[0]
+    first = outcome.lost[0]
     when = f"at {seconds(first.time_s)}, when {spoken(first.person)} {first.why}"
-    count = len(outcome.changes)
+    count = len(outcome.lost)
     return f"identity lost once, {when}" if count == 1 else f"identity lost {times(count)}, first {when}"

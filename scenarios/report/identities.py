@@ -15,6 +15,7 @@ from scenarios.report.wording import seconds, spoken
 from sim.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 
 _BEFORE_S = 0.5  # what happened this long before a loss may be its cause
+_LONG_AWAY_S = 2.0
 _DECAY_S = 1.5  # over which the confidence is looked back at
 _CUT_OFF = 0.85  # share of a person nobody hides that is inside the image, below which that is worth telling
 _DECAYED = 0.15  # a fall by this much is worth telling
@@ -31,6 +32,7 @@ class Change:
         old, new: the numbers.
         taken_from: whose number the new one was before; empty for a fresh number.
         why: what there was to be seen of the person in between, as the rest of "when Ben ...".
+        is_return: whether the person had been out of the image for long, so that few would have known it.
     """
 
     person: str
@@ -41,6 +43,7 @@ class Change:
     new: int
     taken_from: str
     why: str
+    is_return: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,6 +95,7 @@ def find_changes(run: FinishedRun, stories: Sequence[Story]) -> list[Change]:
                         new=new.value,
                         taken_from=_owner_before(stories, new.value, new.start, story),
                         why=_plight(run, stories, story, old.end, new.start),
+                        is_return=_is_return(run, story, old.end, new.start),
                     )
                 )
     return sorted(changes, key=lambda change: change.first_frame)
@@ -156,11 +160,17 @@ def _afterwards(run: FinishedRun, story: Story, number: int, end: int) -> tuple[
     name = spoken(story.name)
     if later and later[0].value != number:
         after_s = later[0].start / run.rate_hz
+        is_bad = not _is_return(run, story, end, end + later[0].start)
         when = f"after {seconds(after_s)}" if later[0].start else "at once"
-        return f"{name} was found {when} as number {later[0].value}", True
+        return f"{name} was found {when} as number {later[0].value}", is_bad
     if not story.is_due[end:].any():
         return f"{name} did not come back into view", False
     return f"{name} was not found again", True
+
+
+def _is_return(run: FinishedRun, story: Story, start: int, end: int) -> bool:
+    """Whether a person was out of the image for long between two indices."""
+    return int((story.sight[start:end] == Sight.AWAY).sum()) >= _LONG_AWAY_S * run.rate_hz
 
 
 def _plight(run: FinishedRun, stories: Sequence[Story], story: Story, start: int, end: int) -> str:
@@ -168,6 +178,8 @@ def _plight(run: FinishedRun, stories: Sequence[Story], story: Story, start: int
     first, last = max(start - round(_BEFORE_S * run.rate_hz), 0), end + 1
     sight = story.sight[first:last]
     wholly, away = int((sight == Sight.WHOLLY).sum()), int((sight == Sight.AWAY).sum())
+    if away > wholly and sight[-1] == Sight.AWAY:
+        return "left the image"
     if away > wholly:
         return f"was out of the image for {seconds(away / run.rate_hz)}"
     by = story.hider_in(first, last)

@@ -61,7 +61,7 @@ def _changes(outcome: Outcome) -> list[BadMoment]:
         name = spoken(change.person)
         moments.append(
             BadMoment(
-                badness=100.0,
+                badness=40.0 if change.is_return else 100.0,
                 frames=(change.last_frame, change.first_frame),
                 title=f"{name} loses number {change.old}",
                 text=f"{name} {change.why}, and was then number {change.new}{whose}.",

@@ -10,6 +10,7 @@ import pytest
 import toy_runs as toy
 
 from scenarios.cli import main
+from scenarios.load import load_scenario
 from scenarios.report.page import write_report
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -23,7 +24,8 @@ _COLLECT = "onmessage=e=>{const b=document.createElement('b');b.textContent=e.da
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("runs")
     hidden = toy.hidden_from_40_to_60
-    toy.write_run(root / "one", toy.renumbered, hidden)
+    scenario = load_scenario("corridor_patrol").resolved(0)  # a place to be drawn
+    toy.write_run(root / "one", toy.renumbered, hidden, scenario)
     toy.write_run(root / "other", toy.steady, hidden, tracker="thesis")
     return root
 
