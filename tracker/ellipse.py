@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +13,8 @@ from tracker.contour import (
     HEAD_LEFT,
     HEAD_RIGHT,
     HEAD_TOP,
+    SECTIONS,
+    SIDE_RIGHT,
     body_points,
     head_points,
     section_angles,
@@ -45,17 +49,29 @@ def outline(
     ) @ mix
 
 
-def section_lines(ellipse: Ellipse, config: ContourConfig, count: int = 6) -> list[NDArray[np.float64]]:
-    """Give a line (count, 2) [px] along every section, in their order, the last one under the feet."""
+def section_lines(ellipse: Ellipse, config: ContourConfig) -> NDArray[np.float64]:
+    """Give a line (9, K, 2) [px] along every section, in their order with the feet, and one round the hips.
+
+    The last one closes the body's ellipse, where no section is.
+    """
     mix = np.array([ellipse.d, ellipse.w, ellipse.h, 1.0])
-    centre, nothing = np.array([ellipse.x, ellipse.y]), np.zeros(count)
-    lines = []
-    for section, (start, end) in sorted(section_angles(config).items()):
+    lines: NDArray[np.float64] = _section_points(config) @ mix + (ellipse.x, ellipse.y)
+    return lines
+
+
+@lru_cache(maxsize=8)
+def _section_points(config: ContourConfig, count: int = 5) -> NDArray[np.float64]:
+    """Mix d, w, h and 1 to the points (9, count, 2, 4) of `section_lines`, from the body's centre."""
+    points, nothing = np.zeros((SECTIONS + 1, count, 2, 4)), np.zeros(count)
+    arcs = section_angles(config)
+    side_end = arcs[SIDE_RIGHT][1]
+    for line, (start, end) in {**arcs, SECTIONS: (side_end, 2.0 * np.pi - side_end)}.items():
         angle = np.linspace(start, end, count)
-        is_head = section in (HEAD_LEFT, HEAD_TOP, HEAD_RIGHT)
-        points = head_points(angle, config, nothing, 0.0) if is_head else body_points(angle, nothing, 0.0)
-        lines.append(centre + points @ mix)
-    assert len(lines) == FEET
-    across = np.linspace(-config.feet_span, config.feet_span, count)
-    feet = np.stack([across, np.full(count, config.feet_line)], axis=1) * ellipse.h
-    return [*lines, centre + feet]
+        if line in (HEAD_LEFT, HEAD_TOP, HEAD_RIGHT):
+            points[line] = head_points(angle, config, nothing, 0.0)
+        else:
+            points[line] = body_points(angle, nothing, 0.0)
+    points[FEET, :, 0, 2] = np.linspace(-config.feet_span, config.feet_span, count)
+    points[FEET, :, 1, 2] = config.feet_line
+    points.setflags(write=False)
+    return points

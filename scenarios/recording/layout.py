@@ -12,7 +12,9 @@ from sim.config import WorldConfig
 
 def lay_out(config: WorldConfig) -> rrb.Blueprint:
     """Lay out: thermal on the left, colour, events and the world in 3-D on the right, curves below."""
-    thermal = _image_view(THERMAL, "Thermal: tracks, evidence, particles, truth", config.robot.thermal.camera)
+    thermal = _image_view(
+        THERMAL, "Thermal: tracks with evidence, particles, truth", config.robot.thermal.camera
+    )
     colour = _image_view(COLOUR, "Colour: tracks, truth", config.robot.colour.camera)
     events = rrb.TextLogView(
         origin=EVENTS, name="Events", columns=rrb.TextLogColumns(text_log_columns=["LogLevel", "Body"])

@@ -21,8 +21,8 @@ from tracker.ellipse import outline
 from tracker.particles import Particles
 from tracker.track import Status, Track
 
-PARTICLES_A_FILTER = 60
-PARTICLES_AT_MOST = 120
+PARTICLES_A_FILTER = 50
+PARTICLES_AT_MOST = 100
 
 Floats = NDArray[np.float32]
 Colours = NDArray[np.uint8]
@@ -90,7 +90,7 @@ def track_label(track: Track) -> str:
 def track_contours(tracks: Sequence[Track], contour: ContourConfig) -> Lines:
     """Give the outlines of body and head of every track."""
     lines = [
-        line.astype(np.float32) for track in tracks for line in outline(track.ellipse, contour, count=24)
+        line.astype(np.float32) for track in tracks for line in outline(track.ellipse, contour, count=20)
     ]
     return Lines(lines, colours_of(track_colour(track.id) for track in tracks for _ in range(2)))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -28,7 +28,7 @@ from sim.alignment import affine_between
 from sim.camera import Matrix
 from sim.config import WorldConfig
 from sim.robot.peoplebot import Planar
-from tracker.config import TrackerConfig
+from tracker.config import ContourConfig, TrackerConfig
 from tracker.evidence import evidence_of
 
 APPLICATION = "peopleboy"
@@ -36,15 +36,16 @@ APPLICATION = "peopleboy"
 # A track has no depth: its box is mapped to the colour image as if the person were so far away.
 TYPICAL_DEPTH_M = 4.0
 
-_FRAMES_SENT_TOGETHER = 30
+_FRAMES_SENT_TOGETHER = 60
 _NAME_HEIGHT_PX = 16.0
+_DEPTH_STEP_M = 0.1
 _GRAVE = ("contact", "lost")
 
 
 class Recorder:
     """Writes one recording as the run goes; use it as a context manager.
 
-    Every 30 frames everything since the last time goes to the file, so that a run that is killed leaves a
+    Every 60 frames everything since the last time goes to the file, so that a run that is killed leaves a
     file that opens and lacks those frames at most.
 
     Args:
@@ -67,7 +68,7 @@ class Recorder:
     ) -> None:
         self._tracker = tracker
         self._thermal = config.robot.thermal.camera
-        self._affine_at = partial(affine_between, self._thermal, config.robot.colour.camera)
+        self._affine_at = lru_cache(partial(affine_between, self._thermal, config.robot.colour.camera))
         self._names = [person.name for person in config.people]
         self._trails = marks.Trails()
         self._tracks_named: set[int] = set()
@@ -94,7 +95,6 @@ class Recorder:
         self._rows.begin(tick.frame, tick.observation.time_s)
         self._log_images(tick)
         self._log_tracks(tick)
-        self._log_evidence(tick)
         self._log_particles(tick)
         self._log_truth(tick)
         self._log_world(tick)
@@ -119,26 +119,24 @@ class Recorder:
 
     def _log_images(self, tick: Tick) -> None:
         senses = tick.observation
-        for path, image, quality in ((THERMAL, senses.thermal, 80), (COLOUR, senses.colour, 65)):
+        for path, image, quality in ((THERMAL, senses.thermal, 80), (COLOUR, senses.colour, 60)):
             self._rows.add(f"{path}/image", rr.EncodedImage, blob=[encode_jpeg(image, quality)])
 
     def _log_tracks(self, tick: Tick) -> None:
-        contour = TrackerConfig().contour if self._tracker is None else self._tracker.contour
-        self._log_lines("tracks/contours", marks.track_contours(tick.tracks, contour))
+        contours = self._contours(tick)
+        strips = [_from_corner(line) for line in contours.line]
+        self._rows.add(f"{THERMAL}/tracks/contours", rr.LineStrips2D, strips=strips, colors=contours.colour)
         on_thermal = marks.track_boxes(tick.tracks)
         on_colour = marks.track_boxes(tick.tracks, self._affine_at(TYPICAL_DEPTH_M))
         for path, boxes in ((THERMAL, on_thermal), (COLOUR, on_colour)):
             self._log_boxes(f"{path}/tracks/boxes", boxes, labels=boxes.label)
         self._log_arrows("tracks/occlusions", believed_arrows(tick.tracks))
 
-    def _log_evidence(self, tick: Tick) -> None:
-        if self._tracker is not None:
-            evidence = evidence_of(tick.observation.thermal, tick.tracks, self._tracker)
-            self._log_lines("tracks/evidence", section_marks(tick.tracks, evidence, self._tracker))
-
-    def _log_lines(self, layer: str, lines: marks.Lines) -> None:
-        strips = [_from_corner(line) for line in lines.line]
-        self._rows.add(f"{THERMAL}/{layer}", rr.LineStrips2D, strips=strips, colors=lines.colour)
+    def _contours(self, tick: Tick) -> marks.Lines:
+        if self._tracker is None:
+            return marks.track_contours(tick.tracks, ContourConfig())
+        evidence = evidence_of(tick.observation.thermal, tick.tracks, self._tracker)
+        return section_marks(tick.tracks, evidence, self._tracker)
 
     def _log_arrows(self, layer: str, arrows: Arrows) -> None:
         self._rows.add(
@@ -156,7 +154,7 @@ class Recorder:
 
     def _log_truth(self, tick: Tick) -> None:
         on_thermal = marks.truth_boxes(tick.truth.people)
-        on_colour = marks.truth_boxes(tick.truth.people, lambda away_m: self._affine_at(max(away_m, 0.3)))
+        on_colour = marks.truth_boxes(tick.truth.people, self._affine_near)
         for path, boxes in ((THERMAL, on_thermal), (COLOUR, on_colour)):
             self._log_boxes(f"{path}/truth/boxes", boxes)
             above = _from_corner(boxes.box[:, :2]) + boxes.box[:, 2:] * (0.5, 0.0) - (0.0, _NAME_HEIGHT_PX)
@@ -165,6 +163,10 @@ class Recorder:
             )
 
         self._log_arrows("truth/occlusions", true_arrows(tick.truth.people))
+
+    def _affine_near(self, away_m: float) -> Matrix:
+        """Map to the colour image at about this distance, which is worth a tenth of a pixel from 3 m on."""
+        return self._affine_at(max(round(away_m / _DEPTH_STEP_M), 1) * _DEPTH_STEP_M)
 
     def _log_boxes(self, path: str, boxes: marks.Boxes, **labels: list[str]) -> None:
         half = boxes.box[:, 2:] / 2.0

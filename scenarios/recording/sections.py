@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from scenarios.palette import Rgb
-from scenarios.recording.marks import Lines, colours_of
+from scenarios.palette import Rgb, track_colour
+from scenarios.recording.marks import Floats, Lines
 from tracker.config import TrackerConfig
-from tracker.contour import FEET
+from tracker.contour import FEET, SECTIONS
 from tracker.ellipse import section_lines
 from tracker.evidence import Evidence
 from tracker.track import Track
 
-# ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for one.
-_AGAINST, _UNDECIDED, _FOR = (215, 48, 39), (255, 255, 191), (69, 117, 180)
+# ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for one; in thresholds.
+_STEPS = (0.0, 1.0, 2.0)
+_SHADES = np.array([(215, 48, 39), (255, 255, 191), (69, 117, 180)])
 OUT_OF_VIEW: Rgb = (110, 110, 110)
 _HALF = 0.5  # share of a section that must be in view
 
@@ -23,23 +25,22 @@ _HALF = 0.5  # share of a section that must be in view
 def section_marks(tracks: Sequence[Track], evidence: Mapping[int, Evidence], config: TrackerConfig) -> Lines:
     """Draw every section of every track, from red, against a person, by pale yellow, undecided, to blue.
 
-    Undecided is the threshold of the fitness. What is mostly hidden or outside the image is grey.
+    Undecided is the threshold of the fitness. What is mostly hidden or outside the image is grey. The hips,
+    where no tracker looks, have the colour of the track.
     """
-    lines, colours = [], []
-    drawn = FEET + 1 if config.contour.feet_weight > 0 else FEET
-    for track in tracks:
-        its = evidence[track.id]
-        for section, line in enumerate(section_lines(track.ellipse, config.contour)[:drawn]):
-            lines.append(line.astype(np.float32))
-            is_seen = its.seen[section] >= _HALF
-            share = float(its.response[section]) / (2.0 * config.likelihood.threshold)
-            colours.append(_shade(share) if is_seen else OUT_OF_VIEW)
-    return Lines(lines, colours_of(colours))
+    drawn = np.ones(SECTIONS + 1, np.bool_)
+    drawn[FEET] = config.contour.feet_weight > 0
+    lines: list[Floats] = []
+    colours = np.zeros((len(tracks), SECTIONS + 1, 3), np.uint8)
+    for number, track in enumerate(tracks):
+        lines.extend(section_lines(track.ellipse, config.contour)[drawn].astype(np.float32))
+        colours[number, :SECTIONS] = _shades(evidence[track.id], config.likelihood.threshold)
+        colours[number, SECTIONS] = track_colour(track.id)
+    return Lines(lines, colours[:, drawn].reshape(-1, 3))
 
 
-def _shade(share: float) -> Rgb:
-    """Go from red at 0 by pale yellow at 0.5 to blue at 1."""
-    low, high, part = (_AGAINST, _UNDECIDED, 2 * share) if share < 0.5 else (_UNDECIDED, _FOR, 2 * share - 1)
-    mixed = np.array(low) + (np.array(high) - np.array(low)) * min(max(part, 0.0), 1.0)
-    red, green, blue = (round(float(value)) for value in mixed)
-    return red, green, blue
+def _shades(evidence: Evidence, threshold: float) -> NDArray[np.uint8]:
+    """Colour the sections (8, 3)."""
+    responses = np.nan_to_num(evidence.response) / threshold
+    shades = np.stack([np.interp(responses, _STEPS, channel) for channel in _SHADES.T], axis=1)
+    return np.where((evidence.seen >= _HALF)[:, None], np.rint(shades), OUT_OF_VIEW).astype(np.uint8)

@@ -45,7 +45,7 @@ def test_sections_go_from_red_to_blue_with_the_evidence() -> None:
         section_marks([made.TRACK], evidence(factor * threshold), PEOPLEBOY).colour.astype(int)
         for factor in (-1.0, 0.5, 1.0, 1.5, 3.0)
     ]
-    assert [len(shade) for shade in shades] == [SECTIONS] * 5
+    assert [len(shade) for shade in shades] == [SECTIONS + 1] * 5
     blue_over_red = [int(shade[0, 2] - shade[0, 0]) for shade in shades]
     assert blue_over_red == sorted(blue_over_red)
     assert blue_over_red[0] < -100
@@ -54,8 +54,8 @@ def test_sections_go_from_red_to_blue_with_the_evidence() -> None:
 
 def test_a_section_that_is_mostly_hidden_is_grey_whatever_was_measured() -> None:
     marks = section_marks([made.TRACK], evidence(np.nan, seen=0.2), PEOPLEBOY)
-    assert marks.colour.tolist() == [list(OUT_OF_VIEW)] * SECTIONS
+    assert marks.colour.tolist() == [list(OUT_OF_VIEW)] * SECTIONS + [list(track_colour(1))]
 
 
 def test_a_tracker_that_looks_at_no_feet_has_seven_sections() -> None:
-    assert len(section_marks([made.TRACK], evidence(0.5), TRACKERS["thesis"]).line) == SECTIONS - 1
+    assert len(section_marks([made.TRACK], evidence(0.5), TRACKERS["thesis"]).line) == 7 + 1

@@ -54,7 +54,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     "path",
     [
         f"{THERMAL}/image", f"{THERMAL}/tracks/boxes", f"{THERMAL}/tracks/contours", f"{THERMAL}/truth/boxes",
-        f"{THERMAL}/tracks/evidence", f"{THERMAL}/tracks/occlusions", f"{THERMAL}/truth/occlusions",
+        f"{THERMAL}/tracks/occlusions", f"{THERMAL}/truth/occlusions",
         f"{THERMAL}/particles/people", f"{THERMAL}/particles/detector", f"{COLOUR}/image",
         f"{COLOUR}/tracks/boxes", f"{COLOUR}/truth/boxes", "/world/robot", "/world/trails",
         "/world/occlusions", "/world/people/anna/body", "/world/people/ben/skeleton", "/curves/visible",
@@ -183,5 +183,5 @@ def test_a_killed_run_leaves_a_recording_that_opens(tmp_path: Path) -> None:
     killed = subprocess.run([sys.executable, "-c", _KILLED, str(path)], env=here, check=False)
     assert killed.returncode == -signal.SIGKILL
     frames = Recording(path).column(f"{THERMAL}/image", "frame")
-    assert len(frames) >= 30
+    assert len(frames) >= 60
     assert frames == list(range(1, len(frames) + 1))

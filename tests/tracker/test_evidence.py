@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tracker.contour import FEET, SHOULDER_LEFT, SIDE_LEFT, SIDE_RIGHT
+from tracker.contour import FEET, SECTIONS, SHOULDER_LEFT, SIDE_LEFT, SIDE_RIGHT
 from tracker.ellipse import outline, section_lines
 from tracker.evidence import evidence_of
 from tracker.measure import ContourModel
@@ -80,11 +80,11 @@ def test_evidence_is_between_minus_one_and_one_or_out_of_view_anywhere(
 
 def test_sections_are_drawn_along_the_outlines_and_none_over_another() -> None:
     lines = section_lines(STANDING, PEOPLEBOY.contour)
-    assert len(lines) == FEET + 1
+    assert len(lines) == SECTIONS + 1
     body, head = outline(STANDING, PEOPLEBOY.contour, count=3000)
     around = np.concatenate([body, head])
-    for line in lines[:FEET]:
+    for line in np.delete(lines, FEET, axis=0):
         away = np.linalg.norm(line[:, None] - around[None], axis=2).min(axis=1)
         assert away.max() < 0.1
-    middles = np.array([line[3] for line in lines])
-    assert len(np.unique(np.round(middles), axis=0)) == FEET + 1
+    middles = np.array([line[2] for line in lines])
+    assert len(np.unique(np.round(middles), axis=0)) == SECTIONS + 1
