@@ -99,6 +99,17 @@ def test_who_hid_a_person_whose_number_was_lost_is_in_the_headline(folders: dict
     assert [(stray.track, stray.first_frame, stray.last_frame) for stray in found.strays] == [(4, 70, 79)]
 
 
+def test_a_new_number_after_a_long_absence_is_no_lost_identity(tmp_path: Path) -> None:
+    found = outcome(toy.write_run(tmp_path / "run", toy.away_and_back, toy.behind_from_35_to_70))
+    assert headline(found) == (
+        "2 people, both tracked to the end; no identity lost; once somebody came back into the image under "
+        "a new number."
+    )
+    (loss,) = found.losses
+    assert loss.why.startswith("left the image")
+    assert not loss.is_bad
+
+
 def test_a_story_tells_what_could_be_seen_and_what_the_tracker_had(folders: dict[str, Path]) -> None:
     ben = outcome(folders["renumbered"]).stories[1]
     assert [(Sight(s.value), s.start, s.end) for s in spans(ben.sight)] == [

@@ -21,7 +21,7 @@ ANNA, BEN, NOWHERE = (60.0, 50.0, 40.0, 170.0), (220.0, 50.0, 40.0, 170.0), (140
 FRAMES = 90
 
 Boxes = Mapping[int, tuple[float, float, float, float]]  # of tracks, by number
-Hidden = Callable[[int], float]  # share of ben that anna hides, by frame
+Hidden = Callable[[int], float]  # share of ben that anna hides, by frame; more than 1: he is behind the robot
 
 
 def steady(frame: int) -> Boxes:  # noqa: ARG001
@@ -49,6 +49,16 @@ def renumbered(frame: int) -> Boxes:
 def hidden_from_40_to_60(frame: int) -> float:
     """Ben is wholly hidden in between."""
     return 1.0 if 40 <= frame < 60 else 0.0
+
+
+def away_and_back(frame: int) -> Boxes:
+    """Ben has number 2 up to frame 35, and number 5 from 71 on."""
+    return {1: ANNA} | ({2: BEN} if frame < 35 else {5: BEN} if frame > 70 else {})
+
+
+def behind_from_35_to_70(frame: int) -> float:
+    """Ben is behind the robot in between."""
+    return 2.0 if 35 <= frame <= 70 else 0.0
 
 
 def write_run(
@@ -83,7 +93,12 @@ def write_run(
 
 def _tick(frame: int, boxes: Boxes, hidden: float) -> Tick:
     tick = made.make_tick(frame)
-    people = (_at(made.person(1, "anna", 4.0), ANNA), _at(made.person(2, "ben", 6.0, hidden), BEN))
+    ben = _at(made.person(2, "ben", 6.0, min(hidden, 1.0)), BEN)
+    if hidden > 1.0:
+        ben = replace(
+            ben, box=None, whole_box=None, visible_box=None, whole_px=0, visible_fraction=0.0, hidden_by={}
+        )
+    people = (_at(made.person(1, "anna", 4.0), ANNA), ben)
     tracks = tuple(_track(number, box) for number, box in boxes.items())
     return replace(tick, truth=replace(tick.truth, people=people), tracks=tracks)
 
