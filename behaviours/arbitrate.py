@@ -66,9 +66,16 @@ class Guarded:
         wanted = self._behaviour.command(steady)
         self._memory = remember(self._memory, steady, MemoryConfig())
         self._passing = remember(self._passing, steady, PASSING, BESIDE_RAD)
-        safe = limit(wanted, steady, self._config, self._memory.points, self._passing.points)
+        safe = limit(wanted, steady, self._limits(), self._memory.points, self._passing.points)
         self.is_limited = safe != wanted
         return safe
+
+    def _limits(self) -> SafetyConfig:
+        """Creep as long as the sonars have heard nothing at all: they may be deaf."""
+        config = self._config
+        if self._deafness.has_heard:
+            return config
+        return replace(config, max_linear_m_s=min(config.max_linear_m_s, config.unproven_m_s))
 
     def _blindness(self, sight: Sight) -> str:
         """Tell why the images are of no use; empty if they are."""

@@ -30,18 +30,24 @@ class Deafness:
 
     A ring that hears nothing reports one and the same range, its reach, for all sonars. In a large hall that
     is how things are; but not just after an echo from nearby, nor with a person in front.
+
+    Attributes:
+        has_heard: whether any sonar has ever heard anything. A ring that has not may be deaf from the start, or
+            in the middle of a hall; nobody can tell which.
     """
 
     def __init__(self, config: DeafnessConfig | None = None) -> None:
         self._config = DeafnessConfig() if config is None else config
         self._nearest_m = np.inf
         self._is_deaf = False
+        self.has_heard = False
 
     def listen(self, sight: Sight) -> bool:
         """Tell whether the sonars are deaf; once they are, they stay so until one of them hears something."""
         ranges = sight.sonar_m
         if len(ranges) < 2 or not np.all(ranges == ranges[0]):
             self._nearest_m, self._is_deaf = float(np.min(ranges, initial=np.inf)), False
+            self.has_heard = True
             return False
         misses_echo = self._nearest_m < min(self._config.sure_m, float(ranges[0]))
         self._is_deaf = self._is_deaf or misses_echo or self._is_person_near(sight)

@@ -13,6 +13,9 @@ from behaviours.sight import Sight
 
 NOTHING_REMEMBERED: Points = np.zeros((0, 2))
 NOTHING_REMEMBERED.setflags(write=False)
+_NEAR_M = (
+    1.6  # [m] what is farther from the robot's origin does not come within the margin on its way to rest
+)
 _ARC_M = np.arange(1, 19) * 0.05  # ways at which room is looked for; from 0.8 m/s it stops in 0.84 m
 
 
@@ -25,12 +28,15 @@ class SafetyConfig:
     Attributes:
         max_linear_m_s: [m/s] forward speed limit, also backwards.
         max_angular_rad_s: [rad/s] turn rate limit.
+        unproven_m_s: [m/s] forward speed limit until the sonars have heard anything at all: slow enough to run
+            into a wall without harm, and a hall in which there is none to hear is left in time.
         braking_m_s2: [m/s2] deceleration to count on; less than the drive's 0.6, in reserve.
         reaction_s: [s] from an echo until the brakes act: a frame of latency, and a drive still speeding up.
         margin_m: [m] room left between the hull and any obstacle by driving; a turn on the spot may swing the
             tail nearer, as a robot beside a wall must be able to turn off it.
-        shallow_m, closest_m: [m] the margin may shrink by the former at a time, down to the latter: sonars
-            are not exact enough to tell a wall beside the way from one that slowly draws near.
+        noise_m, shallow, closest_m: [m], [m/m], [m] within the margin the room may shrink by the first, and by
+            the second per way, down to the third: sonars are not exact enough to tell a wall beside the way
+            from one that slowly draws near.
         off_middle_m: [m] in a passage too narrow for the margin the robot keeps this near to the middle.
         hull_m: [m] half the hull's width.
         front_m, rear_m: [m] from the origin to the hull's front and rear edge.
@@ -44,11 +50,13 @@ class SafetyConfig:
 
     max_linear_m_s: float = 0.8
     max_angular_rad_s: float = math.radians(150.0)
+    unproven_m_s: float = 0.2
     braking_m_s2: float = 0.5
     reaction_s: float = 0.25
     margin_m: float = 0.45
-    shallow_m: float = 0.03
-    closest_m: float = 0.3
+    noise_m: float = 0.01
+    shallow: float = 0.1
+    closest_m: float = 0.4
     off_middle_m: float = 0.1
     hull_m: float = 0.19
     front_m: float = 0.23
@@ -83,7 +91,8 @@ def limit(
     if not sight.is_sound:
         return STOP
     points = echoes(sight)
-    arc = _free_arc(command, np.concatenate([echoes(sight, spread_rad=BESIDE_RAD), passing]), config)
+    beside = np.concatenate([echoes(sight, spread_rad=BESIDE_RAD), passing])
+    arc = _free_arc(command, beside[np.hypot(beside[:, 0], beside[:, 1]) < _NEAR_M], config)
     ahead, behind = _free_way(points, config)
     backwards, forwards = -safe_speed(min(behind, arc), config), safe_speed(min(ahead, arc), config)
     turn = _safe_turn(command.angular_rad_s, np.concatenate([points, remembered]), config)
@@ -122,22 +131,26 @@ def _free_arc(command: Command, points: Points, config: SafetyConfig) -> float:
     bend = command.angular_rad_s / abs(command.linear_m_s)  # [rad/m]
     ways = _ARC_M[np.abs(bend) * _ARC_M < math.pi / 2.0]
     now = float(np.min(_gaps(points, config), initial=math.inf))
-    too_near = min(_side_margin(points, config), max(now - config.shallow_m, min(now, config.closest_m)))
+    allowed = np.maximum(now - config.noise_m - config.shallow * ways, min(now, config.closest_m))  # (K,)
+    margin_m = _side_margin(points, config) if command.linear_m_s > 0.0 else config.margin_m
+    too_near = np.minimum(margin_m, allowed)
     turned = bend * ways
     chord = math.copysign(1.0, command.linear_m_s) * ways * np.sinc(turned / math.tau)
     moved = points[None] - (chord * np.stack([np.cos(turned / 2.0), np.sin(turned / 2.0)])).T[:, None]
     cos, sin = np.cos(turned)[:, None], np.sin(turned)[:, None]
     x, y = moved[..., 0], moved[..., 1]
     then = _gaps(np.stack([cos * x + sin * y, cos * y - sin * x], axis=-1), config)  # (K, N)
-    is_too_near = (then < too_near).any(axis=1)
+    is_too_near = (then < too_near[:, None]).any(axis=1)
     return float(ways[np.argmax(is_too_near)]) - 0.05 if is_too_near.any() else math.inf
 
 
 def _side_margin(points: Points, config: SafetyConfig) -> float:
-    """Give the margin [m]; in a passage too narrow for it, as a door is, what is left in the middle."""
-    x, y = points.T
-    left = np.min(y[(x > -config.rear_m) & (y > config.hull_m)], initial=math.inf)
-    right = np.min(-y[(x > -config.rear_m) & (y < -config.hull_m)], initial=math.inf)
+    """Give the margin [m]; in a passage ahead too narrow for it, as a door is, what is left in the middle."""
+    x, y = points[points[:, 0] > -config.rear_m].T
+    if np.any((x > 0.0) & (np.abs(y) < config.half_width_m)):
+        return config.margin_m  # no way leads through there
+    left = np.min(y[y > 0.0], initial=math.inf)
+    right = np.min(-y[y < 0.0], initial=math.inf)
     middle = float(left + right) / 2.0 - config.hull_m
     return min(config.margin_m, max(middle - config.off_middle_m, 0.0))
 

@@ -36,7 +36,7 @@ def at(time_s, sight):
 )
 def test_scripted_commands_are_given_from_their_times_on(time_s, expected):
     behaviour = make_behaviour("scripted", script=SCRIPT)
-    assert behaviour.command(at(time_s, free())) == expected
+    assert behaviour.command(at(time_s, free(i12=3.0))) == expected
     assert behaviour.mode == "scripted"
 
 
@@ -63,7 +63,7 @@ def test_an_unknown_name_is_refused_with_the_names_there_are():
 
 def test_the_guard_stops_a_script_before_a_wall_and_says_so():
     behaviour = make_behaviour("scripted", script=((0.0, Command(linear_m_s=0.8, angular_rad_s=0.0)),))
-    behaviour.command(free())
+    behaviour.command(free(i12=3.0))
     assert not behaviour.is_limited
     assert behaviour.command(free(i3=0.3)).linear_m_s == 0.0
     assert behaviour.is_limited
@@ -95,3 +95,10 @@ def test_a_robot_sent_into_a_wall_stops_before_it(speed, slant, aside, seed):
     assert not log.is_contact.any()
     assert toy.speed < 0.05  # the noise of the sonar lets it creep by fits and starts
     assert 0.2 < np.min(ahead[np.abs(beside) < HALF_WIDTH]) - FRONT < 1.2
+
+
+def test_until_the_sonars_have_heard_anything_the_robot_creeps():
+    behaviour = make_behaviour("scripted", script=((0.0, Command(linear_m_s=0.8, angular_rad_s=0.0)),))
+    assert behaviour.command(free()).linear_m_s == pytest.approx(0.2)
+    assert behaviour.command(free(i12=4.0)).linear_m_s == pytest.approx(0.8)
+    assert behaviour.command(at(2.0, free())).linear_m_s == pytest.approx(0.8)
