@@ -32,8 +32,8 @@ class Deafness:
     is how things are; but not just after an echo from nearby, nor with a person in front.
 
     Attributes:
-        has_heard: whether any sonar has ever heard anything. A ring that has not may be deaf from the start, or
-            in the middle of a hall; nobody can tell which.
+        has_heard: whether any sonar has ever heard anything. A ring that has not may be deaf from the start,
+            or in the middle of a hall; nobody can tell which.
     """
 
     def __init__(self, config: DeafnessConfig | None = None) -> None:

@@ -28,15 +28,15 @@ class SafetyConfig:
     Attributes:
         max_linear_m_s: [m/s] forward speed limit, also backwards.
         max_angular_rad_s: [rad/s] turn rate limit.
-        unproven_m_s: [m/s] forward speed limit until the sonars have heard anything at all: slow enough to run
-            into a wall without harm, and a hall in which there is none to hear is left in time.
+        unproven_m_s: [m/s] forward speed limit until the sonars have heard anything at all: slow enough to
+            run into a wall without harm, and a hall in which there is none to hear is left in time.
         braking_m_s2: [m/s2] deceleration to count on; less than the drive's 0.6, in reserve.
         reaction_s: [s] from an echo until the brakes act: a frame of latency, and a drive still speeding up.
         margin_m: [m] room left between the hull and any obstacle by driving; a turn on the spot may swing the
             tail nearer, as a robot beside a wall must be able to turn off it.
-        noise_m, shallow, closest_m: [m], [m/m], [m] within the margin the room may shrink by the first, and by
-            the second per way, down to the third: sonars are not exact enough to tell a wall beside the way
-            from one that slowly draws near.
+        noise_m, shallow, closest_m: [m], [m/m], [m] within the margin the room may shrink by the first, and
+            by the second per way, down to the third: sonars are not exact enough to tell a wall beside the
+            way from one that slowly draws near.
         off_middle_m: [m] in a passage too narrow for the margin the robot keeps this near to the middle.
         hull_m: [m] half the hull's width.
         front_m, rear_m: [m] from the origin to the hull's front and rear edge.
