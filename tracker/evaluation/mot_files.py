@@ -1,6 +1,7 @@
 """Truth and tracks as MOTChallenge text: one line per box, comma separated, frames from 1.
 
-Truth: frame, id, left, top, width, height, 1 if counted else 0, class 1 (person), visible fraction.
+Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. Ours has class 1 (person)
+alone; of the other classes of MOT16 to MOT20, people and look-alikes that do not count are read as such.
 Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position).
 An empty file is a sequence without people, or a tracker that found nobody.
 """
@@ -17,21 +18,30 @@ from tracker.evaluation.sequence import Rows, Tracks, Truth, find_fault
 
 TRUTH_COLUMNS = "frame, id, left, top, width, height, counted, class, visible fraction"
 TRACKS_COLUMNS = "frame, id, left, top, width, height, confidence, x, y, z"
-PERSON = 1.0
+PERSON = 1
+DISTRACTORS = (2, 7, 8, 12)  # person on vehicle, static person, distractor, reflection
+CLASSES = range(1, 14)
 
 Kind = TypeVar("Kind", bound=Rows)
 
 
 def read_truth(path: Path) -> Truth:
-    """Read a truth file (`gt.txt`).
+    """Read a truth file (`gt.txt`); distractors do not count, and things are left out, as in TrackEval.
 
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
     """
     table = _read_table(path, TRUTH_COLUMNS)
-    for row in np.flatnonzero(table[:, 7] != PERSON)[:1]:
-        raise BadInput(f"{path}:{row + 1}: class must be 1 (person), got {table[row, 7]:g}")
-    return _build(path, Truth, table, counted=table[:, 6], visible=table[:, 8])
+    kind = table[:, 7]
+    for row in np.flatnonzero(~np.isin(kind, CLASSES))[:1]:
+        raise BadInput(f"{path}:{row + 1}: class must be 1 (person) to 13, got {kind[row]:g}")
+    is_distractor = np.isin(kind, DISTRACTORS)
+    truth = _build(path, Truth, table, counted=table[:, 6], visible=table[:, 8])
+    if (kind == PERSON).all():
+        return truth
+    table[is_distractor, 6] = 0.0
+    people = table[is_distractor | (kind == PERSON)]
+    return _build(path, Truth, people, counted=people[:, 6], visible=people[:, 8])
 
 
 def read_tracks(path: Path) -> Tracks:

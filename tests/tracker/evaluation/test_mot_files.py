@@ -70,7 +70,7 @@ def test_spaces_windows_line_ends_and_a_missing_last_newline_are_fine(tmp_path):
         ("1,2,10,20,-30,80,1,1,1", "width and height must be 0 or more, got 10, 20, -30, 80"),
         ("1,1,11,20,30,80,1,1,1", "an id must occur once in a frame, got 1"),
         ("1,2,10,20,30,80,2,1,1", "counted must be 0 or 1, got 2"),
-        ("1,2,10,20,30,80,1,3,1", "class must be 1 .person., got 3"),
+        ("1,2,10,20,30,80,1,14,1", "class must be 1 .person. to 13, got 14"),
         ("1,2,10,20,30,80,1,1,1.1", "visible fraction must be 0 to 1, got 1.1"),
         ("1,2,10,20,30,80,1,1,nan", "visible fraction must be 0 to 1, got nan"),
     ],
@@ -123,3 +123,14 @@ def test_impossible_arrays_are_refused_by_column_or_row():
         Truth(**one | {"box": [0, 0, 1, 1]})
     with pytest.raises(BadInput, match="truth: row 0: the visible fraction must be 0 to 1, got 2"):
         Truth(**one | {"visible": [2.0]})
+
+
+def test_other_classes_of_motchallenge_do_not_count_or_are_left_out(tmp_path):
+    path = tmp_path / "gt.txt"
+    kinds = {1: 1, 2: 1, 3: 8, 4: 3, 5: 7}  # id: class; 3 is a car
+    path.write_text(
+        "".join(f"1,{number},{100 * number},20,30,80,1,{kind},1\n" for number, kind in kinds.items())
+    )
+    truth = read_truth(path)
+    assert truth.id.tolist() == [1, 2, 3, 5]
+    assert truth.counted.tolist() == [True, True, False, False]
