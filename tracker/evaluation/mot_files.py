@@ -1,7 +1,7 @@
 """Truth and tracks as MOTChallenge text: one line per box, comma separated, frames from 1.
 
-Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. Ours has class 1 (person)
-alone; of the other classes of MOT16 to MOT20, people and look-alikes that do not count are read as such.
+Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. Ours has
+class 1 (person) alone; of the other classes of MOT16 to MOT20, those that do not count are read as such.
 Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position).
 An empty file is a sequence without people, or a tracker that found nobody.
 """
