@@ -30,7 +30,7 @@ BEHAVIOURS = {
 }
 POSTURES = {
     "standing": "upright, arms at the sides",
-    "sitting": "on a chair or block that stands there, or on nothing",
+    "sitting": "as on a chair, which may stand at that point",
     "bending": "bent forward",
     "arms_raised": "both arms up",
     "arms_crossed": "arms in front of the chest",

@@ -38,12 +38,12 @@ class Key:
 
 def scenario_keys() -> str:
     """List the keys of every part under a heading of its own."""
-    return "\n".join(_section(name, part) for name, part in _parts().items())
+    return "\n".join(_section(name, part) for name, part in parts_of_a_file().items())
 
 
-def keys() -> Iterator[Key]:
-    """List every key of every part of a scenario file."""
-    for part, model in _parts().items():
+def keys_of(parts: Mapping[str, dict[str, Any]]) -> Iterator[Key]:
+    """List every key of these parts of a scenario file."""
+    for part, model in parts.items():
         for name, field in model["properties"].items():
             is_required = name in model.get("required", ())
             yield Key(
@@ -62,7 +62,7 @@ def plain_meaning(part: str, name: str) -> str:
     return next((PLAIN_KEYS[f"{kind}.{name}"] for kind in classes if f"{kind}.{name}" in PLAIN_KEYS), "")
 
 
-def _parts() -> Mapping[str, dict[str, Any]]:
+def parts_of_a_file() -> Mapping[str, dict[str, Any]]:
     """Find the parts of a scenario file by class name, each after the one that it is first used in."""
     whole = ScenarioSpec.model_json_schema()
     parts = {"ScenarioSpec": whole}
@@ -74,12 +74,10 @@ def _parts() -> Mapping[str, dict[str, Any]]:
     return parts
 
 
-def _section(name: str, model: Mapping[str, Any]) -> str:
+def _section(name: str, model: dict[str, Any]) -> str:
     heading = "The whole file" if name == "ScenarioSpec" else title(name)
     rows = [
-        (f"`{key.name}`", key.unit, key.values, key.default, key.meaning)
-        for key in keys()
-        if key.part == name
+        (f"`{key.name}`", key.unit, key.values, key.default, key.meaning) for key in keys_of({name: model})
     ]
     head = ("key", "unit", "values", "left out", "meaning")
     return f"## {heading}\n\n{sentence(model['description'])}\n\n{table(head, rows)}"

@@ -1,0 +1,16 @@
+"""What a page or style sheet loads from a network."""
+
+from __future__ import annotations
+
+import re
+
+_SOURCES = re.compile(
+    r"""<(?:script|img|iframe|source|video|audio|embed)\b[^>]*?\bsrc=["']?((?:https?:)?//[^"'\s>]+)"""
+    r"""|<link\b[^>]*?\bhref=["']?((?:https?:)?//[^"'\s>]+)"""
+    r"""|(?:url\(|@import)\s*["']?((?:https?:)?//[^"'\s)]+)"""
+)
+
+
+def loads(text: str) -> list[str]:
+    """List the addresses that scripts, styles, images and frames come from; links to follow are no matter."""
+    return ["".join(found) for found in _SOURCES.findall(text)]

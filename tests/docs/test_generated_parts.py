@@ -1,0 +1,143 @@
+from functools import cache
+from typing import get_args
+
+import click
+import pytest
+from pages import DOCS
+from pydantic import BaseModel
+
+from docs.generate import choices, plain_keys, scenario_keys, trackers
+from docs.generate.offline import loads
+from docs.generate.parts import PARTS, PLACE, fill_in
+from docs.generate.settings import COLUMNS, settings_of
+from scenarios import schema
+from scenarios.cli import cli
+from scenarios.schema import FaultSpec, RobotSpec, WaypointSpec, json_schema
+from tracker import config
+from tracker.evaluation.table import FIGURES
+from tracker.people import TRACKERS
+
+SPECS = [
+    kind
+    for kind in vars(schema).values()
+    if isinstance(kind, type) and issubclass(kind, BaseModel) and kind.__name__.endswith("Spec")
+]
+
+
+KEYS = list(scenario_keys.keys_of(scenario_keys.parts_of_a_file()))
+
+
+@cache
+def page(name: str) -> str:
+    return fill_in((DOCS / "reference" / name).read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.__name__)
+def test_every_key_of_a_scenario_file_is_documented_with_a_meaning(spec: type[BaseModel]) -> None:
+    listed = {key.name: key for key in KEYS if key.part == spec.__name__}
+    assert listed.keys() == spec.model_fields.keys()
+    assert all(key.values and key.meaning for key in listed.values())
+    text = page("scenario.md")
+    assert all(f"| `{name}` |" in text for name in listed)
+
+
+def test_the_page_shows_limits_defaults_and_units_of_the_schema() -> None:
+    key = next(key for key in KEYS if (key.part, key.name) == ("DoorSpec", "width_m"))
+    door = json_schema()["$defs"]["DoorSpec"]["properties"]["width_m"]
+    assert (key.unit, key.values) == ("m", f"{door['minimum']:g} to {door['maximum']:g}")
+    assert key.default == f"`{door['default']}`"
+
+
+def test_no_meaning_is_kept_of_a_key_that_is_gone_or_speaks_for_itself() -> None:
+    said = {
+        (kind.__name__, name)
+        for spec in SPECS
+        for kind in spec.__mro__
+        for name, field in spec.model_fields.items()
+        if field.description is None
+    }
+    assert {tuple(key.split(".")) for key in plain_keys.PLAIN_KEYS} <= said
+
+
+@pytest.mark.parametrize(
+    ("described", "names"),
+    [
+        (choices.POSTURES, get_args(WaypointSpec.model_fields["posture"].annotation)),
+        (choices.BEHAVIOURS, get_args(RobotSpec.model_fields["behaviour"].annotation)),
+        (choices.FAULTS, get_args(FaultSpec.model_fields["kind"].annotation)),
+        (trackers.ABOUT, tuple(TRACKERS)),
+    ],
+    ids=["postures", "behaviours", "faults", "trackers"],
+)
+def test_what_can_be_chosen_is_what_is_described(described: dict[str, str], names: tuple[str, ...]) -> None:
+    assert set(described) == set(names)
+
+
+def test_every_name_that_the_schema_allows_is_on_the_page() -> None:
+    def words(value: object) -> set[str]:
+        if isinstance(value, dict):
+            own = set(value.get("enum", ())) if isinstance(value.get("enum"), list) else set()
+            return own.union(*(words(inner) for inner in value.values()))
+        return set().union(*(words(inner) for inner in value)) if isinstance(value, list) else set()
+
+    text = page("scenario.md")
+    assert not [word for word in words(json_schema()) if f"`{word}`" not in text]
+
+
+def test_every_command_and_option_is_documented() -> None:
+    text = page("commands.md")
+    for name, command in cli.commands.items():
+        assert f"## peopleboy {name}" in text
+        options = [option for option in command.params if isinstance(option, click.Option)]
+        assert all(max(option.opts, key=len) in text for option in options)
+
+
+def test_every_figure_is_documented() -> None:
+    text = page("metrics.md")
+    assert all(f"**{figure.name}**" in text and figure.meaning in text for figure in FIGURES)
+
+
+def test_settings_are_read_with_the_comments_above_and_beside_them() -> None:
+    text = (
+        "class A:\n"
+        "    one: int = 1  # beside\n"
+        "    # above, and on\n"
+        "    # two lines\n"
+        "    two: tuple[int, ...] = (\n"
+        "        2,\n"
+        "    )\n"
+    )
+    found = settings_of(text, "A")
+    assert [(setting.name, setting.comment) for setting in found] == [
+        ("one", "beside"),
+        ("two", "above, and on two lines"),
+    ]
+
+
+def test_the_settings_page_has_the_values_of_the_trackers() -> None:
+    text = page("settings.md")
+    assert COLUMNS["peopleboy"].life.death_frames != config.LifeConfig().death_frames
+    assert f"| **{COLUMNS['peopleboy'].life.death_frames}** |" in text
+
+
+def test_every_part_is_asked_for_by_one_page() -> None:
+    asked = [name for path in DOCS.rglob("*.md") for name in PLACE.findall(path.read_text(encoding="utf-8"))]
+    assert sorted(asked) == sorted(PARTS)
+
+
+def test_an_unknown_part_is_refused() -> None:
+    with pytest.raises(KeyError):
+        fill_in("<!-- generated: nothing -->")
+
+
+def test_what_a_page_loads_from_a_network_is_found_and_links_are_left_alone() -> None:
+    assert loads('<a href="https://x.org">x</a> <img src="../a.png"><script src="a.js"></script>') == []
+    assert loads('<script async src="https://x.org/a.js">') == ["https://x.org/a.js"]
+    assert loads("<link rel=stylesheet href=//x.org/a.css>") == ["//x.org/a.css"]
+    assert loads("a { background: url('https://x.org/a.png') }") == ["https://x.org/a.png"]
+
+
+def test_pictures_are_small() -> None:
+    sizes = [path.stat().st_size for path in (DOCS / "pictures").glob("*.png")]
+    assert max(sizes) < 200_000
+    assert sum(sizes) < 1_000_000
