@@ -6,7 +6,7 @@ from collections import deque
 from dataclasses import replace
 
 from behaviours.behaviour import Behaviour
-from behaviours.command import EMERGENCY_STOP, STOP, Command
+from behaviours.command import EMERGENCY_STOP, Command
 from behaviours.deafness import Deafness
 from behaviours.echoes import BESIDE_RAD, Points, fill_drop_outs
 from behaviours.memory import EchoMemory, MemoryConfig, remember
@@ -20,8 +20,9 @@ PASSING = MemoryConfig(keep_s=2.0, within_m=1.1)
 class Guarded:
     """A behaviour under guard: it sees sonars without drop-outs, and what it asks for is limited by them.
 
-    The robot stops at once when images stay out or nobody can tell who is in them, and drives no farther when
-    the sonars have gone deaf; the behaviour is not asked then, and goes on afterwards where it was.
+    The robot stops at once when images stay out, nobody can tell who is in them, or the sonars have gone
+    deaf; the behaviour is not asked then, and goes on afterwards where it was. Until the sonars have heard
+    anything at all, it creeps.
 
     Attributes:
         is_limited: whether the last command was changed.
@@ -62,7 +63,7 @@ class Guarded:
         steady = replace(sight, sonar_m=fill_drop_outs(list(self._recent)))
         if self._deafness.listen(steady):
             self._fault, self.is_limited = "the sonars hear nothing any more", True
-            return STOP
+            return EMERGENCY_STOP
         wanted = self._behaviour.command(steady)
         self._memory = remember(self._memory, steady, MemoryConfig())
         self._passing = remember(self._passing, steady, PASSING, BESIDE_RAD)
