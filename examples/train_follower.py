@@ -11,27 +11,25 @@ arrays (.npz), which load without pickles, after every round of learning, so tha
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from rich.console import Console
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.env_util import make_vec_env
 
 from examples.follower_view import FollowerView
-from examples.show import Figures, play, print_figures
+from examples.show import Controller, Figures, play, print_figures
 from scenarios.compare import bootstrap
 from scenarios.environment import PeopleBoyEnv
 from scenarios.load import load_scenario
 from scenarios.written_controller import WrittenController
 
-Weights = Mapping[str, NDArray[Any]]
 FIRST_SEED = 1000  # of the worlds in which they are compared
 
 
@@ -45,77 +43,67 @@ class Keep(BaseCallback):
     def _on_step(self) -> bool:
         return True
 
-    def _on_rollout_end(self) -> None:
+    def _on_rollout_start(self) -> None:
         np.savez(self._out, **{name: value.numpy() for name, value in self.model.policy.state_dict().items()})
         earned = [episode["r"] for episode in self.model.ep_info_buffer or ()]
         if earned:
             Console().print(f"{self.num_timesteps} decisions: an episode earns {np.mean(earned):.1f}")
 
+    _on_training_end = _on_rollout_start
 
-def make_model(env: Any, seed: int) -> PPO:
+
+def make_model(env: Any) -> PPO:
     """PPO with a policy of two small layers, on the CPU."""
     return PPO(
         "MlpPolicy", env, n_steps=512, batch_size=256, n_epochs=4, gamma=0.98, gae_lambda=0.95,
-        learning_rate=4e-4, ent_coef=0.002, seed=seed, device="cpu",
+        learning_rate=4e-4, ent_coef=0.002, seed=0, device="cpu",
         policy_kwargs={"net_arch": [64, 64], "log_std_init": -0.7},
     )  # fmt: skip
 
 
-def train(scenario: str, steps: int, seed: int, out: Path) -> None:
+def train(scenario: str, steps: int, out: Path) -> None:
     """Learn on the truth for about so many decisions, and leave the policy's weights by name."""
     torch.set_num_threads(1)
-    worlds = make_vec_env(
-        lambda: FollowerView(PeopleBoyEnv(scenario, observation="truth")), n_envs=4, seed=seed
-    )
-    make_model(worlds, seed).learn(steps, callback=Keep(out))
+    worlds = make_vec_env(lambda: FollowerView(PeopleBoyEnv(scenario, observation="truth")), n_envs=4, seed=0)
+    make_model(worlds).learn(steps, callback=Keep(out))
     worlds.close()
 
 
-def play_learned(scenario: str, weights: Weights, seeds: Sequence[int]) -> list[Figures]:
-    """Let the policy drive on what the tracker says."""
-    env = FollowerView(PeopleBoyEnv(scenario, observation="tracks"))
-    policy = make_model(env, seed=0).policy
-    policy.load_state_dict({name: torch.as_tensor(value) for name, value in weights.items()})
-    played = [play(env, lambda seen: policy.predict(seen, deterministic=True)[0], seed) for seed in seeds]
-    env.close()
-    return played
+def load_policy(env: FollowerView, file: Path) -> Controller:
+    """Make a controller from weights, without pickles."""
+    policy = make_model(env).policy
+    with np.load(file, allow_pickle=False) as weights:
+        policy.load_state_dict({name: torch.as_tensor(weights[name]) for name in weights})
+    return lambda seen: policy.predict(seen, deterministic=True)[0]
 
 
-def play_written(scenario: str, seeds: Sequence[int]) -> list[Figures]:
-    """Let the scenario's behaviour drive on what the tracker says."""
-    env, loaded = PeopleBoyEnv(scenario, observation="tracks"), load_scenario(scenario)
-    played = [play(env, WrittenController(loaded.make_behaviour()), seed) for seed in seeds]
+def compare(scenario: str, eyes: str, file: Path, seeds: Sequence[int]) -> dict[str, list[Figures]]:
+    """Let the learned policy and the scenario's own behaviour drive in the same worlds."""
+    env, loaded = PeopleBoyEnv(scenario, observation=eyes), load_scenario(scenario)
+    view = FollowerView(env)
+    policy = load_policy(view, file)
+    learned = [play(view, policy, seed) for seed in seeds]
+    written = [play(env, WrittenController(loaded.make_behaviour()), seed) for seed in seeds]
     env.close()
-    return played
+    return {"learned": learned, "written": written}
 
 
 @click.command()
 @click.option("--scenario", default="single_follow", show_default=True, help="Name or file.")
 @click.option("--steps", type=click.IntRange(min=0), default=100_000, show_default=True, help="Decisions.")
-@click.option(
-    "--seeds", type=click.IntRange(min=1), default=20, show_default=True, help="Worlds to compare in."
-)
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the training.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    default=Path("runs/follower.npz"),
-    show_default=True,
-    help="Weights.",
-)
-def main(scenario: str, steps: int, seeds: int, seed: int, out: Path) -> None:
+@click.option("--seeds", type=click.IntRange(min=1), default=20, show_default=True, help="How many worlds.")
+@click.option("--eyes", type=click.Choice(["tracks", "truth"]), default="tracks", help="To compare by.")
+@click.option("--out", type=click.Path(path_type=Path), default="runs/follower.npz", help="The weights.")
+def main(scenario: str, steps: int, seeds: int, eyes: str, out: Path) -> None:
     """Train a follower, and compare it with the written one."""
     if steps:
         out.parent.mkdir(parents=True, exist_ok=True)
-        train(scenario, steps, seed, out)
+        train(scenario, steps, out)
     elif not out.is_file():
         raise click.UsageError(f"{out}: there is no such file; train first, with --steps 100000")
-    with np.load(out, allow_pickle=False) as file:
-        weights = dict(file)
-    worlds = range(FIRST_SEED, FIRST_SEED + seeds)
-    runs = {"learned": play_learned(scenario, weights, worlds), "written": play_written(scenario, worlds)}
+    runs = compare(scenario, eyes, out, range(FIRST_SEED, FIRST_SEED + seeds))
     console = Console(width=110)
-    print_figures(f"{scenario}, on tracks, {seeds} seeds: mean [95 % interval]", runs, console)
+    print_figures(f"{scenario}, on {eyes}, {seeds} seeds: mean [95 % interval]", runs, console)
     gains = [one["reward"] - other["reward"] for one, other in zip(*runs.values(), strict=True)]
     gain = bootstrap(gains, np.random.default_rng(0))
     console.print(f"learned - written, reward: {gain.mean:+.2f} [{gain.low:+.2f}, {gain.high:+.2f}]")
