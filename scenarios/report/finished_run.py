@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,16 @@ from scenarios.run_events import LogLine
 from tracker.evaluation.mot_files import read_tracks, read_truth
 from tracker.evaluation.sequence import Tracks, Truth
 
+_BOX = ("left_px", "top_px", "width_px", "height_px")
+_PEOPLE = (
+    *("frame", "id", "name", "x_m", "y_m", "distance_m", "is_counted", *_BOX, "whole_px"),
+    *("visible_fraction", "occluded_fraction", "occluder", "hidden_by"),
+)
+_BELIEFS = (
+    *("frame", "id", "status", "confidence", "age_s", "uncertainty_px2", *_BOX),
+    *("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh"),
+)
+_ROBOT = ("x_m", "y_m", "mode")
 _NEEDED = ("scenario", "seed", "tracker", "renderer", "rate_hz", "versions", "frames")
 
 
@@ -33,9 +43,9 @@ class FinishedRun:
         events: what events.jsonl says.
         truth: the people of the sequence.
         tracks: what the tracker claimed.
-        people: `scenarios.tables.TRUTH`.
-        beliefs: `scenarios.tables.TRACKS`.
-        robot: `scenarios.tables.ROBOT`.
+        people: what a page needs of `scenarios.tables.TRUTH`.
+        beliefs: of `scenarios.tables.TRACKS`.
+        robot: of `scenarios.tables.ROBOT`.
     """
 
     folder: Path
@@ -92,9 +102,9 @@ def read_finished(folder: Path) -> FinishedRun:
         events=_read_events(folder / "events.jsonl"),
         truth=read_truth(folder / "truth" / "gt.txt"),
         tracks=read_tracks(folder / "tracks.txt"),
-        people=_read_table(folder / "truth.parquet"),
-        beliefs=_read_table(folder / "tracks.parquet"),
-        robot=_read_table(folder / "robot.parquet"),
+        people=_read_table(folder / "truth.parquet", _PEOPLE),
+        beliefs=_read_table(folder / "tracks.parquet", _BELIEFS),
+        robot=_read_table(folder / "robot.parquet", _ROBOT),
     )
 
 
@@ -116,8 +126,11 @@ def _read_events(path: Path) -> tuple[LogLine, ...]:
         raise BadInput(f"{path}: cannot be read as an event log; run the scenario again") from error
 
 
-def _read_table(path: Path) -> pa.Table:
+def _read_table(path: Path, columns: Sequence[str]) -> pa.Table:
     try:
-        return pq.read_table(path)
+        lacking = [name for name in columns if name not in pq.read_schema(path).names]
+        if lacking:
+            raise BadInput(f"{path}: has no column {lacking[0]!r}; run the scenario again")
+        return pq.read_table(path, columns=list(columns))
     except (OSError, pa.ArrowException) as error:
         raise BadInput(f"{path}: cannot be read as a table; run the scenario again") from error

@@ -104,7 +104,8 @@ def _people(outcome: Outcome) -> str:
     aside = f" ({never} more never came within 3 to 10 m in sight)" if never else ""
     if due == 1:
         return f"1 person, {'' if tracked else 'not '}tracked to the end{aside}"
-    which = {0: "none", due: "both" if due == 2 else "all"}.get(tracked, f"{tracked} of them")
+    lost = [spoken(s.name) for s in outcome.stories if tracked_to_end(outcome.run, s) is False]
+    which = {0: "none", due: "both" if due == 2 else "all"}.get(tracked, f"all but {listed(lost)}")
     return f"{due} people, {which} tracked to the end{aside}"
 
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 import toy_runs as toy
 from hypothesis import given
@@ -204,3 +205,10 @@ def test_a_spoilt_run_is_refused_with_the_file_s_name(tmp_path: Path, file: str,
     (folder / file).write_text(content)
     with pytest.raises(BadInput, match=file.replace(".", r"\.")):
         read_finished(folder)
+
+
+def test_a_table_of_another_version_is_refused_with_the_column_that_it_lacks(tmp_path: Path) -> None:
+    path = toy.write_run(tmp_path / "run") / "truth.parquet"
+    pq.write_table(pq.read_table(path).drop_columns(["occluder"]), path)
+    with pytest.raises(BadInput, match="has no column 'occluder'"):
+        read_finished(path.parent)
