@@ -113,7 +113,8 @@ def draw_tracks(
                 draw_line(canvas, line, shade, scale, thickness + extra)
     for track in tracks:
         box = map_box(track.box, mapping)
-        _label(canvas, _track_text(track), box, track_colour(track.id), scale, taken)
+        if _is_inside(box, canvas, scale):
+            _label(canvas, _track_text(track), box, track_colour(track.id), scale, taken)
     return canvas
 
 
