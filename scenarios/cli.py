@@ -17,6 +17,7 @@ from scenarios.commands.render import render
 from scenarios.commands.report import report
 from scenarios.commands.run import run
 from scenarios.commands.study import datasets, reproduce, train_occlusion
+from scenarios.commands.track import track
 from scenarios.commands.view import view
 
 BAD_INPUT = 2
@@ -29,6 +30,7 @@ COMMANDS = (
     render,
     evaluate,
     compare,
+    track,
     view,
     report,
     export,

@@ -80,7 +80,7 @@ def truth_rows(tick: Tick) -> list[Row]:
 
 def track_rows(tick: Tick) -> list[Row]:
     """Rows of the tracks table for one tick: one per track, tentative ones too."""
-    return [_track_row(tick, track) for track in tick.tracks]
+    return [track_row(tick.frame, tick.truth.time_s, track) for track in tick.tracks]
 
 
 def robot_row(tick: Tick) -> Row:
@@ -148,7 +148,8 @@ def _person_row(tick: Tick, person: PersonTruth) -> Row:
     return _instant(tick) | row | boxes
 
 
-def _track_row(tick: Tick, track: Track) -> Row:
+def track_row(frame: int, time_s: float, track: Track) -> Row:
+    """Row of the tracks table for one track at one instant."""
     ellipse = track.ellipse
     state = {name: getattr(ellipse, name) for name in ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")}
     row = {
@@ -158,4 +159,4 @@ def _track_row(tick: Tick, track: Track) -> Row:
         "age_s": track.age_s,
         "uncertainty_px2": track.uncertainty_px2,
     }
-    return _instant(tick) | row | _box("", track.box) | state
+    return {"frame": frame, "time_s": time_s} | row | _box("", track.box) | state

@@ -42,9 +42,10 @@ TRACKERS: Mapping[str, TrackerConfig] = {
 """Each tracker's settings by name; the first is the default. `learned` also has a learned order in depth."""
 
 DEFAULT_TRACKER = "peopleboy"
+FOOTAGE_TRACKER = "footage"
 
 
-def make_tracker(name: str, rng: np.random.Generator) -> Tracker:
+def make_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
     """Make the tracker of that name.
 
     Raises:

@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 
-from tracker.config import REFERENCE_HEIGHT_PX, FilterConfig, LimitsConfig, MotionConfig
+from tracker.config import REFERENCE_HEIGHT_PX, FilterConfig, LimitsConfig, MotionConfig, TrackerConfig
 from tracker.particles import STATE_SIZE, VH, VW, VX, VY, D, Floats, H, W, X, Y
+
+BOX_SPREAD = 0.05  # of a person within a box that is known, as a share of its sides
 
 
 def draw_prior(
@@ -56,3 +58,23 @@ def _rows(height: int, h: Floats, limits: LimitsConfig, chance: Floats) -> Float
 def _between(limits: tuple[float, float], chance: Floats) -> Floats:
     drawn: Floats = np.float32(limits[0]) + np.float32(limits[1] - limits[0]) * chance
     return drawn
+
+
+def draw_around(
+    box: tuple[float, float, float, float], config: TrackerConfig, rng: np.random.Generator
+) -> Floats:
+    """Draw samples (N, 9) of a standing person whose box [px] is known.
+
+    The box gives top, height and column; its width may be that of arms and a stride, so that of the body is
+    drawn from what bodies may have.
+    """
+    left, top, width, height = box
+    limits, count = config.person.limits, config.person.count
+    h = height / config.box.height_per_h * np.exp(BOX_SPREAD * rng.standard_normal(count))
+    state = np.zeros((count, STATE_SIZE), dtype=np.float32)
+    state[:, H] = h
+    state[:, X] = left + width / 2 + BOX_SPREAD * width * rng.standard_normal(count)
+    state[:, Y] = top + (1 + 2 / config.contour.head_divisor + config.box.hair_per_h) * h
+    state[:, W] = h * rng.uniform(*limits.ratio_wh, count)
+    state[:, D] = state[:, W] * rng.uniform(*limits.ratio_dw, count)
+    return state

@@ -21,6 +21,7 @@ from tracker.measure import ContourModel
 from tracker.order import ORDERS, Order
 from tracker.particles import Particles, W, ellipse_of
 from tracker.person import SIZE, Person
+from tracker.prior import draw_around
 from tracker.track import Status, Track
 
 FIRST_STEP_S = 1 / 15
@@ -44,6 +45,14 @@ class PeopleTracker:
         self._persons: tuple[Person, ...] = ()
         self._memories: tuple[Person, ...] = ()
         self._born = 0
+        self._introduced: tuple[float, float, float, float] | None = None
+
+    def introduce(self, box: tuple[float, float, float, float]) -> None:
+        """Tell that a person is at this box [px] in the next frame, as trackers of single objects are told.
+
+        The person's filter starts there, and the detector keeps off it.
+        """
+        self._introduced = box
 
     @property
     def particles(self) -> Mapping[int, Particles]:
@@ -67,6 +76,9 @@ class PeopleTracker:
         )
         persons = follow(self._persons, view, self._config, self._order, self._rng)
         self._part(persons)
+        if self._introduced is not None:
+            self._meet(self._introduced, view, frame.time_s)
+            self._introduced = None
         newcomer = self._search(view, frame.time_s)
         tracks = [
             self._track(person, frame.time_s)
@@ -141,6 +153,13 @@ class PeopleTracker:
             )
         self._persons = tuple(sorted((*self._persons, found), key=lambda person: person.id))
         return ()
+
+    def _meet(self, box: tuple[float, float, float, float], view: View, time_s: float) -> None:
+        """Start a filter on samples around a person who is pointed out."""
+        state = draw_around(box, self._config, self._rng)
+        found = self._newborn(weigh(state, view, self._config.person, self._config), view, time_s)
+        self._born = found.id
+        self._persons = (*self._persons, found)
 
     def _newborn(self, belief: Belief, view: View, time_s: float) -> Person:
         person = Person(

@@ -1,0 +1,134 @@
+"""The command `track`: people in footage that others recorded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bad_input import BadInput
+
+if TYPE_CHECKING:
+    from scenarios.footage.track_footage import Tracked
+
+_TRACKERS = "footage, peopleboy, learned, thesis, colour, thermal, paper"
+
+
+@click.command()
+@click.argument("footage", metavar="FOLDER|VIDEO", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder to leave.")
+@click.option("--colour", type=click.Path(path_type=Path), help="The same view in colour, as many pictures.")
+@click.option(
+    "--temperature-range",
+    type=(float, float),
+    metavar="LOW HIGH",
+    help="degC that 0 and 255 of 8-bit pictures stand for.",
+)
+@click.option(
+    "--scale",
+    metavar="GAIN,OFFSET",
+    help="16-bit counts to degC: 'centikelvin', or degC = GAIN counts + OFFSET.",
+)
+@click.option("--black-hot", is_flag=True, help="Warm things are dark.")
+@click.option(
+    "--rate-hz",
+    type=click.FloatRange(min=0.1, max=1000.0),
+    help="Pictures a second.  [default: the video's own; 15 for a folder]",
+)
+@click.option("--tracker", default="footage", show_default=True, help=f"One of {_TRACKERS}.")
+@click.option(
+    "--truth",
+    type=click.Path(path_type=Path),
+    help="VOT, OTB or MOTChallenge truth.  [default: what lies beside the pictures]",
+)
+@click.option(
+    "--start",
+    metavar="X,Y,W,H|truth",
+    help="Where a person is in the first picture, as trackers of single objects are told.",
+)
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all that is random."
+)
+@click.option("--film", is_flag=True, help="Write overlay.mp4 too; needs peopleboy[export].")
+@click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
+def track(
+    footage: Path,
+    out: Path,
+    colour: Path | None,
+    temperature_range: tuple[float, float] | None,
+    scale: str | None,
+    black_hot: bool,
+    rate_hz: float | None,
+    tracker: str,
+    truth: Path | None,
+    start: str | None,
+    seed: int,
+    film: bool,
+    overwrite: bool,
+) -> None:
+    """Track people in a folder of thermal pictures (PNG, TIFF, JPEG, BMP; 8 or 16 bit) or in a video.
+
+    Leaves tracks.txt (MOTChallenge), tracks.parquet, run.json and contact_sheet.png; metrics.json if there is
+    truth. Without temperatures the grey follows the scene's contrast.
+    """
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from scenarios.footage.grey import Radiometry, parse_scale
+    from scenarios.footage.track_footage import TrackOptions, track_footage
+
+    options = TrackOptions(
+        footage=footage,
+        out=out,
+        colour=colour,
+        radiometry=Radiometry(
+            span_c=temperature_range,
+            scale=None if scale is None else parse_scale(scale),
+            is_inverted=black_hot,
+        ),
+        rate_hz=rate_hz,
+        tracker=tracker,
+        truth=truth,
+        start=None if start is None else _parse_start(start),
+        seed=seed,
+        film=film,
+        overwrite=overwrite,
+    )
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(footage.name, total=None)
+        tracked = track_footage(
+            options,
+            lambda frame, expected: progress.update(task, completed=frame, total=max(expected, frame)),
+        )
+    _tell(tracked, out)
+
+
+def _parse_start(text: str) -> tuple[float, float, float, float] | str:
+    if text == "truth":
+        return text
+    try:
+        x, y, width, height = (float(part) for part in text.split(","))
+    except ValueError:
+        raise BadInput(f"--start must be X,Y,W,H in pixels or 'truth', got {text!r}") from None
+    if not (width > 0 and height > 0):
+        raise BadInput(f"--start must have a width and height above 0, got {text!r}")
+    return x, y, width, height
+
+
+def _tell(tracked: Tracked, out: Path) -> None:
+    from scenarios.show_scores import print_scores
+
+    for note in tracked.notes:
+        click.echo(f"peopleboy: {note}", err=True)
+    if tracked.scores is not None and not tracked.is_single:
+        print_scores(tracked.scores)
+    if tracked.scores is not None and tracked.is_single:
+        mot, found = tracked.scores.mot, tracked.scores.thesis.cr
+        click.echo(
+            f"One id keeps the annotated person in {mot.identity.idr:.1f} % of its frames (IoU 0.5), any in "
+            f"{found:.1f} %; {mot.clear.switches} identity switches. Others are not annotated."
+        )
+    click.echo(f"{tracked.frames} frames, {tracked.tracks} tracks, {tracked.per_second:.0f} frames/s")
+    click.echo(f"{out / 'contact_sheet.png'} shows them.")
