@@ -29,7 +29,9 @@ class Labels:
     taken: list[Box] = field(default_factory=list)
 
     def block(self, x: float, y: float, radius_m: float) -> None:
-        """Keep words off a disc."""
+        """Keep words off a disc; one outside the axes keeps off nothing."""
+        if not self._shows(x, y):
+            return
         self.taken.append((x - radius_m, y - radius_m, x + radius_m, y + radius_m))
 
     def write(self, x: float, y: float, text: str, *, size: float = 7.0, **style: Any) -> None:

@@ -37,7 +37,7 @@ def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, 
     start = way.places[0]
     axes.add_patch(Circle(start, 0.11, facecolor=colour, edgecolor="white", lw=1.0, zorder=8))
     labels.block(start[0], start[1], 0.12)
-    for x, y in way.places[:: round(0.25 / _STEP_S)]:
+    for x, y in np.unique(np.round(way.places, 1), axis=0):  # once where the person stands
         labels.block(x, y, 0.05)
     entry = f", from {person.enter_s:.1f} s" if person.enter_s > 0.0 else ""
     name = f"{person.name} {person.height_m:.2f} m{entry}"
