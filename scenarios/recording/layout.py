@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import rerun as rr
 import rerun.blueprint as rrb
 
@@ -25,9 +27,7 @@ def lay_out(config: WorldConfig) -> rrb.Blueprint:
         _plot("offset", "Offset of tracks [half widths]", (-1.05, 1.05), has_legend=False),
         _plot("motion", "Speed and turn rate", (-1.6, 1.6)),
     ]
-    right = rrb.Vertical(
-        rrb.Horizontal(colour, events, column_shares=[1.0, 1.0]), _world_view(config.place.bounds)
-    )
+    right = rrb.Vertical(rrb.Horizontal(colour, events, column_shares=[1.0, 1.0]), _world_view(config))
     above = rrb.Horizontal(thermal, right, column_shares=[1.0, 1.0])
     return rrb.Blueprint(
         rrb.Vertical(above, rrb.Horizontal(*plots), row_shares=[3.0, 1.0]),
@@ -42,10 +42,12 @@ def _image_view(path: str, name: str, camera: Camera) -> rrb.Spatial2DView:
     return rrb.Spatial2DView(origin=path, name=name, visual_bounds=bounds)
 
 
-def _world_view(bounds: tuple[float, float, float, float]) -> rrb.Spatial3DView:
-    """Look at the whole place from above and aside; trails are shown from the start up to now."""
-    min_x, min_y, max_x, max_y = bounds
+def _world_view(config: WorldConfig) -> rrb.Spatial3DView:
+    """Look over the robot's right shoulder at the whole place; trails are shown from the start up to now."""
+    min_x, min_y, max_x, max_y = config.place.bounds
     x, y, size = (min_x + max_x) / 2, (min_y + max_y) / 2, max(max_x - min_x, max_y - min_y)
+    ahead, left = math.cos(config.robot.heading_rad), math.sin(config.robot.heading_rad)
+    back, aside, up = 0.55 * size, 0.35 * size, 0.45 * size
     start, now = rr.TimeRangeBoundary.infinite(), rr.TimeRangeBoundary.cursor_relative()
     so_far = rrb.VisibleTimeRanges(
         [rr.VisibleTimeRange(timeline, start=start, end=now) for timeline in ("frame", "time")]
@@ -58,7 +60,7 @@ def _world_view(bounds: tuple[float, float, float, float]) -> rrb.Spatial3DView:
         name="World",
         overrides={TRAILS: so_far},
         eye_controls=rrb.EyeControls3D(
-            position=(x - 0.3 * size, y - 0.5 * size, 0.45 * size),
+            position=(x - back * ahead + aside * left, y - back * left - aside * ahead, up),
             look_target=(x, y, 0.0),
             eye_up=(0.0, 0.0, 1.0),
         ),

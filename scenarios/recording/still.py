@@ -46,8 +46,8 @@ class Still:
             self._log_solids(f"world/place/{group}", [s for f in fixtures for s in fixture_solids(f)], fill)
         self._log_solids("world/robot/body", urdf_solids(URDF), FillMode.Solid)
         # The colour camera's picture hangs nearer: it covers the middle of the thermal one.
-        self._log_camera(THERMAL, config.robot.thermal.camera, tuple(LAYERS), reach_m=1.0)
-        self._log_camera(COLOUR, config.robot.colour.camera, ON_COLOUR, reach_m=0.6)
+        self._log_camera(THERMAL, config.robot.thermal.camera, tuple(LAYERS), reach_m=1.4)
+        self._log_camera(COLOUR, config.robot.colour.camera, ON_COLOUR, reach_m=0.8)
         self._log(TRAILS, rr.LineStrips3D.from_fields(radii=[0.02]))
         self._log(OCCLUSIONS, rr.Arrows3D.from_fields(radii=[0.03]))
         for curve, (labels, shades) in _ROBOT_CURVES.items():

@@ -1,0 +1,121 @@
+"""What one run gives, in one picture: `python -m docs.generate.pictures.overview` draws docs/overview.png."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Rectangle, Wedge
+from numpy.typing import NDArray
+
+from docs.generate.pictures.moments import ticks
+from docs.generate.pictures.paper import panels, show
+from scenarios.labels import Labels
+from scenarios.load import load_scenario
+from scenarios.loop import Tick
+from scenarios.overlay import draw_tracks, enlarge, show_thermal
+from scenarios.palette import ROBOT, Rgb, person_colour
+from scenarios.plan_place import draw_floor, draw_things, draw_walls
+from scenarios.scenario import Scenario
+from sim.robot.peoplebot import RADIUS_M
+from sim.truth import BORDER, PersonTruth, Truth
+
+PATH = Path(__file__).parents[2] / "overview.png"
+SCENARIO, SEED, FRAME = "crossing_4", 0, 41
+SCALE = 3
+LEAST_SHARE = 0.02  # hidden, from which it is said by whom
+NIGHT: Rgb = (24, 26, 32)
+TITLES = (
+    "thermal image, 24..36 °C, and what the tracker makes of it",
+    "colour image, from a camera 6 cm beside",
+    "truth: who, which part of the body, how much is visible",
+    "truth: who is where, and who hides how much of whom",
+)
+
+
+def overview() -> Figure:
+    """Draw one instant of a crossing of four people."""
+    *_, (_, tick) = ticks(SCENARIO, SEED, FRAME)
+    figure, (thermal, colour, truth, plan) = panels(TITLES, 8.7, columns=2)
+    show(thermal, draw_tracks(enlarge(show_thermal(tick.observation.thermal), SCALE), tick.tracks, SCALE))
+    show(colour, tick.observation.colour)
+    _draw_truth(truth, tick.truth)
+    _draw_plan(plan, load_scenario(SCENARIO), tick)
+    return figure
+
+
+def _draw_truth(axes: Axes, truth: Truth) -> None:
+    show(axes, _bodies(truth))
+    height, width = truth.instance.shape
+    axes.set_xlim(-0.5, width - 0.5)
+    axes.set_ylim(height - 0.5, -0.5)
+    for row, person in enumerate(truth.people):
+        colour = _shade(person)
+        text = f"{person.name}: {person.visible_fraction:.0%} visible"
+        axes.text(6, 14 + 13 * row, text, color=colour, fontsize=9, va="center")
+        if person.box is not None:
+            left, top, box_width, box_height = person.box
+            box = Rectangle((left, top), box_width, box_height, fill=False, ec=colour, ls=(0, (4, 2)), lw=1.3)
+            axes.add_patch(box)
+
+
+def _bodies(truth: Truth) -> NDArray[np.uint8]:
+    """Paint everybody's visible pixels (H, W, 3), each part of the body in a shade of its own."""
+    picture = np.empty((*truth.instance.shape, 3), np.uint8)
+    picture[:] = NIGHT
+    shades = 0.55 + 0.45 * (truth.body_part * 5 % 7) / 6.0
+    for person in truth.people:
+        mask = truth.instance == person.id
+        picture[mask] = (shades[mask, None] * np.array(person_colour(person.id))).astype(np.uint8)
+    return picture
+
+
+def _draw_plan(axes: Axes, scenario: Scenario, tick: Tick) -> None:
+    """Draw the place from above, the robot's view, everybody, and arrows from who hides to who is hidden."""
+    min_x, min_y, max_x, max_y = scenario.place.bounds
+    axes.set_xlim(min_x, max_x)
+    # As wide as high as the images beside it.
+    axes.set_ylim(*((min_y + max_y) / 2.0 + np.array((-0.375, 0.375)) * (max_x - min_x)))
+    axes.set_aspect("equal")
+    labels = Labels(axes)
+    draw_floor(axes, scenario.plan)
+    draw_walls(axes, labels, scenario.place)
+    draw_things(axes, labels, scenario.place)
+    robot, camera = tick.truth.robot, tick.truth.camera
+    half = math.degrees(math.atan(camera.width / 2.0 / camera.focal_px))
+    ahead, tone = math.degrees(robot.heading), np.array(ROBOT) / 255.0
+    axes.add_patch(Wedge((robot.x, robot.y), 12.0, ahead - half, ahead + half, fc=(*tone, 0.08), zorder=1))
+    axes.add_patch(Circle((robot.x, robot.y), RADIUS_M, fc=tone, ec="0.2", zorder=5))
+    axes.text(robot.x, robot.y - 0.35, "robot", fontsize=9, ha="center", va="top")
+    for person in tick.truth.people:
+        x, y = person.position_m
+        axes.add_patch(Circle((x, y), 0.22, fc=_shade(person), ec="0.2", zorder=5))
+        axes.text(x, y - 0.3, person.name, fontsize=9, ha="center", va="top", zorder=7)
+    for front, behind, share in _hiding(tick.truth.people):
+        style = {"arrowstyle": "-|>", "color": "0.15", "lw": 1.3, "shrinkA": 7, "shrinkB": 7}
+        axes.annotate("", behind.position_m, front.position_m, arrowprops=style, zorder=6)
+        x, y = (np.array(front.position_m) + behind.position_m) / 2.0
+        axes.text(x, y + 0.12, f"{share:.0%}", fontsize=9, ha="center", weight="bold", zorder=7)
+
+
+def _hiding(people: tuple[PersonTruth, ...]) -> Iterator[tuple[PersonTruth, PersonTruth, float]]:
+    """Yield who hides, who is hidden, and the share."""
+    known = {person.name: person for person in people}
+    for behind in people:
+        for name, share in behind.hidden_by.items():
+            if name != BORDER and name in known and share >= LEAST_SHARE:
+                yield known[name], behind, share
+
+
+def _shade(person: PersonTruth) -> tuple[float, float, float]:
+    red, green, blue = person_colour(person.id)
+    return red / 255.0, green / 255.0, blue / 255.0
+
+
+if __name__ == "__main__":
+    overview().savefig(PATH, dpi=100, facecolor="white", pil_kwargs={"optimize": True})
+    print(PATH)
