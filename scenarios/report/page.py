@@ -109,6 +109,8 @@ def write_report(paths: Sequence[Path], out: Path) -> None:
     Raises:
         BadInput: there is no complete run, or the page cannot be written.
     """
+    if out.is_dir():
+        raise BadInput(f"{out}: is a folder; give --out a file that ends in .html")
     text = render(read_columns(paths))
     part = out.with_name(f"{out.name}.part")
     try:

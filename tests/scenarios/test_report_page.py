@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import toy_runs as toy
 
+from bad_input import BadInput
 from scenarios.cli import main
 from scenarios.load import load_scenario
 from scenarios.report.page import write_report
@@ -138,6 +139,16 @@ def test_what_is_no_complete_run_is_refused_in_one_line(
     assert ended.value.code == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert not list(tmp_path.glob("page*"))
+
+
+def test_a_page_that_cannot_be_written_is_refused_and_nothing_is_left(runs: Path, tmp_path: Path) -> None:
+    for out, why in (
+        (tmp_path, "is a folder"),
+        (tmp_path / "missing" / "page.html", "cannot write the page"),
+    ):
+        with pytest.raises(BadInput, match=why):
+            write_report([runs / "other"], out)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_command_writes_the_page_into_the_run(runs: Path, capsys: pytest.CaptureFixture[str]) -> None:
