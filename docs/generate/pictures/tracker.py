@@ -74,7 +74,7 @@ def _judged(
     says = differences[model.probes.section]
     style: dict[str, Any] = {
         "c": says,
-        "cmap": "RdYlGn",
+        "cmap": "RdYlBu",
         "norm": Normalize(-1.0, 1.0),
         "edgecolors": "black",
         "linewidths": 0.4,
