@@ -87,5 +87,5 @@ def why_lost(now: Track, was: Track, width_px: int) -> str:
             return f"left the image on the {side}"
     if was.status is Status.TOTALLY_OCCLUDED:
         by = "" if was.occluder is None else f" by track {was.occluder}"
-        return f"hidden{by} for too long"
+        return f"hidden{by} for too long to know where"
     return f"the contour is gone, confidence {now.confidence:.2f}"

@@ -35,7 +35,7 @@ def test_who_was_hidden_and_forgotten_is_re_identified_under_the_old_id() -> Non
         ["detected"], ["hidden"], ["lost"], [], ["re-identified"],
     ]  # fmt: skip
     assert found[1][0].by == 2
-    assert found[2][0].why == "hidden by track 2 for too long"
+    assert found[2][0].why == "hidden by track 2 for too long to know where"
     assert found[4][0].why == "after 3.0 s"
 
 

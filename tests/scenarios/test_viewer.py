@@ -15,6 +15,7 @@ import pytest
 import synthetic_ticks as made
 
 from bad_input import BadInput
+from scenarios.cli import main
 from scenarios.recording.recorder import Recorder
 from scenarios.recording.viewer import NO_SCREEN, live_viewer, open_viewer, serve
 
@@ -99,6 +100,16 @@ def test_a_viewer_shows_a_run_while_it_is_recorded_and_the_file_is_written_too(t
 def test_without_a_screen_the_native_viewer_says_so_in_one_line(run: Path) -> None:
     with pytest.raises(BadInput, match=f"^{NO_SCREEN}$"):
         open_viewer(run / "recording.rrd")
+
+
+@pytest.mark.parametrize("arguments", [("crossing_2", "--no-rrd"), ("dataset1",)])
+def test_there_is_nothing_to_show_live_without_the_recording_of_one_run(
+    arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["run", "--live", *arguments])
+    assert stop.value.code == 2
+    assert capsys.readouterr().err.startswith("peopleboy: --live: shows the recording of one run")
 
 
 def test_a_missing_recording_is_a_user_s_mistake(tmp_path: Path) -> None:
