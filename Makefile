@@ -38,6 +38,7 @@ rl: $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[rl]'
 
 # Strictly: a warning is an error. Leaves build/docs/index.html, which needs no server and no network.
+# Its pictures are drawn by `python -m docs.generate.pictures`, and kept.
 docs: $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet

@@ -19,7 +19,8 @@ ABOUT: Mapping[str, tuple[str, str]] = {
     ),
     "footage": (
         "recorded video",
-        "For a standing camera and one person at a time, who may be anywhere in the image; no colour.",
+        "The default for a camera of which nothing is known: people may stand anywhere in the image, and the "
+        "background may be as warm as they are. Thermal image alone.",
     ),
     "thesis": (
         "thesis, chapters 4 to 7",
