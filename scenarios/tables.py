@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from bad_input import BadInput
 from scenarios.loop import Tick
 from sim.truth import PersonTruth
-from tracker.track import Track
+from tracker.track import Ellipse, Status, Track
 
 Row = dict[str, Any]
 
@@ -23,6 +25,8 @@ def _floats(*names: str) -> list[pa.Field]:
     return [pa.field(name, pa.float64()) for name in names]
 
 
+_EDGES = ("left_px", "top_px", "width_px", "height_px")
+_STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
 _INSTANT = [pa.field("frame", pa.int64()), pa.field("time_s", pa.float64())]
 
 TRUTH = pa.schema(
@@ -55,7 +59,8 @@ TRACKS = pa.schema(
         pa.field("status", pa.string()),
         *_floats("confidence", "age_s", "uncertainty_px2"),
         *_box_fields(""),
-        *_floats("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh"),
+        *_floats(*_STATE),
+        pa.field("occluder", pa.int64()),
     ]
 )
 
@@ -112,6 +117,21 @@ def write_table(path: Path, rows: list[Row], schema: pa.Schema) -> None:
     pq.write_table(pa.Table.from_pylist(rows, schema=schema), path)
 
 
+def read_table(path: Path, columns: Sequence[str]) -> pa.Table:
+    """Read these columns of a run's table.
+
+    Raises:
+        BadInput: the file is missing or spoilt, or from a version that had not all of them.
+    """
+    try:
+        lacking = [name for name in columns if name not in pq.read_schema(path).names]
+        if lacking:
+            raise BadInput(f"{path}: has no column {lacking[0]!r}; run the scenario again")
+        return pq.read_table(path, columns=list(columns))
+    except (OSError, pa.ArrowException) as error:
+        raise BadInput(f"{path}: cannot be read as a table of a run; run the scenario again") from error
+
+
 def _instant(tick: Tick) -> Row:
     return {"frame": tick.frame, "time_s": tick.truth.time_s}
 
@@ -151,7 +171,7 @@ def _person_row(tick: Tick, person: PersonTruth) -> Row:
 def track_row(frame: int, time_s: float, track: Track) -> Row:
     """Row of the tracks table for one track at one instant."""
     ellipse = track.ellipse
-    state = {name: getattr(ellipse, name) for name in ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")}
+    state = {name: getattr(ellipse, name) for name in _STATE}
     row = {
         "id": track.id,
         "status": str(track.status),
@@ -159,4 +179,20 @@ def track_row(frame: int, time_s: float, track: Track) -> Row:
         "age_s": track.age_s,
         "uncertainty_px2": track.uncertainty_px2,
     }
-    return {"frame": frame, "time_s": time_s} | row | _box("", track.box) | state
+    hider = {"occluder": track.occluder}
+    return {"frame": frame, "time_s": time_s} | row | _box("", track.box) | state | hider
+
+
+def track_of(row: Mapping[str, Any]) -> Track:
+    """Read a track back from a row of the tracks table."""
+    left, top, width, height = (row[edge] for edge in _EDGES)
+    return Track(
+        id=row["id"],
+        ellipse=Ellipse(**{name: row[name] for name in _STATE}),
+        box=(left, top, width, height),
+        confidence=row["confidence"],
+        status=Status(row["status"]),
+        age_s=row["age_s"],
+        uncertainty_px2=row["uncertainty_px2"],
+        occluder=row["occluder"],
+    )

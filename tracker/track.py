@@ -46,7 +46,7 @@ class Track:
     """One person as the tracker believes it at one instant.
 
     Attributes:
-        id: 1 or more; a person who was lost and is found again gets a new one.
+        id: 1 or more; a person who was forgotten and is found again gets a new one.
         ellipse: the estimated contour.
         box: left, top, width, height [px], which may reach outside the image.
         confidence: 0..1, how well the contour fits the image.

@@ -6,24 +6,20 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from bad_input import BadInput
 from scenarios.evaluate_runs import read_run
 from scenarios.load import load_scenario
 from scenarios.scenario import Scenario
-from scenarios.tables import ROBOT, TRACKS, TRUTH, Row
+from scenarios.tables import ROBOT, TRACKS, TRUTH, Row, read_table, track_of
 from sim.config import RobotConfig, WorldConfig
-from tracker.track import Ellipse, Status, Track
+from tracker.track import Track
 
 _FILES = (
     "scenario.yaml", "truth/gt.txt", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",
 )  # fmt: skip
-_BOX = ("left_px", "top_px", "width_px", "height_px")
-_STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,7 +67,7 @@ class FinishedRun:
     def tracks(self) -> dict[int, list[Track]]:
         """Give what the tracker said, by frame, tentative tracks too."""
         rows = _by_frame(_read(self.folder / "tracks.parquet", TRACKS))
-        return defaultdict(list, {frame: [_track(row) for row in here] for frame, here in rows.items()})
+        return defaultdict(list, {frame: [track_of(row) for row in here] for frame, here in rows.items()})
 
 
 def open_runs(folders: Sequence[Path]) -> list[FinishedRun]:
@@ -122,14 +118,7 @@ def open_run(folder: Path) -> FinishedRun:
 
 
 def _read(path: Path, schema: pa.Schema) -> list[Row]:
-    try:
-        table = pq.read_table(path)
-    except (OSError, pa.ArrowException) as error:
-        raise BadInput(f"{path}: cannot be read as a table of a run; run the scenario again") from error
-    lacking = [name for name in schema.names if name not in table.column_names]
-    if lacking:
-        raise BadInput(f"{path}: lacks the column {lacking[0]!r} of this version; run the scenario again")
-    rows: list[Row] = table.select(schema.names).to_pylist()
+    rows: list[Row] = read_table(path, schema.names).to_pylist()
     return rows
 
 
@@ -138,16 +127,3 @@ def _by_frame(rows: Sequence[Row]) -> dict[int, list[Row]]:
     for row in rows:
         found[row["frame"]].append(row)
     return found
-
-
-def _track(row: Row) -> Track:
-    box: Any = tuple(row[name] for name in _BOX)
-    return Track(
-        id=row["id"],
-        ellipse=Ellipse(**{name: row[name] for name in _STATE}),
-        box=box,
-        confidence=row["confidence"],
-        status=Status(row["status"]),
-        age_s=row["age_s"],
-        uncertainty_px2=row["uncertainty_px2"],
-    )

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from bad_input import BadInput
 from scenarios.evaluate_runs import read_run
 from scenarios.read_yaml import read_yaml
 from scenarios.run_events import LogLine
+from scenarios.tables import TRACKS, read_table
 from tracker.evaluation.mot_files import read_tracks, read_truth
 from tracker.evaluation.sequence import Tracks, Truth
 
@@ -22,10 +22,6 @@ _BOX = ("left_px", "top_px", "width_px", "height_px")
 _PEOPLE = (
     *("frame", "id", "name", "x_m", "y_m", "distance_m", "is_counted", *_BOX, "whole_px"),
     *("visible_fraction", "occluded_fraction", "occluder", "hidden_by"),
-)
-_BELIEFS = (
-    *("frame", "id", "status", "confidence", "age_s", "uncertainty_px2", *_BOX),
-    *("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh"),
 )
 _ROBOT = ("x_m", "y_m", "mode")
 _NEEDED = ("scenario", "seed", "tracker", "renderer", "rate_hz", "versions", "frames")
@@ -102,9 +98,9 @@ def read_finished(folder: Path) -> FinishedRun:
         events=_read_events(folder / "events.jsonl"),
         truth=read_truth(folder / "truth" / "gt.txt"),
         tracks=read_tracks(folder / "tracks.txt"),
-        people=_read_table(folder / "truth.parquet", _PEOPLE),
-        beliefs=_read_table(folder / "tracks.parquet", _BELIEFS),
-        robot=_read_table(folder / "robot.parquet", _ROBOT),
+        people=read_table(folder / "truth.parquet", _PEOPLE),
+        beliefs=read_table(folder / "tracks.parquet", TRACKS.names),
+        robot=read_table(folder / "robot.parquet", _ROBOT),
     )
 
 
@@ -124,13 +120,3 @@ def _read_events(path: Path) -> tuple[LogLine, ...]:
         return tuple(LogLine(**json.loads(line)) for line in lines)
     except (OSError, ValueError, TypeError) as error:
         raise BadInput(f"{path}: cannot be read as an event log; run the scenario again") from error
-
-
-def _read_table(path: Path, columns: Sequence[str]) -> pa.Table:
-    try:
-        lacking = [name for name in columns if name not in pq.read_schema(path).names]
-        if lacking:
-            raise BadInput(f"{path}: has no column {lacking[0]!r}; run the scenario again")
-        return pq.read_table(path, columns=list(columns))
-    except (OSError, pa.ArrowException) as error:
-        raise BadInput(f"{path}: cannot be read as a table; run the scenario again") from error

@@ -21,7 +21,7 @@ from scenarios.export.finished_run import open_run
 from scenarios.export.replay import replay
 from scenarios.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
 from scenarios.report.finished_run import FinishedRun
-from tracker.track import Ellipse, Status, Track
+from scenarios.tables import track_of
 
 SCALE = 2
 _EMPTY_GREY = 40
@@ -67,7 +67,7 @@ def _draw(run: FinishedRun, frame: int, image: Thermal | None, origin: Origin) -
     if image is None:
         image, origin = np.full((240, 320), _EMPTY_GREY, np.uint8), Origin.NONE
     people = [_truth(row) for row in _rows(run.people, frame)]
-    tracks = [_track(row) for row in _rows(run.beliefs, frame)]
+    tracks = [track_of(row) for row in _rows(run.beliefs, frame)]
     plates: list[Plate] = []
     canvas = draw_tracks(enlarge(show_thermal(image), SCALE), tracks, SCALE, plates=plates)
     return Shown(draw_truth(canvas, people, SCALE, plates=plates), origin)
@@ -104,18 +104,6 @@ def _rows(table: Any, frame: int) -> list[dict[str, Any]]:
 def _truth(row: Mapping[str, Any]) -> _Truth:
     box = None if row["left_px"] is None else _box(row)
     return _Truth(row["name"], box, row["visible_fraction"])
-
-
-def _track(row: Mapping[str, Any]) -> Track:
-    return Track(
-        id=row["id"],
-        ellipse=Ellipse(**{name: row[name] for name in ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")}),
-        box=_box(row),
-        confidence=row["confidence"],
-        status=Status(row["status"]),
-        age_s=row["age_s"],
-        uncertainty_px2=row["uncertainty_px2"],
-    )
 
 
 def _box(row: Mapping[str, Any]) -> tuple[float, float, float, float]:

@@ -78,5 +78,5 @@ def test_a_run_of_an_older_version_without_a_column_is_refused(crossing: Path, t
     shutil.copytree(crossing, run)
     table = pq.read_table(run / "robot.parquet").drop_columns(["command_is_emergency"])
     pq.write_table(table, run / "robot.parquet")
-    with pytest.raises(BadInput, match=r"robot.parquet: lacks the column 'command_is_emergency'"):
+    with pytest.raises(BadInput, match=r"robot.parquet: has no column 'command_is_emergency'"):
         next(replay(open_run(run)))
