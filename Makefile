@@ -46,7 +46,7 @@ docs: $(READY)
 # numba looks only at a kernel's own file: after editing one that others inline, throw its cache away.
 clean:
 	find . -name '*.nb[ic]' -delete
-	rm -rf $(VENV) runs
+	rm -rf $(VENV) runs build/docs
 
 $(READY): pyproject.toml constraints.txt
 	@set -e; \

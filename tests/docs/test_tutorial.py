@@ -25,7 +25,7 @@ def test_what_a_reader_pastes_works(page: Path, tmp_path: Path, monkeypatch: pyt
 
 
 def do(block: Block, names: dict[str, Any]) -> None:
-    """Save a block with a title; run any other one, Python in one session a page."""
+    """Save a block with a title; run any other one; the Python of a page shares its names."""
     if block.title:
         Path(block.title).write_text(block.code, encoding="utf-8")
     elif block.language == "python":
