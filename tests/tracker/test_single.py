@@ -24,7 +24,7 @@ def alone(config):
 
 VARIANTS = {
     "default": alone(PEOPLEBOY),
-    "footage": FOOTAGE,
+    "footage": alone(FOOTAGE),
     "thesis": alone(THESIS),
     "paper": alone(PAPER),
 }
@@ -91,7 +91,7 @@ def test_a_walking_person_keeps_one_id_and_a_box_near_the_truth():
     assert np.abs(late).max() < 6
 
 
-@pytest.mark.parametrize(("name", "later"), [("default", 1), ("footage", 2)])
+@pytest.mark.parametrize(("name", "later"), [("default", 1), ("footage", 1)])
 def test_a_person_who_was_lost_comes_back_as_itself_if_it_is_remembered(name, later):
     frames = [person_frame(i / 15) for i in range(20)]
     frames += [Frame(thermal=blank(), time_s=i / 15) for i in range(20, 45)]
