@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Protocol
 
@@ -96,21 +95,15 @@ class PictureFolder:
             yield picture
 
 
-@dataclass(slots=True)
 class Video:
     """A video that OpenCV reads."""
 
-    path: Path
-    name: str = ""
-    rate_hz: float | None = None
-    expected: int = 0
-    notes: list[str] = None  # type: ignore[assignment]
-
-    def __post_init__(self) -> None:
-        self.name, self.notes = self.path.stem, []
+    def __init__(self, path: Path) -> None:
+        self.path, self.name = path, path.stem
+        self.notes: list[str] = []
         film = self._open()
         rate = film.get(cv2.CAP_PROP_FPS)
-        self.rate_hz = float(rate) if np.isfinite(rate) and rate > 0 else None
+        self.rate_hz: float | None = float(rate) if np.isfinite(rate) and rate > 0 else None
         self.expected = max(int(film.get(cv2.CAP_PROP_FRAME_COUNT)), 0)
         is_read, _ = film.read()
         film.release()
