@@ -212,6 +212,17 @@ def test_truth_is_read_as_boxes_polygons_and_motchallenge(tmp_path):
     assert not load_truth(mot, 5).is_single
 
 
+def test_truth_of_several_people_gives_every_figure(tmp_path):
+    clip = write_folder(tmp_path / "clip")
+    (clip / "gt").mkdir()
+    lines = [f"{i + 1},7,{','.join(str(edge) for edge in box(i))},1,1,1.0\n" for i in range(12)]
+    (clip / "gt" / "gt.txt").write_text("".join(lines))
+    result = call(clip, "--out", tmp_path / "out", "--start", "truth")
+    assert "HOTA" in result.stdout
+    assert "frames/s" in result.stdout
+    assert (tmp_path / "out" / "truth" / "gt.txt").is_file()
+
+
 def test_truth_is_found_beside_and_above_the_pictures(tmp_path):
     clip = write_folder(tmp_path / "clip" / "img", 3)
     otb(tmp_path / "clip", 3)
