@@ -276,7 +276,7 @@ def _recover(
 ) -> tuple[FollowState, Command]:
     """Drive to where the person was seen last; from there, search to the side where it went."""
     place = on_the_way(place, sight, step_s)
-    end = end_of_way(place, config.place)
+    end = end_of_way(place, echoes(sight), config.place)
     if end:
         state = replace(state, mode="recover", reason=end, place=None, searched_rad=0.0)
         return _search(state, sight, step_s, config)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+
+from behaviours.echoes import Points
 from behaviours.sight import Sight
 from behaviours.target import Target
 
@@ -19,6 +22,9 @@ class PlaceConfig:
         arrive_m: [m] as near as this, the robot is there.
         blocked_s: [s] a robot that has not got on for this long goes no farther.
         longest_s: [s] nor one that has been on its way for this long.
+        narrow_m: [m] nor does it enter a passage narrower than this, as a door is: it could not turn there.
+        narrow_from_m, narrow_to_m: [m] how far ahead the passage is looked for.
+        lane_m: [m] half of the lane ahead that is free if a way leads on.
     """
 
     whole_m: float = 1.75 / (2.0 * math.tan(math.radians(22.0)))
@@ -26,6 +32,10 @@ class PlaceConfig:
     arrive_m: float = 0.6
     blocked_s: float = 4.0
     longest_s: float = 14.0
+    narrow_m: float = 1.28
+    narrow_from_m: float = 0.3
+    narrow_to_m: float = 0.9
+    lane_m: float = 0.27
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,12 +89,30 @@ def on_the_way(place: LastPlace, sight: Sight, step_s: float) -> LastPlace:
     )
 
 
-def end_of_way(place: LastPlace, config: PlaceConfig) -> str:
-    """Tell why the robot goes no farther; empty while it does."""
+def end_of_way(place: LastPlace, around: Points, config: PlaceConfig) -> str:
+    """Tell why the robot goes no farther; empty while it does.
+
+    Args:
+        place: where it goes.
+        around: (N, 2) [m] what the sonars hear, robot frame.
+        config: when it has got there.
+    """
     if place.distance_m < config.arrive_m:
         return "nobody where the person was seen last"
+    if _is_narrow(around, config):
+        return "the way to where the person was seen last is too narrow to turn in"
     if place.blocked_s > config.blocked_s:
         return "the way to where the person was seen last is blocked"
     return (
         "the way to where the person was seen last is too long" if place.driven_s > config.longest_s else ""
     )
+
+
+def _is_narrow(around: Points, config: PlaceConfig) -> bool:
+    """Tell whether a way leads on ahead, and is narrow."""
+    x, y = around[(around[:, 0] > 0.0) & (around[:, 0] < config.narrow_to_m)].T
+    if np.any(np.abs(y) < config.lane_m):
+        return False
+    y = y[x > config.narrow_from_m]
+    left, right = np.min(y[y > 0.0], initial=math.inf), np.min(-y[y < 0.0], initial=math.inf)
+    return bool(left + right < config.narrow_m)
