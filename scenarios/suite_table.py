@@ -68,7 +68,7 @@ def count(people: pa.Table, frames: int, rate_hz: float) -> Content:
     counted = people["is_counted"].to_numpy(zero_copy_only=False)
     seen = counted & (people["visible_fraction"].to_numpy() > 0.0)
     hidden = seen & (people["occluded_fraction"].to_numpy() > HIDDEN)
-    present = counted & _is_in_image(people)
+    present = counted & is_in_image(people)
     _, at_once = np.unique(frame[seen], return_counts=True)
     gap = round(GAP_S * rate_hz)
     return Content(
@@ -88,7 +88,7 @@ def add_up(contents: Iterable[Content]) -> Content:
     return Content(**{field.name: int(total) for field, total in zip(fields(Content), totals, strict=True)})
 
 
-def _is_in_image(people: pa.Table) -> NDArray[np.bool_]:
+def is_in_image(people: pa.Table) -> NDArray[np.bool_]:
     """(N,) whether any of the silhouette lies inside the image."""
     outside = np.array([dict(shares).get("border", 0.0) for shares in people["hidden_by"].to_pylist()])
     return np.asarray((people["whole_px"].to_numpy() > 0) & (outside.reshape(-1) < 1.0))

@@ -14,7 +14,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from scenarios.suite_table import add_up, count
+from scenarios.suite_table import add_up, count, is_in_image
 
 VISIBLE_EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 DISTANCE_EDGES_M = (0.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, np.inf)
@@ -68,7 +68,7 @@ def measure(runs: Sequence[Path]) -> Statistics:
     about = [json.loads((run / "run.json").read_text(encoding="utf-8")) for run in runs]
     frames = [(one["frames"], one["rate_hz"]) for one in about]
     people = pa.concat_tables(tables)
-    inside = _is_in_image(people)
+    inside = is_in_image(people)
     means, deviations = _image_statistics(runs)
     return Statistics(
         runs=len(runs),
@@ -80,11 +80,6 @@ def measure(runs: Sequence[Path]) -> Statistics:
         image_mean=means,
         image_sd=deviations,
     )
-
-
-def _is_in_image(people: pa.Table) -> NDArray[np.bool_]:
-    outside = [dict(shares).get("border", 0.0) for shares in people["hidden_by"].to_pylist()]
-    return np.asarray((people["whole_px"].to_numpy() > 0) & (np.array(outside, np.float64) < 1.0))
 
 
 def _histogram(values: NDArray[np.float64], edges: Sequence[float]) -> tuple[Bin, ...]:
