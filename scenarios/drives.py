@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 import pyarrow as pa
@@ -12,7 +13,13 @@ from bad_input import BadInput
 from behaviours.command import STOP, Command
 from behaviours.sight import Sight
 
-_STEPS = pa.schema([pa.field("linear_m_s", pa.float64()), pa.field("angular_rad_s", pa.float64())])
+_STEPS = pa.schema(
+    [
+        pa.field("linear_m_s", pa.float64()),
+        pa.field("angular_rad_s", pa.float64()),
+        pa.field("is_emergency", pa.bool_()),
+    ]
+)
 
 
 class Repeat:
@@ -32,7 +39,7 @@ class Repeat:
 
 def write_drive(path: Path, drive: Sequence[Command]) -> None:
     """Write commands, one a control step."""
-    rows = [{"linear_m_s": c.linear_m_s, "angular_rad_s": c.angular_rad_s} for c in drive]
+    rows = [asdict(command) for command in drive]
     pq.write_table(pa.Table.from_pylist(rows, schema=_STEPS), path, compression="zstd")
 
 

@@ -7,7 +7,7 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -128,7 +128,7 @@ def frames_of(shot: Film) -> Iterator[Frame]:
 
 def film_key(scenario: Scenario, seed: int) -> str:
     """A hash of all that the frames depend on."""
-    drive = [] if scenario.drive is None else [(c.linear_m_s, c.angular_rad_s) for c in scenario.drive]
+    drive = [] if scenario.drive is None else [astuple(command) for command in scenario.drive]
     parts = [scenario.resolved(seed), seed, versions(), _source_digest(), drive]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
