@@ -41,7 +41,8 @@ def play(env: gymnasium.Env[Any, Any], controller: Controller, seed: int) -> Fig
 
 def print_figures(title: str, runs: Mapping[str, Sequence[Figures]], console: Console) -> None:
     """Print a row for each figure: means over the seeds, with bootstrap intervals of 95 %."""
-    table = Table(title=title, title_justify="left", box=None)
+    console.print(title, soft_wrap=True)  # as a table's title, it would be wrapped to the table's width
+    table = Table(box=None)
     table.add_column("")
     for name in runs:
         table.add_column(name, justify="right")
