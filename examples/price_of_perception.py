@@ -1,7 +1,7 @@
 """What perception costs a controller: one law, three pairs of eyes, the same worlds.
 
 The law turns to where the person stands in the image, and drives until the person is as tall there as wanted.
-Its eyes are the thermal image itself (the warm columns, six lines of numpy), the tracker, or the truth. What
+Its eyes are the thermal image itself (its tallest warm patch), the tracker, or the truth. What
 the rows below `truth` lose is the price of seeing.
 
     python -m examples.price_of_perception --seeds 20
@@ -13,6 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 import click
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
@@ -24,21 +25,23 @@ Observation = dict[str, NDArray[Any]]
 Person = tuple[float, float] | None  # column [half image widths] and height [image heights]
 
 KEEP_HEIGHT = 0.58
-WARM = 102  # grey of the thermal image: 28.8 degC
-LEAST_SHARE = 0.004  # of the image that must be warm
+WARM = 40  # grey of the thermal image: 25.9 degC, warmer than most walls
+UPRIGHT = 1.3  # height of a patch in its widths
+LEAST_HEIGHT = 0.15  # [image heights]
 NEAREST_M = 0.7
 FRONT_SONARS = slice(2, 6)
 
 
 def see_warmth(observation: Observation) -> Person:
-    """Take what is warm for one person: its mean column, and the rows between its ends."""
-    warm = observation["thermal"][:, :, 0] > WARM
-    if warm.mean() < LEAST_SHARE:
+    """Take the tallest patch of warmth that stands upright for a person."""
+    warm = (observation["thermal"][:, :, 0] > WARM).astype(np.uint8)
+    height, width = warm.shape
+    patches = cv2.connectedComponentsWithStats(warm)[2][1:]
+    upright = [patch for patch in patches if patch[3] > max(UPRIGHT * patch[2], LEAST_HEIGHT * height)]
+    if not upright:
         return None
-    columns, rows = warm.sum(axis=0), np.flatnonzero(warm.sum(axis=1) >= 2)
-    width = warm.shape[1]
-    x = (columns @ np.arange(width) / columns.sum() - (width - 1) / 2.0) / (width / 2.0)
-    return float(x), (rows[-1] - rows[0] + 1) / warm.shape[0] if len(rows) else 0.0
+    left, _, across, tall, _ = max(upright, key=lambda patch: int(patch[3]))
+    return float((left + across / 2.0 - width / 2.0) / (width / 2.0)), float(tall / height)
 
 
 def see_tallest(observation: Observation) -> Person:

@@ -34,7 +34,7 @@ def test_all_three_pairs_of_eyes_find_a_person_in_plain_sight(scene: Path) -> No
     assert CliRunner().invoke(price_of_perception.main, ["--eyes", "nose"]).exit_code == 2
 
 
-def test_the_warm_columns_are_where_the_true_person_is(scene: Path) -> None:
+def test_the_warm_patch_is_where_the_true_person_is(scene: Path) -> None:
     env = PeopleBoyEnv(scene, observation="pixels")
     observation, info = env.reset(seed=0)
     box = info["truth"].people[0].box
