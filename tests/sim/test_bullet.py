@@ -149,11 +149,13 @@ def test_rays_that_pass_far_from_everything_are_told_as_if_pybullet_had_been_ask
     plane = Shape(kind=ShapeKind.PLANE, size=(0.0, 0.0, 0.0))
     with Bullet() as bullet:
         bullet.add_part("ground", [plane], position=(0.0, 0.0, -2.0))
-        bullet.add_urdf("car", "racecar/racecar.urdf", fixed=False)
+        # Fixed: where a body that moves freely goes when it starts inside others, PyBullet leaves to chance.
+        bullet.add_urdf("car", "racecar/racecar.urdf", fixed=True)
         for name in ("a", "b", "c"):
             bullet.add_part(name, [CUBE, capsule], position=tuple(rng.uniform(-2, 2, 3)), orientation=TILTED)
         for ignore in (None, "car", "a", None):
-            bullet.set_pose("b", tuple(rng.uniform(-2.0, 2.0, 3)), TILTED)
+            for name in ("b", "car"):
+                bullet.set_pose(name, tuple(rng.uniform(-2.0, 2.0, 3)), TILTED)
             bullet.step()
             starts, ends = rng.uniform(-3.0, 3.0, (2, 300, 3))
             ends[::4, 2] = starts[::4, 2]  # level, as most rays are
