@@ -23,7 +23,8 @@ def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -
     """Hand runs over to other tools; a folder that holds folders of runs stands for all of them.
 
     mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. viper: ViPER XML. mcap: ROS 2 bags. mp4:
-    films. Images and masks are rendered again, and are those of the run. mcap and mp4 need peopleboy[export].
+    films. Images and masks are rendered again, and are those of the run. mcap and mp4 need the
+    extra `export`.
     """
     from scenarios.evaluate_runs import runs_in
     from scenarios.export.finished_run import open_runs

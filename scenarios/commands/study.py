@@ -55,7 +55,7 @@ def train_occlusion(
 ) -> None:
     """Learn from scenarios which of two overlapping people is in front, and compare with the thesis.
 
-    One set of scenarios is learned from, another one is for testing. Needs scikit-learn: peopleboy[train].
+    One set of scenarios is learned from, another one is for testing. Needs scikit-learn: .[train].
     """
     from scenarios.occlusion_lesson import give_lesson
 

@@ -50,7 +50,7 @@ _TRACKERS = "footage, peopleboy, learned, thesis, colour, thermal, paper"
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all that is random."
 )
-@click.option("--film", is_flag=True, help="Write overlay.mp4 too; needs peopleboy[export].")
+@click.option("--film", is_flag=True, help="Write overlay.mp4 too; needs .[export].")
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
 def track(
     footage: Path,

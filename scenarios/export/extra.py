@@ -18,5 +18,5 @@ def need(package: str, form: str) -> Any:
         return import_module(package)
     except ImportError as error:
         raise BadInput(
-            f"--format {form} needs the package {package.split('.')[0]}: pip install 'peopleboy[export]'"
+            f"--format {form} needs the package {package.split('.')[0]}: pip install '.[export]'"
         ) from error

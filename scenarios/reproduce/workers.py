@@ -96,7 +96,7 @@ def _dask(scheduler: str) -> Iterator[None]:
     try:
         from distributed import Client
     except ImportError:
-        raise BadInput("--scheduler needs Dask: pip install 'peopleboy[cluster]'") from None
+        raise BadInput("--scheduler needs Dask: pip install '.[cluster]'") from None
     try:
         client = Client(scheduler, timeout=CONNECT_S)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:

@@ -111,7 +111,7 @@ def test_a_missing_package_is_named_with_the_extra_that_brings_it(
     for form, package in (("mp4", "av"), ("mcap", "rosbags")):
         monkeypatch.setitem(sys.modules, package, None)
         told = refusal(capsys, crossing, "--format", form, "--out", tmp_path / form)
-        assert f"--format {form} needs the package {package}: pip install 'peopleboy[export]'" in told
+        assert f"--format {form} needs the package {package}: pip install '.[export]'" in told
 
 
 def test_a_folder_of_runs_is_exported_whole_beside_them(crossing: Path, tmp_path: Path) -> None:
