@@ -27,9 +27,6 @@ bench: $(READY)
 	$(BIN)/python -m benchmarks
 
 peers: $(READY)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[peers]'
-	# Both ask for opencv-python as well, see below.
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps trackers supervision
 	$(BIN)/python -m benchmarks.peers
 
 # For examples/train_follower.py. PyPI's torch would bring gigabytes of CUDA along.
@@ -58,6 +55,6 @@ $(READY): pyproject.toml constraints.txt
 	  fi; \
 	fi
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
-	# trackeval asks for opencv-python, which would overwrite the headless build: its own code alone is enough.
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps trackeval
+	# Both ask for opencv-python, which would overwrite the headless build; what else they need is there.
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps trackeval trackers
 	@touch $(READY)

@@ -5,6 +5,8 @@ gt/mot_challenge/peopleboy-all/SEQUENCE/seqinfo.ini      length, frame rate, siz
 /gt/gt.txt        truth
 /img1/000001.png  thermal images
 trackers/mot_challenge/peopleboy-all/TRACKER/data/SEQUENCE.txt
+
+There is no det/det.txt: nothing in a run finds people in single images, and truth is no detection.
 """
 
 from __future__ import annotations

@@ -5,8 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("trackers", reason="the extra 'peers' is not installed")
-
 from benchmarks.peers.compete import compete_on_film
 from benchmarks.peers.detectors import Blobs, Oracle, _from_colour
 from tracker.evaluation.sequence import Truth

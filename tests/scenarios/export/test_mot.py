@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from exported import SCENE, export, make_run, run_cli
+from trackers.eval import evaluate_mot_sequences
 from trackeval.datasets import MotChallenge2DBox
 from trackeval.metrics import CLEAR, HOTA, Identity
 
@@ -113,8 +114,7 @@ def test_the_sequence_says_its_length_and_holds_the_images(folder: Path, crossin
 
 
 def test_the_package_trackers_reads_the_folder_too(folder: Path, crossing: Path) -> None:
-    evaluation = pytest.importorskip("trackers.eval", reason="the extra 'peers' is not installed")
-    found = evaluation.evaluate_mot_sequences(
+    found = evaluate_mot_sequences(
         folder / "gt" / "mot_challenge" / "peopleboy-all",
         folder / "trackers" / "mot_challenge" / "peopleboy-all" / "peopleboy" / "data",
         seqmap=folder / "gt" / "mot_challenge" / "seqmaps" / "peopleboy-all.txt",
