@@ -10,7 +10,8 @@ from scenarios.export.extra import need
 from scenarios.export.finished_run import FinishedRun
 from scenarios.export.replay import Play
 
-_VERSION: Final = 9  # of the bag's metadata; ROS 2 Jazzy's
+# Of the bag's metadata: Iron's. Later distributions read it too, and Humble, which fails at version 9.
+_VERSION: Final = 8
 
 
 def write_mcap(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
@@ -50,7 +51,7 @@ def _quality(topic: str) -> tuple[Any, ...]:
     from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 
     is_once = topic == "/tf_static"
-    ever = QosTime(2147483647, 4294967295)
+    ever = QosTime(9223372036, 854775807)  # RMW_DURATION_INFINITE
     profile = Qos(
         history=QosHistory.KEEP_LAST,
         depth=1 if is_once else 10,

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+import yaml
 from exported import export
 from hypothesis import given
 from hypothesis import strategies as st
@@ -27,6 +28,15 @@ TOPICS = {
     "/thermal/image/compressed", "/colour/image/compressed", "/thermal/camera_info", "/colour/camera_info",
     "/truth/people", "/tracks", "/odom", "/tf",
 }  # fmt: skip
+
+# SHA-256 of a type and all that it is made of, as ROS 2's own builds have them (REP 2011).
+HASHES = {
+    "nav_msgs/msg/Odometry": "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0",
+    "sensor_msgs/msg/CameraInfo": "b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275",
+    "sensor_msgs/msg/CompressedImage": "15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a",
+    "tf2_msgs/msg/TFMessage": "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
+    "vision_msgs/msg/Detection2DArray": "214274120007f4a683866481336b70310268cfa107aebe9d594a6acf75bda968",
+}
 
 lengths, turns = st.floats(-20.0, 20.0), st.floats(-math.pi, math.pi)
 poses = st.builds(Planar, lengths, lengths, turns)
@@ -121,11 +131,97 @@ def test_the_odometry_is_that_of_the_run(messages: dict[str, list[Any]], crossin
         assert message.twist.twist.linear.x == pytest.approx(speed)
 
 
-def test_the_folder_is_a_bag_of_ros_2(bag: Path) -> None:
+def test_whoever_knows_frames_and_camera_alone_finds_every_joint_at_its_pixel(
+    messages: dict[str, list[Any]], crossing: Path
+) -> None:
+    fixed = {one.child_frame_id: one for one in messages["/tf_static"][0].transforms}
+    assert {one.header.frame_id for one in fixed.values()} == {"base_link"}
+    people = pq.read_table(crossing / "truth.parquet").to_pylist()
+    for row in people:
+        moving = {
+            one.child_frame_id: pose(one.transform) for one in messages["/tf"][row["frame"] - 1].transforms
+        }
+        info = messages["/thermal/camera_info"][row["frame"] - 1]
+        camera = moving["odom"] @ moving["base_link"] @ pose(fixed[info.header.frame_id].transform)
+        joints = np.array(row["joints_m"]).reshape(17, 3)
+        seen = np.linalg.inv(camera) @ np.hstack([joints, np.ones((17, 1))]).T
+        pixels = np.reshape(info.p, (3, 4)) @ seen
+        stored = np.array(row["joints_px"]).reshape(17, 2)
+        assert np.abs((pixels[:2] / pixels[2]).T - stored).max() < 0.02
+        body = moving[f"people/{row['name']}"]
+        assert body[:2, 3] == pytest.approx([row["x_m"], row["y_m"]])
+        assert math.remainder(
+            math.atan2(body[1, 0], body[0, 0]) - row["heading_rad"], math.tau
+        ) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_camera_info_is_that_of_the_cameras(messages: dict[str, list[Any]], crossing: Path) -> None:
+    robot = open_run(crossing).robot
+    for name, camera in (("thermal", robot.thermal.camera), ("colour", robot.colour.camera)):
+        for info in messages[f"/{name}/camera_info"]:
+            assert (info.width, info.height, info.distortion_model) == (
+                camera.width,
+                camera.height,
+                "plumb_bob",
+            )
+            assert (list(info.d), info.header.frame_id) == ([0.0] * 5, f"{name}_optical")
+            assert np.array_equal(np.reshape(info.k, (3, 3)), camera.intrinsics)
+            assert np.array_equal(np.reshape(info.p, (3, 4))[:, :3], camera.intrinsics)
+            assert np.array_equal(np.reshape(info.r, (3, 3)), np.eye(3))
+
+
+def test_every_distribution_from_humble_on_can_read_what_lies_beside_the_messages(bag: Path) -> None:
+    about = yaml.safe_load((bag / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    # Humble reads profiles as a text with numbers, which is what they are up to version 8.
+    assert (about["version"], about["storage_identifier"]) == (8, "mcap")
+    assert (about["relative_file_paths"], about["compression_mode"]) == (["tiny-3.mcap"], "")
+    assert (about["starting_time"], about["duration"]) == (
+        {"nanoseconds_since_epoch": 0},
+        {"nanoseconds": round(59e9 / 15.0)},
+    )
+    for topic in about["topics_with_message_count"]:
+        told = topic["topic_metadata"]
+        (quality,) = yaml.safe_load(told["offered_qos_profiles"])
+        is_static = told["name"] == "/tf_static"
+        # RELIABLE; TRANSIENT_LOCAL or VOLATILE; KEEP_LAST.
+        assert (quality["reliability"], quality["durability"]) == (1, 1 if is_static else 2)
+        assert (quality["history"], quality["depth"]) == (1, 1 if is_static else 10)
+        assert told["serialization_format"] == "cdr"
+        assert told["type_description_hash"] == f"RIHS01_{HASHES[told['type']]}"
+        assert topic["message_count"] == (1 if is_static else 60)
+
+
+def test_schemas_define_every_type_that_they_use(bag: Path) -> None:
+    basic = {"string", "bool", "float64", "int32", "uint32", "uint8"}
+    with (bag / "tiny-3.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    assert {schema.name for schema in summary.schemas.values()} == HASHES.keys()
+    for schema in summary.schemas.values():
+        assert schema.encoding == "ros2msg"
+        own, *others = schema.data.decode().split(f"{'=' * 80}\nMSG: ")
+        known = {other.split("\n", 1)[0] for other in others} | basic
+        lines = [
+            line
+            for text in (own, *(other.split("\n", 1)[1] for other in others))
+            for line in text.splitlines()
+        ]
+        assert {line.split()[0].split("[")[0] for line in lines if line} <= known
+
+
+def test_the_folder_is_a_bag_of_ros_2_with_little_endian_messages_in_order_of_time(bag: Path) -> None:
     assert {path.name for path in bag.iterdir()} == {"tiny-3.mcap", "metadata.yaml"}
+    times = []
     with AnyReader([bag]) as reader:
         assert set(reader.topics) == TOPICS | {"/tf_static"}
         assert reader.message_count == 60 * len(TOPICS) + 1
+        for connection, time_ns, raw in reader.messages():
+            assert bytes(raw[:4]) == b"\0\1\0\0"
+            content = reader.deserialize(raw, connection.msgtype)
+            first = content if hasattr(content, "header") else content.transforms[0]
+            assert first.header.stamp.sec * 10**9 + first.header.stamp.nanosec == time_ns
+            times.append(time_ns)
+    assert times == sorted(times)
 
 
 def test_rerun_understands_the_file(bag: Path, tmp_path: Path) -> None:
