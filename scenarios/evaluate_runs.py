@@ -8,30 +8,37 @@ from pathlib import Path
 from typing import Any
 
 from bad_input import BadInput
+from scenarios.footage.truth_files import find_truth, load_truth
 from tracker.evaluation.evaluate import Scores, evaluate
-from tracker.evaluation.mot_files import read_tracks, read_truth
+from tracker.evaluation.mot_files import read_tracks
 from tracker.evaluation.uncounted import MIN_VISIBLE
 
 
 def evaluate_files(
     truth: Path, tracks: Path, frames: int | None = None, min_visible: float = MIN_VISIBLE
 ) -> Scores:
-    """Score one pair of MOTChallenge files; people of whom no more than min_visible is seen do not count."""
-    return evaluate(read_truth(truth), read_tracks(tracks), frames=frames, min_visible=min_visible)
+    """Score MOTChallenge tracks against truth of any format that footage comes with.
+
+    People of whom no more than min_visible is seen do not count. Figures that need everybody are undefined
+    where the truth has one person alone.
+    """
+    given = load_truth(truth, None)
+    return evaluate(
+        given.truth,
+        read_tracks(tracks),
+        frames=frames,
+        min_visible=min_visible,
+        is_single=given.is_single,
+    )
 
 
 def evaluate_runs(folders: Sequence[Path], min_visible: float = MIN_VISIBLE) -> list[Scores]:
     """Score the runs in these folders, one by one; min_visible as for files.
 
     Raises:
-        BadInput: a folder holds no run, or one that was cut off.
+        BadInput: a folder holds no run, or one that was cut off, or of footage without truth.
     """
-    return [
-        evaluate_files(
-            folder / "truth" / "gt.txt", folder / "tracks.txt", read_run(folder)["frames"], min_visible
-        )
-        for folder in folders
-    ]
+    return [_evaluate_run(folder, min_visible) for folder in folders]
 
 
 def runs_in(folder: Path) -> list[Path]:
@@ -62,3 +69,10 @@ def read_run(folder: Path) -> dict[str, Any]:
             f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
         )
     return about
+
+
+def _evaluate_run(folder: Path, min_visible: float) -> Scores:
+    about, truth = read_run(folder), find_truth(folder)
+    if truth is None:
+        raise BadInput(f"{folder}: has no truth to score against; give --truth with --tracks")
+    return evaluate_files(truth, folder / "tracks.txt", about["frames"], min_visible)

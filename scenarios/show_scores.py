@@ -16,11 +16,15 @@ from tracker.evaluation.table import rows, spread
 
 
 def print_scores(scores: Scores) -> None:
-    """Print every figure of one run, or of several taken together."""
+    """Print every figure of one run, or of several taken together, that the truth can tell."""
+    if scores.counts.partly_annotated:
+        _console().print(f"{_single_person(scores)}\n", soft_wrap=True)
     table = _table("people", "figure", "value", "meaning")
     for row in rows(scores):
-        table.add_row(row.figure.name, _number(row.value, row.figure.unit), row.figure.meaning)
+        if row.figure.is_told_by(scores):
+            table.add_row(row.figure.name, _number(row.value, row.figure.unit), row.figure.meaning)
     _print(table)
+    _tell_unknown(scores)
 
 
 def print_following(score: FollowingScore) -> None:
@@ -48,12 +52,34 @@ def print_spread(sequences: Sequence[Scores]) -> None:
     table = _table(
         f"people, {len(sequences)} runs", "figure", "all frames", "mean of runs", "deviation", "meaning"
     )
-    together = rows(combine(sequences))
-    for row, over in zip(together, spread(sequences), strict=True):
+    whole = combine(sequences)
+    for row, over in zip(rows(whole), spread(sequences), strict=True):
+        if not row.figure.is_told_by(whole):
+            continue
         unit = row.figure.unit
         numbers = [_number(value, unit) for value in (row.value, over.mean, over.sd)]
         table.add_row(row.figure.name, *numbers, row.figure.meaning)
     _print(table)
+    _tell_unknown(whole)
+
+
+def _single_person(scores: Scores) -> str:
+    """Say how one person was kept who alone is annotated."""
+    mot, counts = scores.mot, scores.counts
+    ids = f"{counts.true_tracks} {'id is' if counts.true_tracks == 1 else 'ids are'}"
+    return (
+        f"One id keeps the annotated person in {_number(mot.identity.idr, '%')} of its frames (IoU 0.5), "
+        f"any in {_number(scores.thesis.cr, '%')}; {ids} on it at some time."
+    )
+
+
+def _tell_unknown(scores: Scores) -> None:
+    unknown = [row.figure.name for row in rows(scores) if not row.figure.is_told_by(scores)]
+    if unknown:
+        _console().print(
+            f"Unknown: {', '.join(unknown)}. One person alone is annotated, so that nobody can say whether "
+            "boxes elsewhere are wrong.\n"
+        )
 
 
 def _table(title: str, *columns: str) -> Table:
@@ -71,6 +97,10 @@ def _number(value: float, unit: str) -> str:
 
 
 def _print(table: Table) -> None:
-    console = Console() if sys.stdout.isatty() else Console(width=120)
+    console = _console()
     console.print(table)
     console.print()
+
+
+def _console() -> Console:
+    return Console() if sys.stdout.isatty() else Console(width=120)

@@ -14,7 +14,9 @@ from scenarios.show_scores import print_scores, print_spread
 @click.command()
 @click.argument("runs", nargs=-1, type=click.Path(path_type=Path))
 @click.option(
-    "--truth", type=click.Path(path_type=Path), help="MOTChallenge truth, such as RUN/truth/gt.txt."
+    "--truth",
+    type=click.Path(path_type=Path),
+    help="MOTChallenge truth, such as RUN/truth/gt.txt; or one person's, VOT or OTB.",
 )
 @click.option(
     "--tracks", type=click.Path(path_type=Path), help="MOTChallenge results, such as RUN/tracks.txt."

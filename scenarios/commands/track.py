@@ -122,13 +122,7 @@ def _tell(tracked: Tracked, out: Path) -> None:
 
     for note in tracked.notes:
         click.echo(f"peopleboy: {note}", err=True)
-    if tracked.scores is not None and not tracked.is_single:
+    if tracked.scores is not None:
         print_scores(tracked.scores)
-    if tracked.scores is not None and tracked.is_single:
-        mot, found = tracked.scores.mot, tracked.scores.thesis.cr
-        click.echo(
-            f"One id keeps the annotated person in {mot.identity.idr:.1f} % of its frames (IoU 0.5), any in "
-            f"{found:.1f} %; {mot.clear.switches} identity switches. Others are not annotated."
-        )
     click.echo(f"{tracked.frames} frames, {tracked.tracks} tracks, {tracked.per_second:.0f} frames/s")
     click.echo(f"{out / 'contact_sheet.png'} shows them.")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -21,7 +22,7 @@ from scenarios.folder import versions
 from scenarios.footage.grey import LEAST_SIDE_PX, Grey, Radiometry, grey_maker
 from scenarios.footage.pictures import Footage, open_footage
 from scenarios.footage.sheet import FILM_PX, Annotated, Film, Sheet, draw_frame
-from scenarios.footage.truth_files import GivenTruth, find_truth, load_truth
+from scenarios.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
 from scenarios.tables import TRACKS, Row, track_row, write_table
 from sim.random_streams import stream
 from tracker.evaluation.evaluate import Scores, evaluate
@@ -78,7 +79,6 @@ class Tracked:
         per_second: pictures a second of wall time, reading and drawing included.
         tracks: number of track ids.
         scores: against the truth; None without one.
-        is_single: whether the truth tells of one person alone.
         notes: what was taken as something else than it is.
     """
 
@@ -86,7 +86,6 @@ class Tracked:
     per_second: float
     tracks: int
     scores: Scores | None
-    is_single: bool
     notes: tuple[str, ...]
 
 
@@ -117,8 +116,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
         about["notes"] = [*footage.notes, *([] if colour is None else colour.notes)]
     per_second = log.frames / max(time.perf_counter() - began, 1e-9)
-    is_single = truth is not None and truth.is_single
-    return Tracked(log.frames, per_second, log.tracks, scores, is_single, tuple(about["notes"]))
+    return Tracked(log.frames, per_second, log.tracks, scores, tuple(about["notes"]))
 
 
 def _truth_of(options: TrackOptions, footage: Footage) -> GivenTruth | None:
@@ -263,11 +261,15 @@ class _Log:
                 f"{self._truth.path}: must have a line for each of the {self.frames} pictures, got {last}"
             )
         (self._folder / "truth").mkdir()
-        write_truth(self._folder / "truth" / "gt.txt", self._truth.truth)
+        if self._truth.is_single:
+            shutil.copyfile(self._truth.path, self._folder / KEPT_SINGLE)
+        else:
+            write_truth(self._folder / "truth" / "gt.txt", self._truth.truth)
         return self._score(self._truth)
 
     def _score(self, given: GivenTruth) -> Scores:
-        scores = evaluate(given.truth, read_tracks(self._folder / "tracks.txt"), frames=self.frames)
+        tracks = read_tracks(self._folder / "tracks.txt")
+        scores = evaluate(given.truth, tracks, frames=self.frames, is_single=given.is_single)
         text = json.dumps(to_json(scores), indent=2) + "\n"
         (self._folder / "metrics.json").write_text(text, encoding="utf-8")
         return scores

@@ -14,7 +14,9 @@ from bad_input import BadInput
 from tracker.evaluation.mot_files import read_truth
 from tracker.evaluation.sequence import Truth
 
-NAMES: Final = ("groundtruth.txt", "groundtruth_rect.txt", "gt/gt.txt", "truth/gt.txt")
+KEPT_SINGLE: Final = Path("truth") / "groundtruth.txt"
+"""Where a run of ours keeps truth of a single person, as it was given: the format says that it is one."""
+NAMES: Final = ("groundtruth.txt", "groundtruth_rect.txt", "gt/gt.txt", "truth/gt.txt", str(KEPT_SINGLE))
 """Where the truth lies beside or above the pictures: VOT, OTB, MOTChallenge, a run of ours."""
 
 
@@ -58,7 +60,7 @@ def load_truth(path: Path, frames: int | None) -> GivenTruth:
     """Read a truth file; its format follows from its lines.
 
     Lines of 4 numbers are x, y, w, h (OTB, VOT), of 8 or more even numbers a polygon (VOT), one line a frame,
-    a line of NaN or of an empty box a frame without the person. Lines of 9 with whole frame numbers are
+    a line of NaN or of an empty box a frame without the person. Lines of 9, an empty file and a gt.txt are
     MOTChallenge's.
 
     Args:
@@ -74,7 +76,7 @@ def load_truth(path: Path, frames: int | None) -> GivenTruth:
         raise BadInput(f"{path}: cannot be read as truth; give a text file of boxes") from error
     while lines and not lines[-1].strip():
         lines.pop()
-    if lines and len(_cells(lines[0])) == 9:
+    if path.name == "gt.txt" or not lines or len(_cells(lines[0])) == 9:
         truth = read_truth(path)
         if frames is not None and truth.last_frame > frames:
             raise BadInput(f"{path}: must end with frame {frames}, the last picture, got {truth.last_frame}")

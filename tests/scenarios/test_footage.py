@@ -11,11 +11,13 @@ from footage_files import SIZE, box, walker, write_counts, write_folder, write_v
 from PIL import Image
 
 from bad_input import BadInput
+from scenarios.commands.evaluate import evaluate
 from scenarios.commands.track import track
 from scenarios.footage.grey import AutomaticGrey, Radiometry, parse_scale
 from scenarios.footage.pictures import natural_order, open_footage
 from scenarios.footage.track_footage import TrackOptions, track_footage
 from scenarios.footage.truth_files import find_truth, load_truth
+from tracker.evaluation.table import NEED_EVERYBODY
 
 REAL_CLIP = os.environ.get("PEOPLEBOY_REAL_CLIP", "")
 
@@ -210,6 +212,37 @@ def test_truth_is_read_as_boxes_polygons_and_motchallenge(tmp_path):
     mot = tmp_path / "gt.txt"
     mot.write_text("1,3,1.00,2.00,3.00,4.00,1,1,1.0000\n")
     assert not load_truth(mot, 5).is_single
+    mot.write_text("")
+    assert not load_truth(mot, 5).is_single
+    mot.write_text("1,3,1.00,2.00,3.00,4.00,1,1\n")
+    with pytest.raises(BadInput, match=r"gt.txt:1: must have 9 numbers"):
+        load_truth(mot, 5)
+
+
+def test_of_one_annotated_person_only_what_it_can_tell_is_scored_at_once_and_later(tmp_path):
+    clip, out = write_folder(tmp_path / "clip"), tmp_path / "out"
+    otb(clip)
+    told = call(clip, "--out", out, "--start", "truth").stdout
+    again = CliRunner().invoke(evaluate, [str(out)]).stdout
+    files = ("--truth", str(clip / "groundtruth_rect.txt"), "--tracks", str(out / "tracks.txt"))
+    assert again == CliRunner().invoke(evaluate, files).stdout
+    assert told.startswith(again)
+    table, _, unknown = again.partition("Unknown: ")
+    names = {line.split()[0] for line in table.splitlines() if line.strip()}
+    assert {"CR", "AR", "MOTP", "IDR", "IDSW", "true_tracks"} <= names
+    assert not names & NEED_EVERYBODY
+    assert "One id keeps the annotated person" in again
+    assert unknown.startswith("CP, CA, AP, AA,")
+    assert (out / "truth" / "groundtruth.txt").read_bytes() == (clip / "groundtruth_rect.txt").read_bytes()
+    stored = json.loads((out / "metrics.json").read_text())
+    assert stored["thesis"]["CP"] is stored["mot"]["MOTA"] is stored["counts"]["false_tracks"] is None
+    assert stored["mot"]["IDR"] > 90
+
+
+def test_footage_without_truth_is_not_scored(tmp_path):
+    assert call(write_folder(tmp_path / "clip"), "--out", tmp_path / "out").exit_code == 0
+    result = CliRunner().invoke(evaluate, [str(tmp_path / "out")])
+    assert "has no truth to score against" in str(result.exception)
 
 
 def test_truth_of_several_people_gives_every_figure(tmp_path):

@@ -27,6 +27,7 @@ class Counts(Sums):
         matches: candidates that are associated with a target (thesis, section 3.4).
         tracks: track ids, ignored or not.
         false_tracks: track ids of which no box ever matches anyone, counted or ignored.
+        partly_annotated: frames of sequences whose truth has one person alone, whoever else is there.
     """
 
     frames: int
@@ -36,6 +37,12 @@ class Counts(Sums):
     matches: int
     tracks: int
     false_tracks: int
+    partly_annotated: int
+
+    @property
+    def true_tracks(self) -> int:
+        """Track ids that are on somebody at some time."""
+        return self.tracks - self.false_tracks
 
     @property
     def misses(self) -> int:
@@ -65,6 +72,7 @@ def evaluate(
     frames: int | None = None,
     uncounted: Rule = "ignore",
     min_visible: float = MIN_VISIBLE,
+    is_single: bool = False,
 ) -> Scores:
     """Score the tracks of one sequence against its truth.
 
@@ -78,6 +86,8 @@ def evaluate(
             takes the last frame that has a target or a candidate. It changes `counts.frames` only.
         uncounted: what to do about uncounted people: `ignore` candidates on them, or take them for `absent`.
         min_visible: people of whom at most this fraction is visible are uncounted as well.
+        is_single: whether the truth has one person alone, whoever else is there. Boxes elsewhere are then
+            neither right nor wrong, and the figures that need to know are undefined (`table.FIGURES`).
 
     Raises:
         BadInput: a target or candidate lies beyond `frames`, or an argument is out of range.
@@ -96,6 +106,7 @@ def evaluate(
             matches=len(matched),
             tracks=len(np.unique(tracks.id)),
             false_tracks=len(np.setdiff1d(tracks.id, found_ids)),
+            partly_annotated=frames if is_single else 0,
         ),
         thesis=measure_thesis(judged.truth, judged.tracks, pairs, matched),
         paper=measure_paper(judged.truth, judged.tracks, pairs),

@@ -30,8 +30,14 @@ class Figure:
         """Family of the figure: counts, thesis, paper or mot."""
         return self.where.partition(".")[0]
 
+    def is_told_by(self, scores: Scores) -> bool:
+        """Tell whether the truth of these scores has everybody whom the figure needs."""
+        return not (scores.counts.partly_annotated and self.name in NEED_EVERYBODY)
+
     def of(self, scores: Scores) -> float:
         """Look the figure up; NaN if it is undefined."""
+        if not self.is_told_by(scores):
+            return math.nan
         value: float = attrgetter(self.where)(scores)
         return value
 
@@ -103,7 +109,16 @@ FIGURES: tuple[Figure, ...] = (
     Figure("misses", "", "counts.misses", "People to find without such a box."),
     Figure("false_alarms", "", "counts.false_alarms", "Boxes without such a person."),
     Figure("tracks", "", "counts.tracks", "Track ids."),
+    Figure("true_tracks", "", "counts.true_tracks", "Track ids that are on somebody at some time."),
     Figure("false_tracks", "", "counts.false_tracks", "Track ids that never match anyone."),
+)
+
+# They ask whether boxes elsewhere are wrong, which nobody knows where one person alone is annotated.
+NEED_EVERYBODY = frozenset(
+    (
+        *("CP", "CA", "AP", "AA", "OCR", "OCP", "OCA", "BAP", "ADC"),
+        *("MOTA", "FP", "IDF1", "IDP", "HOTA", "DetA", "false_alarms", "false_tracks"),
+    )
 )
 
 

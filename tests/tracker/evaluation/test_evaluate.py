@@ -13,7 +13,7 @@ from random_sequences import sequences, tracks_of, truth_of
 from bad_input import BadInput
 from tracker.evaluation.evaluate import combine, evaluate
 from tracker.evaluation.sequence import Tracks, Truth
-from tracker.evaluation.table import FIGURES, rows, spread, to_json
+from tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread, to_json
 
 PERSON, FAR = (0, 0, 20, 60), (100, 0, 8, 20)
 TRUTH = truth_of([(1, 1, *PERSON), (2, 1, *PERSON), (1, 2, *FAR)], [True, True, False])
@@ -24,7 +24,7 @@ def test_counts_match_those_worked_by_hand():
     counts = evaluate(TRUTH, TRACKS).counts
     assert (counts.frames, counts.targets, counts.candidates, counts.ignored) == (2, 2, 3, 1)
     assert (counts.matches, counts.misses, counts.false_alarms) == (2, 0, 1)
-    assert (counts.tracks, counts.false_tracks) == (3, 1)
+    assert (counts.tracks, counts.true_tracks, counts.false_tracks) == (3, 2, 1)
 
 
 def test_taking_uncounted_people_for_absent_makes_boxes_on_them_false_alarms():
@@ -119,6 +119,46 @@ def test_the_spread_leaves_out_sequences_in_which_a_figure_is_undefined():
     assert by_name["CR"].sd == pytest.approx(math.sqrt(2 * 50.0**2))
     assert (by_name["CP"].mean, by_name["CP"].sequences) == (found.thesis.cp, 1)
     assert math.isnan(by_name["CP"].sd)
+
+
+@st.composite
+def one_person_and_others(draw):
+    """A person with boxes on and near it, by two ids, and boxes of a third somewhere else."""
+    frames = draw(st.integers(1, 8))
+    edges = st.integers(-8, 8)
+    near = [
+        (frame, draw(st.integers(1, 2)), draw(edges), draw(edges), 20, 60) for frame in range(1, frames + 1)
+    ]
+    elsewhere = [(frame, 3, 500 + draw(edges), 0, 20, 60) for frame in range(1, frames + 1)]
+    return truth_of([(frame, 1, *PERSON) for frame in range(1, frames + 1)]), near, elsewhere
+
+
+@given(one_person_and_others())
+def test_boxes_on_others_change_nothing_that_is_told_of_a_person_who_alone_is_annotated(case):
+    truth, near, elsewhere = case
+    alone, among = (
+        {row.figure.name: row.value for row in rows(evaluate(truth, tracks_of(boxes), is_single=True))}
+        for boxes in (near, near + elsewhere)
+    )
+    for name in alone.keys() - {"candidates", "tracks"}:
+        assert among[name] == pytest.approx(alone[name], nan_ok=True), name
+
+
+def test_every_figure_that_is_not_told_of_one_person_would_have_changed_by_boxes_on_others():
+    person, other = (1, 1, *PERSON), (1, 2, 500, 0, 20, 60)
+    alone, among = (evaluate(truth_of([person]), tracks_of(boxes)) for boxes in ([person], [person, other]))
+    changed = {figure.name for figure in FIGURES if figure.of(alone) != figure.of(among)}
+    assert changed - {"candidates", "tracks"} == NEED_EVERYBODY - {"OCR"}
+    lost = evaluate(truth_of([person]), tracks_of([other]))
+    assert lost.paper.ocr == 100.0
+
+
+def test_what_one_person_cannot_tell_is_null_and_stays_unknown_among_other_sequences():
+    single = evaluate(TRUTH, TRACKS, is_single=True)
+    for scores in (single, combine([single, evaluate(TRUTH, TRACKS)])):
+        stored = {name: value for group in to_json(scores).values() for name, value in group.items()}
+        assert {name for name, value in stored.items() if value is None} == NEED_EVERYBODY
+    assert single.counts.true_tracks == 2
 
 
 @given(sequences())
