@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from io import BytesIO
 from pathlib import Path
+from typing import Final
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -13,6 +15,8 @@ from bad_input import BadInput
 from behaviours.command import STOP, Command
 from behaviours.sight import Sight
 
+KEPT: Final = "drive.parquet"
+"""Where a run keeps the drive that its robot repeated."""
 _STEPS = pa.schema(
     [
         pa.field("linear_m_s", pa.float64()),
@@ -39,8 +43,15 @@ class Repeat:
 
 def write_drive(path: Path, drive: Sequence[Command]) -> None:
     """Write commands, one a control step."""
+    path.write_bytes(pack_drive(drive))
+
+
+def pack_drive(drive: Sequence[Command]) -> bytes:
+    """Give the file that holds these commands."""
+    packed = BytesIO()
     rows = [asdict(command) for command in drive]
-    pq.write_table(pa.Table.from_pylist(rows, schema=_STEPS), path, compression="zstd")
+    pq.write_table(pa.Table.from_pylist(rows, schema=_STEPS), packed, compression="zstd")
+    return packed.getvalue()
 
 
 def read_drive(path: Path) -> tuple[Command, ...]:

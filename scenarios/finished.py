@@ -8,6 +8,7 @@ import yaml
 
 from bad_input import BadInput
 from scenarios.folder import versions
+from scenarios.own_files import are_kept
 from scenarios.run import RunOptions
 from scenarios.scenario import Scenario
 
@@ -33,9 +34,9 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
         )
     if options.frames and not about["images"]:
         return False
-    if (played, about["renderer"]) != (
-        _as_read(scenario.resolved(options.seed, versions())),
-        options.renderer,
+    resolved = _as_read(scenario.resolved(options.seed, versions()))
+    if (played, about["renderer"]) != (resolved, options.renderer) or not are_kept(
+        scenario.kept_files(), options.out
     ):
         raise BadInput(
             f"{options.out}: is a run of another scenario or version; give --overwrite, or another --out"

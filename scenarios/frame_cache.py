@@ -129,7 +129,8 @@ def frames_of(shot: Film) -> Iterator[Frame]:
 def film_key(scenario: Scenario, seed: int) -> str:
     """A hash of all that the frames depend on."""
     drive = [] if scenario.drive is None else [astuple(command) for command in scenario.drive]
-    parts = [scenario.resolved(seed), seed, versions(), _source_digest(), drive]
+    files = {name: hashlib.sha256(content).hexdigest() for name, content in scenario.files.items()}
+    parts = [scenario.resolved(seed), seed, versions(), _source_digest(), drive, files]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 

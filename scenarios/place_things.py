@@ -84,7 +84,7 @@ def _make_thing(
     name: str, spec: ThingSpec, ceiling_m: float, plan: FloorPlan, built: Built, folder: Path
 ) -> tuple[Fixture, ...]:
     urdf = _find_urdf(spec, folder)
-    extent = urdf_extent(find_urdf(urdf)) * spec.scale if urdf is not None else _usual_extent(spec, ceiling_m)
+    extent = _usual_extent(spec, ceiling_m) if urdf is None else _urdf_extent(urdf) * spec.scale
     stance = _stand(spec, plan, built, extent)
     if not any(area.grown(_GAP_M).contains(stance.x, stance.y) for area in plan.walkable()):
         raise BadInput(f".at_m: ({stance.x:g}, {stance.y:g}) is outside the floor; {describe_floor(plan)}")
@@ -124,6 +124,13 @@ def _usual_extent(spec: ThingSpec, ceiling_m: float) -> Extent:
         height = ceiling_m + _GAP_M
     back = 0.0 if kind.is_hung else -depth / 2.0
     return np.array([[back, -width / 2.0, 0.0], [back + depth, width / 2.0, height]])
+
+
+def _urdf_extent(urdf: str) -> Extent:
+    try:
+        return urdf_extent(find_urdf(urdf))
+    except BadInput as error:
+        raise BadInput(f".urdf: {error}") from error
 
 
 def _stand(spec: ThingSpec, plan: FloorPlan, built: Built, extent: Extent) -> _Stance:

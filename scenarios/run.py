@@ -11,6 +11,7 @@ from bad_input import BadInput
 from scenarios.faults import FaultySensors, FaultyTracker
 from scenarios.folder import RunFolder, claim_folder, versions
 from scenarios.loop import Tick, closed_loop
+from scenarios.own_files import keep_own_files
 from scenarios.recording.recorder import Recorder
 from scenarios.scenario import Scenario
 from scenarios.score import RunScores, following_task, score_run
@@ -77,6 +78,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         folder = stack.enter_context(
             RunFolder(options.out, scenario.resolved(options.seed, versions()), about, frames=options.frames)
         )
+        keep_own_files(scenario.kept_files(), options.out)
         title = f"{scenario.name}, seed {options.seed}, tracker {options.tracker}"
         recorder = None
         if options.record:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,10 @@ from behaviours.make import make_behaviour
 from scenarios.build_place import make_floor_plan, make_place
 from scenarios.cast_people import cast, make_config, members
 from scenarios.check import Ground, check_scenario, make_ground
-from scenarios.drives import Repeat
+from scenarios.drives import KEPT, Repeat, pack_drive, read_drive
 from scenarios.equip_robot import equip_robot
 from scenarios.outfits import tell_apart
+from scenarios.own_files import read_own_files
 from scenarios.schema import DrawnSpec, PersonSpec, RobotSpec, ScenarioSpec
 from sim.config import WorldConfig
 from sim.places.floor_plan import FloorPlan
@@ -39,6 +40,7 @@ class Scenario:
         plan: the floor.
         place: everything that stands still.
         ground: where people can walk.
+        files: contents of the files of its own that it names, by path from its own folder.
         drive: commands, one a control step, that the robot repeats instead of behaving; None to behave.
     """
 
@@ -46,6 +48,7 @@ class Scenario:
     plan: FloorPlan
     place: Place
     ground: Ground
+    files: Mapping[str, bytes]
     drive: tuple[Command, ...] | None = None
 
     @property
@@ -113,7 +116,7 @@ class Scenario:
     def steered_by(self, behaviour: str) -> Scenario:
         """The same scenario, but another behaviour drives the robot."""
         robot = self.robot.model_copy(update={"behaviour": behaviour})
-        return replace(self, spec=self.spec.model_copy(update={"robot": robot}))
+        return replace(self, spec=self.spec.model_copy(update={"robot": robot}), drive=None)
 
     def make_behaviour(self) -> Behaviour:
         """What drives the robot, fresh from the start."""
@@ -139,21 +142,24 @@ class Scenario:
         return CorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
 
     def resolved(self, seed: int, versions: dict[str, str] | None = None) -> dict[str, Any]:
-        """The scenario as plain data with everything drawn; reading it again gives the same world.
+        """The scenario as plain data with everything drawn; beside `kept_files` it gives the same world.
 
         Args:
             seed: of the run.
             versions: of the packages, by name, to be kept beside the seed.
         """
-        resolved = self.spec.model_copy(
-            update={
-                "people": self.people(seed),
-                "groups": (),
-                "drawn": DrawnSpec(seed=seed, versions={} if versions is None else versions),
-            }
+        drawn = DrawnSpec(
+            seed=seed,
+            versions={} if versions is None else versions,
+            drive=None if self.drive is None else KEPT,
         )
+        resolved = self.spec.model_copy(update={"people": self.people(seed), "groups": (), "drawn": drawn})
         data: dict[str, Any] = resolved.model_dump(mode="json", exclude_none=True)
         return data
+
+    def kept_files(self) -> dict[str, bytes]:
+        """Contents of all files that must lie beside the resolved scenario, by path from it."""
+        return dict(self.files) | ({} if self.drive is None else {KEPT: pack_drive(self.drive)})
 
 
 def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
@@ -164,13 +170,21 @@ def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
         folder: where the file lies.
 
     Raises:
-        BadInput: something cannot be; the message begins with the key.
+        BadInput: something cannot be; the message begins with the key, or is about a file beside.
     """
     plan = make_floor_plan(spec.place)
     place = make_place(spec, folder)
     ground = make_ground(spec, plan, place)
     check_scenario(spec, _everybody(spec), ground)
-    return Scenario(spec=spec, plan=plan, place=place, ground=ground)
+    is_driven = spec.drawn is not None and spec.drawn.drive is not None
+    return Scenario(
+        spec=spec,
+        plan=plan,
+        place=place,
+        ground=ground,
+        files=read_own_files(spec, folder),
+        drive=read_drive(folder / KEPT) if is_driven else None,
+    )
 
 
 def _everybody(spec: ScenarioSpec) -> tuple[tuple[str, PersonSpec], ...]:

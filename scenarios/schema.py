@@ -301,6 +301,8 @@ class DrawnSpec(Strict):
 
     seed: Annotated[int, Field(ge=0)]
     versions: dict[str, str] = {}
+    drive: Literal["drive.parquet"] | None = None
+    """commands that the robot repeats, in a file beside this one, whatever its behaviour is"""
 
 
 class ScenarioSpec(Strict):
