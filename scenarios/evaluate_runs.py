@@ -11,6 +11,7 @@ from bad_input import BadInput
 from scenarios.footage.truth_files import find_truth, load_truth
 from tracker.evaluation.evaluate import Scores, evaluate
 from tracker.evaluation.mot_files import read_tracks
+from tracker.evaluation.sequence import Rows
 from tracker.evaluation.uncounted import MIN_VISIBLE
 
 
@@ -22,10 +23,13 @@ def evaluate_files(
     People of whom no more than min_visible is seen do not count. Figures that need everybody are undefined
     where the truth has one person alone.
     """
-    given = load_truth(truth, None)
+    given, found = load_truth(truth, None), read_tracks(tracks)
+    if frames is not None:
+        check_end(given.truth, truth, frames)
+        check_end(found, tracks, frames)
     return evaluate(
         given.truth,
-        read_tracks(tracks),
+        found,
         frames=frames,
         min_visible=min_visible,
         is_single=given.is_single,
@@ -39,6 +43,16 @@ def evaluate_runs(folders: Sequence[Path], min_visible: float = MIN_VISIBLE) -> 
         BadInput: a folder holds no run, or one that was cut off, or of footage without truth.
     """
     return [_evaluate_run(folder, min_visible) for folder in folders]
+
+
+def check_end(rows: Rows, path: Path, frames: int) -> None:
+    """Refuse a file that goes on after the run.
+
+    Raises:
+        BadInput: it does.
+    """
+    if rows.last_frame > frames:
+        raise BadInput(f"{path}: must end with frame {frames}, the run's last, got {rows.last_frame}")
 
 
 def runs_in(folder: Path) -> list[Path]:
@@ -68,6 +82,8 @@ def read_run(folder: Path) -> dict[str, Any]:
         raise BadInput(
             f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
         )
+    if not isinstance(about.get("frames"), int):
+        raise BadInput(f"{path}: frames: must be a whole number, got {about.get('frames')!r}; run it again")
     return about
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from bad_input import BadInput
 from scenarios.loop import Tick
 from sim.truth import PersonTruth
 from tracker.track import Ellipse, Status, Track
@@ -77,6 +76,11 @@ ROBOT = pa.schema(
     ]
 )
 
+MAY_BE_EMPTY = frozenset(
+    ("occluder", *(f"{prefix}{edge}" for prefix in ("", "whole_", "visible_") for edge in _EDGES))
+)
+"""Columns that have no value where there is nobody or nothing to tell of."""
+
 
 def truth_rows(tick: Tick) -> list[Row]:
     """Rows of the truth table for one tick: one per person present."""
@@ -115,21 +119,6 @@ def robot_row(tick: Tick) -> Row:
 def write_table(path: Path, rows: list[Row], schema: pa.Schema) -> None:
     """Write rows as a parquet file; no rows give an empty table with the same columns."""
     pq.write_table(pa.Table.from_pylist(rows, schema=schema), path)
-
-
-def read_table(path: Path, columns: Sequence[str]) -> pa.Table:
-    """Read these columns of a run's table.
-
-    Raises:
-        BadInput: the file is missing or spoilt, or from a version that had not all of them.
-    """
-    try:
-        lacking = [name for name in columns if name not in pq.read_schema(path).names]
-        if lacking:
-            raise BadInput(f"{path}: has no column {lacking[0]!r}; run the scenario again")
-        return pq.read_table(path, columns=list(columns))
-    except (OSError, pa.ArrowException) as error:
-        raise BadInput(f"{path}: cannot be read as a table of a run; run the scenario again") from error
 
 
 def _instant(tick: Tick) -> Row:

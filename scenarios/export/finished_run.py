@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import pyarrow as pa
-
 from bad_input import BadInput
 from scenarios.evaluate_runs import read_run
 from scenarios.load import load_scenario
+from scenarios.run_files import RunFiles, read_about, read_files
 from scenarios.scenario import Scenario
-from scenarios.tables import ROBOT, TRACKS, TRUTH, Row, read_table, track_of
+from scenarios.tables import Row, track_of
 from sim.config import RobotConfig, WorldConfig
 from tracker.track import Track
 
@@ -58,16 +57,20 @@ class FinishedRun:
 
     def truth_rows(self) -> dict[int, list[Row]]:
         """Give the rows of truth.parquet, by frame."""
-        return _by_frame(_read(self.folder / "truth.parquet", TRUTH))
+        return _by_frame(self._files().people.to_pylist())
 
     def robot_rows(self) -> list[Row]:
         """Give the rows of robot.parquet, one a frame."""
-        return _read(self.folder / "robot.parquet", ROBOT)
+        rows: list[Row] = self._files().robot.to_pylist()
+        return rows
 
     def tracks(self) -> dict[int, list[Track]]:
         """Give what the tracker said, by frame, tentative tracks too."""
-        rows = _by_frame(_read(self.folder / "tracks.parquet", TRACKS))
+        rows = _by_frame(self._files().beliefs.to_pylist())
         return defaultdict(list, {frame: [track_of(row) for row in here] for frame, here in rows.items()})
+
+    def _files(self) -> RunFiles:
+        return read_files(self.folder, self.frames)
 
 
 def open_runs(folders: Sequence[Path]) -> list[FinishedRun]:
@@ -93,33 +96,25 @@ def open_run(folder: Path) -> FinishedRun:
     Raises:
         BadInput: there is none.
     """
-    about = read_run(folder)
+    read_run(folder)
     for name in _FILES:
         if not (folder / name).is_file():
             raise BadInput(
                 f"{folder / name}: there is no such file; only whole runs of scenarios can be exported"
             )
+    about = read_about(folder)
     scenario = load_scenario(folder / "scenario.yaml")
-    try:
-        seed, renderer = int(about["seed"]), str(about["renderer"])
-        tracker, frames, rate_hz = str(about["tracker"]), int(about["frames"]), int(about["rate_hz"])
-    except (KeyError, ValueError) as error:
-        raise BadInput(f"{folder / 'run.json'}: lacks {error}; run the scenario again") from error
+    read_files(folder, about.frames)
     return FinishedRun(
         folder=folder,
         scenario=scenario,
-        seed=seed,
-        tracker=tracker,
-        frames=frames,
-        rate_hz=rate_hz,
-        versions=dict(about.get("versions", {})),
-        world=scenario.world(seed, renderer),
+        seed=about.seed,
+        tracker=about.tracker,
+        frames=about.frames,
+        rate_hz=about.rate_hz,
+        versions=about.versions,
+        world=scenario.world(about.seed, about.renderer),
     )
-
-
-def _read(path: Path, schema: pa.Schema) -> list[Row]:
-    rows: list[Row] = read_table(path, schema.names).to_pylist()
-    return rows
 
 
 def _by_frame(rows: Sequence[Row]) -> dict[int, list[Row]]:

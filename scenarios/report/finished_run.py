@@ -11,11 +11,9 @@ from typing import Any
 import pyarrow as pa
 
 from bad_input import BadInput
-from scenarios.evaluate_runs import read_run
 from scenarios.read_yaml import read_yaml
 from scenarios.run_events import LogLine
-from scenarios.tables import TRACKS, read_table
-from tracker.evaluation.mot_files import read_tracks, read_truth
+from scenarios.run_files import read_about, read_files
 from tracker.evaluation.sequence import Tracks, Truth
 
 _BOX = ("left_px", "top_px", "width_px", "height_px")
@@ -23,8 +21,7 @@ _PEOPLE = (
     *("frame", "id", "name", "x_m", "y_m", "distance_m", "is_counted", *_BOX, "whole_px"),
     *("visible_fraction", "occluded_fraction", "occluder", "hidden_by"),
 )
-_ROBOT = ("x_m", "y_m", "mode")
-_NEEDED = ("scenario", "seed", "tracker", "renderer", "rate_hz", "versions", "frames")
+_ROBOT = ("frame", "x_m", "y_m", "mode")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -86,21 +83,19 @@ def read_finished(folder: Path) -> FinishedRun:
     Raises:
         BadInput: it holds no run, or one that was cut off, or a file of it is missing or spoilt.
     """
-    about = read_run(folder)
-    for key in _NEEDED:
-        if key not in about:
-            raise BadInput(f"{folder / 'run.json'}: key {key!r} is missing; run the scenario again")
+    about = read_about(folder)
+    files = read_files(folder, about.frames, people=_PEOPLE, robot=_ROBOT)
     return FinishedRun(
         folder=folder,
-        about=about,
+        about=about.model_dump(),
         played=read_yaml(folder / "scenario.yaml"),
         metrics=_read_json(folder / "metrics.json"),
         events=_read_events(folder / "events.jsonl"),
-        truth=read_truth(folder / "truth" / "gt.txt"),
-        tracks=read_tracks(folder / "tracks.txt"),
-        people=read_table(folder / "truth.parquet", _PEOPLE),
-        beliefs=read_table(folder / "tracks.parquet", TRACKS.names),
-        robot=read_table(folder / "robot.parquet", _ROBOT),
+        truth=files.truth,
+        tracks=files.tracks,
+        people=files.people,
+        beliefs=files.beliefs,
+        robot=files.robot,
     )
 
 

@@ -62,7 +62,7 @@ def test_files_that_are_missing_or_broken_are_named(
     assert "tracks.txt: there is no such file" in refusal(capsys, run, "--format", "mot")
     (run / "tracks.txt").touch()
     (run / "run.json").write_text('{"status": "complete", "frames": 60}')
-    assert "run.json: lacks 'seed'" in refusal(capsys, run, *FORM)
+    assert "run.json: missing key 'scenario'; missing key 'seed'" in refusal(capsys, run, *FORM)
     (run / "scenario.yaml").unlink()
     assert "scenario.yaml: there is no such file" in refusal(capsys, run, *FORM)
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
