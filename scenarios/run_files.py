@@ -63,6 +63,8 @@ def read_about(folder: Path) -> About:
         BadInput: there is no such run.
     """
     data = read_run(folder)
+    if "footage" in data:
+        raise BadInput(f"{folder}: is a run of footage; only runs of scenarios can be looked into so")
     try:
         return About.model_validate(data)
     except ValidationError as error:
