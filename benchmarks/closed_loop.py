@@ -48,7 +48,7 @@ def run_speed(scenario: str) -> float:
 
     with tempfile.TemporaryDirectory() as folder:
         run(load_scenario(scenario), RunOptions(seed=0, out=Path(folder) / "run"), report)
-    # The mean, not the median: the recording writes every 60 frames, and that counts.
+    # The mean, not the median: the recording writes every 15 frames, and that counts.
     return (len(times) - 1) / RATE_HZ / sum(times[1:])
 
 

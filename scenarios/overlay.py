@@ -70,10 +70,14 @@ def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
     return np.asarray(cv2.cvtColor(cv2.applyColorMap(thermal, colours), cv2.COLOR_BGR2RGB), np.uint8)
 
 
-def encode_jpeg(image: NDArray[np.uint8], quality: int) -> bytes:
-    """Encode an (H, W) grey or (H, W, 3) RGB image; quality 0..100."""
+def encode_jpeg(image: NDArray[np.uint8], quality: int, *, has_own_codes: bool = True) -> bytes:
+    """Encode an (H, W) grey or (H, W, 3) RGB image; quality 0..100.
+
+    Codes of its own make one image smaller. Many images that are packed together are smaller if they share
+    the standard's.
+    """
     stored = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
-    options = [cv2.IMWRITE_JPEG_QUALITY, quality, cv2.IMWRITE_JPEG_OPTIMIZE, 1]
+    options = [cv2.IMWRITE_JPEG_QUALITY, quality, cv2.IMWRITE_JPEG_OPTIMIZE, int(has_own_codes)]
     return cv2.imencode(".jpg", stored, options)[1].tobytes()
 
 

@@ -1,4 +1,4 @@
-"""People as stick figures and as bodies of capsules, from their 17 joints."""
+"""People as bodies of capsules, from their 17 joints."""
 
 from __future__ import annotations
 
@@ -12,16 +12,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 # Indices of the COCO keypoints.
-_NOSE, _EARS, _SHOULDERS, _ELBOWS, _WRISTS = 0, (3, 4), (5, 6), (7, 8), (9, 10)
+_EARS, _SHOULDERS, _ELBOWS, _WRISTS = (3, 4), (5, 6), (7, 8), (9, 10)
 _HIPS, _KNEES, _ANKLES = (11, 12), (13, 14), (15, 16)
-
-BONES: Final[tuple[tuple[int, ...], ...]] = (
-    (9, 7, 5, 11, 13, 15),  # left hand to left foot
-    (10, 8, 6, 12, 14, 16),
-    (5, 6),
-    (11, 12),
-    (3, 1, 0, 2, 4),  # ear to ear
-)
 
 # Radii in shares of the height from ankles to ears: the look of a person, not anybody's measures.
 _LIMBS: Final[tuple[tuple[tuple[int, int], tuple[int, int], float], ...]] = (
@@ -54,11 +46,6 @@ class Capsules:
 
 
 NOBODY: Final = Capsules(np.zeros((0, 3)), np.zeros((0, 4)), np.zeros(0), np.zeros(0))
-
-
-def stick_figure(joints: Floats) -> list[Floats]:
-    """Give the lines (k, 3) [m] of a skeleton from its joints (17, 3)."""
-    return [joints[list(bone)] for bone in BONES]
 
 
 def body_capsules(joints: Floats) -> Capsules:

@@ -45,14 +45,14 @@ class Boxes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lines:
-    """K lines with a colour each.
+    """K lines of n points with a colour each.
 
     Attributes:
-        line: K arrays of (n, 2) [px] or (n, 3) [m].
+        line: (K, n, 2) [px] or (K, n, 3) [m].
         colour: (K, 3).
     """
 
-    line: list[Floats]
+    line: Floats
     colour: Colours
 
 
@@ -89,10 +89,8 @@ def track_label(track: Track) -> str:
 
 def track_contours(tracks: Sequence[Track], contour: ContourConfig) -> Lines:
     """Give the outlines of body and head of every track."""
-    lines = [
-        line.astype(np.float32) for track in tracks for line in outline(track.ellipse, contour, count=20)
-    ]
-    return Lines(lines, colours_of(track_colour(track.id) for track in tracks for _ in range(2)))
+    lines = [line for track in tracks for line in outline(track.ellipse, contour, count=20)]
+    return Lines(lines_of(lines, 2), colours_of(track_colour(track.id) for track in tracks for _ in range(2)))
 
 
 def truth_boxes(people: Iterable[PersonTruth], affine_at: Callable[[float], Matrix] | None = None) -> Boxes:
@@ -141,9 +139,9 @@ class Trails:
         robot = tick.truth.robot
         places = {0: (robot.x, robot.y)} | {p.id: p.position_m for p in tick.truth.people}
         moved = [number for number in places if number in self._last]
-        lines = [np.array([[*self._last[n], 0.02], [*places[n], 0.02]], np.float32) for n in moved]
+        lines = [np.array([[*self._last[n], 0.02], [*places[n], 0.02]]) for n in moved]
         self._last = places
-        return Lines(lines, colours_of(person_colour(n) if n > 0 else ROBOT for n in moved))
+        return Lines(lines_of(lines, 3), colours_of(person_colour(n) if n > 0 else ROBOT for n in moved))
 
 
 def visible_fractions(tick: Tick, names: Iterable[str]) -> list[float]:
@@ -159,6 +157,11 @@ def track_offset(track: Track, width_px: int) -> float:
 
 def _boxes(boxes: Sequence[tuple[float, float, float, float]]) -> Floats:
     return np.reshape(np.array(boxes, np.float32), (-1, 4))
+
+
+def lines_of(lines: Sequence[NDArray[np.float64]], size: int) -> Floats:
+    """Stack K lines of n points of 2 or 3 numbers; none are lines of 2 points."""
+    return np.array(lines, np.float32) if lines else np.zeros((0, 2, size), np.float32)
 
 
 def colours_of(colours: Iterable[Rgb]) -> Colours:

@@ -17,8 +17,10 @@ from scenarios.overlay import encode_jpeg
 from scenarios.recording import marks
 from scenarios.recording.arrows import Arrows, believed_arrows, true_arrows, world_arrows
 from scenarios.recording.entities import COLOUR, EVENTS, OCCLUSIONS, THERMAL, TRAILS, person_path
-from scenarios.recording.figures import NOBODY, body_capsules, stick_figure
+from scenarios.recording.figures import NOBODY, body_capsules
 from scenarios.recording.layout import lay_out
+from scenarios.recording.packing import pack
+from scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
 from scenarios.recording.rows import Rows
 from scenarios.recording.sections import section_marks
 from scenarios.recording.still import Still
@@ -36,7 +38,8 @@ APPLICATION = "peopleboy"
 # A track has no depth: its box is mapped to the colour image as if the person were so far away.
 TYPICAL_DEPTH_M = 4.0
 
-_FRAMES_SENT_TOGETHER = 60
+_FRAMES_SENT_TOGETHER = 15
+_JPEG_QUALITY = {THERMAL: 60, COLOUR: 45}
 _NAME_HEIGHT_PX = 16.0
 _DEPTH_STEP_M = 0.1
 _GRAVE = ("contact", "lost")
@@ -45,8 +48,8 @@ _GRAVE = ("contact", "lost")
 class Recorder:
     """Writes one recording as the run goes; use it as a context manager.
 
-    Every 60 frames everything since the last time goes to the file, so that a run that is killed leaves a
-    file that opens and lacks those frames at most.
+    Every 15 frames everything since the last time goes to the file, so that a run that is killed leaves a
+    file that opens and lacks those frames at most. A file that is closed is packed.
 
     Args:
         path: the file to write.
@@ -70,6 +73,7 @@ class Recorder:
         self._thermal = config.robot.thermal.camera
         self._affine_at = lru_cache(partial(affine_between, self._thermal, config.robot.colour.camera))
         self._names = [person.name for person in config.people]
+        self._path = path
         self._trails = marks.Trails()
         self._tracks_named: set[int] = set()
         self._rows = Rows()
@@ -106,9 +110,10 @@ class Recorder:
             self._send()
 
     def close(self) -> None:
-        """Write what is left, and close the file."""
+        """Write what is left, close the file, and pack it."""
         self._send()
         self._stream.disconnect()
+        pack(self._path)
 
     def _send(self) -> None:
         for rows in self._rows.take():
@@ -119,13 +124,14 @@ class Recorder:
 
     def _log_images(self, tick: Tick) -> None:
         senses = tick.observation
-        for path, image, quality in ((THERMAL, senses.thermal, 80), (COLOUR, senses.colour, 60)):
-            self._rows.add(f"{path}/image", rr.EncodedImage, blob=[encode_jpeg(image, quality)])
+        for path, image in ((THERMAL, senses.thermal), (COLOUR, senses.colour)):
+            blob = encode_jpeg(image, _JPEG_QUALITY[path], has_own_codes=False)
+            self._rows.add(f"{path}/image", rr.EncodedImage, blob=[blob])
 
     def _log_tracks(self, tick: Tick) -> None:
         contours = self._contours(tick)
-        strips = [_from_corner(line) for line in contours.line]
-        self._rows.add(f"{THERMAL}/tracks/contours", rr.LineStrips2D, strips=strips, colors=contours.colour)
+        strips, colours = _from_corner(contours.line), contours.colour
+        self._rows.add(f"{THERMAL}/tracks/contours", rr.LineStrips2D, strips=strips, colors=colours)
         on_thermal = marks.track_boxes(tick.tracks)
         on_colour = marks.track_boxes(tick.tracks, self._affine_at(TYPICAL_DEPTH_M))
         for path, boxes in ((THERMAL, on_thermal), (COLOUR, on_colour)):
@@ -140,8 +146,8 @@ class Recorder:
 
     def _log_arrows(self, layer: str, arrows: Arrows) -> None:
         self._rows.add(
-            f"{THERMAL}/{layer}", rr.Arrows2D, origins=_from_corner(arrows.start), vectors=arrows.vector,
-            colors=arrows.colour, labels=arrows.label,
+            f"{THERMAL}/{layer}", rr.Arrows2D, origins=_from_corner(arrows.start),
+            vectors=rounded(arrows.vector, PIXEL_STEP), colors=arrows.colour, labels=arrows.label,
         )  # fmt: skip
 
     def _log_particles(self, tick: Tick) -> None:
@@ -169,7 +175,7 @@ class Recorder:
         return self._affine_at(max(round(away_m / _DEPTH_STEP_M), 1) * _DEPTH_STEP_M)
 
     def _log_boxes(self, path: str, boxes: marks.Boxes, **labels: list[str]) -> None:
-        half = boxes.box[:, 2:] / 2.0
+        half = rounded(boxes.box[:, 2:] / 2.0, PIXEL_STEP)
         centre = _from_corner(boxes.box[:, :2]) + half
         self._rows.add(path, rr.Boxes2D, centers=centre, half_sizes=half, colors=boxes.colour, **labels)
 
@@ -186,12 +192,11 @@ class Recorder:
             self._log_person(person_path(name), joints.get(name))
 
     def _log_person(self, path: str, joints: Matrix | None) -> None:
-        lines = [] if joints is None else [np.float32(line) for line in stick_figure(joints)]
         body = NOBODY if joints is None else body_capsules(joints)
-        self._rows.add(f"{path}/skeleton", rr.LineStrips3D, strips=lines)
         self._rows.add(
-            f"{path}/body", rr.Capsules3D, translations=body.start, quaternions=body.quaternion,
-            lengths=body.length, radii=body.radius,
+            f"{path}/body", rr.Capsules3D, translations=rounded(body.start, METRE_STEP),
+            quaternions=rounded(body.quaternion, TURN_STEP), lengths=rounded(body.length, METRE_STEP),
+            radii=rounded(body.radius, METRE_STEP / 2),
         )  # fmt: skip
 
     def _log_curves(self, tick: Tick) -> None:
@@ -213,7 +218,7 @@ class Recorder:
 
 def _from_corner(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
     """Count pixels from the corner of the image, as rerun does, not from the middle of the first one."""
-    return pixels + np.float32(0.5)
+    return rounded(pixels, PIXEL_STEP) + np.float32(0.5)
 
 
 def _planar(pose: Planar) -> dict[str, Any]:

@@ -63,5 +63,6 @@ class Rows:
 
 def _joined(rows: Sequence[Any]) -> Any:
     if isinstance(rows[0], np.ndarray):
-        return np.concatenate(rows)
+        # Of nothing there may be a shape that does not fit.
+        return np.concatenate([row for row in rows if len(row)] or rows[:1])
     return [value for row in rows for value in row]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenarios.palette import Rgb, track_colour
-from scenarios.recording.marks import Floats, Lines
+from scenarios.recording.marks import Lines, lines_of
 from tracker.config import TrackerConfig
 from tracker.contour import FEET, SECTIONS
 from tracker.ellipse import section_lines
@@ -30,13 +30,13 @@ def section_marks(tracks: Sequence[Track], evidence: Mapping[int, Evidence], con
     """
     drawn = np.ones(SECTIONS + 1, np.bool_)
     drawn[FEET] = config.contour.feet_weight > 0
-    lines: list[Floats] = []
+    lines: list[NDArray[np.float64]] = []
     colours = np.zeros((len(tracks), SECTIONS + 1, 3), np.uint8)
     for number, track in enumerate(tracks):
-        lines.extend(section_lines(track.ellipse, config.contour)[drawn].astype(np.float32))
+        lines.extend(section_lines(track.ellipse, config.contour)[drawn])
         colours[number, :SECTIONS] = _shades(evidence[track.id], config.likelihood.threshold)
         colours[number, SECTIONS] = track_colour(track.id)
-    return Lines(lines, colours[:, drawn].reshape(-1, 3))
+    return Lines(lines_of(lines, 2), colours[:, drawn].reshape(-1, 3))
 
 
 def _shades(evidence: Evidence, threshold: float) -> NDArray[np.uint8]:

@@ -63,10 +63,8 @@ class Still:
     def _log_people(self, names: Sequence[str]) -> None:
         colours = [person_colour(number) for number, _ in enumerate(names, start=1)]
         for name, colour in zip(names, colours, strict=True):
-            body = rr.Capsules3D.from_fields(colors=[colour], fill_mode=FillMode.Solid)
+            body = rr.Capsules3D.from_fields(colors=[colour], fill_mode=FillMode.Solid, labels=[name])
             self._log(f"{person_path(name)}/body", body)
-            skeleton = rr.LineStrips3D.from_fields(colors=[(255, 255, 255)], radii=[0.012], labels=[name])
-            self._log(f"{person_path(name)}/skeleton", skeleton)
         self._log("curves/visible", rr.SeriesLines(names=names, colors=colours))
 
     def _log(self, path: str, *what: Any) -> None:
