@@ -4,7 +4,7 @@ world/place/...             floor, walls and things; the ceiling is there, but n
 world/robot                 its pose; below it body and cameras, with what is drawn on their images:
 world/robot/thermal/...     image, tracks with evidence, particles, truth
 world/robot/colour/...      image, tracks, truth
-world/people/NAME           body and name
+world/people/NAME/body      capsules, and the name
 world/occlusions            arrows from who hides to who is hidden
 world/trails                where robot and people went
 curves/..., events          what the lower row of views shows
