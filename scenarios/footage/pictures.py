@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -126,6 +127,8 @@ class Video:
             self.notes.append(f"{self.path}: ended after {count} of {self.expected} pictures")
 
     def _open(self) -> cv2.VideoCapture:
+        # FFmpeg's own lines about damaged files would stand before ours; OpenCV reads this as it opens.
+        os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
         film = cv2.VideoCapture(str(self.path))
         if not film.isOpened():
             raise BadInput(

@@ -21,6 +21,7 @@ from scenarios.export.whole_folder import whole_folder
 from scenarios.folder import versions
 from scenarios.footage.grey import LEAST_SIDE_PX, Grey, Radiometry, grey_maker
 from scenarios.footage.pictures import Footage, open_footage
+from scenarios.footage.plausible import check_plausible
 from scenarios.footage.sheet import FILM_PX, Annotated, Film, Sheet, draw_frame
 from scenarios.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
 from scenarios.tables import TRACKS, Row, track_row, write_table
@@ -33,6 +34,8 @@ from tracker.people import FOOTAGE_TRACKER, TRACKERS, make_tracker
 from tracker.several import PeopleTracker
 from tracker.track import Status, Track
 
+COLOUR_TRACKER: Final = "colour"
+"""It differs from `thermal` by what colours add alone."""
 DEFAULT_RATE_HZ: Final = 15.0
 """Pictures a second of a folder: those of the robot's cameras, for which the tracker is made."""
 
@@ -130,6 +133,8 @@ def _truth_of(options: TrackOptions, footage: Footage) -> GivenTruth | None:
 
 def _tracker_of(options: TrackOptions, truth: GivenTruth | None) -> PeopleTracker:
     tracker = make_tracker(options.tracker, stream(options.seed, "tracker"))
+    if options.tracker == COLOUR_TRACKER and options.colour is None:
+        raise BadInput("--tracker colour: needs --colour FOLDER; without it, give --tracker thermal")
     start = options.start
     if start == "truth" and truth is not None:
         start = truth.box_at(1)
@@ -169,8 +174,10 @@ def _frames(footage: Footage, colour: Footage | None, options: TrackOptions, rat
             raise BadInput(f"{shorter}: ends after {number} pictures, before {longer}; both must be as long")
         if number == 0:
             _check_first(thermal, options, footage.notes)
-        grey = to_grey(options.radiometry.values(thermal, footage.notes))
-        yield Frame(thermal=grey, time_s=number / rate, colour=_colour_picture(picture))
+        values = options.radiometry.values(thermal, footage.notes)
+        if number == 0:
+            check_plausible(options.radiometry, values)
+        yield Frame(thermal=to_grey(values), time_s=number / rate, colour=_colour_picture(picture))
 
 
 def _check_first(thermal: NDArray[Any], options: TrackOptions, notes: list[str]) -> None:
@@ -178,10 +185,19 @@ def _check_first(thermal: NDArray[Any], options: TrackOptions, notes: list[str])
     if min(height, width) < LEAST_SIDE_PX:
         least = f"{LEAST_SIDE_PX}x{LEAST_SIDE_PX}"
         raise BadInput(f"{options.footage}: pictures must be at least {least}, got {width}x{height}")
+    if options.start is not None and not isinstance(options.start, str):
+        _check_inside(options.start, width, height)
     if thermal.dtype != np.uint8 and not options.radiometry.is_known:
         notes.append(
             f"{thermal.dtype} pictures without --scale: degC are unknown, grey follows the scene's contrast"
         )
+
+
+def _check_inside(box: Box, width: int, height: int) -> None:
+    left, top, wide, high = box
+    if left < 0 or top < 0 or left + wide > width or top + high > height:
+        told = ",".join(f"{number:g}" for number in box)
+        raise BadInput(f"--start {told}: X,Y,W,H must lie inside the pictures, which are {width}x{height}")
 
 
 def _colour_picture(picture: NDArray[Any] | None) -> NDArray[np.uint8] | None:

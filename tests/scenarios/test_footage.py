@@ -7,12 +7,12 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner
+from footage_calls import call, refusal
 from footage_files import SIZE, box, walker, write_counts, write_folder, write_video
 from PIL import Image
 
 from bad_input import BadInput
 from scenarios.commands.evaluate import evaluate
-from scenarios.commands.track import track
 from scenarios.footage.grey import AutomaticGrey, Radiometry, parse_scale
 from scenarios.footage.pictures import natural_order, open_footage
 from scenarios.footage.track_footage import TrackOptions, track_footage
@@ -20,17 +20,6 @@ from scenarios.footage.truth_files import find_truth, load_truth
 from tracker.evaluation.table import NEED_EVERYBODY
 
 REAL_CLIP = os.environ.get("PEOPLEBOY_REAL_CLIP", "")
-
-
-def call(*arguments):
-    return CliRunner().invoke(track, [str(argument) for argument in arguments])
-
-
-def refusal(*arguments):
-    result = call(*arguments)
-    assert isinstance(result.exception, BadInput), result.output
-    assert "\n" not in str(result.exception)
-    return str(result.exception)
 
 
 def quietly(options):
