@@ -1,4 +1,4 @@
-"""Events in words."""
+"""Events and counts in words."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ def describe(line: LogLine) -> str:
         return f"{line.who}: {line.kind} by {line.other}"
     what, _, turn = line.kind.rpartition(" ")
     return f"{line.who}: {what} {'with' if what == 'contact' else 'by'} {line.other} {turn}"
+
+
+def counted(count: int, noun: str) -> str:
+    """Say how many, such as "1 frame" or "2 frames"."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def describe_fully(line: LogLine) -> str:

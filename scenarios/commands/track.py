@@ -10,7 +10,7 @@ import click
 from bad_input import BadInput
 
 if TYPE_CHECKING:
-    from scenarios.footage.track_footage import Tracked
+    from scenarios.footage.track_footage import Tracked, TrackOptions
 
 _TRACKERS = "footage, peopleboy, learned, thesis, colour, thermal, paper"
 
@@ -102,7 +102,7 @@ def track(
             options,
             lambda frame, expected: progress.update(task, completed=frame, total=max(expected, frame)),
         )
-    _tell(tracked, out)
+    _tell(tracked, options)
 
 
 def _parse_start(text: str) -> tuple[float, float, float, float] | str:
@@ -117,12 +117,13 @@ def _parse_start(text: str) -> tuple[float, float, float, float] | str:
     return x, y, width, height
 
 
-def _tell(tracked: Tracked, out: Path) -> None:
+def _tell(tracked: Tracked, options: TrackOptions) -> None:
+    from scenarios.footage.outcome import outcome_lines
     from scenarios.show_scores import print_scores
 
     for note in tracked.notes:
-        click.echo(f"peopleboy: {note}", err=True)
+        click.echo(f"peopleboy: note: {note}", err=True)
     if tracked.scores is not None:
         print_scores(tracked.scores)
-    click.echo(f"{tracked.frames} frames, {tracked.tracks} tracks, {tracked.per_second:.0f} frames/s")
-    click.echo(f"{out / 'contact_sheet.png'} shows them.")
+    for line in outcome_lines(tracked, options):
+        click.echo(line)

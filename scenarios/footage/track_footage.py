@@ -195,7 +195,7 @@ def _check_first(thermal: NDArray[Any], options: TrackOptions, notes: list[str])
 
 def _check_inside(box: Box, width: int, height: int) -> None:
     left, top, wide, high = box
-    if left < 0 or top < 0 or left + wide > width or top + high > height:
+    if not (left >= 0 and top >= 0 and left + wide <= width and top + high <= height):
         told = ",".join(f"{number:g}" for number in box)
         raise BadInput(f"--start {told}: X,Y,W,H must lie inside the pictures, which are {width}x{height}")
 

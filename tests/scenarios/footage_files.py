@@ -58,3 +58,11 @@ def write_video(path: Path, count: int = 12, rate: float = 25.0) -> Path:
         film.write(cv2.cvtColor(walker(frame), cv2.COLOR_GRAY2BGR))
     film.release()
     return path
+
+
+def write_empty(folder: Path, count: int = 3) -> Path:
+    """Write pictures of nobody."""
+    folder.mkdir(parents=True)
+    for frame in range(count):
+        cv2.imwrite(str(folder / f"frame{frame + 1}.png"), np.full(SIZE, 60, np.uint8))
+    return folder

@@ -44,7 +44,9 @@ def test_dead_pixels_an_empty_border_and_unknown_units_are_plausible():
     check_plausible(Radiometry(), np.full((30, 40), 30000.0, np.float32))
 
 
-@pytest.mark.parametrize("start", ["400,10,20,50", "150,10,20,50", "-5,10,20,50", "10,100,20,50"])
+@pytest.mark.parametrize(
+    "start", ["400,10,20,50", "150,10,20,50", "-5,10,20,50", "nan,10,20,50", "10,100,20,50"]
+)
 def test_a_start_that_is_not_inside_the_pictures_is_refused(tmp_path, start):
     told = refusal(write_folder(tmp_path / "clip", 3), "--out", tmp_path / "out", "--start", start)
     assert f"--start {start}: X,Y,W,H must lie inside the pictures, which are 160x120" in told

@@ -1,0 +1,35 @@
+"""What came of tracking footage, in words."""
+
+from __future__ import annotations
+
+from scenarios.footage.track_footage import Tracked, TrackOptions
+from scenarios.wording import counted
+from tracker.people import TRACKERS
+
+
+def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:
+    """Say how much was tracked, and which files show it, or what to look at if nobody was found."""
+    count = f"{counted(tracked.frames, 'frame')}, {counted(tracked.tracks, 'track')}"
+    sheet = options.out / "contact_sheet.png"
+    if not tracked.tracks:
+        shown = f"Nobody was found. Look at {sheet}: {_what_to_look_at(options)}"
+    elif options.film:
+        shown = f"{sheet} and {options.out / 'overlay.mp4'} show them."
+    else:
+        shown = f"{sheet} shows them."
+    return f"{count}, {tracked.per_second:.0f} frames/s", shown
+
+
+def _what_to_look_at(options: TrackOptions) -> str:
+    remedy = "leave --black-hot out" if options.radiometry.is_inverted else "give --black-hot"
+    return (
+        f"is warm bright there? If not, {remedy}. Are people {_heights(options.tracker)} of the picture's "
+        "height, from head to feet? Is their outline to be seen, or only a hot face?"
+    )
+
+
+def _heights(tracker: str) -> str:
+    """Say which people this tracker looks for; one who fills more than the picture is not seen whole."""
+    config = TRACKERS[tracker]
+    low, high = (config.box.height_per_h * share for share in config.detector.limits.h)
+    return f"at least {low:.0%}" if high >= 1 else f"{low:.0%} to {high:.0%}"
