@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from scenarios.export.by_split import by_split
 from scenarios.export.coco import write_coco
 from scenarios.export.finished_run import FinishedRun
 from scenarios.export.mot import write_mot
@@ -13,8 +14,8 @@ from scenarios.export.replay import Play
 from scenarios.export.ros_bag import write_mcap
 from scenarios.export.video import write_mp4
 from scenarios.export.viper import write_viper
-from scenarios.export.whole_folder import whole_folder
 from scenarios.folder import versions
+from scenarios.whole_folder import whole_folder
 
 Writer = Callable[[Sequence[FinishedRun], Path, Play], None]
 
@@ -41,5 +42,7 @@ def export(runs: Sequence[FinishedRun], form: str, out: Path, play: Play, *, ove
         BadInput: the runs cannot be written so, or there.
     """
     about: dict[str, Any] = {"format": form, "runs": [run.name for run in runs], "versions": versions()}
+    splits = {split: [run.name for run in own] for split, own in by_split(runs).items() if split}
+    about |= {"splits": splits} if splits else {}
     with whole_folder(out, about, overwrite=overwrite) as folder:
         WRITERS[form](runs, folder, play)

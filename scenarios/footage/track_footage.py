@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
-from scenarios.export.whole_folder import whole_folder
 from scenarios.folder import versions
 from scenarios.footage.grey import LEAST_SIDE_PX, Grey, Radiometry, grey_maker
 from scenarios.footage.pictures import Footage, open_footage
@@ -25,6 +24,7 @@ from scenarios.footage.plausible import check_plausible
 from scenarios.footage.sheet import FILM_PX, Annotated, Film, Sheet, draw_frame
 from scenarios.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
 from scenarios.tables import TRACKS, Row, track_row, write_table
+from scenarios.whole_folder import whole_folder
 from sim.random_streams import stream
 from tracker.evaluation.evaluate import Scores, evaluate
 from tracker.evaluation.mot_files import read_tracks, track_line, write_truth

@@ -11,9 +11,10 @@ from typing import Any
 from bad_input import BadInput
 from scenarios.folder import versions
 from scenarios.load import load_scenario
+from scenarios.out_folder import check_named, writing_to
 from scenarios.rendered_set.checks import Check, check_set
 from scenarios.rendered_set.datasheet import write_datasheet
-from scenarios.rendered_set.splits import SPLITS, split_lines, split_of
+from scenarios.rendered_set.splits import SPLITS, lacking_splits, split_file, split_lines, split_of
 from scenarios.rendered_set.statistics import Statistics, measure
 from scenarios.run import RunOptions
 from scenarios.sweep import Job, run_jobs
@@ -30,7 +31,8 @@ class RenderedSet:
         runs: folders of its runs, in the order of scenarios, then seeds.
         statistics: of each split that has runs, and of "all".
         checks: what was looked at.
-        size_mb: [MB] on disk.
+        size_mb: [MB] of the runs on disk; exports may lie beside them.
+        lacking: which splits have no run, and how many seeds they need; empty if all have one.
     """
 
     folder: Path
@@ -38,6 +40,7 @@ class RenderedSet:
     statistics: dict[str, Statistics]
     checks: tuple[Check, ...]
     size_mb: float
+    lacking: str
 
     @property
     def is_sound(self) -> bool:
@@ -78,19 +81,21 @@ def render_set(
         for scenario, name in zip(scenarios, names, strict=True)
         for seed in range(seeds)
     ]
-    run_jobs(jobs, processes, folder.name)
     runs = tuple(job.options.out for job in jobs)
     numbers = [job.options.seed for job in jobs]
     _write_splits(folder, [run.name for run in runs], numbers)
+    run_jobs(jobs, processes, folder.name)
     done = RenderedSet(
         folder=folder,
         runs=runs,
         statistics=_statistics(runs, numbers),
         checks=tuple(check_set(folder, runs, loaded[0], jobs[0].options)),
-        size_mb=sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6,
+        size_mb=sum(path.stat().st_size for run in runs for path in run.rglob("*") if path.is_file()) / 1e6,
+        lacking=lacking_splits(seeds),
     )
     about = {"scenarios": names, "seeds": seeds, "images": frames, "tracker": tracker, "versions": versions()}
-    write_datasheet(folder / "README.md", done.statistics, done.checks, about, loaded, done.size_mb)
+    content = about | {"size_mb": done.size_mb, "lacking": done.lacking}
+    write_datasheet(folder / "README.md", done.statistics, done.checks, content, loaded)
     _write_about(done, about)
     return done
 
@@ -101,12 +106,11 @@ def _claim(folder: Path) -> None:
     Raises:
         BadInput: something else lies there.
     """
+    check_named(folder)
     if folder.exists() and (not folder.is_dir() or (any(folder.iterdir()) and not _is_ours(folder))):
         raise BadInput(f"{folder}: holds something that is no rendered set; give another --out")
-    try:
+    with writing_to(folder):
         (folder / "splits").mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise BadInput(f"{folder}: cannot write here: {error.strerror}; give another --out") from error
     for name in ("README.md", ABOUT):
         (folder / name).unlink(missing_ok=True)
 
@@ -117,7 +121,7 @@ def _is_ours(folder: Path) -> bool:
 
 def _write_splits(folder: Path, names: Sequence[str], seeds: Sequence[int]) -> None:
     for split in SPLITS:
-        (folder / "splits" / f"{split}.txt").write_text(split_lines(names, seeds, split), encoding="utf-8")
+        split_file(folder, split).write_text(split_lines(names, seeds, split), encoding="utf-8")
 
 
 def _statistics(runs: Sequence[Path], seeds: Sequence[int]) -> dict[str, Statistics]:

@@ -11,7 +11,7 @@ from exported import export, run_cli
 from scenarios.commands.export import FORMATS
 from scenarios.export import coco
 from scenarios.export.formats import WRITERS
-from scenarios.export.whole_folder import whole_folder
+from scenarios.whole_folder import whole_folder
 
 FORM = ("--format", "viper")
 
@@ -85,7 +85,7 @@ def test_nothing_is_replaced_but_an_export_and_that_only_if_asked(
     (tmp_path / "mine" / "thesis.tex").write_text("years of work")
     assert "is no export" in refusal(capsys, crossing, *FORM, "--out", tmp_path / "mine", "--overwrite")
     assert (tmp_path / "mine" / "thesis.tex").read_text() == "years of work"
-    assert "exists already" in refusal(capsys, crossing, *FORM, "--out", tmp_path / "mine" / "thesis.tex")
+    assert "is no export" in refusal(capsys, crossing, *FORM, "--out", tmp_path / "mine" / "thesis.tex")
 
 
 def test_an_export_that_fails_leaves_nothing_and_keeps_the_earlier_one(
