@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -14,10 +13,13 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from bad_input import BadInput
+from scenarios.footage.picture_names import SUFFIXES, jumps, pictures_in
+from scenarios.wording import counted
 
 Raw = NDArray[Any]  # (H, W) uint8, uint16 or float32, or (H, W, 3) uint8 RGB
 
-SUFFIXES: Final = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp")
+INNER: Final = ("img", "img1", "color", "thermal")
+"""Where benchmarks' sequences and runs of ours keep their pictures."""
 _SIXTEEN_BIT: Final = ("I;16", "I;16B", "I;16L", "I")
 
 
@@ -42,24 +44,17 @@ class Footage(Protocol):
 
 
 def open_footage(path: Path) -> Footage:
-    """Open a folder of pictures, the folder `img` of a benchmark's sequence, or a video.
+    """Open a folder of pictures, a folder that keeps them in one of `INNER`, or a video.
 
     Raises:
         BadInput: there is none that can be read.
     """
     if path.is_dir():
-        for inner in ("img", "img1", "color"):
-            if not _pictures_in(path) and (path / inner).is_dir():
-                return PictureFolder(path / inner, path.name)
-        return PictureFolder(path, path.name)
+        inner = next((path / name for name in INNER if (path / name).is_dir()), path)
+        return PictureFolder(path if pictures_in(path) else inner, path.name)
     if not path.is_file():
         raise BadInput(f"{path}: there is no such folder or video")
     return Video(path)
-
-
-def natural_order(name: str) -> list[tuple[int, str]]:
-    """Give a key by which frame 2 comes before frame 10."""
-    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
 
 
 class PictureFolder:
@@ -69,10 +64,15 @@ class PictureFolder:
         self.name = name
         self.rate_hz: float | None = None
         self.notes: list[str] = []
-        self._paths = _pictures_in(folder)
+        self._paths = pictures_in(folder)
         self.expected = len(self._paths)
         if not self._paths:
-            raise BadInput(f"{folder}: there are no pictures here; wanted are {', '.join(SUFFIXES)}")
+            raise BadInput(f"{folder}: there are no pictures here, {_where_else(folder)}")
+        if gaps := [f"{before} to {after}" for before, after in jumps(self._paths)]:
+            more = f" and {counted(len(gaps) - 3, 'time')} more" if len(gaps) > 3 else ""
+            self.notes.append(
+                f"numbers of pictures jump from {', '.join(gaps[:3])}{more}; frames are counted without gaps"
+            )
 
     def __iter__(self) -> Iterator[Raw]:
         """Read them one by one, each of the size of the first.
@@ -147,14 +147,24 @@ def read_picture(path: Path, notes: list[str]) -> Raw:
     try:
         with Image.open(path) as opened:
             picture = _as_array(opened, path, notes)
-    except (OSError, SyntaxError, ValueError, UnidentifiedImageError, Image.DecompressionBombError) as error:
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
         if isinstance(error, BadInput):
             raise
-        raise BadInput(f"{path}: cannot be read as a picture: {error}") from error
+        raise BadInput(f"{path}: {_what_is_wrong(path, error)}") from error
     if picture.dtype == np.float32 and not np.isfinite(picture).all():
-        broken = int((~np.isfinite(picture)).sum())
-        raise BadInput(f"{path}: {broken} pixels are not finite numbers; fill or mask them before")
+        broken = counted(int((~np.isfinite(picture)).sum()), "pixel")
+        raise BadInput(f"{path}: has {broken} without a finite number; fill or mask them before")
     return picture
+
+
+def _what_is_wrong(path: Path, error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"cannot be read: {error.strerror}"
+    if path.stat().st_size == 0:
+        return "is empty; remove it, or repair it"
+    if isinstance(error, UnidentifiedImageError):
+        return f"is no {path.suffix[1:].upper()}, or damaged; remove it, or repair it"
+    return f"cannot be read as a picture ({error}); remove it, or repair it"
 
 
 def _as_array(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
@@ -169,7 +179,7 @@ def _as_array(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
     if mode in ("L", "1"):
         return np.array(opened.convert("L"))
     if mode in ("RGBA", "LA", "PA"):
-        _note(notes, "pictures have a fourth channel, opacity; it is left out")
+        _note(notes, "pictures have an opacity channel; it is left out")
     return np.array(opened.convert("L" if mode == "LA" else "RGB"))
 
 
@@ -178,9 +188,12 @@ def _note(notes: list[str], text: str) -> None:
         notes.append(text)
 
 
-def _pictures_in(folder: Path) -> list[Path]:
-    found = [path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES and path.is_file()]
-    return sorted(found, key=lambda path: natural_order(path.name))
+def _where_else(folder: Path) -> str:
+    """Say which folder inside has pictures, or what a picture is."""
+    for inner in sorted(path for path in folder.iterdir() if path.is_dir()):
+        if count := len(pictures_in(inner)):
+            return f"but {inner.name}/ has {count}; give {inner}"
+    return f"wanted are {', '.join(SUFFIXES)}"
 
 
 def _size(picture: Raw) -> str:

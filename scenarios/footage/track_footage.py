@@ -23,6 +23,7 @@ from scenarios.footage.pictures import Footage, open_footage
 from scenarios.footage.plausible import check_plausible
 from scenarios.footage.sheet import FILM_PX, Annotated, Film, Sheet, draw_frame
 from scenarios.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
+from scenarios.out_folder import check_named
 from scenarios.tables import TRACKS, Row, track_row, write_table
 from scenarios.whole_folder import whole_folder
 from sim.random_streams import stream
@@ -102,6 +103,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
     Raises:
         BadInput: footage, truth or an option cannot be used; nothing is written then.
     """
+    _check_apart(options)
     footage = open_footage(options.footage)
     colour = None if options.colour is None else open_footage(options.colour)
     truth = _truth_of(options, footage)
@@ -120,6 +122,13 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
         about["notes"] = [*footage.notes, *([] if colour is None else colour.notes)]
     per_second = log.frames / max(time.perf_counter() - began, 1e-9)
     return Tracked(log.frames, per_second, log.tracks, scores, tuple(about["notes"]))
+
+
+def _check_apart(options: TrackOptions) -> None:
+    check_named(options.out)
+    for path in (options.footage, options.colour, options.truth):
+        if path is not None and path.resolve().is_relative_to(options.out.resolve()):
+            raise BadInput(f"{options.out}: holds {path} and will not be replaced; give another --out")
 
 
 def _truth_of(options: TrackOptions, footage: Footage) -> GivenTruth | None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
+from scenarios.footage.pictures import INNER
 from tracker.evaluation.mot_files import read_truth
 from tracker.evaluation.sequence import Truth
 
@@ -51,7 +52,7 @@ def find_truth(footage: Path) -> Path | None:
     """Look for truth beside the pictures, in their folder or the one above; None if there is none."""
     if not footage.is_dir():
         return None
-    above = [footage.parent] if footage.name in ("img", "img1", "color", "thermal") else []
+    above = [footage.parent] if footage.name in INNER else []
     places = [home / name for home in (footage, *above) for name in NAMES]
     return next((path for path in places if path.is_file()), None)
 

@@ -14,7 +14,8 @@ from PIL import Image
 from bad_input import BadInput
 from scenarios.commands.evaluate import evaluate
 from scenarios.footage.grey import AutomaticGrey, Radiometry, parse_scale
-from scenarios.footage.pictures import natural_order, open_footage
+from scenarios.footage.picture_names import natural_order
+from scenarios.footage.pictures import open_footage
 from scenarios.footage.track_footage import TrackOptions, track_footage
 from scenarios.footage.truth_files import find_truth, load_truth
 from tracker.evaluation.table import NEED_EVERYBODY
@@ -152,7 +153,7 @@ def test_pixels_that_are_no_numbers_are_refused(tmp_path):
     picture = walker(0).astype(np.float32)
     picture[5, 5] = np.nan
     Image.fromarray(picture).save(clip / "0.tiff")
-    assert "1 pixels are not finite" in refusal(clip, "--out", tmp_path / "out")
+    assert "0.tiff: has 1 pixel without a finite number" in refusal(clip, "--out", tmp_path / "out")
 
 
 def test_an_empty_folder_a_missing_one_and_a_video_without_codec_are_refused(tmp_path):
