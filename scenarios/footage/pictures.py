@@ -18,7 +18,8 @@ from scenarios.wording import counted
 
 Raw = NDArray[Any]  # (H, W) uint8, uint16 or float32, or (H, W, 3) uint8 RGB
 
-INNER: Final = ("img", "img1", "color", "thermal")
+OF_A_RUN: Final = "thermal"
+INNER: Final = ("img", "img1", "color", OF_A_RUN)
 """Where benchmarks' sequences and runs of ours keep their pictures."""
 _SIXTEEN_BIT: Final = ("I;16", "I;16B", "I;16L", "I")
 
@@ -50,11 +51,20 @@ def open_footage(path: Path) -> Footage:
         BadInput: there is none that can be read.
     """
     if path.is_dir():
-        inner = next((path / name for name in INNER if (path / name).is_dir()), path)
-        return PictureFolder(path if pictures_in(path) else inner, path.name)
+        return PictureFolder(_home_of_pictures(path), path.name)
     if not path.is_file():
         raise BadInput(f"{path}: there is no such folder or video")
     return Video(path)
+
+
+def _home_of_pictures(path: Path) -> Path:
+    # Beside a run's frames lies its contact sheet, a picture too.
+    if (path / "run.json").is_file():
+        if not (path / OF_A_RUN).is_dir():
+            raise BadInput(f"{path}: this run has no folder {OF_A_RUN}; `peopleboy run --frames` writes one")
+        return path / OF_A_RUN
+    inner = next((path / name for name in INNER if (path / name).is_dir()), path)
+    return path if pictures_in(path) else inner
 
 
 class PictureFolder:

@@ -69,10 +69,17 @@ def test_the_thermal_pictures_of_a_runs_folder_are_found_with_their_truth(tmp_pa
     write_folder(tmp_path / "run" / "colour", 3, "jpg")
     (tmp_path / "run" / "truth").mkdir()
     (tmp_path / "run" / "truth" / "gt.txt").write_text("1,1,39.0,23.0,22.0,74.0,1,1,1.0\n")
+    Image.new("RGB", (400, 300)).save(tmp_path / "run" / "contact_sheet.png")
+    (tmp_path / "run" / "run.json").write_text("{}")
     footage = open_footage(tmp_path / "run")
     assert (footage.name, footage.expected) == ("run", 3)
     assert next(iter(footage)).shape == (120, 160)
     assert "HOTA" in call(tmp_path / "run", "--out", tmp_path / "out").stdout
+
+
+def test_the_contact_sheet_of_a_run_without_frames_is_no_footage(tmp_path):
+    call(write_folder(tmp_path / "clip", 3), "--out", tmp_path / "run")
+    assert "this run has no folder thermal" in refusal(tmp_path / "run", "--out", tmp_path / "out")
 
 
 def test_a_folder_without_pictures_names_one_inside_that_has_some(tmp_path):
