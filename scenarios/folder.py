@@ -10,19 +10,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
-import cv2
-import numpy as np
 import yaml
-from numpy.typing import NDArray
 
-from bad_input import BadInput
+from scenarios.image_files import make_image_folders, write_images
 from scenarios.loop import Tick
+from scenarios.out_folder import check_out, writing_to
 from scenarios.tables import ROBOT, TRACKS, TRUTH, Row, robot_row, track_rows, truth_rows, write_table
-from sim.images.thermal import encode_16bit
 from tracker.evaluation.mot_files import track_line, truth_line
 from tracker.track import Status
 
-IMAGES = ("thermal", "thermal16", "colour")
 _VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet", "scipy")
 
 
@@ -48,8 +44,9 @@ class RunFolder:
         (path / "scenario.yaml").write_text(
             yaml.safe_dump(dict(scenario), sort_keys=False, allow_unicode=True), encoding="utf-8"
         )
-        for name in ("truth", *(IMAGES if frames else ())):
-            (path / name).mkdir()
+        (path / "truth").mkdir()
+        if frames:
+            make_image_folders(path)
         self._gt = self._open("truth/gt.txt")
         self._results = self._open("tracks.txt")
         self._events = self._open("events.jsonl")
@@ -77,7 +74,7 @@ class RunFolder:
         self._results.writelines(result_lines(tick))
         self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
         if self._writes_frames:
-            self._write_images(tick)
+            write_images(self.path, tick.frame, tick.observation)
 
     def complete(self, metrics: Mapping[str, Any]) -> None:
         """Write the metrics; the run is whole."""
@@ -88,13 +85,6 @@ class RunFolder:
         """Bring the text files to disk, so that they can be read while the run goes on."""
         for file in (self._gt, self._results, self._events):
             file.flush()
-
-    def _write_images(self, tick: Tick) -> None:
-        name = f"{tick.frame:06d}.png"
-        senses = tick.observation
-        _write_png(self.path / "thermal" / name, senses.thermal)
-        _write_png(self.path / "thermal16" / name, encode_16bit(senses.thermal_c))
-        _write_png(self.path / "colour" / name, senses.colour[..., ::-1])
 
     def _open(self, name: str) -> TextIO:
         return (self.path / name).open("w", encoding="utf-8", newline="\n")
@@ -114,19 +104,12 @@ def claim_folder(path: Path, *, overwrite: bool) -> None:
     Raises:
         BadInput: there is something at this path that must not be replaced, or the folder cannot be written.
     """
-    try:
-        if path.exists() and (not path.is_dir() or any(path.iterdir())):
-            if not overwrite:
-                raise BadInput(
-                    f"{path}: exists already; give --overwrite to replace this run, or another --out"
-                )
-            if not (path / "run.json").is_file():
-                raise BadInput(f"{path}: is no run's folder and will not be replaced; give another --out")
+    with writing_to(path):
+        check_out(path, "run", overwrite=overwrite)
+        if path.exists() and any(path.iterdir()):
             shutil.rmtree(path)
         path.mkdir(parents=True, exist_ok=True)
         (path / "run.json").touch()
-    except OSError as error:
-        raise BadInput(f"{path}: cannot write here: {error.strerror}; give another --out") from error
 
 
 def gt_lines(tick: Tick) -> list[str]:
@@ -145,8 +128,3 @@ def result_lines(tick: Tick) -> list[str]:
         for track in tick.tracks
         if track.status is not Status.TENTATIVE
     ]
-
-
-def _write_png(path: Path, image: NDArray[np.uint8] | NDArray[np.uint16]) -> None:
-    if not cv2.imwrite(str(path), image, [cv2.IMWRITE_PNG_COMPRESSION, 2]):
-        raise BadInput(f"{path}: cannot write this image; is the disk full?")

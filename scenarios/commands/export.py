@@ -22,6 +22,9 @@ FORMATS = ("mot", "coco", "viper", "mcap", "mp4")
 def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -> None:
     """Hand runs over to other tools; a folder that holds folders of runs stands for all of them.
 
+    Runs of a rendered set go to coco and mot split by split, as its folder `splits` says; export.json names
+    the runs of each.
+
     mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. viper: ViPER XML. mcap: ROS 2 bags. mp4:
     films. Images and masks are rendered again, and are those of the run. mcap and mp4 need the
     extra `export`.
@@ -30,7 +33,10 @@ def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -
     from scenarios.export.finished_run import open_runs
     from scenarios.export.formats import export as write
     from scenarios.export.progress import bar
+    from scenarios.rendered_set.make import refuse_unfinished
 
+    for folder in runs:
+        refuse_unfinished(folder)
     opened = open_runs([run for folder in runs for run in runs_in(folder)])
     first = opened[0].folder
     name = f"{first.name}-{form}" if len(opened) == 1 else f"export-{form}"

@@ -54,6 +54,8 @@ def render(
         f"{len(done.runs)} runs, {content['frames']} frames, {content['detections']} people to detect, "
         f"{done.size_mb:.0f} MB"
     )
+    if done.lacking:
+        click.echo(done.lacking)
     click.echo(folder / "README.md")
     if not done.is_sound:
         sys.exit(FAILED)

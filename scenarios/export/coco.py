@@ -3,6 +3,13 @@
     annotations/person_keypoints.json
     images/RUN/thermal/000001.png, thermal16/..., colour/...
 
+and of runs of a rendered set, which has splits:
+
+    annotations/person_keypoints_train.json, ..._val.json, ..._test.json
+    images/train/RUN/thermal/000001.png, ...
+
+File names in an annotation file begin behind `images`, or behind `images/train`.
+
 COCO counts pixels from the image's corner: the middle of the top-left pixel is (0.5, 0.5) there, and (0, 0)
 in a run's folder. Fields beyond COCO's own are explained in docs/truth.md.
 """
@@ -17,17 +24,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from scenarios.export.by_split import by_split
 from scenarios.export.finished_run import FinishedRun
-from scenarios.export.picture_file import write_png
 from scenarios.export.replay import Play
 from scenarios.export.run_lengths import encode_lengths, run_lengths
+from scenarios.image_files import make_image_folders, write_images
 from scenarios.loop import Tick
 from sim.camera import Camera, Matrix
-from sim.images.thermal import encode_16bit
 from sim.people.joints import JOINT_NAMES
 from sim.truth import Box, PersonTruth
 
-ANNOTATIONS = Path("annotations") / "person_keypoints.json"
 CORNER_PX = 0.5
 
 _PERSON = 1
@@ -39,21 +45,38 @@ _SKELETON = (
 
 
 def write_coco(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
-    """Write runs as one set; each is a video of it."""
+    """Write runs as one set, or each split of theirs as one; each run is a video.
+
+    Raises:
+        BadInput: the runs cannot be sorted by split.
+    """
+    for split, own in by_split(runs).items():
+        content = _write_set(own, folder / "images" / (split or ""), play)
+        path = folder / annotations_file(split)
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
+
+
+def annotations_file(split: str | None = None) -> Path:
+    """Where the annotations of a split lie, or those of runs without splits."""
+    return Path("annotations") / f"person_keypoints{'' if split is None else f'_{split}'}.json"
+
+
+def _write_set(runs: Sequence[FinishedRun], folder: Path, play: Play) -> dict[str, Any]:
+    """Write the images of runs, and give what is to be said of them."""
     images: list[dict[str, Any]] = []
     annotations: list[dict[str, Any]] = []
     for video, run in enumerate(runs, start=1):
-        for name in ("thermal", "thermal16", "colour"):
-            (folder / "images" / run.name / name).mkdir(parents=True)
+        make_image_folders(folder / run.name)
         for tick in play(run):
-            _write_images(folder / "images" / run.name, tick)
+            write_images(folder / run.name, tick.frame, tick.observation)
             image = {"id": len(images) + 1, "video_id": video} | _image(run.name, tick)
             images.append(image)
             for person in tick.truth.people:
                 if person.visible_px > 0:
                     number = {"id": len(annotations) + 1, "image_id": image["id"]}
                     annotations.append(number | annotation(person, tick.truth.instance))
-    content = {
+    return {
         "info": {"description": "people seen by a simulated robot, with exact truth", "version": "1"},
         "licenses": [],
         "categories": [_category()],
@@ -61,9 +84,6 @@ def write_coco(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
         "images": images,
         "annotations": annotations,
     }
-    path = folder / ANNOTATIONS
-    path.parent.mkdir()
-    path.write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
 
 
 def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, Any]:
@@ -178,10 +198,3 @@ def _category() -> dict[str, Any]:
         "keypoints": list(JOINT_NAMES),
         "skeleton": [list(pair) for pair in _SKELETON],
     }
-
-
-def _write_images(folder: Path, tick: Tick) -> None:
-    senses, file = tick.observation, f"{tick.frame:06d}.png"
-    write_png(folder / "thermal" / file, senses.thermal)
-    write_png(folder / "thermal16" / file, encode_16bit(senses.thermal_c))
-    write_png(folder / "colour" / file, senses.colour)

@@ -6,6 +6,9 @@ gt/mot_challenge/peopleboy-all/SEQUENCE/seqinfo.ini      length, frame rate, siz
 /img1/000001.png  thermal images
 trackers/mot_challenge/peopleboy-all/TRACKER/data/SEQUENCE.txt
 
+Runs of a rendered set are written by split: instead of peopleboy-all there are peopleboy-train, peopleboy-val
+and peopleboy-test.
+
 There is no det/det.txt: nothing in a run finds people in single images, and truth is no detection.
 """
 
@@ -15,35 +18,43 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from bad_input import BadInput
+from scenarios.export.by_split import by_split
 from scenarios.export.finished_run import FinishedRun
-from scenarios.export.picture_file import write_png
 from scenarios.export.replay import Play
+from scenarios.image_files import write_png
 
-BENCHMARK, SPLIT = "peopleboy", "all"
-_SET = f"{BENCHMARK}-{SPLIT}"
+BENCHMARK, EVERYTHING = "peopleboy", "all"
 
 # Class 8 of MOTChallenge, a distractor: neither missed nor, if a tracker finds it, a false alarm.
 _DISTRACTOR = 8
 _COUNTED, _CLASS, _VISIBLE = 6, 7, 8
 
+_Sequences = dict[str, dict[str, FinishedRun]]  # by name, then tracker
+
 
 def write_mot(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
-    """Write runs as sequences; runs of several trackers on the same seed are one sequence.
+    """Write runs as sequences, by split; runs of several trackers on the same seed are one sequence.
 
     Raises:
-        BadInput: two runs are the same, or the trackers have not seen the same sequences.
+        BadInput: two runs are the same, or the trackers have not seen the same sequences, or the runs cannot
+            be sorted by split.
     """
-    sequences = _sequences(runs)
-    truth, results = folder / "gt" / "mot_challenge", folder / "trackers" / "mot_challenge" / _SET
-    (truth / "seqmaps").mkdir(parents=True)
-    lines = "".join(f"{name}\n" for name in ("name", *sequences))
-    (truth / "seqmaps" / f"{_SET}.txt").write_text(lines, encoding="utf-8")
-    for name, own in sequences.items():
-        _write_sequence(name, next(iter(own.values())), truth / _SET / name, play)
+    sorted_runs = {split: _sequences(own) for split, own in by_split(runs).items()}
+    for split, sequences in sorted_runs.items():
+        _write_set(f"{BENCHMARK}-{split or EVERYTHING}", sequences, folder, play)
+
+
+def _write_set(name: str, sequences: _Sequences, folder: Path, play: Play) -> None:
+    truth, results = (folder / side / "mot_challenge" for side in ("gt", "trackers"))
+    (truth / "seqmaps").mkdir(parents=True, exist_ok=True)
+    lines = "".join(f"{line}\n" for line in ("name", *sequences))
+    (truth / "seqmaps" / f"{name}.txt").write_text(lines, encoding="utf-8")
+    for sequence, own in sequences.items():
+        _write_sequence(sequence, next(iter(own.values())), truth / name / sequence, play)
         for tracker, run in own.items():
-            data = results / tracker / "data"
+            data = results / name / tracker / "data"
             data.mkdir(parents=True, exist_ok=True)
-            (data / f"{name}.txt").write_bytes((run.folder / "tracks.txt").read_bytes())
+            (data / f"{sequence}.txt").write_bytes((run.folder / "tracks.txt").read_bytes())
 
 
 def gt_text(run: FinishedRun) -> str:
@@ -55,9 +66,9 @@ def gt_text(run: FinishedRun) -> str:
     return "".join(f"{','.join(_judged(line.split(',')))}\n" for line in lines)
 
 
-def _sequences(runs: Sequence[FinishedRun]) -> dict[str, dict[str, FinishedRun]]:
+def _sequences(runs: Sequence[FinishedRun]) -> _Sequences:
     """Sort runs by sequence and tracker."""
-    found: dict[str, dict[str, FinishedRun]] = {}
+    found: _Sequences = {}
     for run in runs:
         own = found.setdefault(f"{run.scenario.name}-{run.seed}", {})
         if run.tracker in own:

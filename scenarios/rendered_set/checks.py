@@ -14,8 +14,8 @@ import cv2
 import numpy as np
 import pyarrow.parquet as pq
 
-from scenarios.folder import IMAGES
-from scenarios.rendered_set.splits import SPLITS
+from scenarios.image_files import IMAGES
+from scenarios.rendered_set.splits import SPLITS, split_file
 from scenarios.run import RunOptions, run
 from scenarios.scenario import Scenario
 
@@ -122,7 +122,7 @@ def _twins(runs: Sequence[Path]) -> list[str]:
 
 
 def _check_splits(folder: Path, runs: Sequence[Path]) -> list[str]:
-    files = [(folder / "splits" / f"{split}.txt").read_text(encoding="utf-8").split() for split in SPLITS]
+    files = [split_file(folder, split).read_text(encoding="utf-8").split() for split in SPLITS]
     named = Counter(name for names in files for name in names)
     return [f"{run.name}: in {named[run.name]} splits" for run in runs if named[run.name] != 1]
 

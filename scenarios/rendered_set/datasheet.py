@@ -5,12 +5,14 @@ The questions are those of Gebru et al., "Datasheets for Datasets", 2021.
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import jinja2
 
+from scenarios.equip_robot import equip_robot
 from scenarios.rendered_set.checks import Check
 from scenarios.rendered_set.statistics import Bin, Statistics
 from scenarios.scenario import Scenario
@@ -24,7 +26,6 @@ def write_datasheet(
     checks: Sequence[Check],
     about: Mapping[str, Any],
     scenarios: Sequence[Scenario],
-    size_mb: float,
 ) -> None:
     """Write the datasheet of a set.
 
@@ -32,17 +33,22 @@ def write_datasheet(
         path: the file.
         statistics: of all, and of each split that has runs.
         checks: what was looked at.
-        about: scenarios, seeds, images, tracker and versions.
+        about: scenarios as given, seeds, images, tracker, versions, size_mb, and which splits are lacking.
         scenarios: what was played.
-        size_mb: [MB] on disk.
     """
     environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    environment.filters["span"] = _span
+    environment.filters |= {"span": _span, "quote": shlex.quote}
     template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
     text = template.render(
-        statistics=statistics, checks=checks, about=about, scenarios=scenarios, size_mb=size_mb
+        statistics=statistics, checks=checks, about=about, scenarios=scenarios, sizes=_image_sizes(scenarios)
     )
     path.write_text(text, encoding="utf-8")
+
+
+def _image_sizes(scenarios: Sequence[Scenario]) -> list[str]:
+    robots = [equip_robot(scenario.spec.robot) for scenario in scenarios]
+    cameras = [sensor.camera for robot in robots for sensor in (robot.thermal, robot.colour)]
+    return list(dict.fromkeys(f"{camera.width}x{camera.height}" for camera in cameras))
 
 
 def _span(one: Bin) -> str:

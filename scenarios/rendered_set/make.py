@@ -94,7 +94,7 @@ def render_set(
         lacking=lacking_splits(seeds),
     )
     about = {"scenarios": names, "seeds": seeds, "images": frames, "tracker": tracker, "versions": versions()}
-    content = about | {"size_mb": done.size_mb, "lacking": done.lacking}
+    content = about | {"given": list(scenarios), "size_mb": done.size_mb, "lacking": done.lacking}
     write_datasheet(folder / "README.md", done.statistics, done.checks, content, loaded)
     _write_about(done, about)
     return done
@@ -113,6 +113,19 @@ def _claim(folder: Path) -> None:
         (folder / "splits").mkdir(parents=True, exist_ok=True)
     for name in ("README.md", ABOUT):
         (folder / name).unlink(missing_ok=True)
+
+
+def refuse_unfinished(folder: Path) -> None:
+    """Refuse a set of which runs may be missing; folders that are no set are none of its business.
+
+    Raises:
+        BadInput: it is not finished.
+    """
+    if _is_ours(folder) and not (folder / ABOUT).is_file():
+        raise BadInput(
+            f"{folder}: this set is not finished; the same `peopleboy render` goes on where it was, "
+            "or name runs of it"
+        )
 
 
 def _is_ours(folder: Path) -> bool:

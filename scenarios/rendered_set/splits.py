@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
+
+from bad_input import BadInput
 
 SPLITS = ("train", "val", "test")
 _TURNS = ("train", "train", "train", "train", "train", "val", "test")
@@ -19,3 +22,42 @@ def split_of(seed: int) -> str:
 def split_lines(names: Sequence[str], seeds: Sequence[int], split: str) -> str:
     """The file of one split: its runs' folders, one a line."""
     return "".join(f"{name}\n" for name, seed in zip(names, seeds, strict=True) if split_of(seed) == split)
+
+
+def split_file(folder: Path, split: str) -> Path:
+    """Where a set keeps the names of a split's runs."""
+    return folder / "splits" / f"{split}.txt"
+
+
+def lacking_splits(seeds: int) -> str:
+    """Say which splits have no run with so many seeds, and how many they need; nothing if all have one."""
+    firsts = {split: _TURNS.index(split) for split in SPLITS if _TURNS.index(split) >= seeds}
+    if not firsts:
+        return ""
+    are, first = ("are", "the first are seeds") if len(firsts) > 1 else ("is", "the first is seed")
+    numbers = " and ".join(map(str, firsts.values()))
+    return f"{' and '.join(firsts)} {are} empty: {first} {numbers}; give --seeds {max(firsts.values()) + 1}"
+
+
+def read_split(run: Path) -> str | None:
+    """Tell the split of a run's folder; None if it lies in no rendered set.
+
+    Raises:
+        BadInput: it lies in one, and in none of its splits, or in several.
+    """
+    folder = run.resolve().parent
+    files = {split: split_file(folder, split) for split in SPLITS}
+    if not any(file.is_file() for file in files.values()):
+        return None
+    try:
+        own = [
+            split for split, file in files.items() if run.resolve().name in file.read_text("utf-8").split()
+        ]
+    except (OSError, UnicodeDecodeError) as error:
+        raise BadInput(f"{folder / 'splits'}: cannot be read; render the set again") from error
+    if len(own) != 1:
+        raise BadInput(
+            f"{run}: must be in one split, is in {' and '.join(own) or 'none'} of {folder / 'splits'}; "
+            "render the set with all its seeds, or move this run away"
+        )
+    return own[0]

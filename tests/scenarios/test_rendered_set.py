@@ -1,6 +1,7 @@
 """Data sets for others: split, counted, checked."""
 
 import json
+import re
 from pathlib import Path
 
 import cv2
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenarios.cli import main
-from scenarios.rendered_set.splits import SPLITS, split_lines, split_of
+from scenarios.rendered_set.splits import SPLITS, lacking_splits, split_lines, split_of
 from tracker.evaluation.mot_files import read_truth
 
 SCENE = """
@@ -45,8 +46,16 @@ def test_every_seed_is_in_one_split_and_stays_there(seeds: int) -> None:
     lines = {split: split_lines(names, range(seeds), split).split() for split in SPLITS}
     assert sorted(name for own in lines.values() for name in own) == sorted(names)
     assert all(f"tiny-{seed}" in lines[split_of(seed)] for seed in range(seeds))
-    if seeds >= 7:
-        assert all(lines.values())
+    said, told, _ = lacking_splits(seeds).partition(" empty: ")
+    assert {split for split in SPLITS if split in said} == {split for split in SPLITS if not lines[split]}
+    if told:
+        enough = int(lacking_splits(seeds).split()[-1])
+        assert lacking_splits(enough) == "" != lacking_splits(enough - 1)
+
+
+def test_what_is_lacking_is_said_in_one_line() -> None:
+    assert lacking_splits(3) == "val and test are empty: the first are seeds 5 and 6; give --seeds 7"
+    assert lacking_splits(6) == "test is empty: the first is seed 6; give --seeds 7"
 
 
 def test_a_set_is_sound_and_its_numbers_are_those_of_its_files(rendered: Path) -> None:
@@ -64,6 +73,10 @@ def test_a_set_is_sound_and_its_numbers_are_those_of_its_files(rendered: Path) -
     assert np.allclose(whole["image_mean"]["colour"], np.mean(first, axis=(0, 1, 2)), atol=0.01)
     assert "FAILS" not in (folder / "README.md").read_text()
     assert "| runs | 2 | 2 |" in (folder / "README.md").read_text()
+    assert "Images are 160x120 or 320x240 pixels" in (folder / "README.md").read_text()
+    assert (
+        f"peopleboy render {rendered / 'tiny.yaml'} --frames --seeds 2" in (folder / "README.md").read_text()
+    )
 
 
 def test_a_set_grows_without_rendering_again_and_broken_images_are_found(
@@ -73,9 +86,16 @@ def test_a_set_grows_without_rendering_again_and_broken_images_are_found(
     stamp = (folder / "tiny-1" / "run.json").stat().st_mtime_ns
     image = folder / "tiny-1" / "thermal" / "000001.png"
     image.write_bytes(b"")
+    (folder / "export-coco").mkdir()
+    with (folder / "export-coco" / "images.bin").open("wb") as export:
+        export.truncate(500_000_000)
     order = (rendered / "tiny.yaml", "--frames", "--seeds", 3, "--jobs", 1, "--out", folder)
     assert render(*order) == 1
-    assert "FAILS: every image is there" in capsys.readouterr().out
+    told, sheet = capsys.readouterr().out, (folder / "README.md").read_text()
+    assert "FAILS: every image is there" in told
+    assert f"\n{lacking_splits(3)}\n" in told
+    assert f"**{lacking_splits(3)}.**" in sheet
+    assert 0 < int(re.search(r"The runs take (\d+) MB", sheet)[1]) < 100
     assert (folder / "tiny-1" / "run.json").stat().st_mtime_ns == stamp
     assert (folder / "splits" / "train.txt").read_text().split() == ["tiny-0", "tiny-1", "tiny-2"]
 

@@ -11,7 +11,7 @@ import pytest
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 
-from scenarios.export.coco import ANNOTATIONS
+from scenarios.export.coco import annotations_file
 from scenarios.export.finished_run import open_run
 from scenarios.export.replay import replay
 from sim.camera import transform
@@ -24,7 +24,7 @@ EDGES = ("left_px", "top_px", "width_px", "height_px")
 
 @pytest.fixture
 def coco(coco_folder: Path, capsys: pytest.CaptureFixture[str]) -> COCO:
-    loaded = COCO(str(coco_folder / ANNOTATIONS))
+    loaded = COCO(str(coco_folder / annotations_file()))
     capsys.readouterr()
     return loaded
 
@@ -111,7 +111,7 @@ def test_who_is_wholly_hidden_is_told_with_the_image(coco: COCO, people: dict[An
 def test_pycocotools_gives_the_truth_full_marks(
     kind: str, coco: COCO, coco_folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    truth = json.loads((coco_folder / ANNOTATIONS).read_text())["annotations"]
+    truth = json.loads((coco_folder / annotations_file()).read_text())["annotations"]
     found = [one | {"score": 1.0} for one in truth if kind != "keypoints" or one["num_keypoints"] > 0]
     evaluation = COCOeval(coco, coco.loadRes(found), kind)
     evaluation.evaluate()

@@ -98,7 +98,7 @@ def test_an_export_that_fails_leaves_nothing_and_keeps_the_earlier_one(
     def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(coco, "write_png", fail)
+    monkeypatch.setattr(coco, "write_images", fail)
     told = refusal(capsys, crossing, "--format", "coco", "--out", out, "--overwrite")
     assert "No space left on device" in told
     assert [path.name for path in tmp_path.iterdir()] == ["coco"]

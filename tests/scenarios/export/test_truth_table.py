@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from scenarios.export import viper
-from scenarios.export.coco import ANNOTATIONS
+from scenarios.export.coco import annotations_file
 from scenarios.run_events import LogLine
 from scenarios.tables import ROBOT, TRACKS, TRUTH
 
@@ -50,7 +50,7 @@ def test_every_row_has_unit_frame_and_exactness() -> None:
 
 
 def test_every_field_of_the_coco_export_is_in_the_table(coco_folder: Path) -> None:
-    content = json.loads((coco_folder / ANNOTATIONS).read_text())
+    content = json.loads((coco_folder / annotations_file()).read_text())
     (video,) = content["videos"]
     keys = {*content["annotations"][0], *content["images"][0], *video["cameras"]["thermal"], "thermal_span_c"}
     assert set(told("coco")) == keys

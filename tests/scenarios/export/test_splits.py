@@ -1,0 +1,138 @@
+"""Exports of rendered sets keep what is for training apart from what is for tests."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+import yaml
+from exported import SCENE, export, run_cli
+from pycocotools.coco import COCO
+from trackers.eval import evaluate_mot_sequences
+from trackeval.datasets import MotChallenge2DBox
+
+from scenarios.rendered_set.splits import SPLITS
+
+FRAMES = 6
+SHORT = SCENE | {"name": "short", "duration_s": FRAMES / 15}
+SEEDS = {"train": range(5), "val": [5], "test": [6]}
+NAMES = {split: [f"short-{seed}" for seed in seeds] for split, seeds in SEEDS.items()}
+
+
+@pytest.fixture(scope="module")
+def people(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A rendered set that has all splits."""
+    home = tmp_path_factory.mktemp("split")
+    (home / "short.yaml").write_text(yaml.safe_dump(SHORT))
+    order = (home / "short.yaml", "--seeds", 7, "--jobs", 1, "--out", home / "people")
+    assert run_cli("render", *order) == 0
+    return home / "people"
+
+
+def refusal(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
+    capsys.readouterr()
+    assert run_cli("export", *arguments) == 2
+    return capsys.readouterr().err
+
+
+def test_coco_has_annotations_and_images_of_each_split_apart(
+    people: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = export(people, "coco", tmp_path / "coco")
+    told = {path.name for path in (out / "annotations").iterdir()}
+    assert told == {f"person_keypoints_{split}.json" for split in SPLITS}
+    for split in SPLITS:
+        coco = COCO(str(out / "annotations" / f"person_keypoints_{split}.json"))
+        capsys.readouterr()
+        files = {image["file_name"] for image in coco.loadImgs(coco.getImgIds())}
+        assert {file.split("/")[0] for file in files} == set(NAMES[split])
+        assert [video["name"] for video in coco.dataset["videos"]] == NAMES[split]
+        assert len(coco.imgs) == FRAMES * len(NAMES[split])
+        home = out / "images" / split
+        assert files == {path.relative_to(home).as_posix() for path in home.glob("*/thermal/*.png")}
+        assert len(coco.getAnnIds()) >= len(coco.imgs)
+
+
+@pytest.mark.parametrize("split", SPLITS)
+def test_trackeval_and_trackers_find_each_split_by_its_name(
+    split: str, mot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    truth, results = mot / "gt" / "mot_challenge", mot / "trackers" / "mot_challenge"
+    settings = {"BENCHMARK": "peopleboy", "SPLIT_TO_EVAL": split, "PRINT_CONFIG": False}
+    folders = {"GT_FOLDER": str(truth), "TRACKERS_FOLDER": str(results)}
+    data = MotChallenge2DBox(settings | folders)
+    capsys.readouterr()
+    assert (data.seq_list, data.tracker_list) == (NAMES[split], ["truth"])
+    assert data.seq_lengths == dict.fromkeys(NAMES[split], FRAMES)
+    name = f"peopleboy-{split}"
+    found = evaluate_mot_sequences(
+        truth / name, results / name / "truth" / "data", seqmap=truth / "seqmaps" / f"{name}.txt"
+    )
+    assert sorted(found.sequences) == NAMES[split]
+    assert found.aggregate.CLEAR.CLR_FN == 0
+
+
+@pytest.fixture(scope="module")
+def mot(people: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return export(people, "mot", tmp_path_factory.mktemp("split_mot") / "mot")
+
+
+def test_other_formats_keep_runs_apart_and_say_which_split_they_are_of(people: Path, tmp_path: Path) -> None:
+    out = export(people, "viper", tmp_path / "viper")
+    assert json.loads((out / "export.json").read_text())["splits"] == NAMES
+    assert {path.parent.name for path in out.glob("*/truth.xgtf")} == {
+        run for own in NAMES.values() for run in own
+    }
+
+
+def test_runs_named_one_by_one_keep_their_split(people: Path, tmp_path: Path) -> None:
+    assert (
+        run_cli(
+            "export", people / "short-0", people / "short-6", "--format", "coco", "--out", tmp_path / "two"
+        )
+        == 0
+    )
+    assert {path.name for path in (tmp_path / "two" / "images").iterdir()} == {"train", "test"}
+
+
+def test_a_split_of_one_s_own_is_followed(people: Path, tmp_path: Path) -> None:
+    for run in ("short-0", "short-1"):
+        shutil.copytree(people / run, tmp_path / "own" / run)
+    (tmp_path / "own" / "splits").mkdir()
+    for split, run in (("train", "short-1"), ("val", ""), ("test", "short-0")):
+        (tmp_path / "own" / "splits" / f"{split}.txt").write_text(f"{run}\n")
+    (tmp_path / "own" / "dataset.json").write_text("{}")
+    out = export(tmp_path / "own", "viper", tmp_path / "viper")
+    assert json.loads((out / "export.json").read_text())["splits"] == {
+        "train": ["short-1"],
+        "test": ["short-0"],
+    }
+
+
+def test_a_run_without_split_is_not_mixed_with_those_of_a_set(
+    people: Path, crossing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    order = ("--format", "viper", "--out", tmp_path / "viper")
+    assert "tiny-3: lies in no rendered set" in refusal(capsys, people, crossing, *order)
+    shutil.copytree(people, tmp_path / "people")
+    shutil.copytree(people / "short-0", tmp_path / "people" / "short-9")
+    assert "short-9: must be in one split, is in none of" in refusal(capsys, tmp_path / "people", *order)
+    (tmp_path / "people" / "splits" / "val.txt").write_text("short-0\n")
+    told = refusal(capsys, tmp_path / "people" / "short-0", *order)
+    assert "short-0: must be in one split, is in train and val of" in told
+    assert [path.name for path in tmp_path.iterdir()] == ["people"]
+
+
+def test_a_set_that_was_cut_off_is_refused_but_its_runs_are_not(
+    people: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(people, tmp_path / "people")
+    (tmp_path / "people" / "dataset.json").unlink()
+    order = ("--format", "viper", "--out", tmp_path / "viper")
+    assert "people: this set is not finished; the same `peopleboy render`" in refusal(
+        capsys, tmp_path / "people", *order
+    )
+    assert run_cli("export", tmp_path / "people" / "short-5", *order) == 0
+    assert json.loads((tmp_path / "viper" / "export.json").read_text())["splits"] == {"val": ["short-5"]}
