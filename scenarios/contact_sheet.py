@@ -5,11 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Final
 
-import matplotlib
 from PIL import Image, ImageDraw, ImageFont
 from PIL.PngImagePlugin import PngInfo
 
@@ -17,8 +15,10 @@ from bad_input import BadInput
 from scenarios.key_moments import KeyMoments, Moment
 from scenarios.loop import Tick
 from scenarios.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
-from scenarios.palette import TRUTH, Rgb, track_colour
+from scenarios.palette import Rgb
 from scenarios.run_events import LogLine
+from scenarios.sheet_head import HEAD_PX, MARGIN_PX, PAGE, STRONG, WEAK, cut, draw_head, font
+from scenarios.wording import counted
 from sim.alignment import affine_between
 from sim.config import RobotConfig
 from tracker.config import ContourConfig
@@ -27,18 +27,10 @@ WIDTH_PX: Final = 1600
 COLUMNS: Final = 4
 MOMENTS: Final = 12
 
-_MARGIN, _GAP, _TITLE, _CAPTION = 24, 14, 76, 46
-_TILE: Final = (WIDTH_PX - 2 * _MARGIN - (COLUMNS - 1) * _GAP) // COLUMNS
+_GAP, _CAPTION = 14, 46
+_TILE: Final = (WIDTH_PX - 2 * MARGIN_PX - (COLUMNS - 1) * _GAP) // COLUMNS
 _TYPICAL_DEPTH_M = 4.0
 _NOTE: Final = "Moments"  # of the PNG: where each tile is, and what it shows
-_LEGEND: Final = (
-    "dashed: truth, with the share that is visible",
-    "solid: tracks, with number and confidence; dim, with ?: not yet confirmed",
-)
-
-_PAGE: Final[Rgb] = (22, 24, 28)
-_STRONG: Final[Rgb] = (240, 240, 240)
-_WEAK: Final[Rgb] = (165, 170, 178)
 _CHIP: Final[Rgb] = (58, 64, 74)
 
 
@@ -90,46 +82,41 @@ class ContactSheet:
         tiles = [self._tile(moment) for moment in moments]
         rows = [tiles[start : start + COLUMNS] for start in range(0, len(tiles), COLUMNS)]
         heights = [max(tile.height for tile in row) for row in rows]
-        page = Image.new("RGB", (WIDTH_PX, _TITLE + sum(heights) + _GAP * len(rows) + _MARGIN - _GAP), _PAGE)
-        self._head(page)
-        top = _TITLE
+        bottom = HEAD_PX + sum(heights) + _GAP * (len(rows) - 1) + MARGIN_PX
+        page = Image.new("RGB", (WIDTH_PX, bottom), PAGE)
+        draw_head(page, self._title, self._length())
+        top = HEAD_PX
         for row, height in zip(rows, heights, strict=True):
             for column, tile in enumerate(row):
-                page.paste(tile, (_MARGIN + column * (_TILE + _GAP), top))
+                page.paste(tile, (MARGIN_PX + column * (_TILE + _GAP), top))
             top += height + _GAP
         return page
 
     def _note(self) -> PngInfo:
         """Where the images of each moment are: left, top, right, bottom, and what they show."""
-        note, top, tiles = PngInfo(), _TITLE, []
+        note, top, tiles = PngInfo(), HEAD_PX, []
         moments = self._moments.choose(MOMENTS)
         for start in range(0, len(moments), COLUMNS):
             row = moments[start : start + COLUMNS]
             bottom = top + max(self._tile(moment).height for moment in row)
             for column, moment in enumerate(row):
-                left = _MARGIN + column * (_TILE + _GAP)
+                left = MARGIN_PX + column * (_TILE + _GAP)
                 words = f"{moment.time_s:.1f} s: {'; '.join(moment.words)}"
                 tiles.append({"box": [left, top + _CAPTION, left + _TILE, bottom], "words": words})
             top = bottom + _GAP
         note.add_text(_NOTE, json.dumps(tiles))
         return note
 
-    def _head(self, page: Image.Image) -> None:
-        draw = ImageDraw.Draw(page)
-        draw.text((_MARGIN, 34), self._title, _STRONG, _font(26, is_bold=True), anchor="lm")
+    def _length(self) -> str:
         if self._last is None:
-            return
-        length = f"{self._last.frame} frames, {self._last.observation.time_s:.1f} s"
-        right = WIDTH_PX - _MARGIN
-        draw.text((right, 16), length, _WEAK, _font(15), anchor="rm")
-        draw.text((right, 37), _LEGEND[0], TRUTH, _font(15), anchor="rm")
-        draw.text((right, 58), _LEGEND[1], track_colour(1), _font(15), anchor="rm")
+            return counted(0, "frame")
+        return f"{counted(self._last.frame, 'frame')}, {self._last.observation.time_s:.1f} s"
 
     def _tile(self, moment: Moment) -> Image.Image:
         """Draw one moment: caption, thermal, colour."""
         thermal, colour = self._thermal_picture(moment), self._colour_picture(moment)
         height = _CAPTION + thermal.shape[0] + 3 + colour.shape[0]
-        tile = Image.new("RGB", (_TILE, height), _PAGE)
+        tile = Image.new("RGB", (_TILE, height), PAGE)
         _caption(tile, moment)
         tile.paste(Image.fromarray(thermal), (0, _CAPTION))
         tile.paste(Image.fromarray(colour), (0, _CAPTION + thermal.shape[0] + 3))
@@ -167,28 +154,20 @@ def read_tiles(path: Path) -> list[Tile]:
 def _caption(tile: Image.Image, moment: Moment) -> None:
     """Write time, mode and what happened above the images."""
     draw = ImageDraw.Draw(tile)
-    draw.text((0, 11), f"{moment.time_s:.1f} s", _STRONG, _font(17, is_bold=True), anchor="lm")
-    start = draw.textlength(f"{moment.time_s:.1f} s", _font(17, is_bold=True)) + 10
+    draw.text((0, 11), f"{moment.time_s:.1f} s", STRONG, font(17, is_bold=True), anchor="lm")
+    start = draw.textlength(f"{moment.time_s:.1f} s", font(17, is_bold=True)) + 10
     if moment.mode:
-        end = start + draw.textlength(moment.mode, _font(13)) + 14
+        end = start + draw.textlength(moment.mode, font(13)) + 14
         draw.rounded_rectangle((start, 2, end, 20), 9, _CHIP)
-        draw.text((start + 7, 11), moment.mode, _STRONG, _font(13), anchor="lm")
-    draw.text((0, 33), _fitting(draw, moment.words, _font(14)), _WEAK, _font(14), anchor="lm")
+        draw.text((start + 7, 11), moment.mode, STRONG, font(13), anchor="lm")
+    draw.text((0, 33), _fitting(draw, moment.words, font(14)), WEAK, font(14), anchor="lm")
 
 
-def _fitting(draw: ImageDraw.ImageDraw, words: Sequence[str], font: ImageFont.FreeTypeFont) -> str:
+def _fitting(draw: ImageDraw.ImageDraw, words: Sequence[str], letters: ImageFont.FreeTypeFont) -> str:
     """Join as many texts as fit above a tile; cut the first if even that one does not fit."""
     text = words[0]
     for more in words[1:]:
-        if draw.textlength(f"{text}; {more}", font) > _TILE:
+        if draw.textlength(f"{text}; {more}", letters) > _TILE:
             break
         text = f"{text}; {more}"
-    while draw.textlength(text, font) > _TILE:
-        text = f"{text[:-2]}…"
-    return text
-
-
-@cache
-def _font(size: int, *, is_bold: bool = False) -> ImageFont.FreeTypeFont:
-    name = "DejaVuSans-Bold.ttf" if is_bold else "DejaVuSans.ttf"
-    return ImageFont.truetype(Path(matplotlib.get_data_path(), "fonts", "ttf", name), size)
+    return cut(draw, text, letters, _TILE)

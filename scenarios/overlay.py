@@ -58,8 +58,9 @@ class TrueBox(Protocol):
 
 
 def enlarge(image: Picture, scale: float = SCALE) -> Picture:
-    """Make an (H, W, 3) image `scale` times as large, smoothly."""
-    return np.asarray(cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC), np.uint8)
+    """Make an (H, W, 3) image `scale` times as large, or small, smoothly."""
+    way = cv2.INTER_CUBIC if scale > 1 else cv2.INTER_AREA
+    return np.asarray(cv2.resize(image, None, fx=scale, fy=scale, interpolation=way), np.uint8)
 
 
 def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:

@@ -15,15 +15,17 @@ from PIL import Image
 from bad_input import BadInput
 from scenarios.footage.grey import Grey
 from scenarios.overlay import Box, Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
+from scenarios.sheet_head import HEAD_PX, MARGIN_PX, PAGE, draw_head
 from tracker.config import ContourConfig
 from tracker.track import Track
 
 FILM_PX: Final = 480
+TILE_PX: Final = 400
 _KEPT: Final = 24
 _MOMENTS: Final = 12
 _COLUMNS: Final = 4
-_TILE_PX: Final = 400
 _GAP_PX: Final = 6
+_WIDTH_PX: Final = 2 * MARGIN_PX + _COLUMNS * TILE_PX + (_COLUMNS - 1) * _GAP_PX
 _QUALITY: Final = "20"  # CRF: 0 loses nothing, 18 nothing to be seen
 
 
@@ -54,9 +56,15 @@ def draw_frame(
 
 
 class Sheet:
-    """Keeps moments spread evenly over footage whose length nobody needs to know."""
+    """Keeps moments spread evenly over footage whose length nobody needs to know.
 
-    def __init__(self) -> None:
+    Args:
+        title: what stands above them.
+        has_truth: whether truth is drawn too.
+    """
+
+    def __init__(self, title: str, *, has_truth: bool) -> None:
+        self._title, self._has_truth = title, has_truth
         self._kept: list[tuple[int, Picture]] = []
         self._step = 1
 
@@ -65,23 +73,23 @@ class Sheet:
         return (frame - 1) % self._step == 0
 
     def add(self, frame: int, picture: Picture) -> None:
-        """Keep a drawn frame; once there are many, every second one is let go."""
-        height = round(_TILE_PX * picture.shape[0] / picture.shape[1])
-        tile = cv2.resize(picture, (_TILE_PX, height), interpolation=cv2.INTER_AREA)
-        self._kept.append((frame, np.asarray(tile, np.uint8)))
+        """Keep a frame drawn `TILE_PX` wide; once there are many, every second one is let go."""
+        self._kept.append((frame, picture))
         if len(self._kept) > _KEPT:
             self._step *= 2
             self._kept = [(number, kept) for number, kept in self._kept if self.wants(number)]
 
-    def save(self, path: Path) -> None:
-        """Write the sheet as a PNG."""
+    def save(self, path: Path, length: str) -> None:
+        """Write the sheet as a PNG; how long the footage is, and the tracker, stand above it."""
         chosen = np.unique(np.linspace(0, len(self._kept) - 1, _MOMENTS).round().astype(int))
         tiles = [self._kept[number][1] for number in chosen]
         rows, height = -(-len(tiles) // _COLUMNS), tiles[0].shape[0]
-        page = Image.new("RGB", (_COLUMNS * (_TILE_PX + _GAP_PX), rows * (height + _GAP_PX)), (22, 24, 28))
+        page = Image.new("RGB", (_WIDTH_PX, HEAD_PX + rows * (height + _GAP_PX) - _GAP_PX + MARGIN_PX), PAGE)
+        draw_head(page, self._title, length, has_truth=self._has_truth)
         for number, tile in enumerate(tiles):
             row, column = divmod(number, _COLUMNS)
-            page.paste(Image.fromarray(tile), (column * (_TILE_PX + _GAP_PX), row * (height + _GAP_PX)))
+            left, top = MARGIN_PX + column * (TILE_PX + _GAP_PX), HEAD_PX + row * (height + _GAP_PX)
+            page.paste(Image.fromarray(tile), (left, top))
         page.save(path, compress_level=3)
 
 

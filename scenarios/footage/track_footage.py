@@ -21,11 +21,13 @@ from scenarios.folder import versions
 from scenarios.footage.grey import LEAST_SIDE_PX, Grey, Radiometry, grey_maker
 from scenarios.footage.pictures import Footage, open_footage
 from scenarios.footage.plausible import check_plausible
-from scenarios.footage.sheet import FILM_PX, Annotated, Film, Sheet, draw_frame
+from scenarios.footage.sheet import FILM_PX, TILE_PX, Annotated, Film, Sheet, draw_frame
 from scenarios.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
 from scenarios.out_folder import check_named
+from scenarios.overlay import Picture
 from scenarios.tables import TRACKS, Row, track_row, write_table
 from scenarios.whole_folder import whole_folder
+from scenarios.wording import counted
 from sim.random_streams import stream
 from tracker.evaluation.evaluate import Scores, evaluate
 from tracker.evaluation.mot_files import read_tracks, track_line, write_truth
@@ -223,7 +225,9 @@ class _Log:
     def __init__(self, folder: Path, options: TrackOptions, truth: GivenTruth | None, rate_hz: float) -> None:
         self._folder, self._truth = folder, truth
         self._contour = TRACKERS[options.tracker].contour
-        self._sheet, self._stack = Sheet(), ExitStack()
+        self._sheet = Sheet(options.footage.resolve().name, has_truth=truth is not None)
+        self._means = f"at {rate_hz:g} Hz, tracker {options.tracker}"
+        self._stack = ExitStack()
         self._film: Film | None = None
         if options.film:
             self._film = self._stack.enter_context(Film(folder / "overlay.mp4", rate_hz))
@@ -256,16 +260,15 @@ class _Log:
         self._results.writelines(
             track_line(self.frames, track.id, track.box, track.confidence) for track in sure
         )
-        if self._film is not None or self._sheet.wants(self.frames):
-            self._draw(frame.thermal, tracks)
-
-    def _draw(self, grey: Grey, tracks: tuple[Track, ...]) -> None:
-        scale = math.ceil(FILM_PX / grey.shape[0])
-        picture = draw_frame(grey, tracks, self._people(), self._contour, scale, str(self.frames))
+        height, width = frame.thermal.shape
         if self._film is not None:
-            self._film.add(picture)
+            self._film.add(self._drawn(frame.thermal, tracks, math.ceil(FILM_PX / height)))
         if self._sheet.wants(self.frames):
-            self._sheet.add(self.frames, picture)
+            self._sheet.add(self.frames, self._drawn(frame.thermal, tracks, TILE_PX / width))
+
+    def _drawn(self, grey: Grey, tracks: tuple[Track, ...], scale: float) -> Picture:
+        words = f"frame {self.frames}"
+        return draw_frame(grey, tracks, self._people(), self._contour, scale, words)
 
     def _people(self) -> list[Annotated]:
         if self._truth is None:
@@ -277,7 +280,8 @@ class _Log:
     def finish(self) -> Scores | None:
         """Write tables, pictures and scores."""
         write_table(self._folder / "tracks.parquet", self._rows, TRACKS)
-        self._sheet.save(self._folder / "contact_sheet.png")
+        length = f"{counted(self.frames, 'frame')} {self._means}"
+        self._sheet.save(self._folder / "contact_sheet.png", length)
         if self._truth is None:
             return None
         if self._truth.is_single and self._truth.truth.last_frame > self.frames:
