@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from bad_input import BadInput
-from scenarios.footage.truth_files import find_truth, load_truth
+from scenarios.footage.truth_files import GivenTruth, find_truth, load_truth
+from scenarios.run_files import check_end, check_whole, read_run
 from tracker.evaluation.evaluate import Scores, evaluate
 from tracker.evaluation.mot_files import read_tracks
-from tracker.evaluation.sequence import Rows
+from tracker.evaluation.sequence import Tracks
 from tracker.evaluation.uncounted import MIN_VISIBLE
 
 
@@ -23,36 +22,17 @@ def evaluate_files(
     People of whom no more than min_visible is seen do not count. Figures that need everybody are undefined
     where the truth has one person alone.
     """
-    given, found = load_truth(truth, None), read_tracks(tracks)
-    if frames is not None:
-        check_end(given.truth, truth, frames)
-        check_end(found, tracks, frames)
-    return evaluate(
-        given.truth,
-        found,
-        frames=frames,
-        min_visible=min_visible,
-        is_single=given.is_single,
-    )
+    return _score(load_truth(truth, None), read_tracks(tracks), frames, min_visible)
 
 
 def evaluate_runs(folders: Sequence[Path], min_visible: float = MIN_VISIBLE) -> list[Scores]:
     """Score the runs in these folders, one by one; min_visible as for files.
 
     Raises:
-        BadInput: a folder holds no run, or one that was cut off, or of footage without truth.
+        BadInput: a folder holds no run, or one that was cut off, or whose files do not belong together, or
+            one of footage without truth.
     """
     return [_evaluate_run(folder, min_visible) for folder in folders]
-
-
-def check_end(rows: Rows, path: Path, frames: int) -> None:
-    """Refuse a file that goes on after the run.
-
-    Raises:
-        BadInput: it does.
-    """
-    if rows.last_frame > frames:
-        raise BadInput(f"{path}: must end with frame {frames}, the run's last, got {rows.last_frame}")
 
 
 def runs_in(folder: Path) -> list[Path]:
@@ -67,28 +47,16 @@ def runs_in(folder: Path) -> list[Path]:
     return inner if inner and not (folder / "run.json").exists() else [folder]
 
 
-def read_run(folder: Path) -> dict[str, Any]:
-    """Read what run.json says of a complete run.
-
-    Raises:
-        BadInput: there is no run, or it is not complete.
-    """
-    path = folder / "run.json"
-    try:
-        about = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: cannot be read as a run; give the folder of a finished run") from error
-    if not isinstance(about, dict) or about.get("status") != "complete":
-        raise BadInput(
-            f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
-        )
-    if not isinstance(about.get("frames"), int):
-        raise BadInput(f"{path}: frames: must be a whole number, got {about.get('frames')!r}; run it again")
-    return about
-
-
 def _evaluate_run(folder: Path, min_visible: float) -> Scores:
     about, truth = read_run(folder), find_truth(folder)
     if truth is None:
         raise BadInput(f"{folder}: has no truth to score against; give --truth with --tracks")
-    return evaluate_files(truth, folder / "tracks.txt", about["frames"], min_visible)
+    given, found = load_truth(truth, None), read_tracks(folder / "tracks.txt")
+    check_end(given.truth, truth, about["frames"])
+    check_end(found, folder / "tracks.txt", about["frames"])
+    check_whole(folder, given.truth, found)
+    return _score(given, found, about["frames"], min_visible)
+
+
+def _score(given: GivenTruth, found: Tracks, frames: int | None, min_visible: float) -> Scores:
+    return evaluate(given.truth, found, frames=frames, min_visible=min_visible, is_single=given.is_single)

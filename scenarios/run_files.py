@@ -5,10 +5,11 @@ A run of another version, or one whose files were changed since, is refused here
 
 from __future__ import annotations
 
+import json
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -16,14 +17,18 @@ import pyarrow.parquet as pq
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from bad_input import BadInput
-from scenarios.evaluate_runs import check_end, read_run
 from scenarios.explain import explain
+from scenarios.suite_table import is_in_image
 from scenarios.tables import MAY_BE_EMPTY, ROBOT, TRACKS, TRUTH
 from tracker.evaluation.mot_files import read_tracks, read_truth
 from tracker.evaluation.sequence import Rows, Tracks, Truth
 from tracker.track import Status
 
 _AGAIN = "run the scenario again"
+_TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
+# What tells which rows of the tables are in the text files too.
+_WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
+_WRITTEN_TRACKS = ("frame", "id", "status")
 
 
 class About(BaseModel):
@@ -56,6 +61,26 @@ class RunFiles:
     robot: pa.Table
 
 
+def read_run(folder: Path) -> dict[str, Any]:
+    """Read what run.json says of a complete run.
+
+    Raises:
+        BadInput: there is no run, or it is not complete.
+    """
+    path = folder / "run.json"
+    try:
+        about = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read as a run; give the folder of a finished run") from error
+    if not isinstance(about, dict) or about.get("status") != "complete":
+        raise BadInput(
+            f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
+        )
+    if not isinstance(about.get("frames"), int):
+        raise BadInput(f"{path}: frames: must be a whole number, got {about.get('frames')!r}; run it again")
+    return about
+
+
 def read_about(folder: Path) -> About:
     """Read what run.json says of a complete run of a scenario.
 
@@ -82,7 +107,7 @@ def read_files(
     Args:
         folder: of the run.
         frames: how many.
-        people: the columns wanted of truth.parquet, `frame` and `id` among them.
+        people: the columns wanted of truth.parquet; those that tell who is in the image among them.
         robot: the columns wanted of robot.parquet, `frame` among them.
 
     Raises:
@@ -90,8 +115,8 @@ def read_files(
             the others.
     """
     files = RunFiles(
-        truth=read_truth(folder / "truth" / "gt.txt"),
-        tracks=read_tracks(folder / "tracks.txt"),
+        truth=read_truth(folder / _TRUTH_TEXT),
+        tracks=read_tracks(folder / _TRACKS_TEXT),
         people=_read_table(folder / "truth.parquet", TRUTH, people),
         beliefs=_read_table(folder / "tracks.parquet", TRACKS, TRACKS.names),
         robot=_read_table(folder / "robot.parquet", ROBOT, robot),
@@ -103,9 +128,40 @@ def read_files(
         )
     for name in set(pc.unique(files.beliefs["status"]).to_pylist()) - set(Status):
         raise BadInput(f"{folder / 'tracks.parquet'}: unknown status {name!r}; {_AGAIN}")
-    _check_inside(files.truth, folder / "truth" / "gt.txt", files.people, frames)
-    _check_inside(files.tracks, folder / "tracks.txt", files.beliefs, frames)
+    check_end(files.truth, folder / _TRUTH_TEXT, frames)
+    check_end(files.tracks, folder / _TRACKS_TEXT, frames)
+    _check_rows(files.truth, folder / _TRUTH_TEXT, _written_truth(files.people))
+    _check_rows(files.tracks, folder / _TRACKS_TEXT, _written_tracks(files.beliefs))
     return files
+
+
+def check_whole(folder: Path, truth: Truth, tracks: Tracks) -> None:
+    """Refuse a run whose text files have not the boxes of its tables, as far as it has tables.
+
+    Args:
+        folder: of the run.
+        truth: what its truth/gt.txt says.
+        tracks: what its tracks.txt says.
+
+    Raises:
+        BadInput: a box is missing, or nobody's, or a table is spoilt.
+    """
+    if (folder / "truth.parquet").is_file():
+        people = _read_table(folder / "truth.parquet", TRUTH, _WRITTEN_TRUTH)
+        _check_rows(truth, folder / _TRUTH_TEXT, _written_truth(people))
+    if (folder / "tracks.parquet").is_file():
+        beliefs = _read_table(folder / "tracks.parquet", TRACKS, _WRITTEN_TRACKS)
+        _check_rows(tracks, folder / _TRACKS_TEXT, _written_tracks(beliefs))
+
+
+def check_end(rows: Rows, path: Path, frames: int) -> None:
+    """Refuse a file that goes on after the run.
+
+    Raises:
+        BadInput: it does.
+    """
+    if rows.last_frame > frames:
+        raise BadInput(f"{path}: must end with frame {frames}, the run's last, got {rows.last_frame}")
 
 
 def _read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Table:
@@ -126,10 +182,26 @@ def _read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.T
     return table
 
 
-def _check_inside(rows: Rows, path: Path, table: pa.Table, frames: int) -> None:
-    """Refuse a text file with boxes beyond the run's end, or of somebody whom the table does not have."""
-    check_end(rows, path, frames)
+def _written_truth(people: pa.Table) -> pa.Table:
+    """Keep the rows of people who have a line in truth/gt.txt."""
+    return people.filter(pc.and_(pa.array(is_in_image(people)), pc.is_valid(people["left_px"])))
+
+
+def _written_tracks(beliefs: pa.Table) -> pa.Table:
+    """Keep the rows of tracks that have a line in tracks.txt."""
+    return beliefs.filter(pc.not_equal(beliefs["status"], str(Status.TENTATIVE)))
+
+
+def _check_rows(rows: Rows, path: Path, table: pa.Table) -> None:
+    """Refuse a text file that has not just the frames and ids of the table, each line whole."""
+    if len(rows) and not path.read_bytes().endswith(b"\n"):
+        raise BadInput(f"{path}: ends in the middle of a line; {_AGAIN}")
+    said = set(zip(rows.frame.tolist(), rows.id.tolist(), strict=True))
     known = set(zip(table["frame"].to_pylist(), table["id"].to_pylist(), strict=True))
-    for frame, number in zip(rows.frame.tolist(), rows.id.tolist(), strict=True):
-        if (frame, number) not in known:
-            raise BadInput(f"{path}: frame {frame}: id {number} is not in the run's tables; {_AGAIN}")
+    for frame, number in sorted(said - known)[:1]:
+        raise BadInput(f"{path}: frame {frame}: id {number} is not in the run's tables; {_AGAIN}")
+    for frame, number in sorted(known - said)[:1]:
+        raise BadInput(
+            f"{path}: has {len(said & known)} of the {len(known)} boxes in the run's tables, the first "
+            f"that is missing is id {number} in frame {frame}; {_AGAIN}"
+        )

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bad_input import BadInput
-from scenarios.evaluate_runs import read_run
 from scenarios.load import load_scenario
-from scenarios.run_files import RunFiles, read_about, read_files
+from scenarios.run_files import RunFiles, read_about, read_files, read_run
 from scenarios.scenario import Scenario
 from scenarios.tables import Row, track_of
 from sim.config import RobotConfig, WorldConfig

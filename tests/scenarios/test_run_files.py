@@ -64,6 +64,16 @@ def saying(**values: Any) -> Damage:
     return lambda path: path.write_text(json.dumps(json.loads(path.read_text()) | values))
 
 
+def ending_with(share: float, end: str) -> Damage:
+    """Cut after the first such characters behind this share of the text."""
+
+    def cut(path: Path) -> None:
+        text = path.read_text()
+        path.write_text(text[: text.index(end, int(len(text) * share)) + len(end)])
+
+    return cut
+
+
 def with_line(line: str) -> Damage:
     return lambda path: path.write_text(path.read_text() + line)
 
@@ -100,6 +110,17 @@ DAMAGES: list[tuple[str, Damage, str]] = [
     ("truth/gt.txt", with_line("9999,1,1.0,1.0,5.0,9.0,1,1,1.0\n"), "must end with frame"),
     ("truth/gt.txt", with_line("3,77,1.0,1.0,5.0,9.0,1,1,1.0\n"), "frame 3: id 77 is not in the run's"),
     ("truth/gt.txt", halved, "must have 9 numbers"),
+    (
+        "truth/gt.txt",
+        ending_with(0.5, "\n"),
+        r"gt.txt: has 9\d of the 180 boxes .* missing is id . in frame 4\d",
+    ),
+    (
+        "tracks.txt",
+        ending_with(0.5, "\n"),
+        r"tracks.txt: has 9\d of the 180 boxes .* missing is id . in frame",
+    ),
+    ("truth/gt.txt", ending_with(0.995, ",1,1."), "gt.txt: ends in the middle of a line"),
     ("tracks.txt", Path.unlink, "tracks.txt: cannot be read as MOTChallenge text"),
     ("run.json", saying(frames="many"), "frames: must be a whole number, got 'many'"),
     ("run.json", saying(frames=3), "robot.parquet: must have a row for each of the 3 frames"),
@@ -122,6 +143,19 @@ def test_damage_is_told_in_one_line(
     page = CliRunner().invoke(report, [str(run), "--out", str(tmp_path / "page.html")])
     assert isinstance(page.exception, BadInput)
     assert not (tmp_path / "page.html").exists()
+
+
+@pytest.mark.parametrize("name", ["truth/gt.txt", "tracks.txt"])
+def test_half_a_file_is_not_scored_unless_nothing_tells_how_long_it_was(
+    whole: Path, tmp_path: Path, name: str
+) -> None:
+    run = damaged(whole, tmp_path, name, ending_with(0.5, "\n"))
+    told = str(CliRunner().invoke(evaluate, [str(run)]).exception)
+    assert f"{name}: has " in told
+    assert "of the 180 boxes in the run's tables" in told
+    for table in ("truth.parquet", "tracks.parquet"):
+        (run / table).unlink()
+    assert CliRunner().invoke(evaluate, [str(run)]).exit_code == 0
 
 
 @pytest.mark.parametrize("name", ["truth/gt.txt", "tracks.txt"])
