@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +58,10 @@ class Moment:
     words: tuple[str, ...] = ()
 
 
+# Says what a moment is about, of the one that is shown, which may be another just before or after.
+Words = Callable[[Moment], str]
+
+
 @dataclass(slots=True)
 class _Occlusion:
     """The worst of one occlusion so far."""
@@ -69,7 +74,7 @@ class KeyMoments:
     """Collects moments while a run goes: about 60 at most, however long it is."""
 
     def __init__(self) -> None:
-        self._kept: dict[tuple[str, int], tuple[Moment, str]] = {}
+        self._kept: dict[tuple[str, int], tuple[Moment, Words]] = {}
         self._counts: Counter[str] = Counter()
         self._occlusions: dict[str, _Occlusion] = {}
         self._closest_m = np.inf
@@ -80,9 +85,9 @@ class KeyMoments:
         """Look at one tick and what happened at it."""
         moment = _moment(tick)
         if not self._spare:
-            self._keep_new("start", moment, "start")
+            self._keep_new("start", moment, partial(_always, "start"))
         for line in events:
-            self._keep_new(line.kind, moment, describe(line))
+            self._keep_new(line.kind, moment, partial(_always, describe(line)))
             self._follow_occlusion(line)
         self._look_for_worst(moment)
         self._look_for_closest(moment)
@@ -93,25 +98,25 @@ class KeyMoments:
         chosen: list[Moment] = []
         words: dict[int, tuple[str, ...]] = {}
         # The first of every kind comes before the second of any.
-        for _, (moment, text) in sorted(
+        for _, (moment, say) in sorted(
             self._kept.items(), key=lambda item: (item[0][1], _ORDER[item[0][0]], item[1][0].frame)
         ):
             same = next((m for m in chosen if abs(m.time_s - moment.time_s) < _NEAR_S), None)
             if same is not None:
-                words[same.frame] += (text,)
+                words[same.frame] += (say(same),)
             elif len(chosen) < count - count // 6:  # the rest is for what happens when nothing does
                 chosen.append(moment)
-                words[moment.frame] = (text,)
+                words[moment.frame] = (say(moment),)
         self._fill(chosen, count)
         return [_with_words(m, words.get(m.frame, ())) for m in sorted(chosen, key=lambda m: m.frame)]
 
-    def _keep_new(self, kind: str, moment: Moment, text: str) -> tuple[str, int] | None:
+    def _keep_new(self, kind: str, moment: Moment, say: Words) -> tuple[str, int] | None:
         """Keep a moment of this kind if there are not too many yet, and return where."""
         slot = (kind, self._counts[kind])
         if slot[1] >= _KINDS.get(kind, 0):
             return None
         self._counts[kind] += 1
-        self._kept[slot] = (moment, text)
+        self._kept[slot] = (moment, say)
         return slot
 
     def _follow_occlusion(self, line: LogLine) -> None:
@@ -128,14 +133,14 @@ class KeyMoments:
             occlusion = self._occlusions.get(person.name)
             if occlusion is not None and person.occluded_fraction > occlusion.hidden:
                 occlusion.hidden = person.occluded_fraction
-                by = f" by {person.occluder}" if person.occluder else ""
-                self._kept[occlusion.slot] = (moment, f"{person.name}: {occlusion.hidden:.0%} hidden{by}")
+                self._kept[occlusion.slot] = (moment, partial(_hidden, person))
 
     def _look_for_closest(self, moment: Moment) -> None:
         for person in moment.people:
             if person.visible_px > 0 and person.distance_m < self._closest_m:
                 self._closest_m = person.distance_m
-                self._kept[("closest", 0)] = (moment, f"closest: {person.name}, {person.distance_m:.1f} m")
+                text = f"closest: {person.name}, {person.distance_m:.1f} m"
+                self._kept[("closest", 0)] = (moment, partial(_always, text))
 
     def _keep_spare(self, moment: Moment) -> None:
         """Keep every n-th moment, n doubling whenever there are too many."""
@@ -152,6 +157,17 @@ class KeyMoments:
             if not gaps or max(gaps) == 0:
                 return
             chosen.append(self._spare[gaps.index(max(gaps))])
+
+
+def _always(text: str, moment: Moment) -> str:  # noqa: ARG001
+    return text
+
+
+def _hidden(person: PersonTruth, moment: Moment) -> str:
+    """Say how much of a person is hidden at a moment, which may be shown instead of the worst one."""
+    shown = next((other for other in moment.people if other.name == person.name), person)
+    by = f" by {shown.occluder}" if shown.occluder else ""
+    return f"{shown.name}: {shown.occluded_fraction:.0%} hidden{by}"
 
 
 def _moment(tick: Tick) -> Moment:

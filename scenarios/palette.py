@@ -26,13 +26,14 @@ _PEOPLE: Final[tuple[Rgb, ...]] = (
     (68, 187, 153),
 )
 
+TRACK_COLOURS: Final = len(_TRACKS)  # after which they repeat
 TRUTH: Final[Rgb] = (150, 240, 130)
 ROBOT: Final[Rgb] = (214, 69, 65)
 
 
 def track_colour(number: int) -> Rgb:
     """The colour of a track, by its id; they repeat after six."""
-    return _TRACKS[(number - 1) % len(_TRACKS)]
+    return _TRACKS[(number - 1) % TRACK_COLOURS]
 
 
 def person_colour(number: int) -> Rgb:

@@ -24,5 +24,6 @@ def report(runs: Sequence[Path], out: Path | None) -> None:
     from scenarios.report.page import write_report
 
     page = out if out is not None else (runs[0] / "report.html" if len(runs) == 1 else Path("report.html"))
-    write_report(runs, page)
+    for line in write_report(runs, page):
+        click.echo(f"peopleboy: {line}", err=True)
     click.echo(page)

@@ -14,9 +14,13 @@ from pathlib import Path
 from urllib.parse import quote
 
 from bad_input import BadInput
+from scenarios.evaluate_runs import runs_in
 
 LOOPBACK = "127.0.0.1"
 NO_SCREEN = "no screen here: --web serves it to a browser"
+
+# What a file of rerun's begins with, and what ends one that was closed.
+_HEAD, _FOOT, _FOOT_BYTES = b"RRF2", b"RRF2FOOT", 12
 
 _START_S = 30.0  # within which a viewer is there, or fails
 _POLL_S = 0.1
@@ -29,6 +33,33 @@ def has_screen() -> bool:
     if sys.platform in ("win32", "darwin"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def recording_in(folder: Path) -> Path:
+    """Find the recording of a run, of one that was cut off too.
+
+    Raises:
+        BadInput: there is no such folder, it holds no run or several, or the run was not recorded.
+    """
+    inner = runs_in(folder)
+    if inner != [folder]:
+        raise BadInput(f"{folder}: holds {len(inner)} runs; give one of them, such as {inner[0]}")
+    recording = folder / "recording.rrd"
+    if not recording.is_file() and not (folder / "run.json").is_file():
+        raise BadInput(f"{folder}: holds no run and no recording; give the folder of a run")
+    return recording
+
+
+def is_whole(recording: Path) -> bool:
+    """Tell whether a recording was closed; one that was cut off opens too, and lacks its end.
+
+    Raises:
+        BadInput: there is no such recording, or the file is none.
+    """
+    _check(recording)
+    with recording.open("rb") as file:
+        file.seek(-min(_FOOT_BYTES, recording.stat().st_size), os.SEEK_END)
+        return _FOOT in file.read()
 
 
 def open_viewer(recording: Path) -> None:
@@ -170,3 +201,10 @@ def _source(port: int) -> str:
 def _check(recording: Path) -> None:
     if not recording.is_file():
         raise BadInput(f"{recording}: there is no recording; run the scenario without --no-rrd")
+    try:
+        with recording.open("rb") as file:
+            is_recording = file.read(len(_HEAD)) == _HEAD
+    except OSError as error:
+        raise BadInput(f"{recording}: cannot be read: {error.strerror}") from error
+    if not is_recording:
+        raise BadInput(f"{recording}: is no rerun recording; run the scenario again")

@@ -8,16 +8,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.palette import track_colour
+from scenarios.palette import TRACK_COLOURS, track_colour
 from scenarios.report.errors import Curve
 from scenarios.report.headline import Outcome
 from scenarios.report.spans import settle, spans
 from scenarios.report.story import Hold, Sight, Story, present_tracks
 from scenarios.report.wording import listed, seconds, spoken
 
-_LETTER = 1.9  # per cent of the width of a timeline on a phone that a letter takes
+# Of text in a bar: the room that a letter takes, and that beside the text; and the least width of a timeline.
+_LETTER_PX, _BESIDE_PX = 8.0, 7.0
+_PHONE_PX, _DESK_PX = 250.0, 510.0
 _SERIES = ("#0072b2", "#d55e00", "#009e73", "#a8327a")  # Okabe and Ito; dark enough for lines on white
 _DASHES = ("none", "6 3", "2 3", "8 3 2 3")
+_EDGES = ("", "none", "4 3")  # dashes of the lines along bars; nothing for no line
+_EDGES_AT_PX = (18.5, 1.5)  # below and above
 _TICKS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0)
 _MOST_TICKS = 7
 
@@ -32,6 +36,8 @@ class Bar:
         text: written in it; empty if it is too short for that.
         title: what it says when it is pointed at.
         colour: of what is drawn in it.
+        edges: heights [px] and dashes of lines along it, which tell tracks of one colour apart.
+        is_roomy: whether the text fits on a desk only.
     """
 
     kind: str
@@ -40,6 +46,8 @@ class Bar:
     text: str
     title: str
     colour: str = ""
+    edges: tuple[tuple[float, str], ...] = ()
+    is_roomy: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,9 +166,7 @@ def track_lane(outcome: Outcome, story: Story) -> Lane:
     for span in spans(np.asarray(story.hold * 1_000_000 + story.track)):
         hold, number = Hold(span.value // 1_000_000), span.value % 1_000_000
         if hold is Hold.ON:
-            bars.append(
-                _bar(outcome, "on", span.start, span.end, str(number), f"number {number}", rgb(number))
-            )
+            bars.append(_bar(outcome, "on", span.start, span.end, str(number), f"number {number}", number))
         elif hold is Hold.ADRIFT:
             bars.append(_bar(outcome, "adrift", span.start, span.end, "", "its box lies elsewhere"))
         elif hold is Hold.MISSED:
@@ -208,12 +214,27 @@ def mode_lane(outcome: Outcome) -> Lane | None:
     return Lane("robot", tuple(bars))
 
 
-def _bar(outcome: Outcome, kind: str, start: int, end: int, text: str, title: str, colour: str = "") -> Bar:
+def _bar(outcome: Outcome, kind: str, start: int, end: int, text: str, title: str, track: int = 0) -> Bar:
     run = outcome.run
-    left, width = 100.0 * start / run.frames, 100.0 * (end - start) / run.frames
-    fits = len(text) * _LETTER + 1.0 <= width
-    when = f"{start / run.rate_hz:.1f} to {end / run.rate_hz:.1f} s"
-    return Bar(kind, left, width, text if fits else "", f"{when} {title}", colour)
+    width = 100.0 * (end - start) / run.frames
+    needed_px = len(text) * _LETTER_PX + _BESIDE_PX
+    return Bar(
+        kind=kind,
+        left=100.0 * start / run.frames,
+        width=width,
+        text=text if needed_px <= width / 100.0 * _DESK_PX else "",
+        title=f"{start / run.rate_hz:.1f} to {end / run.rate_hz:.1f} s {title}",
+        colour=rgb(track) if track else "",
+        edges=track_edges(track) if track else (),
+        is_roomy=needed_px > width / 100.0 * _PHONE_PX,
+    )
+
+
+def track_edges(number: int) -> tuple[tuple[float, str], ...]:
+    """Give the lines along the bars of a track: with its colour, they make 54 looks."""
+    lap = (number - 1) // TRACK_COLOURS
+    styles = (_EDGES[lap % len(_EDGES)], _EDGES[lap // len(_EDGES) % len(_EDGES)])
+    return tuple((y, dash) for y, dash in zip(_EDGES_AT_PX, styles, strict=True) if dash)
 
 
 def rgb(number: int) -> str:

@@ -14,6 +14,7 @@ from scenarios.evaluate_runs import evaluate_runs, runs_in
 from scenarios.occlusion_scores import Occlusion, score_occlusions
 from scenarios.report.finished_run import FinishedRun, read_finished
 from scenarios.report.headline import Outcome, headline, headline_of_many, look_into
+from scenarios.report.wording import some
 from tracker.evaluation.evaluate import Scores
 
 MOST_BESIDE = 4  # columns that a table can hold on paper
@@ -66,9 +67,12 @@ def read_columns(paths: Sequence[Path]) -> list[Column]:
     More than `MOST_BESIDE` paths are taken together by their trackers.
 
     Raises:
-        BadInput: a folder holds no complete run, or there are too many trackers to stand side by side.
+        BadInput: a folder holds no complete run or is given twice, or there are too many trackers to stand
+            side by side.
     """
-    groups = [[read_finished(folder) for folder in runs_in(path)] for path in paths]
+    folders = [runs_in(path) for path in paths]
+    _refuse_repeats([folder for of_path in folders for folder in of_path])
+    groups = [[read_finished(folder) for folder in of_path] for of_path in folders]
     if len(paths) > MOST_BESIDE:
         by_tracker: dict[str, list[FinishedRun]] = {}
         for run in (run for group in groups for run in group):
@@ -83,6 +87,28 @@ def read_columns(paths: Sequence[Path]) -> list[Column]:
 def are_same_scene(columns: Sequence[Column]) -> bool:
     """Tell whether all are single runs of one scenario and seed."""
     return all(column.is_single for column in columns) and len({column.run.name for column in columns}) == 1
+
+
+def lacking(columns: Sequence[Column]) -> list[str]:
+    """Say, in a line a column, what a page cannot show since a scenario file is missing or spoilt."""
+    lines = []
+    for column in columns:
+        faults = [outcome.run.fault for outcome in column.outcomes if outcome.run.fault]
+        if faults:
+            more = f" (and {some(len(faults) - 1, 'run')} more)" if len(faults) > 1 else ""
+            lines.append(
+                f"{faults[0]}{more}; so no plan is drawn and no image rendered again; "
+                "run the scenario again for them"
+            )
+    return lines
+
+
+def _refuse_repeats(folders: Sequence[Path]) -> None:
+    seen: set[Path] = set()
+    for folder in folders:
+        if folder.resolve() in seen:
+            raise BadInput(f"{folder}: is given twice; give each run once, or another one to compare with")
+        seen.add(folder.resolve())
 
 
 def _column(label: str, runs: Sequence[FinishedRun]) -> Column:

@@ -11,9 +11,11 @@ from typing import Any
 import pyarrow as pa
 
 from bad_input import BadInput
+from scenarios.load import load_scenario
 from scenarios.read_yaml import read_yaml
 from scenarios.run_events import LogLine
 from scenarios.run_files import read_about, read_files
+from scenarios.scenario import Scenario
 from tracker.evaluation.sequence import Tracks, Truth
 
 _BOX = ("left_px", "top_px", "width_px", "height_px")
@@ -31,7 +33,9 @@ class FinishedRun:
     Attributes:
         folder: where it lies.
         about: what run.json says.
-        played: what scenario.yaml says.
+        played: what scenario.yaml says; nothing if it cannot be read.
+        scenario: the same as a scenario; None if it cannot be loaded.
+        fault: why it cannot, in a line; empty if it can.
         metrics: what metrics.json says, by group.
         events: what events.jsonl says.
         truth: the people of the sequence.
@@ -44,6 +48,8 @@ class FinishedRun:
     folder: Path
     about: Mapping[str, Any]
     played: Mapping[str, Any]
+    scenario: Scenario | None
+    fault: str
     metrics: Mapping[str, Any]
     events: tuple[LogLine, ...]
     truth: Truth
@@ -81,14 +87,18 @@ def read_finished(folder: Path) -> FinishedRun:
     """Read a run's folder.
 
     Raises:
-        BadInput: it holds no run, or one that was cut off, or a file of it is missing or spoilt.
+        BadInput: it holds no run, or one that was cut off, or a file of it is missing or spoilt, other than
+            the scenario's, which only plans and images need.
     """
     about = read_about(folder)
     files = read_files(folder, about.frames, people=_PEOPLE, robot=_ROBOT)
+    played, scenario, fault = _read_scenario(folder / "scenario.yaml")
     return FinishedRun(
         folder=folder,
         about=about.model_dump(),
-        played=read_yaml(folder / "scenario.yaml"),
+        played=played,
+        scenario=scenario,
+        fault=fault,
         metrics=_read_json(folder / "metrics.json"),
         events=_read_events(folder / "events.jsonl"),
         truth=files.truth,
@@ -97,6 +107,15 @@ def read_finished(folder: Path) -> FinishedRun:
         beliefs=files.beliefs,
         robot=files.robot,
     )
+
+
+def _read_scenario(path: Path) -> tuple[Mapping[str, Any], Scenario | None, str]:
+    played: Mapping[str, Any] = {}
+    try:
+        played = read_yaml(path)
+        return played, load_scenario(path), ""
+    except BadInput as error:
+        return played, None, str(error)
 
 
 def _read_json(path: Path) -> dict[str, Any]:

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from scenarios.report.endings import Ending, how_it_ended
 from scenarios.report.finished_run import FinishedRun
 from scenarios.report.identities import (
     Change,
+    Fleeting,
     Loss,
     Stray,
+    count_fleeting,
     find_changes,
     find_losses,
     find_strays,
-    tracked_to_end,
 )
 from scenarios.report.story import Story, tell_stories
 from scenarios.report.wording import listed, seconds, some, spoken, times
@@ -27,6 +29,7 @@ class Outcome:
     stories: tuple[Story, ...]
     changes: tuple[Change, ...]
     losses: tuple[Loss, ...]
+    fleeting: Fleeting
     strays: tuple[Stray, ...]
 
     @property
@@ -34,10 +37,9 @@ class Outcome:
         """How many people were to be tracked at some time."""
         return sum(bool(story.is_due.any()) for story in self.stories)
 
-    @property
-    def to_the_end(self) -> int:
-        """How many of them were tracked to the end."""
-        return sum(tracked_to_end(self.run, story) is True for story in self.stories)
+    def who_ended(self, *endings: Ending) -> list[str]:
+        """Name those with whom it ended in one of these ways."""
+        return [spoken(story.name) for story in self.stories if how_it_ended(self.run, story) in endings]
 
     @property
     def lost(self) -> list[Change]:
@@ -63,6 +65,7 @@ def look_into(run: FinishedRun) -> Outcome:
         stories=tuple(stories),
         changes=tuple(find_changes(run, stories)),
         losses=tuple(find_losses(run, stories)),
+        fleeting=count_fleeting(run),
         strays=tuple(find_strays(run, stories)),
     )
 
@@ -83,12 +86,16 @@ def headline(outcome: Outcome) -> str:
 
 def headline_of_many(outcomes: Sequence[Outcome]) -> str:
     """Say the same of several runs."""
-    due, tracked = sum(o.due for o in outcomes), sum(o.to_the_end for o in outcomes)
+    due = sum(o.due for o in outcomes)
+    tracked, hidden = (
+        sum(len(o.who_ended(ending)) for o in outcomes) for ending in (Ending.TRACKED, Ending.HIDDEN)
+    )
     lost, returned = sum(len(o.lost) for o in outcomes), sum(len(o.returned) for o in outcomes)
     where = sum(bool(o.lost) for o in outcomes)
     strays, touches = sum(len(o.strays) for o in outcomes), sum(len(o.touched) for o in outcomes)
     identities = f"identity lost {times(lost)}, in {some(where, 'run')}" if lost else "no identity lost"
     parts = [f"{some(len(outcomes), 'run')}: of {some(due, 'person', 'people')} {tracked} tracked to the end"]
+    parts[0] += f", {hidden} hidden until the end" if hidden else ""
     parts += [identities, *([_returns(returned)] if returned else []), f"{some(strays, 'track')} on nobody"]
     parts += [f"{some(touches, 'contact')} of the robot"] if touches else []
     return "; ".join(parts) + "."
@@ -99,13 +106,17 @@ def _returns(count: int) -> str:
 
 
 def _people(outcome: Outcome) -> str:
-    due, tracked = outcome.due, outcome.to_the_end
+    due, hidden = outcome.due, outcome.who_ended(Ending.HIDDEN)
+    others = outcome.who_ended(Ending.LOST, Ending.HIDDEN)
+    tracked = due - len(others)
+    asides = [f"{listed(hidden)} hidden until the end"] if hidden and due > 1 else []
     never = len(outcome.stories) - due
-    aside = f" ({never} more never came within 3 to 10 m in sight)" if never else ""
+    asides += [f"{never} more never came within 3 to 10 m in sight"] if never else []
+    aside = f" ({'; '.join(asides)})" if asides else ""
     if due == 1:
-        return f"1 person, {'' if tracked else 'not '}tracked to the end{aside}"
-    lost = [spoken(s.name) for s in outcome.stories if tracked_to_end(outcome.run, s) is False]
-    which = {0: "none", due: "both" if due == 2 else "all"}.get(tracked, f"all but {listed(lost)}")
+        how = "hidden until" if hidden else "tracked to" if tracked else "not tracked to"
+        return f"1 person, {how} the end{aside}"
+    which = {0: "none", due: "both" if due == 2 else "all"}.get(tracked, f"all but {listed(others)}")
     return f"{due} people, {which} tracked to the end{aside}"
 
 

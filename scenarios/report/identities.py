@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from scenarios.report.endings import Ending, how_it_ended, steadily_due
 from scenarios.report.finished_run import FinishedRun
 from scenarios.report.spans import Flags, settle, spans
-from scenarios.report.story import Sight, Story, present_tracks, steady_frames
+from scenarios.report.story import STEADY_S, Sight, Story, present_tracks, steady_frames
 from scenarios.report.wording import seconds, spoken
 from sim.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 
@@ -56,6 +58,7 @@ class Loss:
         time_s: of that.
         owner: on whom it lay last; empty for nobody.
         why: what happened to the owner, and to the confidence.
+        believed: why the tracker gave it up, by its own log; empty if that does not say.
         afterwards: what came then.
         is_bad: whether the person could be seen and lost the number.
     """
@@ -65,8 +68,34 @@ class Loss:
     time_s: float
     owner: str
     why: str
+    believed: str
     afterwards: str
     is_bad: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Fleeting:
+    """Losses that are not told one by one.
+
+    Attributes:
+        breaks: after which the same number was shown again within `STEADY_S`.
+        ends: of tracks that had been shown for less than that.
+    """
+
+    breaks: int
+    ends: int
+
+    @property
+    def words(self) -> str:
+        """What is left out and why, in sentences; empty if nothing is."""
+        told, short = [], f"less than {STEADY_S:g} s"
+        if self.breaks:
+            told.append(
+                f"Losses of {short} ({self.breaks} of them) are left out: the same number was shown again."
+            )
+        if self.ends:
+            told.append(f"Ends of tracks that had been shown for {short} ({self.ends} of them) are left out.")
+        return " ".join([*told, "All of them are in events.jsonl."]) if told else ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,6 +143,17 @@ def find_losses(run: FinishedRun, stories: Sequence[Story]) -> list[Loss]:
     return sorted(losses, key=lambda loss: (loss.frame, loss.track))
 
 
+def count_fleeting(run: FinishedRun) -> Fleeting:
+    """Count the losses that `find_losses` leaves out."""
+    breaks = ends = 0
+    for shown in present_tracks(run).values():
+        steady = settle(shown.astype(np.int64), steady_frames(run)) > 0
+        is_end = shown[:-1] & ~shown[1:]
+        breaks += int((is_end & steady[:-1] & steady[1:]).sum())
+        ends += int((is_end & ~steady[:-1]).sum())
+    return Fleeting(breaks, ends)
+
+
 def find_strays(run: FinishedRun, stories: Sequence[Story]) -> list[Stray]:
     """Find the tracks that never lay on anybody, the longest first."""
     owned = {int(number) for story in stories for number in np.unique(story.matched)}
@@ -123,15 +163,6 @@ def find_strays(run: FinishedRun, stories: Sequence[Story]) -> list[Stray]:
             at = np.flatnonzero(shown)
             strays.append(Stray(track=number, first_frame=int(at[0]) + 1, last_frame=int(at[-1]) + 1))
     return sorted(strays, key=lambda stray: stray.first_frame - stray.last_frame)
-
-
-def tracked_to_end(run: FinishedRun, story: Story) -> bool | None:
-    """Tell whether a track lay on the person in the last second of being due; None for never due."""
-    due = np.flatnonzero(story.is_due)
-    if len(due) == 0:
-        return None
-    last = due[due > due[-1] - round(run.rate_hz)]
-    return bool((story.track[last] > 0).any())
 
 
 def _loss(run: FinishedRun, stories: Sequence[Story], number: int, end: int, shown: Flags) -> Loss:
@@ -150,6 +181,7 @@ def _loss(run: FinishedRun, stories: Sequence[Story], number: int, end: int, sho
         time_s=run.time_s(end + 1),
         owner="" if story is None else story.name,
         why=f"{why}; {_confidence(run, number, end)}",
+        believed=_belief(run, stories, number, end),
         afterwards=afterwards or "it never came back",
         is_bad=is_bad,
     )
@@ -163,9 +195,34 @@ def _afterwards(run: FinishedRun, story: Story, number: int, end: int) -> tuple[
         is_bad = not _is_return(run, story, end, end + later[0].start)
         when = f"after {seconds(after_s)}" if later[0].start else "at once"
         return f"{name} was found {when} as number {later[0].value}", is_bad
-    if not story.is_due[end:].any():
+    ended = how_it_ended(run, story)
+    if ended is Ending.HIDDEN:
+        return f"{name} was hidden until the end", False
+    if not (steadily_due(run, story) >= end).any():
         return f"{name} did not come back into view", False
+    if ended is Ending.TRACKED:
+        return f"the run ended {seconds((run.frames - end) / run.rate_hz)} later", False
     return f"{name} was not found again", True
+
+
+def _belief(run: FinishedRun, stories: Sequence[Story], number: int, end: int) -> str:
+    """Give the tracker's own reason, and say on whom the tracks lay that it names."""
+    about = ("lost", f"track {number}", end + 1)
+    why = next((line.why for line in run.events if (line.kind, line.who, line.frame) == about), "")
+    own = _owner(stories, number, end)
+    return re.sub(
+        r"track (\d+)", lambda found: f"number {found[1]}{_whose(run, stories, int(found[1]), end, own)}", why
+    )
+
+
+def _whose(run: FinishedRun, stories: Sequence[Story], number: int, end: int, own: Story | None) -> str:
+    """Say on whom a track lay before an index, in brackets; nothing for nobody."""
+    owner = _owner(stories, number, end)
+    if owner is None:
+        return ""
+    recent = owner.track[max(end - round(_BEFORE_S * run.rate_hz), 0) : end]
+    last = "" if number in recent else "last "
+    return f" ({last}on {spoken(owner.name)}{' too' if owner is own else ''})"
 
 
 def _is_return(run: FinishedRun, story: Story, start: int, end: int) -> bool:

@@ -17,19 +17,9 @@ from bad_input import BadInput
 from scenarios.contact_sheet import read_tiles
 from scenarios.occlusion_scores import LENGTHS_S, by_length
 from scenarios.overlay import encode_jpeg
-from scenarios.report.charts import (
-    Chart,
-    Lane,
-    Tick,
-    chart,
-    hidden_words,
-    mode_lane,
-    stray_lane,
-    time_ticks,
-    track_lane,
-    truth_lane,
-)
-from scenarios.report.columns import Column, are_same_scene, read_columns
+from scenarios.palette import TRACK_COLOURS
+from scenarios.report.charts import Chart, chart, track_edges
+from scenarios.report.columns import Column, are_same_scene, lacking, read_columns
 from scenarios.report.errors import (
     DISTANCES_M,
     VISIBLE,
@@ -42,7 +32,9 @@ from scenarios.report.errors import (
 from scenarios.report.figures import all_lines, drive_lines, number, plain_lines
 from scenarios.report.headline import Outcome, headline
 from scenarios.report.moments import BadMoment, common_frames, worst_moments
+from scenarios.report.page_file import check_place, write_page
 from scenarios.report.pictures import Shown, show_frames
+from scenarios.report.timelines import timelines
 from scenarios.report.trajectories import draw_trajectories
 from scenarios.report.wording import listed, seconds, spoken
 
@@ -81,44 +73,23 @@ class Scene:
     origin: str
 
 
-@dataclass(frozen=True, slots=True)
-class PersonLanes:
-    """The timelines of one person: the truth, what each run's tracker made of it, and who hid the person."""
-
-    name: str
-    lanes: tuple[Lane, ...]
-    hidden: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Timeline:
-    """The timelines of one run or of several runs of one scene."""
-
-    title: str
-    people: tuple[PersonLanes, ...]
-    ticks: tuple[Tick, ...]
-
-
-def write_report(paths: Sequence[Path], out: Path) -> None:
+def write_report(paths: Sequence[Path], out: Path) -> list[str]:
     """Write the page about the runs in these folders.
 
     Args:
         paths: as for `read_columns`.
         out: the page; nothing is written if anything is wrong.
 
+    Returns:
+        What the page lacks and why, a line each.
+
     Raises:
-        BadInput: there is no complete run, or the page cannot be written.
+        BadInput: there is no complete run, or the page cannot be written, or not there.
     """
-    if out.is_dir():
-        raise BadInput(f"{out}: is a folder; give --out a file that ends in .html")
-    text = render(read_columns(paths))
-    part = out.with_name(f"{out.name}.part")
-    try:
-        part.write_text(text, encoding="utf-8")
-        part.replace(out)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise BadInput(f"{out}: cannot write the page: {error.strerror}; give another --out") from error
+    check_place(out)
+    columns = read_columns(paths)
+    write_page(render(columns), out)
+    return lacking(columns)
 
 
 def render(columns: Sequence[Column]) -> str:
@@ -130,15 +101,23 @@ def render(columns: Sequence[Column]) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"spoken": spoken, "number": number, "headline": headline, "seconds": seconds}
+    environment.filters |= {
+        "spoken": spoken,
+        "number": number,
+        "headline": headline,
+        "seconds": seconds,
+        "edges": track_edges,
+    }
     singles = [column for column in columns if column.is_single]
     return environment.get_template("page.html.jinja").render(
         columns=columns,
         title=_title(columns),
+        repeated=_first_repeated(singles),
+        lacking=lacking(columns),
         singles=singles,
         crowds=[column for column in columns if not column.is_single],
         sheets=[(column.label, _tiles(column)) for column in singles],
-        timelines=_timelines(columns),
+        timelines=timelines(columns),
         scenes=_scenes(columns),
         plain=plain_lines(columns),
         figures=all_lines(columns),
@@ -162,6 +141,12 @@ def _title(columns: Sequence[Column]) -> str:
     return f"{shown}: {len(outcomes)} runs"
 
 
+def _first_repeated(columns: Sequence[Column]) -> int:
+    """The first number whose colour repeats that of another; 0 if there are not so many numbers."""
+    most = max((int(c.run.tracks.id.max(initial=0)) for c in columns), default=0)
+    return TRACK_COLOURS + 1 if most > TRACK_COLOURS else 0
+
+
 def _tiles(column: Column) -> list[Picture]:
     """The tiles of a run's contact sheet; none if it is gone."""
     try:
@@ -169,48 +154,6 @@ def _tiles(column: Column) -> list[Picture]:
     except BadInput:
         return []
     return [Picture(_jpeg_of(tile.picture), tile.words) for tile in tiles]
-
-
-def _timelines(columns: Sequence[Column]) -> list[Timeline]:
-    """One timeline a run; but runs of the same scene share one."""
-    if len(columns) > 1 and are_same_scene(columns) and _is_same_world(columns):
-        return [_timeline(columns, columns[0].run.name)]
-    return [_timeline([column], column.label) for column in columns if column.is_single]
-
-
-def _timeline(columns: Sequence[Column], title: str) -> Timeline:
-    first = columns[0].outcomes[0]
-    people = []
-    for index, story in enumerate(first.stories):
-        lanes = [truth_lane(first, story)]
-        for column in columns:
-            outcome = column.outcomes[0]
-            lane = track_lane(outcome, outcome.stories[index])
-            lanes.append(lane if len(columns) == 1 else Lane(column.label, lane.bars, lane.marks))
-        people.append(PersonLanes(spoken(story.name), tuple(lanes), hidden_words(first, story)))
-    for name, make in (("Boxes on nobody", stray_lane), ("The robot", mode_lane)):
-        made = [(column.label, make(column.outcomes[0])) for column in columns]
-        found = [
-            Lane(lane.label if len(columns) == 1 else label, lane.bars)
-            for label, lane in made
-            if lane is not None
-        ]
-        if found:
-            people.append(PersonLanes(name, tuple(found)))
-    return Timeline(title, tuple(people), tuple(time_ticks(first.run.duration_s)))
-
-
-def _is_same_world(columns: Sequence[Column]) -> bool:
-    """Whether everybody was seen alike in all runs: the robot stood or drove the same way."""
-    first = columns[0].outcomes[0]
-    return all(
-        [story.id for story in column.outcomes[0].stories] == [story.id for story in first.stories]
-        and all(
-            a.sight.shape == b.sight.shape and (a.sight == b.sight).all()
-            for a, b in zip(first.stories, column.outcomes[0].stories, strict=True)
-        )
-        for column in columns[1:]
-    )
 
 
 def _scenes(columns: Sequence[Column]) -> list[Scene]:
@@ -310,13 +253,14 @@ def _settings(column: Column) -> list[tuple[str, str]]:
     about, played = column.run.about, column.run.played
     robot: Any = played.get("robot", {})
     behaviour = robot.get("behaviour", "stand") if isinstance(robot, dict) else "stand"
+    is_usable = column.run.scenario is not None
     seeds = [str(outcome.run.about["seed"]) for outcome in column.outcomes]
     rows = [
         ("scenario", ", ".join(dict.fromkeys(str(o.run.about["scenario"]) for o in column.outcomes))),
         ("what happens", " ".join(str(played.get("description", "")).split()) if column.is_single else ""),
         ("seed" if column.is_single else "seeds", ", ".join(dict.fromkeys(seeds))),
         ("tracker", str(about["tracker"])),
-        ("robot", str(behaviour)),
+        ("robot", str(behaviour) if played else ""),
         ("faults", _faults(played.get("faults", []))),
         ("renderer", str(about["renderer"])),
         ("length", f"{column.run.frames} frames, {about['rate_hz']} a second" if column.is_single else ""),
@@ -324,7 +268,9 @@ def _settings(column: Column) -> list[tuple[str, str]]:
         ("folder", str(column.run.folder if column.is_single else column.run.folder.parent)),
         (
             "again",
-            f"peopleboy run {column.run.folder}/scenario.yaml --tracker {about['tracker']} --out NEW",
+            f"peopleboy run {column.run.folder}/scenario.yaml --tracker {about['tracker']} --out NEW"
+            if is_usable
+            else "",
         ),
     ]
     return [(name, value) for name, value in rows if value]

@@ -11,9 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from bad_input import BadInput
 from scenarios.labels import Labels
-from scenarios.load import load_scenario
 from scenarios.plan_place import draw_floor, draw_things, draw_walls
 from scenarios.plan_sheet import PAPER, lay_out, sections
 from scenarios.report.headline import Outcome
@@ -37,9 +35,8 @@ _MARK_EVERY_S = 5.0
 
 def draw_trajectories(outcome: Outcome) -> str | None:
     """Draw the plan as an SVG data address; None if the place cannot be built again."""
-    try:
-        scenario = load_scenario(outcome.run.folder / "scenario.yaml")
-    except BadInput:
+    scenario = outcome.run.scenario
+    if scenario is None:
         return None
     figure = Figure(facecolor=PAPER)
     FigureCanvasSVG(figure)

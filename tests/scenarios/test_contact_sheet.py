@@ -99,6 +99,17 @@ def test_moments_say_what_happened() -> None:
     assert "track 1: detected" in words[5]
 
 
+def test_how_much_is_hidden_is_said_of_the_very_frame_that_is_shown() -> None:
+    moments = KeyMoments()
+    run = made.make_run()
+    detected, _ = run[4][1]
+    run[4], run[27] = (run[4][0], []), (run[27][0], [detected])  # two frames before the most is hidden
+    for tick, events in run:
+        moments.add(tick, events)
+    words = {moment.frame: "; ".join(moment.words) for moment in moments.choose(MOMENTS)}
+    assert words[28] == "track 1: detected; ben: 77% hidden by anna"
+
+
 def test_what_nothing_happens_in_is_filled_evenly() -> None:
     moments = KeyMoments()
     for frame in range(61, 661):

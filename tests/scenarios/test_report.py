@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,16 +16,19 @@ from hypothesis import strategies as st
 
 from bad_input import BadInput
 from scenarios.load import load_scenario
-from scenarios.report.columns import are_same_scene, read_columns
+from scenarios.report.charts import rgb, track_edges
+from scenarios.report.columns import are_same_scene, lacking, read_columns
 from scenarios.report.errors import DISTANCES_M, curve, distance, found_share
 from scenarios.report.figures import plain_lines
 from scenarios.report.finished_run import read_finished
 from scenarios.report.headline import Outcome, headline, headline_of_many, look_into
+from scenarios.report.identities import count_fleeting, find_losses
 from scenarios.report.moments import worst_moments
 from scenarios.report.pictures import Origin, show_frames
 from scenarios.report.spans import between, settle, spans
 from scenarios.report.story import Hold, Sight
 from scenarios.run import RunOptions, run
+from tracker.evaluation.sequence import Tracks
 
 CODES = st.lists(st.integers(0, 3), max_size=60).map(lambda values: np.array(values, np.int64))
 
@@ -111,6 +116,68 @@ def test_a_new_number_after_a_long_absence_is_no_lost_identity(tmp_path: Path) -
     assert not loss.is_bad
 
 
+def test_losses_that_are_listed_and_left_out_are_those_of_the_log(tmp_path: Path) -> None:
+    found = outcome(toy.write_run(tmp_path / "run", toy.flickering))
+    assert [(loss.track, loss.frame) for loss in found.losses] == [(2, 50)]
+    assert (found.fleeting.breaks, found.fleeting.ends) == (1, 1)
+    assert sum(line.kind == "lost" for line in found.run.events) == 3
+    assert found.fleeting.words == (
+        "Losses of less than 0.3 s (1 of them) are left out: the same number was shown again. "
+        "Ends of tracks that had been shown for less than 0.3 s (1 of them) are left out. "
+        "All of them are in events.jsonl."
+    )
+
+
+@given(steps=st.lists(st.tuples(st.integers(1, 8), st.booleans()), min_size=1, max_size=25))
+def test_no_loss_of_the_log_is_counted_twice_or_not_at_all(
+    folders: dict[str, Path], steps: list[tuple[int, bool]]
+) -> None:
+    steady = read_finished(folders["steady"])
+    shown = np.concatenate([np.full(length, is_shown) for length, is_shown in steps])[: steady.frames]
+    frames = np.flatnonzero(shown) + 1
+    at = np.flatnonzero((steady.tracks.id == 2) & np.isin(steady.tracks.frame, frames))
+    columns = {name: getattr(steady.tracks, name)[at] for name in ("frame", "id", "box", "confidence")}
+    run = replace(steady, tracks=Tracks(**columns))
+    lost = sum(before and frame not in frames for frame, before in enumerate(np.isin(range(91), frames), 1))
+    fleeting, listed = count_fleeting(run), find_losses(run, [])
+    ends_with_run = int(run.frames in frames)
+    assert len(listed) + fleeting.breaks + fleeting.ends == lost - ends_with_run
+
+
+def test_a_loss_gives_the_tracker_s_own_reason_and_names_on_whom_the_other_track_lay(tmp_path: Path) -> None:
+    path = toy.write_run(tmp_path / "run", toy.until_75, toy.hidden_from_75) / "events.jsonl"
+    assert outcome(path.parent).losses[0].believed == "the contour is gone, confidence 0.90"
+    hidden = "hidden by track 1 for too long to know where"
+    path.write_text(path.read_text().replace("the contour is gone, confidence 0.90", hidden))
+    (loss,) = outcome(path.parent).losses
+    assert loss.believed == "hidden by number 1 (on Anna) for too long to know where"
+
+
+def test_who_is_hidden_until_the_end_is_neither_tracked_to_the_end_nor_lost(tmp_path: Path) -> None:
+    found = outcome(toy.write_run(tmp_path / "run", toy.until_75, toy.hidden_from_75))
+    assert headline(found) == (
+        "2 people, all but Ben tracked to the end (Ben hidden until the end); no identity lost."
+    )
+    assert "of 2 people 1 tracked to the end, 1 hidden until the end" in headline_of_many([found])
+    (loss,) = found.losses
+    assert (loss.afterwards, loss.is_bad) == ("Ben was hidden until the end", False)
+
+
+def test_who_is_lost_in_the_last_second_is_not_said_to_be_lost_for_good(tmp_path: Path) -> None:
+    found = outcome(toy.write_run(tmp_path / "run", lambda frame: toy.until_75(frame - 6)))
+    assert headline(found) == "2 people, both tracked to the end; no identity lost."
+    (loss,) = found.losses
+    assert loss.afterwards.replace("\u00a0", " ") == "the run ended 0.7 s later"
+    early = outcome(toy.write_run(tmp_path / "early", toy.until_75))
+    assert headline(early) == "2 people, all but Ben tracked to the end; no identity lost."
+    assert early.losses[0].afterwards == "Ben was not found again"
+
+
+def test_numbers_of_one_colour_have_different_edges() -> None:
+    assert rgb(1) == rgb(7)
+    assert len({(rgb(number), track_edges(number)) for number in range(1, 55)}) == 54
+
+
 def test_a_story_tells_what_could_be_seen_and_what_the_tracker_had(folders: dict[str, Path]) -> None:
     ben = outcome(folders["renumbered"]).stories[1]
     assert [(Sight(s.value), s.start, s.end) for s in spans(ben.sight)] == [
@@ -152,8 +219,20 @@ def test_columns_are_named_by_what_tells_them_apart(folders: dict[str, Path]) ->
     by_scene = read_columns([folders["steady"], folders["renumbered"]])
     assert [column.label for column in by_scene] == ["toy, seed 0", "toy, seed 1"]
     assert not are_same_scene(by_scene)
-    same = read_columns([folders["steady"], folders["steady"]])
-    assert len({column.label for column in same}) == 2
+
+
+def test_runs_of_one_scene_and_tracker_are_told_apart_by_their_folders(
+    folders: dict[str, Path], tmp_path: Path
+) -> None:
+    again = shutil.copytree(folders["steady"], tmp_path / "again")
+    assert [column.label for column in read_columns([folders["steady"], again])] == ["steady", "again"]
+
+
+def test_a_run_is_not_held_against_itself(folders: dict[str, Path]) -> None:
+    steady = folders["steady"]
+    for paths in ([steady, steady], [steady.parent, steady / ".." / "steady"]):
+        with pytest.raises(BadInput, match="is given twice"):
+            read_columns(paths)
 
 
 def test_a_folder_of_runs_is_one_column_with_mean_and_spread(folders: dict[str, Path]) -> None:
@@ -164,9 +243,9 @@ def test_a_folder_of_runs_is_one_column_with_mean_and_spread(folders: dict[str, 
     assert "±" in found.cells[0]
 
 
-def test_more_than_four_runs_are_taken_together_by_tracker(folders: dict[str, Path]) -> None:
-    runs = [folders[name] for name in ("steady", "swapped", "renumbered", "steady", "swapped")]
-    columns = read_columns(runs)
+def test_more_than_four_runs_are_taken_together_by_tracker(folders: dict[str, Path], tmp_path: Path) -> None:
+    again = [shutil.copytree(folders[name], tmp_path / name) for name in ("steady", "swapped")]
+    columns = read_columns([*folders.values(), *again])
     assert {column.label: len(column.outcomes) for column in columns} == {"peopleboy": 3, "thesis": 2}
 
 
@@ -197,7 +276,6 @@ def test_images_rendered_again_are_those_that_the_run_wrote(tmp_path: Path) -> N
         ("events.jsonl", '{"kind": 3}\n'),
         ("truth.parquet", "no table"),
         ("truth/gt.txt", "1,2\n"),
-        ("scenario.yaml", "- 1\n"),
     ],
 )
 def test_a_spoilt_run_is_refused_with_the_file_s_name(tmp_path: Path, file: str, content: str) -> None:
@@ -205,6 +283,23 @@ def test_a_spoilt_run_is_refused_with_the_file_s_name(tmp_path: Path, file: str,
     (folder / file).write_text(content)
     with pytest.raises(BadInput, match=file.replace(".", r"\.")):
         read_finished(folder)
+
+
+@pytest.mark.parametrize("content", [None, "- 1\n", "{", "name: toy\n"])
+def test_a_run_whose_scenario_is_missing_or_spoilt_is_reported_on_and_says_so(
+    tmp_path: Path, content: str | None
+) -> None:
+    path = toy.write_run(tmp_path / "run", scenario=load_scenario("crossing_2").resolved(0)) / "scenario.yaml"
+    (whole,) = read_columns([path.parent])
+    assert lacking([whole]) == []
+    path.unlink()
+    if content is not None:
+        path.write_text(content)
+    (column,) = read_columns([path.parent])
+    (line,) = lacking([column])
+    assert line.startswith(f"{path}: ")
+    assert line.endswith("no plan is drawn and no image rendered again; run the scenario again for them")
+    assert column.headline == whole.headline
 
 
 def test_a_table_of_another_version_is_refused_with_the_column_that_it_lacks(tmp_path: Path) -> None:

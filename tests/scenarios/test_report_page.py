@@ -17,7 +17,14 @@ from scenarios.report.page import write_report
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 VOID = {"meta", "img", "br", "link", "hr", "input"}
 MOST_BYTES = 3_000_000
-_MEASURE = "const d=document.documentElement;parent.postMessage(d.scrollWidth+'/'+innerWidth,'*')"
+_MEASURE = """
+const d=document.documentElement;
+const clipped=[...document.querySelectorAll('.lane svg svg text')].filter(text=>{
+  const bar=text.closest('svg').querySelector('rect'), isShown=text.getClientRects().length;
+  return bar && isShown && text.getBoundingClientRect().right>bar.getBoundingClientRect().right
+});
+parent.postMessage(d.scrollWidth+'/'+innerWidth+'/'+clipped.length,'*')
+"""
 _COLLECT = "onmessage=e=>{const b=document.createElement('b');b.textContent=e.data;document.body.append(b)}"
 
 
@@ -37,6 +44,9 @@ def pages(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Pat
     write_report([runs / "one"], out / "one.html")
     write_report([runs / "one", runs / "other"], out / "both.html")
     write_report([runs], out / "many.html")
+    toy.write_run(out / "blinking", toy.flickering, toy.blinking)
+    write_report([out / "blinking"], out / "blinking.html")
+    shutil.rmtree(out / "blinking")
     return {path.stem: path for path in out.iterdir()}
 
 
@@ -151,6 +161,68 @@ def test_a_page_that_cannot_be_written_is_refused_and_nothing_is_left(runs: Path
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("out", "why"),
+    [
+        ("README.md", "is no report and will not be replaced; give --out a file that ends in .html"),
+        ("tracks.txt", "is no report and will not be replaced; give --out a file that ends in .html"),
+        ("other.html", "is no report and will not be replaced; give another --out"),
+        ("README.md/x", "a report is a page; give --out a file that ends in .html"),
+        ("README.md/x.html", "cannot write the page: Not a directory; give another --out"),
+        ("new.txt", "a report is a page; give --out a file that ends in .html"),
+        (f"{'long' * 99}.html", "cannot write the page: File name too long; give another --out"),
+    ],
+)
+def test_a_report_replaces_nothing_but_a_report(
+    runs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], out: str, why: str
+) -> None:
+    for name in ("README.md", "tracks.txt", "other.html"):
+        (tmp_path / name).write_text("<title>mine</title>")
+    with pytest.raises(SystemExit) as ended:
+        main(["report", str(runs / "other"), "--out", str(tmp_path / out)])
+    assert ended.value.code == 2
+    assert capsys.readouterr().err == f"peopleboy: {tmp_path / out}: {why}\n"
+    assert {path.read_text() for path in tmp_path.iterdir()} == {"<title>mine</title>"}
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_an_earlier_report_is_replaced(pages: dict[str, Path], runs: Path, tmp_path: Path) -> None:
+    page = tmp_path / "page.HTM"
+    shutil.copy(pages["both"], page)
+    write_report([runs / "one"], page)
+    assert page.read_bytes() == pages["one"].read_bytes()
+
+
+def test_what_a_page_lacks_is_said_on_it_and_on_standard_error(
+    runs: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["report", str(runs / "other")])
+    assert ended.value.code == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    said = line.removeprefix("peopleboy: ")
+    assert "scenario.yaml: " in said
+    text = " ".join(structure(runs / "other" / "report.html").text.split())
+    assert said in text
+    assert "robot stand" not in text
+    assert "peopleboy run" not in text  # which could not be done again with it
+
+
+def test_short_losses_that_are_left_out_are_counted_also_when_no_other_is_there(
+    pages: dict[str, Path], tmp_path: Path
+) -> None:
+    text = " ".join(structure(pages["blinking"]).text.split())
+    assert "Losses of less than 0.3 s (1 of them) are left out" in text
+    assert "the contour is gone, confidence 0.90" in text
+    write_report(
+        [toy.write_run(tmp_path / "run", lambda frame: toy.flickering(min(frame, 40)))],
+        tmp_path / "page.html",
+    )
+    text = " ".join(structure(tmp_path / "page.html").text.split())
+    assert "No track was lost for 0.3 s or more." in text
+    assert "Losses of less than 0.3 s (1 of them) are left out" in text
+
+
 def test_the_command_writes_the_page_into_the_run(runs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["report", str(runs / "other")])
@@ -170,9 +242,10 @@ def test_nothing_sticks_out_of_the_page_on_a_phone_or_a_desk(pages: dict[str, Pa
     (tmp_path / "frames.html").write_text(f"<script>{_COLLECT}</script>{''.join(frames)}", encoding="utf-8")
     address = (tmp_path / "frames.html").as_uri()
     dom = browse(tmp_path, "--virtual-time-budget=5000", "--dump-dom", address)
-    found = re.findall(r"<b>(\d+)/(\d+)</b>", dom)
-    assert sorted(int(inner) for _, inner in found) == [390] * len(pages) + [1200] * len(pages)
-    assert all(int(scrolled) <= int(inner) for scrolled, inner in found)
+    found = re.findall(r"<b>(\d+)/(\d+)/(\d+)</b>", dom)
+    assert sorted(int(inner) for _, inner, _ in found) == [390] * len(pages) + [1200] * len(pages)
+    assert all(int(scrolled) <= int(inner) for scrolled, inner, _ in found)
+    assert all(clipped == "0" for _, _, clipped in found)
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no chromium is installed")

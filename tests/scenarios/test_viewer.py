@@ -17,7 +17,7 @@ import synthetic_ticks as made
 from bad_input import BadInput
 from scenarios.cli import main
 from scenarios.recording.recorder import Recorder
-from scenarios.recording.viewer import NO_SCREEN, live_viewer, open_viewer, serve
+from scenarios.recording.viewer import NO_SCREEN, is_whole, live_viewer, open_viewer, recording_in, serve
 
 LISTENING = "0A"  # in Linux's table of sockets
 ON_LINUX = pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="reads Linux's table of sockets")
@@ -110,6 +110,52 @@ def test_there_is_nothing_to_show_live_without_the_recording_of_one_run(
         main(["run", "--live", *arguments])
     assert stop.value.code == 2
     assert capsys.readouterr().err.startswith("peopleboy: --live: shows the recording of one run")
+
+
+@pytest.mark.parametrize(
+    ("made_of", "why"),
+    [
+        ("nothing", "there is no such folder; give the folder of a finished run"),
+        ("a file", "there is no such folder; give the folder of a finished run"),
+        ("an empty folder", "holds no run and no recording; give the folder of a run"),
+        ("runs", "holds 2 runs; give one of them, such as"),
+        ("a run", "there is no recording; run the scenario without --no-rrd"),
+        ("text", "is no rerun recording; run the scenario again"),
+        ("an empty file", "is no rerun recording; run the scenario again"),
+    ],
+)
+def test_what_holds_no_recording_is_refused_with_what_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], made_of: str, why: str
+) -> None:
+    folder = tmp_path / "given"
+    if made_of == "a file":
+        folder.write_text("no folder")
+    elif made_of != "nothing":
+        folder.mkdir()
+    for inner in {"runs": ("a", "b"), "a run": (".",)}.get(made_of, ()):
+        (folder / inner).mkdir(exist_ok=True)
+        (folder / inner / "run.json").touch()
+    for content in {"text": ["# Read me\n"], "an empty file": [""]}.get(made_of, []):
+        (folder / "recording.rrd").write_text(content)
+    with pytest.raises(SystemExit) as stop:
+        main(["view", str(folder), "--web"])
+    assert stop.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert why in line
+
+
+def test_a_recording_that_was_cut_off_is_told_from_a_whole_one_and_shown(
+    run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert is_whole(recording_in(run))
+    part = tmp_path / "recording.rrd"
+    part.write_bytes((run / "recording.rrd").read_bytes()[:-1000])
+    assert not is_whole(part)
+    with pytest.raises(SystemExit):
+        main(["view", str(tmp_path)])
+    cut_off, screen = capsys.readouterr().err.splitlines()
+    assert cut_off == f"peopleboy: {part}: was cut off; what it holds is shown"
+    assert screen == f"peopleboy: {NO_SCREEN}"
 
 
 def test_a_missing_recording_is_a_user_s_mistake(tmp_path: Path) -> None:

@@ -56,6 +56,27 @@ def away_and_back(frame: int) -> Boxes:
     return {1: ANNA} | ({2: BEN} if frame < 35 else {5: BEN} if frame > 70 else {})
 
 
+def flickering(frame: int) -> Boxes:
+    """Ben's number is away from 30 to 31 and from 50 to 59; number 9 lies on nobody at 70 and 71."""
+    is_away = 30 <= frame < 32 or 50 <= frame < 60
+    return {1: ANNA} | ({} if is_away else {2: BEN}) | ({9: NOWHERE} if frame in (70, 71) else {})
+
+
+def until_75(frame: int) -> Boxes:
+    """Ben has number 2 up to frame 74."""
+    return {1: ANNA, 2: BEN} if frame < 75 else {1: ANNA}
+
+
+def hidden_from_75(frame: int) -> float:
+    """Ben is wholly hidden from then on, but for the last two frames."""
+    return 0.0 if frame < 75 else 1.0 if frame < FRAMES - 1 else 0.5
+
+
+def blinking(frame: int) -> float:
+    """Ben is hidden every other half a second."""
+    return 0.5 if frame // 8 % 2 else 0.0
+
+
 def behind_from_35_to_70(frame: int) -> float:
     """Ben is behind the robot in between."""
     return 2.0 if 35 <= frame <= 70 else 0.0
