@@ -14,6 +14,7 @@ from PIL.PngImagePlugin import PngInfo
 from bad_input import BadInput
 from scenarios.key_moments import KeyMoments, Moment
 from scenarios.loop import Tick
+from scenarios.out_folder import writing_to
 from scenarios.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
 from scenarios.palette import Rgb
 from scenarios.run_events import LogLine
@@ -71,10 +72,8 @@ class ContactSheet:
         Raises:
             BadInput: it cannot be written there.
         """
-        try:
+        with writing_to(path):
             self.draw().save(path, compress_level=3, pnginfo=self._note())
-        except OSError as error:
-            raise BadInput(f"{path}: cannot write the contact sheet: {error}") from error
 
     def draw(self) -> Image.Image:
         """Draw the sheet, `WIDTH_PX` wide."""

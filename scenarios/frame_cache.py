@@ -21,6 +21,7 @@ import sim
 from bad_input import BadInput
 from scenarios.folder import gt_lines, versions
 from scenarios.loop import closed_loop, make_frame
+from scenarios.out_folder import writing_to
 from scenarios.scenario import Scenario
 from scenarios.tables import TRUTH, truth_rows
 from sim.world import World
@@ -149,7 +150,8 @@ def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int
     """Render a film beside its place, and put it there when it is whole."""
     part = home.parent / f".{home.name}.{os.getpid()}"
     shutil.rmtree(part, ignore_errors=True)
-    part.mkdir(parents=True)
+    with writing_to(home.parent, "--films"):
+        part.mkdir(parents=True)
     try:
         about = _render(scenario, seed, part, report)
         (part / "about.json").write_text(json.dumps(about) + "\n", encoding="utf-8")

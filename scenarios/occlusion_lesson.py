@@ -10,6 +10,7 @@ from rich.console import Console
 
 from bad_input import BadInput
 from scenarios.occlusion_pairs import PairExample, collect
+from scenarios.out_folder import writing_to
 from scenarios.pair_files import read_pairs, write_pairs
 from scenarios.show_training import print_best, print_trials
 from scenarios.train_occlusion import TRAINING, UNSEEN, check_examples, learn, run_trials
@@ -38,10 +39,12 @@ def give_lesson(out: Path, tracker: str, seeds: int, *, triplets: bool, again: b
         The table's path.
 
     Raises:
-        BadInput: a tracker that has nothing to learn, a file that cannot be read, or too few examples.
+        BadInput: a tracker that has nothing to learn, a path that cannot be used, or too few examples.
     """
     if tracker not in PUPILS:
         raise BadInput(f"--tracker {tracker}: must be one that orders people: {', '.join(PUPILS)}")
+    with writing_to(out):
+        out.mkdir(parents=True, exist_ok=True)
     training = _examples(out / "training.csv", TRAINING, tracker, seeds, again=again)
     unseen = _examples(out / "unseen.csv", UNSEEN, tracker, seeds, again=again)
     check_examples(training, "training")

@@ -40,8 +40,12 @@ def check_named(path: Path) -> None:
 
 
 @contextmanager
-def writing_to(path: Path) -> Iterator[None]:
+def writing_to(path: Path, option: str = "--out") -> Iterator[None]:
     """Turn what keeps the block from writing into one line about the path that the user gave.
+
+    Args:
+        path: given by the user.
+        option: by which it was given.
 
     Raises:
         BadInput: it cannot be written to.
@@ -49,4 +53,6 @@ def writing_to(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise BadInput(f"{path}: cannot write here: {error.strerror or error}; give another --out") from error
+        raise BadInput(
+            f"{path}: cannot write here: {error.strerror or error}; give another {option}"
+        ) from error

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from bad_input import BadInput
 from scenarios.labels import Labels
+from scenarios.out_folder import writing_to
 from scenarios.plan_legend import draw_legend
 from scenarios.plan_people import draw_person
 from scenarios.plan_place import SPAN_C, WARMTH, draw_floor, draw_things, draw_walls, label_things
@@ -49,10 +50,13 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
     _caption(figure, scenario, seed)
     _temperatures(figure, found)
     draw_legend(figure, _SIDE_IN)
-    try:
-        figure.savefig(path, dpi=_DPI)
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: cannot write the plan: {error}; give a path that ends in .png") from error
+    with writing_to(path):
+        try:
+            figure.savefig(path, dpi=_DPI)
+        except ValueError as error:
+            raise BadInput(
+                f"{path}: cannot write the plan: {error}; give a path that ends in .png"
+            ) from error
 
 
 def _draw_section(axes: Axes, scenario: Scenario, config: WorldConfig) -> None:

@@ -130,7 +130,7 @@ def _check_apart(options: TrackOptions) -> None:
     check_named(options.out)
     for path in (options.footage, options.colour, options.truth):
         if path is not None and path.resolve().is_relative_to(options.out.resolve()):
-            raise BadInput(f"{options.out}: holds {path} and will not be replaced; give another --out")
+            raise BadInput(f"{options.out}: would replace {path}, which is read; give another --out")
 
 
 def _truth_of(options: TrackOptions, footage: Footage) -> GivenTruth | None:

@@ -12,8 +12,8 @@ from typing import Any
 
 import sim
 import tracker
-from bad_input import BadInput
 from scenarios.folder import versions
+from scenarios.out_folder import writing_to
 
 Result = dict[str, Any]
 
@@ -29,11 +29,9 @@ class Store(Mapping[str, Result]):
         self.path = path
         self._code = code_digest()
         self._results: dict[str, Result] = {}
-        try:
+        with writing_to(path.parent):
             path.parent.mkdir(parents=True, exist_ok=True)
             text = path.read_text(encoding="utf-8") if path.is_file() else ""
-        except OSError as error:
-            raise BadInput(f"{path}: cannot be used for results: {error.strerror}") from error
         for line in text.splitlines():
             self._take(line)
         self._is_torn = bool(text) and not text.endswith("\n")

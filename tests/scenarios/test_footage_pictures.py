@@ -120,5 +120,5 @@ def test_a_run_that_holds_what_is_to_be_read_is_not_replaced(tmp_path, what):
     (clip / "groundtruth.txt").write_text("39,23,22,74\n" * 3)
     more = {"--colour": (apart, "--colour", clip), "--truth": (apart, "--truth", clip / "groundtruth.txt")}
     told = refusal(*more.get(what, (clip,)), "--out", run, "--overwrite")
-    assert told.startswith(f"{run}: holds {clip}")
+    assert told.startswith(f"{run}: would replace {clip}")
     assert len(list(clip.iterdir())) == 4

@@ -10,7 +10,12 @@ from footage_files import write_folder
 
 from bad_input import BadInput
 from scenarios.folder import claim_folder
+from scenarios.frame_cache import film
+from scenarios.load import load_scenario
+from scenarios.occlusion_lesson import give_lesson
+from scenarios.plan import draw_plan
 from scenarios.rendered_set.make import render_set
+from scenarios.reproduce.store import Store
 from scenarios.whole_folder import whole_folder
 
 WAIT = """
@@ -89,23 +94,32 @@ def write_run(path):
         pass
 
 
-WRITERS = {
+FOLDERS = {
     "export or track": write_run,
     "run": lambda path: claim_folder(path, overwrite=False),
     "render": lambda path: render_set(["pass_behind"], 1, path, frames=False, tracker="truth", processes=1),
 }
+OTHERS = {
+    "show": lambda path: draw_plan(load_scenario("pass_behind"), 0, path),
+    "reproduce": lambda path: Store(path / "units.jsonl"),
+    "train-occlusion": lambda path: give_lesson(
+        path, "peopleboy", 1, triplets=False, again=False, ship=False
+    ),
+    "datasets": lambda path: film(load_scenario("pass_behind"), 0, path),
+}
 
 
-@pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
-def test_a_place_that_cannot_be_written_is_named_as_it_was_given(tmp_path, write):
-    (tmp_path / "README.md").touch()
+@pytest.mark.parametrize("command", FOLDERS | OTHERS)
+def test_a_place_that_cannot_be_written_is_named_as_it_was_given(tmp_path, command):
+    place = tmp_path / "README.md" / "x.png"
+    place.parent.touch()
     with pytest.raises(BadInput) as caught:
-        write(tmp_path / "README.md" / "x")
-    told = f"{tmp_path / 'README.md' / 'x'}: cannot write here: Not a directory; give another --out"
-    assert str(caught.value) == told
+        (FOLDERS | OTHERS)[command](place)
+    option = "--films" if command == "datasets" else "--out"
+    assert str(caught.value) == f"{place}: cannot write here: Not a directory; give another {option}"
 
 
-@pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
+@pytest.mark.parametrize("write", FOLDERS.values(), ids=FOLDERS)
 def test_an_out_without_a_name_is_refused(tmp_path, monkeypatch, write):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(BadInput, match="--out must name a folder"):
