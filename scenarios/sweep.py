@@ -42,19 +42,27 @@ def run_seeds(
         RunOptions(seed=seed, out=out / f"{name}-{seed}", tracker=tracker, record=False, overwrite=overwrite)
         for seed in seeds
     ]
-    run_jobs([Job(scenario, option) for option in options], jobs, name)
+    run_jobs(unfinished([Job(scenario, option) for option in options]), jobs, name)
     return [option.out for option in options]
 
 
-def run_jobs(jobs: Sequence[Job], processes: int, title: str) -> None:
-    """Run all of them, with a bar on standard error; complete ones stay, so that a killed call goes on.
+def unfinished(jobs: Sequence[Job]) -> list[Job]:
+    """Leave out the runs that are there already, so that a killed call goes on.
 
     Raises:
-        BadInput: as for a single run, or a complete run in its place is another one, or a process died.
+        BadInput: a complete run in the place of one is another one.
     """
-    waiting = [job for job in jobs if not is_finished(load_scenario(job.scenario), job.options)]
+    return [job for job in jobs if not is_finished(load_scenario(job.scenario), job.options)]
+
+
+def run_jobs(jobs: Sequence[Job], processes: int, title: str) -> None:
+    """Run all of them, with a bar on standard error.
+
+    Raises:
+        BadInput: as for a single run, or a process died.
+    """
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        done = [pool.submit(_run_one, job) for job in waiting]
+        done = [pool.submit(_run_one, job) for job in jobs]
         try:
             for future in track(done, description=title, console=Console(stderr=True)):
                 future.result()

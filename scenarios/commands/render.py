@@ -17,7 +17,11 @@ FAILED = 1
 @click.argument("scenarios", metavar="SCENARIO...", nargs=-1, required=True)
 @click.option("--frames", is_flag=True, help="Write every image too, as for `run`; else truth alone.")
 @click.option(
-    "--seeds", type=click.IntRange(min=1), default=100, show_default=True, help="How many, from 0 on."
+    "--seeds",
+    type=click.IntRange(min=1),
+    default=100,
+    show_default=True,
+    help="How many, from 0 on; from 7 on every split has runs.",
 )
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder of the set.  [default: sets/SCENARIO-SCENARIO...]"

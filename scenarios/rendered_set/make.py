@@ -17,7 +17,7 @@ from scenarios.rendered_set.datasheet import write_datasheet
 from scenarios.rendered_set.splits import SPLITS, lacking_splits, split_file, split_lines, split_of
 from scenarios.rendered_set.statistics import Statistics, measure
 from scenarios.run import RunOptions
-from scenarios.sweep import Job, run_jobs
+from scenarios.sweep import Job, run_jobs, unfinished
 
 ABOUT = "dataset.json"
 
@@ -81,10 +81,12 @@ def render_set(
         for scenario, name in zip(scenarios, names, strict=True)
         for seed in range(seeds)
     ]
+    waiting = unfinished(jobs)
+    _reopen(folder)
     runs = tuple(job.options.out for job in jobs)
     numbers = [job.options.seed for job in jobs]
     _write_splits(folder, [run.name for run in runs], numbers)
-    run_jobs(jobs, processes, folder.name)
+    run_jobs(waiting, processes, folder.name)
     done = RenderedSet(
         folder=folder,
         runs=runs,
@@ -101,7 +103,7 @@ def render_set(
 
 
 def _claim(folder: Path) -> None:
-    """Make the folder, and take back what says that the set is finished.
+    """Make the folder.
 
     Raises:
         BadInput: something else lies there.
@@ -111,6 +113,10 @@ def _claim(folder: Path) -> None:
         raise BadInput(f"{folder}: holds something that is no rendered set; give another --out")
     with writing_to(folder):
         (folder / "splits").mkdir(parents=True, exist_ok=True)
+
+
+def _reopen(folder: Path) -> None:
+    """Take back what says that the set is finished."""
     for name in ("README.md", ABOUT):
         (folder / name).unlink(missing_ok=True)
 

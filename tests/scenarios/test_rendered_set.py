@@ -79,6 +79,14 @@ def test_a_set_is_sound_and_its_numbers_are_those_of_its_files(rendered: Path) -
     )
 
 
+def test_a_call_that_is_refused_leaves_a_finished_set_as_it_was(rendered: Path) -> None:
+    folder = rendered / "set"
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    order = (rendered / "tiny.yaml", "--seeds", 9, "--jobs", 1, "--out", folder)
+    assert render(*order, "--tracker", "thesis") == 2
+    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
+
+
 def test_a_set_grows_without_rendering_again_and_broken_images_are_found(
     rendered: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
