@@ -191,6 +191,7 @@ class LooksConfig:
     grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)
     brightness: float = 80.0  # mean of the colour image [grey] to which all are scaled
     darkest: float = 12.0  # mean below which colours are noise
+    needs_colour: bool = False  # whether nobody is recognised by the thermal pattern alone
 
     def __post_init__(self) -> None:
         for spread in (*self.colour_spread, *self.grey_spread, self.brightness):
@@ -222,7 +223,8 @@ class OcclusionConfig:
     """
 
     is_handled: bool = False  # whether it matters who is in front
-    order: str = "foot"  # how that is told: "foot" by whose feet are lower, "looks" by looks as well
+    # How that is told: "foot" by whose feet are lower, "looks" by looks as well, "contour" by contours too.
+    order: str = "foot"
     head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
     kept_frames: int = 8  # frames for which a hidden person's samples are kept
     forget_s: float = 10.0  # time after which a hidden person is forgotten
@@ -235,6 +237,8 @@ class OcclusionConfig:
     hidden_stiffness: float = 0.1  # the same for all other directions and the size
     # Spread of the logarithm of an overlapped person's height around that when seen whole; 0: as it may be.
     size_spread: float = 0.0
+    seen_size_spread: float = 0.0  # the same for a person who is seen whole
+    size_s: float = 0.5  # time constant of that height
     hidden_w: float = 0.0  # semi-width of a hidden person, who may turn, in semi-heights; 0: as last seen
     colour_gate: float = 40.0  # largest squared distance of colours of who comes back to sight
     size_gate: float = 0.25  # largest change of the logarithm of its height
@@ -249,11 +253,12 @@ class OcclusionConfig:
     sure_spread: float = 0.35
 
     def __post_init__(self) -> None:
-        refuse_unless(self.order in ("foot", "looks"), self, "order", "foot or looks")
+        refuse_unless(self.order in ("foot", "looks", "contour"), self, "order", "foot, looks or contour")
         check_share(self, "head_covered", "hidden_memory", "hidden_stiffness")
-        check_not_negative(self, "kept_frames", "forget_s", "hidden_noise", "size_spread", "hidden_w")
+        check_not_negative(self, "kept_frames", "forget_s", "hidden_noise", "hidden_w")
+        check_not_negative(self, "size_spread", "seen_size_spread")
         check_not_negative(self, "shown_s", "shown_leaving_s", "shown_behind_s", "sure_spread")
-        check_positive(self, "growth")
+        check_positive(self, "growth", "size_s")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,8 +13,9 @@ from tracker.cover import covered_by
 from tracker.filter import View, advance, weigh
 from tracker.interaction import overlap_shares, person_factor, regions_of
 from tracker.judge import judge
+from tracker.measure import fitness
 from tracker.order import Figure, Order, front_to_back
-from tracker.particles import Floats, H
+from tracker.particles import STATE_SIZE, Floats, H
 from tracker.person import Person, moved_on
 from tracker.sight import Scene, appearance, describe
 
@@ -42,12 +43,16 @@ def figures_of(persons: Sequence[Person], view: View, config: TrackerConfig) -> 
     states = [
         moved_on(person.shown if person.is_hidden else person.belief.estimate, view) for person in persons
     ]
-    unlikeness = [0.0] * len(persons)
-    if config.occlusion.order == "looks" and view.looks is not None and len(persons) > 1:
-        features = view.looks.describe(np.array(states, dtype=np.float32))
+    unlikeness, fits = [0.0] * len(persons), [0.0] * len(persons)
+    rows = np.array(states, dtype=np.float32).reshape(-1, STATE_SIZE)
+    if config.occlusion.order in ("looks", "contour") and view.looks is not None and len(persons) > 1:
+        features = view.looks.describe(rows)
         unlikeness = [_unlikeness(*each) for each in zip(persons, features, strict=True)]
+    if config.occlusion.order == "contour" and len(persons) > 1:
+        differences = view.model.differences(view.image, rows)
+        fits = fitness(differences, view.model.weights, config.likelihood).tolist()
     regions = regions_of(states, config)
-    return [Figure(*each) for each in zip(persons, states, regions, unlikeness, strict=True)]
+    return [Figure(*each) for each in zip(persons, states, regions, unlikeness, fits, strict=True)]
 
 
 def _unlikeness(person: Person, features: Floats) -> float:
@@ -136,15 +141,15 @@ def _distance_kept(person: Person, state: Floats, scene: Scene, config: TrackerC
     if person.is_hidden and not config.occlusion.keeps_velocity:
         return None
     factor = person_factor(overlap_shares(state, scene.others, config), scene.strength)
-    if config.occlusion.size_spread > 0 and (scene.front or person.is_hidden):
-        factor *= _size_kept(person, state, config)
-    return factor
+    is_overlapped = bool(scene.front) or person.is_hidden
+    spread = config.occlusion.size_spread if is_overlapped else config.occlusion.seen_size_spread
+    return factor if spread == 0 else factor * _size_kept(person, state, spread)
 
 
-def _size_kept(person: Person, state: Floats, config: TrackerConfig) -> Floats:
-    """Penalise samples (N,) that have not the height that the person had when last seen whole."""
+def _size_kept(person: Person, state: Floats, spread: float) -> Floats:
+    """Penalise samples (N,) that have not the height that the person had of late when seen whole."""
     growth = np.log(np.maximum(state[:, H], np.float32(1)) / np.float32(max(person.size[1], 1.0)))
-    factor: Floats = np.exp(np.float32(-0.5 / config.occlusion.size_spread**2) * growth * growth)
+    factor: Floats = np.exp(np.float32(-0.5 / spread**2) * growth * growth)
     return factor
 
 

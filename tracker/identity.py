@@ -11,6 +11,7 @@ import numpy as np
 from tracker.appearance.colour_model import squared_distances
 from tracker.config import TrackerConfig
 from tracker.filter import View
+from tracker.looks import knows_colour
 from tracker.particles import VW, VX, H, X, Y
 from tracker.person import Person, moved_on
 
@@ -49,7 +50,7 @@ def recognised(found: Person, memories: Sequence[Person], view: View, config: Tr
     if not memories:
         return None
     if config.occlusion.keeps_velocity:
-        costs = [mismatch(found, person, view) for person in memories]
+        costs = [mismatch(found, person, view, config) for person in memories]
         best = int(np.argmin(costs))
         return memories[best] if costs[best] < WORST else None
     return most_alike_and_nearest(found, memories)
@@ -73,7 +74,7 @@ def colour_distance(one: Person, other: Person) -> float:
     return float("inf") if np.isnan(distance) else distance
 
 
-def mismatch(found: Person, person: Person, view: View) -> float:
+def mismatch(found: Person, person: Person, view: View, config: TrackerConfig) -> float:
     """Add up what speaks against one being the other: their places, and their looks.
 
     The logarithm takes into account that looks in another pose, or half hidden, can be far off.
@@ -82,8 +83,15 @@ def mismatch(found: Person, person: Person, view: View) -> float:
         return math.inf
     place = (PLACE_PX + PLACE_PX_S * person.hidden_s) * view.size
     away = (found.shown - person.shown)[[X, Y]] / place
-    looks = LOOKS2
-    if found.looks is not None and person.looks is not None:
-        distance = float(squared_distances(found.looks.mean[None], person.looks)[0])
-        looks = LOOKS2 if np.isnan(distance) else distance
+    looks = looks_distance(found, person, config)
     return PLACE_WEIGHT * min(float(away @ away), FARTHEST) + LOOKS_WEIGHT * float(np.log1p(looks))
+
+
+def looks_distance(found: Person, person: Person, config: TrackerConfig) -> float:
+    """Measure the squared distance of looks; that of the same person where looks cannot tell."""
+    if config.looks is None or found.looks is None or person.looks is None:
+        return LOOKS2
+    if config.looks.needs_colour and not knows_colour(found.looks.mean):
+        return LOOKS2
+    distance = float(squared_distances(found.looks.mean[None], person.looks)[0])
+    return LOOKS2 if np.isnan(distance) else distance

@@ -136,7 +136,7 @@ def _seen(person: Person, belief: Belief, scene: Scene, view: View, config: Trac
         seen_frames=person.seen_frames + 1,
         velocity=blend(person.velocity, speed, max(view.dt_s / VELOCITY_S, 1 / (person.seen_frames + 1))),
         foot=blend(person.foot, foot_of(belief.estimate), view.dt_s / FOOT_S),
-        size=blend(person.size, belief.estimate[SIZE], view.dt_s / FOOT_S),
+        size=blend(person.size, belief.estimate[SIZE], view.dt_s / config.occlusion.size_s),
     )
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tracker.appearance.alignment import Alignment
 from tracker.appearance.colour_view import ColourView
-from tracker.appearance.config import Affine, ColourConfig
+from tracker.appearance.config import SAME_VIEW, ColourConfig
 from tracker.appearance.power_sums import PowerSums
 from tracker.appearance.regions import PARTS, part_rectangles
 from tracker.config import LooksConfig
@@ -17,7 +17,6 @@ from tracker.interaction import Regions
 from tracker.particles import Floats
 
 HIDDEN_PART = 0.3  # share of a part behind others from which its colour is not this person's
-SAME: Affine = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +38,7 @@ class LooksView:
     def build(cls, image: NDArray[np.uint8], colour: ColourView | None, config: LooksConfig) -> LooksView:
         """Prepare a thermal image (H, W), and the colour image if there is one."""
         light = 0.0 if colour is None else float(colour.picture[::8, ::8].mean())
-        alignment = Alignment.build(image.shape, image.shape, ColourConfig(affine=SAME))
+        alignment = Alignment.build(image.shape, image.shape, ColourConfig(affine=SAME_VIEW))
         picture = image[..., None]
         thermal = ColourView(picture, PowerSums.build(picture, 1), alignment, ColourConfig())
         return cls(colour if light > config.darkest else None, thermal, _scale(light, config))
@@ -52,6 +51,11 @@ class LooksView:
             each[:, :, :3] = moments[..., 0]
         each[:, :, 3] = self.thermal.describe(state)
         return (each * self.scale).reshape(len(state), -1)
+
+
+def knows_colour(features: Floats) -> bool:
+    """Tell whether any colour is among the looks (F,) of a person."""
+    return not bool(np.isnan(features.reshape(PARTS, 4)[:, :3]).all())
 
 
 def visible(features: Floats, state: Floats, hiding: Regions) -> Floats:

@@ -17,6 +17,11 @@ from tracker.person import Person
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
 LOOKS = 12.0  # difference of squared distances of looks that counts 1
 MOST = 4.0  # for which looks count at most
+# Where it is not known whether people stand on one floor, or how well their feet are seen:
+LOOSE_FOOT_PX = 12.0  # [px] of 240 rows
+LOOSE_FOOT_MOST = 3.0
+FIT = 0.03  # difference of the contours' fitness that counts 1
+FIT_MOST = 6.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,12 +33,14 @@ class Figure:
         state: (9,) where it should be by now.
         region: (4,) left, top, width, height [px] of that.
         unlikeness: squared distance of what is seen there from the person's looks; 0 where nothing is known.
+        fit: how well the contour fits the image there, as if nobody were in front (equation 4.3).
     """
 
     person: Person
     state: NDArray[np.float64]
     region: Regions
     unlikeness: float = 0.0
+    fit: float = 0.0
 
 
 class Order(Protocol):
@@ -55,8 +62,25 @@ def likelier_front(one: Figure, other: Figure, view: View) -> float:
     Where two people overlap, the image shows the looks of the one in front; the one behind looks wrong.
     """
     lower = lower_foot(one, other, view) / (FOOT_PX * view.size)
-    clearer = (other.unlikeness - one.unlikeness) / LOOKS
-    return lower + min(max(clearer, -MOST), MOST)
+    return lower + _clearer_looks(one, other)
+
+
+def plainer_contour(one: Figure, other: Figure, view: View) -> float:
+    """Weigh up whose contour is seen, whose looks, and whose feet are lower; none of them decides alone.
+
+    The contour of the one in front is seen whole. On stairs and behind railings feet tell little.
+    """
+    lower = lower_foot(one, other, view) / (LOOSE_FOOT_PX * view.size)
+    plainer = (one.fit - other.fit) / FIT
+    return _at_most(lower, LOOSE_FOOT_MOST) + _at_most(plainer, FIT_MOST) + _clearer_looks(one, other)
+
+
+def _clearer_looks(one: Figure, other: Figure) -> float:
+    return _at_most((other.unlikeness - one.unlikeness) / LOOKS, MOST)
+
+
+def _at_most(lead: float, most: float) -> float:
+    return min(max(lead, -most), most)
 
 
 def front_to_back(figures: Sequence[Figure], order: Order, view: View) -> tuple[Figure, ...]:
@@ -72,5 +96,5 @@ def front_to_back(figures: Sequence[Figure], order: Order, view: View) -> tuple[
     return tuple(sorted(figures, key=cmp_to_key(compare)))
 
 
-ORDERS: Mapping[str, Order] = {"foot": lower_foot, "looks": likelier_front}
+ORDERS: Mapping[str, Order] = {"foot": lower_foot, "looks": likelier_front, "contour": plainer_contour}
 """Ways to compare by name."""

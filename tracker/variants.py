@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from tracker.appearance.config import FAR_AFFINE, ROBOT_PARALLAX, ColourConfig
+from tracker.appearance.config import FAR_AFFINE, ROBOT_PARALLAX, SAME_VIEW, ColourConfig
 from tracker.config import (
     BoxConfig,
     ContourConfig,
@@ -94,6 +94,10 @@ It names no threshold of the fitness; 18 grey, below the thesis's 22, since sect
 weight.
 """
 
+_PEOPLEBOY_COLOUR = ColourConfig(
+    representation="moments1", sharpness=0.035, frames=30, affine=FAR_AFFINE, parallax=ROBOT_PARALLAX
+)
+
 _LIMITS = LimitsConfig(ratio_wh=(0.22, 0.62), ratio_dw=(-0.5, 0.5), y=(0.1, 0.8), h=(0.03, 0.5))
 
 PEOPLEBOY = TrackerConfig(
@@ -154,9 +158,7 @@ PEOPLEBOY = TrackerConfig(
     interaction=InteractionConfig(
         detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
     ),
-    colour=ColourConfig(
-        representation="moments1", sharpness=0.035, frames=30, affine=FAR_AFFINE, parallax=ROBOT_PARALLAX
-    ),
+    colour=_PEOPLEBOY_COLOUR,
     looks=LooksConfig(),
     occlusion=OcclusionConfig(
         is_handled=True,
@@ -184,21 +186,25 @@ FOOTAGE = replace(
     motion=replace(PEOPLEBOY.motion, noise_y=10.0, noise_w=6.0, noise_h=6.0, uses_odometry=False),
     detector=replace(
         PEOPLEBOY.detector,
-        count=4000,
+        count=8000,
         fresh_share=0.75,
         limits=replace(_LIMITS, y=(0.0, 1.0), h=(0.05, 0.28)),
     ),
     person=replace(PEOPLEBOY.person, count=2000, limits=replace(_LIMITS, y=(0.0, 1.0)), floor=-math.inf),
     life=replace(PEOPLEBOY.life, birth_confidence=0.85),
     box=BoxConfig(width_per_w=2.0, height_per_h=3.5),
-    colour=None,
-    looks=None,
+    colour=replace(_PEOPLEBOY_COLOUR, affine=SAME_VIEW, parallax=0.0),
+    looks=LooksConfig(grey_spread=(0.15, 0.1, 0.15), needs_colour=True),
+    occlusion=replace(PEOPLEBOY.occlusion, order="contour", seen_size_spread=0.3, size_s=2.0),
 )
 """For footage of any camera, in which degC, horizon and the camera's own motion are unknown.
 
 People may stand anywhere in the image, so that the detector draws more samples, up to the largest body that
 fits in; nothing is too hot. The background has a contrast of its own: inner points lie deeper, where a real
 person is and something that merely has edges is not, the threshold is lower, and a birth takes more. People
-change their size slowly. The box is that of the thesis, whose people were real ones in wide clothes. Values
-were chosen on simulated scenes, with garments warmer and colder than the walls, and on half of a real clip.
+change their size slowly, and nobody who grows over others is believed. Stairs and railings hide feet, so that
+who is in front is told by whose contour and looks are seen as much as by the floor. A colour picture, if
+there is one, shows what the thermal one shows. The box is that of the thesis, whose people were real ones in
+wide clothes. Values were chosen on simulated scenes, with garments warmer and colder than the walls, and on a
+real clip.
 """

@@ -12,7 +12,7 @@ from tracker.measure import ContourModel
 from tracker.particles import equally_weighted
 from tracker.person import SIZE, Person
 from tracker.track import Status
-from tracker.variants import PEOPLEBOY, THESIS_OCCLUSION
+from tracker.variants import FOOTAGE, PEOPLEBOY, THESIS_OCCLUSION
 
 VIEW = view_frame(
     Frame(thermal=blank(), time_s=1.0),
@@ -59,6 +59,19 @@ def test_of_two_with_the_same_looks_the_nearer_one_is_recognised():
 @pytest.mark.parametrize("found", [person(9, colour=5.0), person(9, h=80.0)])
 def test_a_stranger_is_nobody_who_was_lost(found):
     assert recognised(found, (person(1, hidden_s=0.3),), VIEW, PEOPLEBOY) is None
+
+
+def thermal_only(one):
+    looks = one.looks.recent.copy().reshape(-1, 3, 4)
+    looks[..., :3] = np.nan
+    return replace(one, looks=ColourModel(looks.reshape(-1, 12), 10))
+
+
+def test_in_footage_nobody_far_away_is_recognised_by_the_thermal_pattern_alone():
+    lost, found = person(1, x=60.0, hidden_s=0.5), person(9, x=160.0)
+    assert recognised(found, (lost,), VIEW, FOOTAGE) is lost
+    assert recognised(thermal_only(found), (thermal_only(lost),), VIEW, PEOPLEBOY) is not None
+    assert recognised(thermal_only(found), (thermal_only(lost),), VIEW, FOOTAGE) is None
 
 
 def test_the_thesis_asks_that_the_nearest_is_also_the_most_alike():

@@ -23,6 +23,9 @@ of the image's width.
 FAR_AFFINE: Affine = (-0.1, 1.20, 0.0, -0.1, 0.0, 1.20)
 """The same for things far away; with a `parallax` it holds for people at every distance."""
 
+SAME_VIEW: Affine = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+"""For a picture that shows what the thermal image shows."""
+
 ROBOT_PARALLAX = 0.147
 """Shift of a person per semi-height h: 1.2 times 6 cm, over the 49 cm that h is of a person of 1.72 m."""
 
