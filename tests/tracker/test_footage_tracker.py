@@ -14,7 +14,7 @@ GREY, RED, BLUE = (120, 120, 120), (200, 30, 30), (30, 30, 200)
 
 
 def frame(i, colour):
-    """Draw a person with clothes of a colour, or nobody, in a thermal picture and a colour one of twice its size."""
+    """Draw a person in clothes of a colour, or nobody: a thermal picture, and a colour one twice as large."""
     thermal = blank()
     picture = np.full((480, 640, 3), GREY, np.uint8)
     if colour is not None:
