@@ -1,0 +1,116 @@
+"""How well people are kept in footage of unknown temperatures: `python -m benchmarks.footage`.
+
+Scenes of the library are played, and their 16-bit pictures tracked as somebody else's would be: without a
+scale, without the robot's motion, anywhere in the image. In a hot room clothes are colder than the walls.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from statistics import mean
+from typing import Any, Final
+
+import click
+import yaml
+from rich.console import Console
+from rich.table import Table
+
+from scenarios.footage.track_footage import TrackOptions, track_footage
+from scenarios.load import load_scenario
+from scenarios.run import RunOptions, run
+from tracker.evaluation.evaluate import Scores, combine
+
+SCENES: Final = (
+    "crossing_2",
+    "crossing_2_moving",
+    "pass_behind",
+    "sitting",
+    "stop_and_talk",
+    "group_abreast",
+    "empty_room",
+)
+ROOMS: Final[Mapping[str, Mapping[str, float]]] = {
+    "a room of 21 degC": {},
+    "a room of 31 degC": {"floor_c": 30.0, "walls_c": 31.0, "ceiling_c": 32.0, "surroundings_c": 31.0},
+}
+DURATION_S: Final = 12.0
+GOAL: Final = 85.0  # [%] of its frames in which one id shall keep a person
+
+
+@click.command()
+@click.option(
+    "--clip", type=click.Path(exists=True, path_type=Path), help="Footage with truth of one person."
+)
+@click.option("--seeds", type=click.IntRange(min=1), default=32, show_default=True, help="For the clip.")
+def main(clip: Path | None, seeds: int) -> None:
+    """Print how people are kept in scenes of the library, or how one is in a clip, in percent."""
+    with tempfile.TemporaryDirectory() as folder:
+        if clip is None:
+            _show_rooms(Path(folder))
+        else:
+            _show_clip(clip, seeds, Path(folder))
+
+
+def _show_rooms(folder: Path) -> None:
+    table = Table("scenes in", "CP", "CR", "AA", "IDF1", "HOTA", "false tracks", box=None)
+    for room, temperatures in ROOMS.items():
+        scores = combine(list(_scores_of(temperatures, folder / room.replace(" ", "-"))))
+        figures = (
+            *(scores.thesis.cp, scores.thesis.cr, scores.thesis.aa),
+            *(scores.mot.identity.idf1, scores.mot.hota.hota),
+        )
+        table.add_row(room, *(f"{figure:.1f}" for figure in figures), str(scores.counts.false_tracks))
+    Console().print(table)
+
+
+def _scores_of(temperatures: Mapping[str, float], folder: Path) -> Iterator[Scores]:
+    for scene in SCENES:
+        home = folder / scene
+        _play(scene, temperatures, home)
+        options = TrackOptions(
+            footage=home / "thermal16", truth=home / "truth" / "gt.txt", out=folder / f"{scene}-tracked"
+        )
+        scores = track_footage(options, lambda *_: None).scores
+        if scores is not None:
+            yield scores
+
+
+def _play(scene: str, temperatures: Mapping[str, float], home: Path) -> None:
+    """Play a scene of the library in a room of these temperatures, and keep its pictures and truth."""
+    changed: dict[str, Any] = {
+        "name": scene,
+        "description": f"{scene}, shortened",
+        "like": scene,
+        "duration_s": DURATION_S,
+    }
+    if temperatures:
+        place = load_scenario(scene).spec.place.model_dump(mode="json", exclude_unset=True)
+        changed["place"] = place | {"temperatures": dict(temperatures)}
+    path = home.with_suffix(".yaml")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(yaml.safe_dump(changed), encoding="utf-8")
+    options = RunOptions(seed=0, out=home, frames=True, tracker="truth", record=False)
+    run(load_scenario(path), options, lambda *_: None)
+
+
+def _show_clip(clip: Path, seeds: int, folder: Path) -> None:
+    shares, found = [], []
+    for seed in range(seeds):
+        options = TrackOptions(footage=clip, out=folder / str(seed), seed=seed)
+        scores = track_footage(options, lambda *_: None).scores
+        if scores is None:
+            raise click.BadParameter(f"{clip}: there is no truth beside the pictures", param_hint="--clip")
+        shares.append(scores.mot.identity.idr)
+        found.append(scores.thesis.cr)
+    enough = sum(share >= GOAL for share in shares)
+    click.echo(
+        f"One id keeps the annotated person in {mean(shares):.1f} % of its frames, mean of {seeds} seeds "
+        f"({min(shares):.0f}..{max(shares):.0f}; {enough} of them {GOAL:.0f} or more); "
+        f"any id in {mean(found):.1f} %."
+    )
+
+
+if __name__ == "__main__":
+    main()
