@@ -46,6 +46,10 @@ class Radiometry:
             raise BadInput(f"--temperature-range must be LOW < HIGH, got {self.span_c[0]} {self.span_c[1]}")
         if self.scale is not None and not (np.isfinite(self.scale).all() and self.scale[0] > 0):
             raise BadInput(f"--scale must be a positive gain and an offset, got {self.scale}")
+        if self.scale is not None and self.is_inverted:
+            raise BadInput(
+                "--black-hot is for grey; counts that --scale reads grow with temperature, leave one out"
+            )
 
     @property
     def is_known(self) -> bool:

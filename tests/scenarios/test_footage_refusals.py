@@ -74,3 +74,10 @@ def test_a_video_that_is_none_is_refused_on_one_line_and_no_library_adds_another
     assert done.returncode == 2
     assert done.stderr.startswith(f"peopleboy: {video}: cannot be read as a video")
     assert done.stderr.count("\n") == 1, done.stderr
+
+
+def test_counts_of_temperatures_are_never_black_hot(tmp_path):
+    clip = write_counts(tmp_path / "clip", 3)
+    told = refusal(clip, "--out", tmp_path / "out", "--scale", "centikelvin", "--black-hot")
+    assert "--black-hot" in told
+    assert "--scale" in told
