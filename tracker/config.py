@@ -40,6 +40,7 @@ class ContourConfig:
     saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
     # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
     cold_response: float = 1.0
+    cold_feet_response: float = 1.0  # the same for feet colder than the floor
     # alpha_1..7 of the sections: head left, top, right, shoulders, sides.
     weights: tuple[float, ...] = (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16)
     feet_weight: float = 0.0  # weight of an eighth section, the line under the feet

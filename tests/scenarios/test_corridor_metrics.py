@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -70,12 +71,7 @@ class NoTracker:
 def test_a_robot_in_a_world_follows_its_corridor_by_the_image_and_keeps_the_middle():
     scenario = load_scenario("corridor_straight")
     robot = scenario.spec.robot.model_copy(update={"walls_by": "image"})
-    scenario = type(scenario)(
-        spec=scenario.spec.model_copy(update={"robot": robot}),
-        plan=scenario.plan,
-        place=scenario.place,
-        ground=scenario.ground,
-    )
+    scenario = replace(scenario, spec=scenario.spec.model_copy(update={"robot": robot}))
     log = CorridorLog()
     with World(scenario.world(0)) as world:
         modes = set()
