@@ -205,8 +205,8 @@ People may stand anywhere in the image, so that the detector draws more samples,
 fits in; nothing is too hot. The background has a contrast of its own: inner points lie deeper, where a real
 person is and something that merely has edges is not, the threshold is lower, and a birth takes more. Ground
 in the sun is warmer than feet, so that feet may be either. People change their size slowly, and nobody who
-grows over others is believed. Stairs and railings hide feet, so that who is in front is told by whose contour and
-looks are seen as much as by the floor. A colour picture, if there is one, shows what the thermal one shows.
-The box is that of the thesis, whose people were real ones in wide clothes. Values were chosen on simulated
-scenes, with garments warmer and colder than the walls, and on a real clip.
+grows over others is believed. Stairs and railings hide feet, so that who is in front is told by whose contour
+and looks are seen as much as by the floor. A colour picture, if there is one, shows what the thermal one
+shows. The box is that of the thesis, whose people were real ones in wide clothes. Values were chosen on
+simulated scenes, with garments warmer and colder than the walls, and on a real clip.
 """
