@@ -72,9 +72,7 @@ def _scores_of(temperatures: Mapping[str, float], folder: Path) -> Iterator[Scor
         options = TrackOptions(
             footage=home / "thermal16", truth=home / "truth" / "gt.txt", out=folder / f"{scene}-tracked"
         )
-        scores = track_footage(options, lambda *_: None).scores
-        if scores is not None:
-            yield scores
+        yield _tracked(options)
 
 
 def _play(scene: str, temperatures: Mapping[str, float], home: Path) -> None:
@@ -99,9 +97,7 @@ def _show_clip(clip: Path, seeds: int, folder: Path) -> None:
     shares, found = [], []
     for seed in range(seeds):
         options = TrackOptions(footage=clip, out=folder / str(seed), seed=seed)
-        scores = track_footage(options, lambda *_: None).scores
-        if scores is None:
-            raise click.BadParameter(f"{clip}: there is no truth beside the pictures", param_hint="--clip")
+        scores = _tracked(options)
         shares.append(scores.mot.identity.idr)
         found.append(scores.thesis.cr)
     enough = sum(share >= GOAL for share in shares)
@@ -110,6 +106,13 @@ def _show_clip(clip: Path, seeds: int, folder: Path) -> None:
         f"({min(shares):.0f}..{max(shares):.0f}; {enough} of them {GOAL:.0f} or more); "
         f"any id in {mean(found):.1f} %."
     )
+
+
+def _tracked(options: TrackOptions) -> Scores:
+    scores = track_footage(options, lambda *_: None).scores
+    if scores is None:
+        raise click.BadParameter(f"{options.footage}: there is no truth beside the pictures")
+    return scores
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from bad_input import BadInput
 try:
     import trackers as _trackers  # noqa: F401
 except ImportError as error:
-    raise SystemExit("benchmarks.peers: the package trackers is missing; run `make peers`") from error
+    raise SystemExit("benchmarks.peers: the package trackers is missing; `make peers` installs it") from error
 
 from benchmarks.peers.compete import Result, compete_on_film
 from benchmarks.peers.contestants import contestants

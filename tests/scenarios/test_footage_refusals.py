@@ -42,6 +42,9 @@ def test_dead_pixels_an_empty_border_and_unknown_units_are_plausible():
     given = Radiometry(scale=CENTIKELVIN)
     check_plausible(given, given.values(counts, []))
     check_plausible(Radiometry(), np.full((30, 40), 30000.0, np.float32))
+    counts[:20] = 0
+    with pytest.raises(BadInput):  # once there are more dead pixels than others
+        check_plausible(given, given.values(counts, []))
 
 
 @pytest.mark.parametrize(
