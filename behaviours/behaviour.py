@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from behaviours.command import Command
-from behaviours.sight import Sight
+from behaviours.percept import Sight
 
 
 class Behaviour(Protocol):

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from behaviours.behaviour import Behaviour
 from behaviours.command import Command
-from behaviours.follow_person import FollowConfig, FollowPerson
-from behaviours.sight import SeenPerson, Sight
+from behaviours.following.follow_person import FollowConfig, FollowPerson
+from behaviours.percept import SeenPerson, Sight
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

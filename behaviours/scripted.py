@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from bad_input import BadInput
 from behaviours.command import STOP, Command
-from behaviours.sight import Sight
+from behaviours.percept import Sight
 
 
 class Scripted:

@@ -8,12 +8,12 @@ import time
 from pathlib import Path
 from statistics import median
 
-from scenarios.load import load_scenario
-from scenarios.loop import Tick, closed_loop
-from scenarios.run import RunOptions, run
+from scenarios.files.load import load_scenario
+from scenarios.loop.loop import Tick, closed_loop
+from scenarios.running.run import RunOptions, run
 from sim.random_streams import stream
 from sim.world import World
-from tracker.people import make_tracker
+from tracker.trackers import make_tracker
 
 RATE_HZ = 15
 

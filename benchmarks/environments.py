@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 from multiprocessing import get_context
 
 from benchmarks.memory import resident_mb
-from scenarios.environment import PHYSICS_HZ, PeopleBoyEnv
-from scenarios.load import load_scenario
+from scenarios.environments.environment import PHYSICS_HZ, PeopleBoyEnv
+from scenarios.files.load import load_scenario
 from sim.physics.opengl import projection_matrix, view_matrix
-from sim.rendering.bounds import FAR_M, NEAR_M
+from sim.shapes.bounds import FAR_M, NEAR_M
 from sim.world import World
 
 SCENARIO = "single_follow"

@@ -8,10 +8,10 @@ from statistics import median
 
 import numpy as np
 
-from tracker.filter import begin, step, view_frame
 from tracker.frame import Frame
-from tracker.measure import ContourModel
-from tracker.variants import PEOPLEBOY
+from tracker.thermal.contour.likelihood import ContourModel
+from tracker.thermal.particle_filter import begin, step, view_frame
+from tracker.thermal.variants import PEOPLEBOY
 
 SHAPE = (240, 320)
 

@@ -17,9 +17,9 @@ import yaml
 from rich.console import Console
 from rich.table import Table
 
+from scenarios.files.load import load_scenario
 from scenarios.footage.track_footage import TrackOptions, track_footage
-from scenarios.load import load_scenario
-from scenarios.run import RunOptions, run
+from scenarios.running.run import RunOptions, run
 from tracker.evaluation.evaluate import Scores, combine
 
 SCENES: Final = (

@@ -21,7 +21,7 @@ import numpy as np
 from benchmarks.whole_tracker import STEP_S, shoot
 from sim.random_streams import stream
 from tracker.frame import Frame
-from tracker.people import DEFAULT_TRACKER, make_tracker
+from tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 SCENARIO = "hall_visits"
 SAMPLES = 20

@@ -9,7 +9,7 @@ import numpy as np
 
 from sim.config import WorldConfig
 from sim.people.person_config import PersonConfig
-from sim.people.walk import Waypoint
+from sim.people.walking.walk import Waypoint
 from sim.places.rooms import build_place, straight_corridor
 from sim.world import World
 

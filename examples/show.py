@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from scenarios.compare import bootstrap
+from scenarios.running.compare_controllers import bootstrap
 
 FIGURES = {
     "reward": ("reward of an episode", 1.0, ""),
@@ -22,7 +22,7 @@ FIGURES = {
     "collided": ("episodes with a collision", 100.0, "%"),
     "lost": ("episodes in which the person was lost", 100.0, "%"),
 }
-"""What is printed of an episode: its name, factor and unit; see `scenarios.situation.Episode.metrics`."""
+"""What is printed of an episode: its name, factor and unit; see `Episode.metrics`."""
 
 Controller = Callable[[Any], Any]
 Figures = Mapping[str, float]

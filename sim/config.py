@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from bad_input import BadInput
-from sim.camera import Camera
+from sim.geometry.pinhole import Camera
 from sim.people.person_config import PersonConfig
 from sim.places.place import Place
 

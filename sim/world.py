@@ -9,25 +9,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
-from sim.camera import Camera, Matrix
+from sim.cameras.colour import colour_image, expose
+from sim.cameras.surfaces import make_look_table
+from sim.cameras.thermal import detect, encode_8bit, make_detector, surface_image
 from sim.config import WorldConfig
-from sim.images.colour import colour_image, expose
-from sim.images.surfaces import make_look_table
-from sim.images.thermal import detect, encode_8bit, make_detector, surface_image
-from sim.looks import Look
+from sim.geometry.pinhole import Camera, Matrix
 from sim.observation import Observation, Senses
 from sim.people.crowd import Crowd
 from sim.physics.bullet import Bullet
 from sim.places.place import Place
 from sim.random_streams import stream
 from sim.rendering.render import BLIND, View, render
-from sim.rendering.shape_table import make_shape_table
 from sim.robot.peoplebot import NAME as ROBOT
 from sim.robot.peoplebot import PeopleBot
-from sim.robot.robot_looks import robot_look
-from sim.scene import Scene, bystanders
-from sim.truth import BORDER, Truth
-from sim.truth_maker import TruthMaker
+from sim.robot.robot_materials import robot_look
+from sim.shapes.materials import Look
+from sim.shapes.shape_table import make_shape_table
+from sim.truth.image_free_truth import Scene, bystanders
+from sim.truth.truth import BORDER, Truth
+from sim.truth.truth_maker import TruthMaker
 
 _MOST_PEOPLE = 64  # a view's cover has a bit for each
 

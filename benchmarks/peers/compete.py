@@ -16,11 +16,11 @@ import numpy as np
 import benchmarks.peers
 import tracker
 from benchmarks.peers.contestants import PEERS, RATE_HZ, make_contestant
-from scenarios.frame_cache import Film, film, frames_of
-from scenarios.load import load_scenario
-from scenarios.occlusion_scores import Occlusion, score_occlusions
+from scenarios.files.load import load_scenario
+from scenarios.running.frame_cache import Film, film, frames_of
 from tracker.evaluation.evaluate import Scores, evaluate
 from tracker.evaluation.mot_files import read_tracks, write_tracks
+from tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
 from tracker.evaluation.sequence import Tracks, Truth
 
 

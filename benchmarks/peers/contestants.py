@@ -1,4 +1,4 @@
-"""All who compete, by name: peers, and the trackers of `tracker.people`."""
+"""All who compete, by name: peers, and the trackers of `tracker.trackers`."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
 from sim.random_streams import stream
 from tracker.evaluation.sequence import Truth
 from tracker.frame import Frame
-from tracker.people import TRACKERS, make_tracker
 from tracker.track import Status
+from tracker.trackers import TRACKERS, make_tracker
 
 RATE_HZ = 15.0
 # The package counts in frames at 30 Hz: five seconds. Of 1, 2, 5 and 10 s it is best for the oracle's IDF1,
@@ -53,7 +53,7 @@ class DetectAndAssociate:
 
 
 class Ours:
-    """A tracker of `tracker.people`."""
+    """A tracker of `tracker.trackers`."""
 
     def __init__(self, name: str, seed: int) -> None:
         self._tracker = make_tracker(name, stream(seed, "tracker"))

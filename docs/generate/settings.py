@@ -9,9 +9,9 @@ from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from docs.generate.markdown import table
-from tracker import config as source
-from tracker.config import FilterConfig, LimitsConfig, TrackerConfig
-from tracker.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS_OCCLUSION
+from tracker.thermal import config as source
+from tracker.thermal.config import FilterConfig, LimitsConfig, TrackerConfig
+from tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS_OCCLUSION
 
 COLUMNS: Mapping[str, TrackerConfig] = {
     "thesis": THESIS_OCCLUSION,

@@ -42,8 +42,8 @@ def render(
     """
     import os
 
-    from scenarios.load import load_scenario
-    from scenarios.rendered_set.make import render_set
+    from scenarios.export.dataset.make_dataset import render_set
+    from scenarios.files.load import load_scenario
 
     names = [load_scenario(scenario).name for scenario in scenarios]
     folder = out if out is not None else Path("sets") / "-".join(names)

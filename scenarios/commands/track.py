@@ -75,8 +75,8 @@ def track(
     from rich.console import Console
     from rich.progress import Progress
 
-    from scenarios.footage.grey import Radiometry, parse_scale
     from scenarios.footage.track_footage import TrackOptions, track_footage
+    from tracker.footage.grey import Radiometry, parse_scale
 
     options = TrackOptions(
         footage=footage,
@@ -119,7 +119,7 @@ def _parse_start(text: str) -> tuple[float, float, float, float] | str:
 
 def _tell(tracked: Tracked, options: TrackOptions) -> None:
     from scenarios.footage.outcome import outcome_lines
-    from scenarios.show_scores import print_scores
+    from scenarios.scores.show_scores import print_scores
 
     for note in tracked.notes:
         click.echo(f"peopleboy: note: {note}", err=True)

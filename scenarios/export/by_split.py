@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from bad_input import BadInput
-from scenarios.export.finished_run import FinishedRun
-from scenarios.rendered_set.splits import SPLITS, read_split
+from scenarios.export.dataset.splits import SPLITS, read_split
+from scenarios.run_folder.finished_run import FinishedRun
 
 
 def by_split(runs: Sequence[FinishedRun]) -> dict[str | None, list[FinishedRun]]:

@@ -25,14 +25,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenarios.export.by_split import by_split
-from scenarios.export.finished_run import FinishedRun
 from scenarios.export.replay import Play
 from scenarios.export.run_lengths import encode_lengths, run_lengths
-from scenarios.image_files import make_image_folders, write_images
-from scenarios.loop import Tick
-from sim.camera import Camera, Matrix
-from sim.people.joints import JOINT_NAMES
-from sim.truth import Box, PersonTruth
+from scenarios.loop.loop import Tick
+from scenarios.run_folder.finished_run import FinishedRun
+from scenarios.run_folder.image_files import make_image_folders, write_images
+from sim.geometry.pinhole import Camera, Matrix
+from sim.people.body.joints import JOINT_NAMES
+from sim.truth.truth import Box, PersonTruth
 
 CORNER_PX = 0.5
 

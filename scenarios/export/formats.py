@@ -8,14 +8,14 @@ from typing import Any
 
 from scenarios.export.by_split import by_split
 from scenarios.export.coco import write_coco
-from scenarios.export.finished_run import FinishedRun
 from scenarios.export.mot import write_mot
 from scenarios.export.replay import Play
 from scenarios.export.ros_bag import write_mcap
 from scenarios.export.video import write_mp4
 from scenarios.export.viper import write_viper
-from scenarios.folder import versions
-from scenarios.whole_folder import whole_folder
+from scenarios.run_folder.finished_run import FinishedRun
+from scenarios.run_folder.folder import versions
+from scenarios.run_folder.whole_folder import whole_folder
 
 Writer = Callable[[Sequence[FinishedRun], Path, Play], None]
 

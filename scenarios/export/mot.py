@@ -19,9 +19,9 @@ from pathlib import Path
 
 from bad_input import BadInput
 from scenarios.export.by_split import by_split
-from scenarios.export.finished_run import FinishedRun
 from scenarios.export.replay import Play
-from scenarios.image_files import write_png
+from scenarios.run_folder.finished_run import FinishedRun
+from scenarios.run_folder.image_files import write_png
 
 BENCHMARK, EVERYTHING = "peopleboy", "all"
 

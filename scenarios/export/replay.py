@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from bad_input import BadInput
 from behaviours.command import Command
-from scenarios.export.finished_run import FinishedRun
-from scenarios.faults import FaultySensors
-from scenarios.folder import versions
-from scenarios.loop import Tick
-from scenarios.tables import Row, truth_rows
+from scenarios.loop.faults import FaultySensors
+from scenarios.loop.loop import Tick
+from scenarios.run_folder.finished_run import FinishedRun
+from scenarios.run_folder.folder import versions
+from scenarios.run_folder.tables import Row, truth_rows
 from sim.world import World
 
 Play = Callable[[FinishedRun], Iterator[Tick]]

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from scenarios.export.extra import need
-from scenarios.export.finished_run import FinishedRun
 from scenarios.export.replay import Play
+from scenarios.run_folder.finished_run import FinishedRun
 
 # Of the bag's metadata: Iron's. Later distributions read it too, and Humble, which fails at version 9.
 _VERSION: Final = 8

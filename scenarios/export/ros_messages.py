@@ -16,12 +16,12 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 from scipy.spatial.transform import Rotation
 
-from scenarios.loop import Tick
-from scenarios.overlay import encode_jpeg
-from sim.camera import Camera
+from scenarios.drawing.overlay import encode_jpeg
+from scenarios.loop.loop import Tick
 from sim.config import RobotConfig
+from sim.geometry.pinhole import Camera
 from sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
-from sim.truth import Box
+from sim.truth.truth import Box
 from tracker.track import Status
 
 Message = tuple[str, str, Any]  # topic, type, content

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
 
-from scenarios.export.finished_run import FinishedRun
 from scenarios.export.replay import Play
-from sim.truth import Box
+from scenarios.run_folder.finished_run import FinishedRun
+from sim.truth.truth import Box
 from tracker.evaluation.mot_files import read_tracks, read_truth
 
 VIPER, DATA = "http://lamp.cfar.umd.edu/viper#", "http://lamp.cfar.umd.edu/viperdata#"

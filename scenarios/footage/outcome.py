@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from scenarios.drawing.wording import counted
 from scenarios.footage.track_footage import Tracked, TrackOptions
-from scenarios.wording import counted
-from tracker.people import TRACKERS
+from tracker.trackers import TRACKERS
 
 
 def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:

@@ -13,10 +13,10 @@ import numpy as np
 from PIL import Image
 
 from bad_input import BadInput
-from scenarios.footage.grey import Grey
-from scenarios.overlay import Box, Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
-from scenarios.sheet_head import HEAD_PX, MARGIN_PX, PAGE, draw_head
-from tracker.config import ContourConfig
+from scenarios.drawing.overlay import Box, Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
+from scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, draw_head
+from tracker.footage.grey import Grey
+from tracker.thermal.config import ContourConfig
 from tracker.track import Track
 
 FILM_PX: Final = 480

@@ -17,25 +17,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
-from scenarios.folder import versions
-from scenarios.footage.grey import LEAST_SIDE_PX, Grey, Radiometry, grey_maker
-from scenarios.footage.pictures import Footage, open_footage
-from scenarios.footage.plausible import check_plausible
+from scenarios.drawing.overlay import Picture
+from scenarios.drawing.wording import counted
 from scenarios.footage.sheet import FILM_PX, TILE_PX, Annotated, Film, Sheet, draw_frame
-from scenarios.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
-from scenarios.out_folder import check_named
-from scenarios.overlay import Picture
-from scenarios.tables import TRACKS, Row, track_row, write_table
-from scenarios.whole_folder import whole_folder
-from scenarios.wording import counted
+from scenarios.run_folder.folder import versions
+from scenarios.run_folder.out_folder import check_named
+from scenarios.run_folder.tables import TRACKS, Row, track_row, write_table
+from scenarios.run_folder.whole_folder import whole_folder
 from sim.random_streams import stream
 from tracker.evaluation.evaluate import Scores, evaluate
 from tracker.evaluation.mot_files import read_tracks, track_line, write_truth
 from tracker.evaluation.table import to_json
+from tracker.footage.grey import LEAST_SIDE_PX, Grey, Radiometry, grey_maker
+from tracker.footage.pictures import Footage, open_footage
+from tracker.footage.plausible import check_plausible
+from tracker.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
 from tracker.frame import Frame
-from tracker.people import FOOTAGE_TRACKER, TRACKERS, make_tracker
-from tracker.several import PeopleTracker
+from tracker.thermal.people_tracker import PeopleTracker
 from tracker.track import Status, Track
+from tracker.trackers import FOOTAGE_TRACKER, TRACKERS, make_tracker
 
 COLOUR_TRACKER: Final = "colour"
 """It differs from `thermal` by what colours add alone."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.palette import TRUTH, Rgb, track_colour
+from scenarios.drawing.palette import TRUTH, Rgb, track_colour
 from scenarios.recording.marks import Colours, Floats, colours_of
-from sim.truth import Box, PersonTruth
+from sim.truth.truth import Box, PersonTruth
 from tracker.track import Track
 
 LEAST_SHARE = 0.02  # of a silhouette, from which being hidden is worth an arrow

@@ -8,8 +8,8 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from scenarios.recording.entities import COLOUR, EVENTS, LAYERS, THERMAL, TRAILS
-from sim.camera import Camera
 from sim.config import WorldConfig
+from sim.geometry.pinhole import Camera
 
 
 def lay_out(config: WorldConfig) -> rrb.Blueprint:

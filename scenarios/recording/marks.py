@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.loop import Tick
-from scenarios.overlay import map_box
-from scenarios.palette import ROBOT, TRUTH, Rgb, person_colour, track_colour
-from sim.camera import Matrix
-from sim.truth import PersonTruth
-from tracker.config import ContourConfig
-from tracker.ellipse import outline
-from tracker.particles import Particles
+from scenarios.drawing.overlay import map_box
+from scenarios.drawing.palette import ROBOT, TRUTH, Rgb, person_colour, track_colour
+from scenarios.loop.loop import Tick
+from sim.geometry.pinhole import Matrix
+from sim.truth.truth import PersonTruth
+from tracker.thermal.config import ContourConfig
+from tracker.thermal.contour.ellipse import outline
+from tracker.thermal.filter.particles import Particles
 from tracker.track import Status, Track
 
 PARTICLES_A_FILTER = 50

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.palette import Rgb, track_colour
+from scenarios.drawing.palette import Rgb, track_colour
 from scenarios.recording.marks import Lines, lines_of
-from tracker.config import TrackerConfig
-from tracker.contour import FEET, SECTIONS
-from tracker.ellipse import section_lines
-from tracker.evidence import Evidence
+from tracker.thermal.config import TrackerConfig
+from tracker.thermal.contour.contour import FEET, SECTIONS
+from tracker.thermal.contour.ellipse import section_lines
+from tracker.thermal.contour.section_evidence import Evidence
 from tracker.track import Track
 
 # ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for one; in thresholds.

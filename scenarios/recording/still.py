@@ -9,7 +9,7 @@ import numpy as np
 import rerun as rr
 from rerun.components import FillMode
 
-from scenarios.palette import person_colour, track_colour
+from scenarios.drawing.palette import person_colour, track_colour
 from scenarios.recording.entities import (
     COLOUR,
     LAYERS,
@@ -20,10 +20,10 @@ from scenarios.recording.entities import (
     person_path,
 )
 from scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
-from sim.camera import Camera
 from sim.config import WorldConfig
+from sim.geometry.pinhole import Camera
 from sim.robot.peoplebot import URDF
-from sim.shapes import ShapeKind
+from sim.shapes.shapes import ShapeKind
 
 _ROBOT_CURVES = {
     "curves/motion/speed": (("speed [m/s]", "speed asked for"), ((86, 180, 233), (52, 108, 140))),

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from bad_input import BadInput
-from scenarios.evaluate_runs import evaluate_runs, runs_in
-from scenarios.occlusion_scores import Occlusion, score_occlusions
-from scenarios.report.finished_run import FinishedRun, read_finished
-from scenarios.report.headline import Outcome, headline, headline_of_many, look_into
-from scenarios.report.wording import some
+from scenarios.report.findings.finished_run import FinishedRun, read_finished
+from scenarios.report.findings.sentences import some
+from scenarios.report.findings.summary import Outcome, headline, headline_of_many, look_into
+from scenarios.scores.evaluate_runs import evaluate_runs, runs_in
 from tracker.evaluation.evaluate import Scores
+from tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
 
 MOST_BESIDE = 4  # columns that a table can hold on paper
 

@@ -14,13 +14,16 @@ import jinja2
 from PIL import Image
 
 from bad_input import BadInput
-from scenarios.contact_sheet import read_tiles
-from scenarios.occlusion_scores import LENGTHS_S, by_length
-from scenarios.overlay import encode_jpeg
-from scenarios.palette import TRACK_COLOURS
-from scenarios.report.charts import Chart, chart, track_edges
+from scenarios.drawing.contact_sheet import read_tiles
+from scenarios.drawing.overlay import encode_jpeg
+from scenarios.drawing.palette import TRACK_COLOURS
+from scenarios.report.charts.charts import Chart, chart, track_edges
+from scenarios.report.charts.thermal_stills import Shown, show_frames
+from scenarios.report.charts.timelines import timelines
+from scenarios.report.charts.trajectories import draw_trajectories
 from scenarios.report.columns import Column, are_same_scene, lacking, read_columns
-from scenarios.report.errors import (
+from scenarios.report.figure_tables import all_lines, drive_lines, number, plain_lines
+from scenarios.report.findings.errors import (
     DISTANCES_M,
     VISIBLE,
     curve,
@@ -29,14 +32,11 @@ from scenarios.report.errors import (
     offset,
     visible,
 )
-from scenarios.report.figures import all_lines, drive_lines, number, plain_lines
-from scenarios.report.headline import Outcome, headline
-from scenarios.report.moments import BadMoment, common_frames, worst_moments
+from scenarios.report.findings.sentences import listed, seconds, spoken
+from scenarios.report.findings.summary import Outcome, headline
+from scenarios.report.findings.worst_moments import BadMoment, common_frames, worst_moments
 from scenarios.report.page_file import check_place, write_page
-from scenarios.report.pictures import Shown, show_frames
-from scenarios.report.timelines import timelines
-from scenarios.report.trajectories import draw_trajectories
-from scenarios.report.wording import listed, seconds, spoken
+from tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
 
 HERE = Path(__file__).parent
 _JPEG_QUALITY = 80

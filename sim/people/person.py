@@ -8,10 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.looks import Look
-from sim.people.anthropometry import BodySize, measure
-from sim.people.body import ARM_PARTS as _LIMBS
-from sim.people.body import (
+from sim.people.body.anthropometry import BodySize, measure
+from sim.people.body.body_shapes import ARM_PARTS as _LIMBS
+from sim.people.body.body_shapes import (
     BAG_PART,
     BODY_PARTS,
     TORSO_PARTS,
@@ -21,16 +20,17 @@ from sim.people.body import (
     build_body,
     sole_points,
 )
-from sim.people.clothes import dress
-from sim.people.gait import Gait, lowest_sole
-from sim.people.joints import joint_points
+from sim.people.body.clothes import dress
+from sim.people.body.gait import Gait, lowest_sole
+from sim.people.body.joints import joint_points
+from sim.people.body.postures import Posture, pelvis_shift, posture_rotations
+from sim.people.body.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
 from sim.people.person_config import Arms, PersonConfig
-from sim.people.postures import Posture, pelvis_shift, posture_rotations
-from sim.people.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
-from sim.people.social_force import PlanarState
 from sim.people.timetable import timetable
-from sim.people.walk import RISE_S, Surroundings, Walker, Waypoint
-from sim.shapes import Part
+from sim.people.walking.social_force import PlanarState
+from sim.people.walking.walk import RISE_S, Surroundings, Walker, Waypoint
+from sim.shapes.materials import Look
+from sim.shapes.shapes import Part
 
 Array = NDArray[np.float64]
 

@@ -8,10 +8,10 @@ from itertools import pairwise
 from typing import Literal, get_args
 
 from bad_input import BadInput
-from sim.people.anthropometry import Build, Sex
-from sim.people.clothes import Clothes
-from sim.people.postures import Posture
-from sim.people.walk import Waypoint
+from sim.people.body.anthropometry import Build, Sex
+from sim.people.body.clothes import Clothes
+from sim.people.body.postures import Posture
+from sim.people.walking.walk import Waypoint
 
 Arms = Literal["swinging", "crossed", "raised"]
 

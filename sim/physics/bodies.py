@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
-from sim.shapes import Quaternion, Vector
+from sim.shapes.shapes import Quaternion, Vector
 
 Place = tuple[Vector, Quaternion]
 

@@ -13,16 +13,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bad_input import BadInput
-from sim.camera import Camera, Matrix
+from sim.geometry.pinhole import Camera, Matrix
+from sim.geometry.poses import pose_matrices
 from sim.physics.bodies import Bodies, Body, PartKey, Place
 from sim.physics.bullet_shapes import shape_arguments, visual_shape
 from sim.physics.opengl import metric_depth, projection_matrix, view_matrix
 from sim.physics.quiet import quiet
 from sim.physics.solid_boxes import SolidBoxes
-from sim.rendering.bounds import FAR_M, NEAR_M
-from sim.rendering.shape_table import VisualShape
-from sim.rotations import pose_matrices
-from sim.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
+from sim.shapes.bounds import FAR_M, NEAR_M
+from sim.shapes.shape_table import VisualShape
+from sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 try:
     with quiet():

@@ -13,11 +13,11 @@ import trimesh
 from numpy.typing import NDArray
 
 from bad_input import BadInput
+from sim.geometry.poses import pose_matrices
 from sim.physics.bullet import Bullet
 from sim.places.place import Fixture
-from sim.rendering.shape_table import VisualShape
-from sim.rotations import pose_matrices
-from sim.shapes import Shape, ShapeKind
+from sim.shapes.shape_table import VisualShape
+from sim.shapes.shapes import Shape, ShapeKind
 
 Extent = NDArray[np.float64]  # (2, 3) [m]: lowest and highest x, y, z
 

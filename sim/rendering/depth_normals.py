@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from sim.geometry.vectors import Point, cross, dot, minus
 from sim.rendering.canvas import Lens
-from sim.rendering.vectors import Point, cross, dot, minus
 
 Array = NDArray[np.float64]
 Depth = NDArray[np.float32]

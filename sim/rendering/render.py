@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
-from sim.camera import Camera, Matrix, invert_pose
+from sim.geometry.pinhole import Camera, Matrix, invert_pose
 from sim.physics.bullet import Bullet
 from sim.rendering.canvas import Lens, make_canvas, shade
 from sim.rendering.depth_normals import normals_from_depth
 from sim.rendering.raycast import draw
-from sim.rendering.shape_table import ShapeTable
+from sim.shapes.shape_table import ShapeTable
 
 NOBODY = -1
 BLIND = "none"  # in place of a renderer's name: a world without images

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bad_input import BadInput
-from sim.camera import Matrix
 from sim.config import DriveConfig, RobotConfig
+from sim.geometry.pinhole import Matrix
 from sim.physics.bullet import Bullet
 from sim.random_streams import stream
 from sim.robot.sonar import SonarRing

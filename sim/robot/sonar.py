@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.camera import Matrix, transform
 from sim.config import SonarConfig
+from sim.geometry.pinhole import Matrix, transform
 from sim.physics.bullet import Bullet
 
 # x, y [m] and angle [deg] of each sonar of the lower rings: ARIA's parameter file peoplebot-sh.p, SonarUnit

@@ -1,8 +1,7 @@
-from test_follow_person import person, sight
-from toy_world import STEP_S
-
 from behaviours.command import Command
 from behaviours.patrol import Patrol, PatrolConfig
+from tests.helpers.percepts import person, sight
+from tests.helpers.toy_world import STEP_S
 
 AHEAD = Command(linear_m_s=0.3, angular_rad_s=0.0)
 CONFIG = PatrolConfig(follow_s=4.0, lost_s=2.0)

@@ -3,19 +3,19 @@ from typing import get_args
 
 import click
 import pytest
-from pages import DOCS
 from pydantic import BaseModel
 
 from docs.generate import choices, plain_keys, scenario_keys, trackers
 from docs.generate.offline import loads
 from docs.generate.parts import PARTS, PLACE, fill_in
 from docs.generate.settings import COLUMNS, settings_of
-from scenarios import schema
 from scenarios.cli import cli
-from scenarios.schema import FaultSpec, RobotSpec, WaypointSpec, json_schema
-from tracker import config
+from scenarios.files import schema
+from scenarios.files.schema import FaultSpec, RobotSpec, WaypointSpec, json_schema
+from tests.helpers.pages import DOCS
 from tracker.evaluation.table import FIGURES
-from tracker.people import TRACKERS
+from tracker.thermal import config
+from tracker.trackers import TRACKERS
 
 SPECS = [
     kind

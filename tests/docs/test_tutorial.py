@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pages import DOCS, Block, blocks
 
 from scenarios.cli import main
+from tests.helpers.pages import DOCS, Block, blocks
 
 PAGES = sorted([*DOCS.glob("tutorial/*.md"), *DOCS.glob("tasks/*.md")])
 

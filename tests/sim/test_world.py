@@ -8,18 +8,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
 
 import sim.world
 from bad_input import BadInput
-from sim.camera import Camera
 from sim.config import RobotConfig, WorldConfig
-from sim.looks import Look
+from sim.geometry.pinhole import Camera
 from sim.people.person_config import PersonConfig
-from sim.people.walk import Waypoint
+from sim.people.walking.walk import Waypoint
 from sim.physics import bullet
 from sim.places.place import Fixture
+from sim.shapes.materials import Look
 from sim.world import World, light_level
+from tests.helpers.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
 
 QUIET = replace(NO_NOISE, camera=SMALL)
 WALKERS = (
@@ -151,7 +151,7 @@ def fingerprints(seed: int) -> list[str]:
 
 def test_a_seed_gives_the_same_bytes_in_a_fresh_process_and_another_seed_does_not() -> None:
     here = fingerprints(3)
-    program = "from test_world import fingerprints; print(*fingerprints(3))"
+    program = "from tests.sim.test_world import fingerprints; print(*fingerprints(3))"
     environment = {**os.environ, "PYTHONPATH": ":".join(sys.path), "PYTHONHASHSEED": "7"}
     run = subprocess.run(
         [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True

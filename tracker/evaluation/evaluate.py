@@ -7,11 +7,11 @@ import numpy as np
 
 from bad_input import BadInput
 from tracker.evaluation.association import associate, pair_up
-from tracker.evaluation.mot_metrics import MotMetrics, measure_mot
-from tracker.evaluation.paper_metrics import PaperMetrics, measure_paper
+from tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
+from tracker.evaluation.metrics.paper_metrics import PaperMetrics, measure_paper
+from tracker.evaluation.metrics.sums import Sums
+from tracker.evaluation.metrics.thesis_metrics import ThesisMetrics, measure_thesis
 from tracker.evaluation.sequence import Tracks, Truth
-from tracker.evaluation.sums import Sums
-from tracker.evaluation.thesis_metrics import ThesisMetrics, measure_thesis
 from tracker.evaluation.uncounted import MIN_VISIBLE, Rule, settle_uncounted
 
 

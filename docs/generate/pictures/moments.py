@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from behaviours.scripted import Stand
-from scenarios.load import load_scenario
-from scenarios.loop import Tick, closed_loop
+from scenarios.files.load import load_scenario
+from scenarios.loop.loop import Tick, closed_loop
 from sim.random_streams import stream
 from sim.world import World
-from tracker.people import make_tracker
 from tracker.track import Track
+from tracker.trackers import make_tracker
 
 CROSSING = ("crossing_2", 3)
 """Scenario and seed: nina, who is near, walks in front of olaf, who is far off."""

@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.moments import ticks
 from docs.generate.pictures.paper import panels, show
-from scenarios.labels import Labels
-from scenarios.load import load_scenario
-from scenarios.loop import Tick
-from scenarios.overlay import draw_tracks, enlarge, show_thermal
-from scenarios.palette import ROBOT, Rgb, person_colour
-from scenarios.plan_place import draw_floor, draw_things, draw_walls
-from scenarios.scenario import Scenario
+from scenarios.drawing.labels import Labels
+from scenarios.drawing.overlay import draw_tracks, enlarge, show_thermal
+from scenarios.drawing.palette import ROBOT, Rgb, person_colour
+from scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
+from scenarios.files.load import load_scenario
+from scenarios.files.scenario import Scenario
+from scenarios.loop.loop import Tick
 from sim.robot.peoplebot import RADIUS_M
-from sim.truth import BORDER, PersonTruth, Truth
+from sim.truth.truth import BORDER, PersonTruth, Truth
 
 PATH = Path(__file__).parents[2] / "overview.png"
 SCENARIO, SEED, FRAME = "crossing_4", 0, 41

@@ -1,7 +1,8 @@
 from pathlib import Path
 
 import pytest
-from exported import FOLLOWING, SCENE, export, make_run
+
+from tests.helpers.exported import FOLLOWING, SCENE, export, make_run
 
 
 @pytest.fixture(scope="session")

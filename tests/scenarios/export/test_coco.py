@@ -12,9 +12,9 @@ from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 
 from scenarios.export.coco import annotations_file
-from scenarios.export.finished_run import open_run
 from scenarios.export.replay import replay
-from sim.camera import transform
+from scenarios.run_folder.finished_run import open_run
+from sim.geometry.pinhole import transform
 
 # What pycocotools decodes into is older than numpy 2.
 pytestmark = pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")

@@ -6,12 +6,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from exported import export, run_cli
 
 from scenarios.commands.export import FORMATS
 from scenarios.export import coco
 from scenarios.export.formats import WRITERS
-from scenarios.whole_folder import whole_folder
+from scenarios.run_folder.whole_folder import whole_folder
+from tests.helpers.exported import export, run_cli
 
 FORM = ("--format", "viper")
 

@@ -12,7 +12,6 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 import yaml
-from exported import export
 from hypothesis import given
 from hypothesis import strategies as st
 from mcap.reader import make_reader
@@ -20,9 +19,10 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from scipy.spatial.transform import Rotation
 
-from scenarios.export.finished_run import open_run
 from scenarios.export.ros_messages import drift
+from scenarios.run_folder.finished_run import open_run
 from sim.robot.peoplebot import Planar
+from tests.helpers.exported import export
 
 TOPICS = {
     "/thermal/image/compressed", "/colour/image/compressed", "/thermal/camera_info", "/colour/camera_info",

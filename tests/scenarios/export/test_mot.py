@@ -8,12 +8,12 @@ import cv2
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from exported import SCENE, export, make_run, run_cli
 from trackers.eval import evaluate_mot_sequences
 from trackeval.datasets import MotChallenge2DBox
 from trackeval.metrics import CLEAR, HOTA, Identity
 
-from scenarios.evaluate_runs import evaluate_files
+from scenarios.scores.evaluate_runs import evaluate_files
+from tests.helpers.exported import SCENE, export, make_run, run_cli
 from tracker.evaluation.evaluate import Scores
 
 

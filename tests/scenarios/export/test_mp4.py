@@ -5,11 +5,11 @@ from pathlib import Path
 import av
 import numpy as np
 import pytest
-from exported import export
 
-from scenarios.export.finished_run import open_run
 from scenarios.export.replay import replay
 from scenarios.export.video import BAR_PX, HEIGHT_PX, draw_film_frame
+from scenarios.run_folder.finished_run import open_run
+from tests.helpers.exported import export
 
 
 @pytest.fixture(scope="module")

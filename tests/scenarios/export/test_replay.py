@@ -11,11 +11,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from bad_input import BadInput
-from scenarios.export.finished_run import open_run
 from scenarios.export.replay import replay
-from scenarios.loop import Tick
-from scenarios.tables import TRACKS, robot_row, track_rows, truth_rows
-from sim.images.thermal import encode_16bit
+from scenarios.loop.loop import Tick
+from scenarios.run_folder.finished_run import open_run
+from scenarios.run_folder.tables import TRACKS, robot_row, track_rows, truth_rows
+from sim.cameras.thermal import encode_16bit
 
 
 def images(run: Path, tick: Tick) -> list[np.ndarray]:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 import yaml
-from exported import SCENE, export, run_cli
 from pycocotools.coco import COCO
 from trackers.eval import evaluate_mot_sequences
 from trackeval.datasets import MotChallenge2DBox
 
-from scenarios.rendered_set.splits import SPLITS
+from scenarios.export.dataset.splits import SPLITS
+from tests.helpers.exported import SCENE, export, run_cli
 
 FRAMES = 6
 SHORT = SCENE | {"name": "short", "duration_s": FRAMES / 15}

@@ -11,8 +11,8 @@ import pytest
 
 from scenarios.export import viper
 from scenarios.export.coco import annotations_file
-from scenarios.run_events import LogLine
-from scenarios.tables import ROBOT, TRACKS, TRUTH
+from scenarios.loop.run_events import LogLine
+from scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
 
 PAGE = Path(__file__).parents[3] / "docs" / "truth.md"
 ROWS = [

@@ -5,11 +5,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from exported import export
 from hypothesis import given
 from hypothesis import strategies as st
 
 from scenarios.export.viper import whole_pixels
+from tests.helpers.exported import export
 
 V, D = "{http://lamp.cfar.umd.edu/viper#}", "{http://lamp.cfar.umd.edu/viperdata#}"
 # By ViPER's schema.

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from random_sequences import sequences, tracks_of, truth_of
 
+from tests.helpers.random_sequences import sequences, tracks_of, truth_of
 from tracker.evaluation.association import GATE, associate, pair_up
 from tracker.evaluation.boxes import iou
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from random_sequences import sequences, tracks_of, truth_of
 
 from bad_input import BadInput
+from tests.helpers.random_sequences import sequences, tracks_of, truth_of
 from tracker.evaluation.evaluate import combine, evaluate
 from tracker.evaluation.sequence import Tracks, Truth
 from tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread, to_json

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from numpy.testing import assert_allclose
-from random_sequences import sequences, tracks_of, truth_of
 
 from bad_input import BadInput
+from tests.helpers.random_sequences import sequences, tracks_of, truth_of
 from tracker.evaluation.mot_files import read_tracks, read_truth, write_tracks, write_truth
 from tracker.evaluation.sequence import Tracks, Truth
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from random_sequences import as_tracks, sequences, tracks_of, truth_of
 
+from tests.helpers.random_sequences import as_tracks, sequences, tracks_of, truth_of
 from tracker.evaluation.evaluate import evaluate
 from tracker.evaluation.sequence import Tracks
 

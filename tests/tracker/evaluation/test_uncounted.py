@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 from hypothesis import given
-from random_sequences import sequences, tracks_of, truth_of
 
 from bad_input import BadInput
+from tests.helpers.random_sequences import sequences, tracks_of, truth_of
 from tracker.evaluation.association import associate, pair_up
 from tracker.evaluation.uncounted import ignore_uncounted, settle_uncounted
 

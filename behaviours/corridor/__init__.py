@@ -1,0 +1,1 @@
+"""Corridors: where the robot is in one, by sonar or image, and how it drives along."""

@@ -1,0 +1,60 @@
+"""Aim past what stands beside the way, so that the robot slides along walls and through doors."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from behaviours.sonar.echo_points import Points
+
+# Shares of the largest swerve that are tried, the least first; and what a radian wanted weighs against one
+# swerved.
+_AIMS = np.array(sorted(np.linspace(-1.0, 1.0, 101), key=abs))
+_INSIST = 3.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AvoidConfig:
+    """How far and how early the robot swerves.
+
+    Attributes:
+        half_width_m: [m] half of the lane to keep free: half the hull, and what the guard keeps beside it.
+        reach_m: [m] obstacles farther from the robot's origin are of no concern yet.
+        fade_m: [m] over this much of the reach the swerve grows to its full size.
+        widest_rad: [rad] largest swerve; the camera should not lose whom it looks at.
+    """
+
+    half_width_m: float = 0.68
+    reach_m: float = 1.4
+    fade_m: float = 0.4
+    widest_rad: float = math.radians(24.0)
+
+
+# For a robot that has nobody to keep in view.
+WIDELY = AvoidConfig(half_width_m=0.75, reach_m=1.7, fade_m=0.5, widest_rad=math.radians(75.0))
+
+
+def swerve(bearing_rad: float, points: Points, config: AvoidConfig) -> float:
+    """Give how far beside the goal [rad, positive left] to aim, so that the lane ahead is free.
+
+    An echo wants the aim off its own direction by asin(half width / distance). That aim is taken which leaves
+    the least to be wanted, weighed against how far off the goal it is; between equal echoes on both sides the
+    aim stays.
+
+    Args:
+        bearing_rad: [rad] direction of the goal from the robot's nose.
+        points: (N, 2) [m] echoes, robot frame.
+        config: size of the swerve.
+    """
+    distance = np.hypot(points[:, 0], points[:, 1])
+    is_near = (points[:, 0] > 0.0) & (distance < config.reach_m)
+    x, y, distance = points[is_near, 0], points[is_near, 1], distance[is_near]
+    off_goal = np.arctan2(y, x) - bearing_rad
+    spread = np.arcsin(np.minimum(config.half_width_m / np.maximum(distance, 1e-6), 1.0))
+    grown = np.minimum((config.reach_m - distance) / config.fade_m, 1.0)
+    aims = config.widest_rad * _AIMS
+    wanted = np.maximum(spread - np.abs(off_goal - aims[:, None]), 0.0) * grown  # (K, N)
+    cost = _INSIST * wanted.max(axis=1, initial=0.0) + np.abs(aims)
+    return float(aims[np.argmin(cost)])

@@ -1,0 +1,356 @@
+"""Find a person, go near, keep the distance: all from the person's place and height in the image."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+from behaviours.command import STOP, Command
+from behaviours.following.avoid import WIDELY, AvoidConfig, swerve
+from behaviours.following.last_seen import (
+    LastPlace,
+    PlaceConfig,
+    carry_place,
+    end_of_way,
+    on_the_way,
+    place_of,
+)
+from behaviours.following.occluder import HiddenConfig, hider, keep_behind
+from behaviours.following.reidentification import IdentityConfig, company, recognise
+from behaviours.following.target import (
+    Target,
+    TargetConfig,
+    carry_on,
+    first_sight,
+    forget_drift,
+    look_again,
+)
+from behaviours.percept import SeenPerson, Sight
+from behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from behaviours.sonar.echo_points import echoes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FollowConfig:
+    """Gains and limits of the person-following law.
+
+    Speeds are set by the distance error keep_height / height - 1: 0 where the person should be, 1 at twice
+    that distance, whatever the person's size in metres.
+
+    Attributes:
+        keep_height: [image heights] apparent height to hold; 0.58 is 3.7 m for a person of 1.75 m. A level
+            camera at 1.2 m shows people whole from 3 m on; the rest is for those who turn back.
+        stop_height: [image heights] from here on the robot does not drive forwards.
+        near_height: [image heights] from here on the robot backs off.
+        approach_gain: [m/s] forward speed per distance error.
+        learn_gain: [m/s2] rate per distance error at which the person's walking speed is learnt.
+        back_off_gain: [m/s] backward speed per share of height beyond near_height.
+        back_off_m_s: [m/s] highest backward speed.
+        max_linear_m_s: [m/s] highest forward speed.
+        facing_gain: [1/s] turn rate per bearing.
+        drift_share: share of the person's own angular speed that the robot turns along.
+        max_turn_rad_s: [rad/s] highest turn rate; faster turns blur the thermal image.
+        full_speed_rad: [rad] up to this bearing the robot drives at full speed ...
+        turn_only_rad: [rad] ... and from this one on it only turns.
+        swerve_from_m_s: [m/s] forward speed from which the robot swerves fully past obstacles.
+        search_rad_s: [rad/s] turn rate while nobody is seen.
+        stalled_s: [s] a search that does not turn for this long goes on the other way round.
+        wait_turn_rad_s: [rad/s] highest turn rate while waiting for a lost person.
+        max_age_s: [s] an older track stops the robot.
+        wait_s: [s] from the last sight of a person who left the image until the search begins.
+        patience_s: [s] how long to wait for a person who is hidden behind another one.
+        gone_s: [s] the same for one lost in the middle of the image with nobody in front: it went behind a
+            wall, or the tracker missed it; then the robot goes to where it was seen last.
+        recover_1_s: [1/s] speed per distance on the way there.
+        give_up_s: [s] a person out of sight for this long is given up; the robot looks for anybody then.
+        leaving_rad: [rad] a person seen farther off the nose, or about to be, has left the image.
+        target: smoothing of what is seen.
+        identity: who is taken for the followed person.
+        hidden: who can hide it.
+        place: where a person was seen last.
+        avoid: steering along walls.
+        avoid_alone: the same on the way to where a person was seen last, when there is nobody to look at.
+        heard: what is remembered of echoes for that: an edge vanishes in the gaps between the sonars' cones.
+    """
+
+    keep_height: float = 0.58
+    stop_height: float = 0.74
+    near_height: float = 0.88
+    approach_gain: float = 2.5
+    learn_gain: float = 0.5
+    back_off_gain: float = 1.0
+    back_off_m_s: float = 0.25
+    max_linear_m_s: float = 0.8
+    facing_gain: float = 2.0
+    drift_share: float = 0.8
+    max_turn_rad_s: float = 1.2
+    full_speed_rad: float = math.radians(9.0)
+    turn_only_rad: float = math.radians(32.0)
+    swerve_from_m_s: float = 0.1
+    search_rad_s: float = 0.6
+    stalled_s: float = 0.7
+    wait_turn_rad_s: float = 0.5
+    max_age_s: float = 0.3
+    wait_s: float = 1.2
+    patience_s: float = 5.0
+    gone_s: float = 0.7
+    recover_1_s: float = 0.6
+    give_up_s: float = 30.0
+    leaving_rad: float = math.radians(19.0)
+    target: TargetConfig = field(default_factory=TargetConfig)
+    identity: IdentityConfig = field(default_factory=IdentityConfig)
+    hidden: HiddenConfig = field(default_factory=HiddenConfig)
+    place: PlaceConfig = field(default_factory=PlaceConfig)
+    avoid: AvoidConfig = field(default_factory=AvoidConfig)
+    avoid_alone: AvoidConfig = WIDELY
+    heard: MemoryConfig = field(default_factory=lambda: MemoryConfig(keep_s=4.0, within_m=1.7))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FollowState:
+    """What the follower remembers from one step to the next.
+
+    Attributes:
+        mode: "search", "follow", "wait" (just lost the person), "recover" (on the way to where the person was
+            seen last) or "blind" (no new, sound input).
+        reason: why it is in this mode.
+        time_s: [s] of the last sound sight.
+        target: the followed person, None before anybody was seen and after it was given up.
+        others: tracks that were seen beside the followed person, and so are somebody else.
+        walking_m_s: [m/s] learnt speed at which the person walks away.
+        side: +1 (left) or -1, to which to search: where the person was last seen to go.
+        has_left: whether the person was leaving the image sideways when it was last seen.
+        place: where the person was last seen; None once the robot has been there.
+        searched_rad: [rad] by how much the search has turned.
+        stalled_s: [s] for how long the search has not turned: an obstacle is in the way.
+        heard: echoes of the last seconds.
+    """
+
+    mode: str = "search"
+    reason: str = "nobody seen yet"
+    time_s: float = -math.inf
+    target: Target | None = None
+    others: frozenset[int] = frozenset()
+    walking_m_s: float = 0.0
+    side: int = 1
+    has_left: bool = False
+    place: LastPlace | None = None
+    searched_rad: float = 0.0
+    stalled_s: float = 0.0
+    heard: EchoMemory = field(default_factory=EchoMemory)
+
+
+class FollowPerson:
+    """Person following as a behaviour: `follow` with its state kept."""
+
+    def __init__(self, config: FollowConfig | None = None) -> None:
+        self._config = FollowConfig() if config is None else config
+        self.state = FollowState()
+
+    @property
+    def mode(self) -> str:
+        """What the robot is doing."""
+        return self.state.mode
+
+    @property
+    def reason(self) -> str:
+        """Why it is doing that."""
+        return self.state.reason
+
+    @property
+    def following(self) -> int | None:
+        """Number of the track that it drives after."""
+        target = self.state.target
+        return None if target is None or self.state.mode != "follow" else target.id
+
+    def command(self, sight: Sight) -> Command:
+        """Give the command for this sight."""
+        self.state, command = follow(self.state, sight, self._config)
+        return command
+
+
+def follow(state: FollowState, sight: Sight, config: FollowConfig) -> tuple[FollowState, Command]:
+    """Take one step of searching, following, waiting or going to where the person was seen last.
+
+    The robot drives after a person only while its track is younger than max_age_s, and stops on senseless
+    input or when time stands still.
+
+    Source: thesis, section 3.2: search by rotating, approach, hold distance; the learnt walking speed,
+    the drift, the wait and the way round corners are ours.
+    """
+    step_s = sight.time_s - state.time_s
+    if not (sight.is_sound and step_s > 0.0):
+        return replace(state, mode="blind", reason="senseless or old input"), STOP
+    heard = remember(state.heard, sight, config.heard)
+    state = replace(_update_target(state, sight, step_s, config), time_s=sight.time_s, heard=heard)
+    if state.target is None:
+        return _search(state, sight, step_s, config)
+    gap_s = sight.time_s - state.target.seen_s
+    if gap_s <= config.max_age_s:
+        return _go_after(state, state.target, sight, step_s, config)
+    why, patience_s = _patience(state, state.target, sight, config)
+    if gap_s <= patience_s:
+        return _wait(state, state.target, why, config)
+    if state.place is not None and (not state.has_left or state.searched_rad > math.tau):
+        return _recover(state, state.place, sight, step_s, config)
+    return _search(state, sight, step_s, config)
+
+
+def distance_error(height: float, config: FollowConfig) -> float:
+    """Give how much too far the person is, as a share of the distance to keep; below 0 is too near."""
+    return config.keep_height / height - 1.0
+
+
+def _update_target(state: FollowState, sight: Sight, step_s: float, config: FollowConfig) -> FollowState:
+    """Predict where the followed person is, look for it, give it up when it stays away."""
+    known = state.target if step_s <= config.wait_s else None
+    if known is not None and sight.time_s - known.seen_s > config.give_up_s:
+        known = None
+    if known is None:
+        state = replace(state, target=None, others=frozenset(), place=None)
+    else:
+        known = carry_on(known, sight.angular_rad_s, step_s)
+        place = None if state.place is None else carry_place(state.place, sight, step_s)
+        gone = forget_drift(known, step_s, config.target)
+        if config.max_age_s < sight.time_s - known.seen_s < config.patience_s:
+            gone = keep_behind(gone, sight.people, config.hidden, config.target)
+        state = replace(state, target=gone, place=place)
+    gap_s = 0.0 if known is None else sight.time_s - known.seen_s
+    person = recognise(sight.people, known, state.others, gap_s, config.identity, config.target)
+    if person is None:
+        if known is None:
+            return state
+        strangers = company(sight.people, known.id, state.others)
+        return replace(state, others=strangers) if gap_s <= config.identity.place_s else state
+    if known is None or gap_s > config.wait_s:
+        seen = first_sight(person, sight.time_s, config.target)
+    else:
+        seen = look_again(known, person, sight.time_s, step_s, config.target)
+    return _seen_at(state, seen, person, sight, config)
+
+
+def _seen_at(
+    state: FollowState, seen: Target, person: SeenPerson, sight: Sight, config: FollowConfig
+) -> FollowState:
+    """Remember what to do should this be the last sight of the person."""
+    soon = seen.bearing_rad + seen.drift_rad_s * config.max_age_s
+    later = seen.bearing_rad + seen.drift_rad_s * config.wait_s
+    return replace(
+        state,
+        target=seen,
+        others=company(sight.people, person.id, state.others),
+        side=1 if later >= 0.0 else -1,
+        has_left=max(abs(seen.bearing_rad), abs(soon)) > config.leaving_rad,
+        place=place_of(seen, config.place),
+        searched_rad=0.0,
+    )
+
+
+def _patience(state: FollowState, target: Target, sight: Sight, config: FollowConfig) -> tuple[str, float]:
+    """Tell how the person was lost, and how long [s] to wait for it where the robot is."""
+    if state.has_left:
+        return f"track {target.id} left the image", config.wait_s
+    front = hider(sight.people, target, config.hidden, config.target)
+    if front is not None:
+        return f"track {target.id} is hidden behind track {front.id}", config.patience_s
+    return f"track {target.id} is out of sight", config.gone_s
+
+
+def _search(
+    state: FollowState, sight: Sight, step_s: float, config: FollowConfig
+) -> tuple[FollowState, Command]:
+    """Rotate in place, to the side where the person was last seen; if that is blocked, to the other."""
+    is_stalled = state.mode == "search" and abs(sight.angular_rad_s) < 0.1 * config.search_rad_s
+    stalled_s = state.stalled_s + min(step_s, config.max_age_s) if is_stalled else 0.0
+    if stalled_s > config.stalled_s:
+        state, stalled_s = replace(state, side=-state.side), 0.0
+    turn = state.side * config.search_rad_s
+    turned = state.searched_rad + abs(sight.angular_rad_s) * min(step_s, config.max_age_s)
+    if state.mode in ("follow", "wait", "blind"):
+        state = replace(state, reason="nobody came back")
+    state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s, searched_rad=turned)
+    return state, Command(linear_m_s=0.0, angular_rad_s=turn)
+
+
+def _wait(state: FollowState, target: Target, why: str, config: FollowConfig) -> tuple[FollowState, Command]:
+    """Stand, and turn gently towards where the person should be by now."""
+    turn = _clip(_facing_turn(target, config), config.wait_turn_rad_s)
+    return replace(state, mode="wait", reason=why), Command(linear_m_s=0.0, angular_rad_s=turn)
+
+
+def _recover(
+    state: FollowState, place: LastPlace, sight: Sight, step_s: float, config: FollowConfig
+) -> tuple[FollowState, Command]:
+    """Drive to where the person was seen last; from there, search to the side where it went."""
+    place = on_the_way(place, sight, step_s)
+    end = end_of_way(place, echoes(sight), config.place)
+    if end:
+        state = replace(state, mode="recover", reason=end, place=None, searched_rad=0.0)
+        return _search(state, sight, step_s, config)
+    aim = place.bearing_rad + swerve(place.bearing_rad, state.heard.points, config.avoid_alone)
+    speed = min(config.recover_1_s * place.distance_m, config.max_linear_m_s)
+    speed, turn = _facing_share(aim, config) * speed, config.facing_gain * aim
+    state = replace(state, mode="recover", reason="to where the person was seen last", place=place)
+    return state, Command(linear_m_s=speed, angular_rad_s=_clip(turn, config.max_turn_rad_s))
+
+
+def _go_after(
+    state: FollowState, target: Target, sight: Sight, step_s: float, config: FollowConfig
+) -> tuple[FollowState, Command]:
+    """Turn towards the person and close the distance."""
+    walking = _learn_walking(state.walking_m_s, target, sight, step_s, config)
+    speed = _speed(target, walking, config)
+    turn = _clip(_turn(target, speed, sight, config), config.max_turn_rad_s)
+    why = f"track {target.id} is seen"
+    state = replace(state, mode="follow", reason=why, walking_m_s=walking)
+    return state, Command(linear_m_s=speed, angular_rad_s=turn)
+
+
+def _turn(target: Target, speed: float, sight: Sight, config: FollowConfig) -> float:
+    """Give the turn rate [rad/s] that faces the person, or past what stands beside the way there."""
+    # A robot that stands need not avoid anything, and looks straight at the person.
+    share = min(max(speed, 0.0) / config.swerve_from_m_s, 1.0)
+    aside = share * swerve(target.bearing_rad, echoes(sight), config.avoid)
+    return _facing_turn(target, config) + config.facing_gain * aside
+
+
+def _facing_turn(target: Target, config: FollowConfig) -> float:
+    """Give the turn rate [rad/s] that brings the person to the middle of the image and keeps it there."""
+    return config.facing_gain * target.bearing_rad + config.drift_share * target.drift_rad_s
+
+
+def _speed(target: Target, walking_m_s: float, config: FollowConfig) -> float:
+    """Give the speed [m/s]: forwards when too far, none in between, slowly backwards when much too near."""
+    if target.height >= config.near_height:
+        beyond = target.height / config.near_height - 1.0
+        return -min(config.back_off_gain * beyond, config.back_off_m_s)
+    if target.height >= config.stop_height:
+        return 0.0
+    wanted = config.approach_gain * distance_error(target.height, config) + walking_m_s
+    return _facing_share(target.bearing_rad, config) * min(max(wanted, 0.0), config.max_linear_m_s)
+
+
+def _facing_share(bearing_rad: float, config: FollowConfig) -> float:
+    """Give the share of the speed that the bearing allows: 1 ahead, 0 where the robot should only turn."""
+    left = config.turn_only_rad - abs(bearing_rad)
+    return min(max(left / (config.turn_only_rad - config.full_speed_rad), 0.0), 1.0)
+
+
+def _learn_walking(
+    walking_m_s: float, target: Target, sight: Sight, step_s: float, config: FollowConfig
+) -> float:
+    """Integrate the distance error into the person's walking speed [m/s], 0 .. max_linear_m_s.
+
+    It grows only while the robot drives about as fast as it wants to: held up by a wall, a turn or its own
+    inertia, it would learn a speed that nobody walks at.
+    """
+    error = distance_error(target.height, config)
+    wanted = config.approach_gain * error + walking_m_s
+    is_held_up = wanted > sight.linear_m_s + 0.15 or wanted > config.max_linear_m_s
+    if error > 0.0 and is_held_up:
+        return walking_m_s
+    return min(max(walking_m_s + config.learn_gain * error * step_s, 0.0), config.max_linear_m_s)
+
+
+def _clip(value: float, limit: float) -> float:
+    return min(max(value, -limit), limit)

@@ -1,0 +1,47 @@
+"""Behaviours by name, each under guard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from bad_input import BadInput
+from behaviours.behaviour import Behaviour
+from behaviours.command import Command
+from behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
+from behaviours.following.follow_person import FollowConfig, FollowPerson
+from behaviours.patrol import Patrol
+from behaviours.safety.guard import Guarded
+from behaviours.safety.limits import SafetyConfig
+from behaviours.scripted import Scripted, Stand
+
+
+def make_behaviour(
+    name: str,
+    *,
+    script: Sequence[tuple[float, Command]] = (),
+    follow: FollowConfig | None = None,
+    corridor: CorridorConfig | None = None,
+    safety: SafetyConfig | None = None,
+) -> Guarded:
+    """Make a behaviour by its name; whatever it commands, the sonars limit.
+
+    Args:
+        name: "stand", "follow_person", "follow_corridor", "patrol" or "scripted".
+        script: for "scripted", pairs of a time [s] and the command from then on.
+        follow: for "follow_person", its gains and limits.
+        corridor: for "follow_corridor", its sense, gains and limits.
+        safety: the robot's limits and outline.
+
+    Raises:
+        BadInput: there is no such behaviour, or the script's times do not rise.
+    """
+    makers: dict[str, Callable[[], Behaviour]] = {
+        "stand": Stand,
+        "follow_person": lambda: FollowPerson(follow),
+        "follow_corridor": lambda: FollowCorridor(corridor),
+        "patrol": lambda: Patrol(FollowCorridor(corridor), follow),
+        "scripted": lambda: Scripted(script),
+    }
+    if name not in makers:
+        raise BadInput(f"behaviour: unknown name '{name}'; there are {', '.join(sorted(makers))}")
+    return Guarded(makers[name](), safety)

@@ -1,0 +1,86 @@
+"""Safety last: no command reaches the robot without it."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import replace
+
+from behaviours.behaviour import Behaviour
+from behaviours.command import EMERGENCY_STOP, Command
+from behaviours.percept import Sight
+from behaviours.safety.limits import SafetyConfig, limit
+from behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from behaviours.sonar.echo_points import BESIDE_RAD, Points, fill_drop_outs
+from behaviours.sonar.sonar_failure import Deafness
+
+# As long as something takes from one beam through the gap to the next; people have moved on by then.
+PASSING = MemoryConfig(keep_s=2.0, within_m=1.1)
+
+
+class Guarded:
+    """A behaviour under guard: it sees sonars without drop-outs, and what it asks for is limited by them.
+
+    The robot stops at once when images stay out, nobody can tell who is in them, or the sonars have gone
+    deaf; the behaviour is not asked then, and goes on afterwards where it was. Until the sonars have heard
+    anything at all, it creeps.
+
+    Attributes:
+        is_limited: whether the last command was changed.
+    """
+
+    def __init__(self, behaviour: Behaviour, config: SafetyConfig | None = None, readings: int = 3) -> None:
+        self._behaviour = behaviour
+        self._config = SafetyConfig() if config is None else config
+        self._recent: deque[Points] = deque(maxlen=readings)
+        self._memory = EchoMemory()
+        self._passing = EchoMemory()
+        self._deafness = Deafness()
+        self._fault = ""
+        self.is_limited = False
+
+    @property
+    def mode(self) -> str:
+        """The mode of the guarded behaviour, or "stop"."""
+        return "stop" if self._fault else self._behaviour.mode
+
+    @property
+    def reason(self) -> str:
+        """Why the behaviour is in this mode, or what the robot was stopped for."""
+        return self._fault or self._behaviour.reason
+
+    @property
+    def following(self) -> int | None:
+        """Whom the behaviour follows; nobody while the robot is stopped."""
+        return None if self._fault else self._behaviour.following
+
+    def command(self, sight: Sight) -> Command:
+        """Give the behaviour's command, as far as it is safe."""
+        self._fault = self._blindness(sight)
+        if self._fault:
+            self.is_limited = True
+            return EMERGENCY_STOP
+        self._recent.append(sight.sonar_m)
+        steady = replace(sight, sonar_m=fill_drop_outs(list(self._recent)))
+        if self._deafness.listen(steady):
+            self._fault, self.is_limited = "the sonars hear nothing any more", True
+            return EMERGENCY_STOP
+        wanted = self._behaviour.command(steady)
+        self._memory = remember(self._memory, steady, MemoryConfig())
+        self._passing = remember(self._passing, steady, PASSING, BESIDE_RAD)
+        safe = limit(wanted, steady, self._limits(), self._memory.points, self._passing.points)
+        self.is_limited = safe != wanted
+        return safe
+
+    def _limits(self) -> SafetyConfig:
+        """Creep as long as the sonars have heard nothing at all: they may be deaf."""
+        config = self._config
+        if self._deafness.has_heard:
+            return config
+        return replace(config, max_linear_m_s=min(config.max_linear_m_s, config.unproven_m_s))
+
+    def _blindness(self, sight: Sight) -> str:
+        """Tell why the images are of no use; empty if they are."""
+        if sight.fault:
+            return sight.fault
+        is_late = not sight.image_age_s <= self._config.latest_image_s
+        return f"no new image for {self._config.latest_image_s:g} s" if is_late else ""

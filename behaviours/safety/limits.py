@@ -1,0 +1,177 @@
+"""The last word on any command: limits of the drive, and what the sonars see in the way."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from behaviours.command import STOP, Command
+from behaviours.percept import Sight
+from behaviours.sonar.echo_points import BESIDE_RAD, Points, echoes
+
+NOTHING_REMEMBERED: Points = np.zeros((0, 2))
+NOTHING_REMEMBERED.setflags(write=False)
+_NEAR_M = (
+    1.6  # [m] what is farther from the robot's origin does not come within the margin on its way to rest
+)
+_ARC_M = np.arange(1, 19) * 0.05  # ways at which room is looked for; from 0.8 m/s it stops in 0.84 m
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SafetyConfig:
+    """The robot's limits and outline, and the room that it leaves to obstacles.
+
+    Frame: x forward, y left, origin between the wheels.
+
+    Attributes:
+        max_linear_m_s: [m/s] forward speed limit, also backwards.
+        max_angular_rad_s: [rad/s] turn rate limit.
+        unproven_m_s: [m/s] forward speed limit until the sonars have heard anything at all: slow enough to
+            run into a wall without harm, and a hall in which there is none to hear is left in time.
+        braking_m_s2: [m/s2] deceleration to count on; less than the drive's 0.6, in reserve.
+        reaction_s: [s] from an echo until the brakes act: a frame of latency, and a drive still speeding up.
+        margin_m: [m] room left between the hull and any obstacle by driving; a turn on the spot may swing the
+            tail nearer, as a robot beside a wall must be able to turn off it.
+        noise_m, shallow, closest_m: [m], [m/m], [m] within the margin the room may shrink by the first, and
+            by the second per way, down to the third: sonars are not exact enough to tell a wall beside the
+            way from one that slowly draws near.
+        off_middle_m: [m] in a passage too narrow for the margin the robot keeps this near to the middle.
+        hull_m: [m] half the hull's width.
+        front_m, rear_m: [m] from the origin to the hull's front and rear edge.
+        half_width_m: [m] half of the lane that must be free: half the hull plus a hand's breadth.
+        corner_m: [m] from the origin to the farthest corner of the hull, which sweeps round in a turn.
+        free_turn_m: [m] an obstacle farther from the origin than this does not limit turning.
+        tight_turn_rad_s: [rad/s] turn rate with an obstacle at the corner's distance.
+        latest_image_s: [s] without a new image for longer than this the robot stops: at 15 Hz the first one
+            that stays out.
+    """
+
+    max_linear_m_s: float = 0.8
+    max_angular_rad_s: float = math.radians(150.0)
+    unproven_m_s: float = 0.2
+    braking_m_s2: float = 0.5
+    reaction_s: float = 0.25
+    margin_m: float = 0.45
+    noise_m: float = 0.01
+    shallow: float = 0.1
+    closest_m: float = 0.4
+    off_middle_m: float = 0.1
+    hull_m: float = 0.19
+    front_m: float = 0.23
+    rear_m: float = 0.32
+    half_width_m: float = 0.27
+    corner_m: float = 0.36
+    free_turn_m: float = 0.55
+    tight_turn_rad_s: float = 0.3
+    latest_image_s: float = 0.05
+
+
+def limit(
+    command: Command,
+    sight: Sight,
+    config: SafetyConfig,
+    remembered: Points = NOTHING_REMEMBERED,
+    passing: Points = NOTHING_REMEMBERED,
+) -> Command:
+    """Change a command as little as needed so that the robot can always stop before what its sonars see.
+
+    The result is within the drive's limits; its parts keep their sign or are zero. Senseless input stops the
+    robot; a sonar that reads no number counts as an obstacle at the sonar itself.
+
+    Args:
+        command: what a behaviour asks for.
+        sight: with the sonars' ranges.
+        config: limits and outline.
+        remembered: (N, 2) [m] further obstacles, robot frame, which limit turning: a corner of the hull
+            swings through the gaps between the sonars' cones.
+        passing: (M, 2) [m] obstacles of the last moment, robot frame, beside which the robot drives.
+    """
+    if not sight.is_sound:
+        return STOP
+    points = echoes(sight)
+    beside = np.concatenate([echoes(sight, spread_rad=BESIDE_RAD), passing])
+    arc = _free_arc(command, beside[np.hypot(beside[:, 0], beside[:, 1]) < _NEAR_M], config)
+    ahead, behind = _free_way(points, config)
+    backwards, forwards = -safe_speed(min(behind, arc), config), safe_speed(min(ahead, arc), config)
+    turn = _safe_turn(command.angular_rad_s, np.concatenate([points, remembered]), config)
+    return Command(
+        linear_m_s=min(max(command.linear_m_s, backwards), forwards),
+        angular_rad_s=min(max(command.angular_rad_s, -turn), turn),
+    )
+
+
+def safe_speed(room_m: float, config: SafetyConfig) -> float:
+    """Give the highest speed [m/s] from which the robot stops within a way of room_m [m].
+
+    The larger root of reaction * v + v^2 / (2 a) = room, at most the drive's limit.
+    """
+    if room_m <= 0.0:
+        return 0.0
+    lost = config.braking_m_s2 * config.reaction_s
+    return min(math.sqrt(lost**2 + 2.0 * config.braking_m_s2 * room_m) - lost, config.max_linear_m_s)
+
+
+def _free_way(points: Points, config: SafetyConfig) -> tuple[float, float]:
+    """Give the room [m] ahead and behind, in the lane of the hull, less the margin."""
+    x = points[np.abs(points[:, 1]) < config.half_width_m, 0]
+    ahead = np.min(x[x > 0.0], initial=np.inf) - config.front_m
+    behind = np.min(-x[x <= 0.0], initial=np.inf) - config.rear_m
+    return float(ahead) - config.margin_m, float(behind) - config.margin_m
+
+
+def _free_arc(command: Command, points: Points, config: SafetyConfig) -> float:
+    """Give the way [m] along the commanded arc until the hull comes too near to something, or inf.
+
+    Too near is nearer than the margin, and nearer than it is now.
+    """
+    if command.linear_m_s == 0.0:
+        return math.inf
+    bend = command.angular_rad_s / abs(command.linear_m_s)  # [rad/m]
+    ways = _ARC_M[np.abs(bend) * _ARC_M < math.pi / 2.0]
+    now = float(np.min(_gaps(points, config), initial=math.inf))
+    allowed = np.maximum(now - config.noise_m - config.shallow * ways, min(now, config.closest_m))  # (K,)
+    margin_m = _side_margin(points, config) if command.linear_m_s > 0.0 else config.margin_m
+    too_near = np.minimum(margin_m, allowed)
+    turned = bend * ways
+    chord = math.copysign(1.0, command.linear_m_s) * ways * np.sinc(turned / math.tau)
+    moved = points[None] - (chord * np.stack([np.cos(turned / 2.0), np.sin(turned / 2.0)])).T[:, None]
+    cos, sin = np.cos(turned)[:, None], np.sin(turned)[:, None]
+    x, y = moved[..., 0], moved[..., 1]
+    then = _gaps(np.stack([cos * x + sin * y, cos * y - sin * x], axis=-1), config)  # (K, N)
+    is_too_near = (then < too_near[:, None]).any(axis=1)
+    return float(ways[np.argmax(is_too_near)]) - 0.05 if is_too_near.any() else math.inf
+
+
+def _side_margin(points: Points, config: SafetyConfig) -> float:
+    """Give the margin [m]; in a passage ahead too narrow for it, as a door is, what is left in the middle."""
+    x, y = points[points[:, 0] > -config.rear_m].T
+    if np.any((x > 0.0) & (np.abs(y) < config.half_width_m)):
+        return config.margin_m  # no way leads through there
+    left = np.min(y[y > 0.0], initial=math.inf)
+    right = np.min(-y[y < 0.0], initial=math.inf)
+    middle = float(left + right) / 2.0 - config.hull_m
+    return min(config.margin_m, max(middle - config.off_middle_m, 0.0))
+
+
+def _gaps(points: Points, config: SafetyConfig) -> Points:
+    """Give the distance [m] of points (..., 2) from the hull."""
+    x, y = points[..., 0], points[..., 1]
+    along = np.maximum(np.maximum(x - config.front_m, -config.rear_m - x), 0.0)
+    gaps: Points = np.hypot(along, np.maximum(np.abs(y) - config.hull_m, 0.0))
+    return gaps
+
+
+def _safe_turn(wanted_rad_s: float, points: Points, config: SafetyConfig) -> float:
+    """Give the highest turn rate [rad/s] in the wanted direction, with obstacles beside the hull."""
+    distance = np.hypot(points[:, 0], points[:, 1])
+    room_m = float(np.min(distance)) - config.corner_m
+    if room_m > 0.0:
+        share = min(room_m / (config.free_turn_m - config.corner_m), 1.0)
+        return config.tight_turn_rad_s + share * (config.max_angular_rad_s - config.tight_turn_rad_s)
+    x, y = points[distance <= config.corner_m].T
+    # Turning left, the corners swing towards what is ahead-left and behind-right; abreast it is all the same,
+    # and a robot beside a wall must be able to turn off it.
+    is_swept = (wanted_rad_s * x * y > 0.0) & (np.abs(x) > 0.5 * np.abs(y))
+    return 0.0 if is_swept.any() else config.tight_turn_rad_s

@@ -1,0 +1,1 @@
+"""What the sonars say: echoes as points, their memory, their failure."""

@@ -1,0 +1,1 @@
+"""Pictures: plans, overlays, contact sheets."""

@@ -1,0 +1,172 @@
+"""One picture of a run: its key moments side by side, thermal above colour, tracks and truth drawn in."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from PIL import Image, ImageDraw, ImageFont
+from PIL.PngImagePlugin import PngInfo
+
+from bad_input import BadInput
+from scenarios.drawing.key_moments import KeyMoments, Moment
+from scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
+from scenarios.drawing.palette import Rgb
+from scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, STRONG, WEAK, cut, draw_head, font
+from scenarios.drawing.wording import counted
+from scenarios.loop.loop import Tick
+from scenarios.loop.run_events import LogLine
+from scenarios.run_folder.out_folder import writing_to
+from sim.config import RobotConfig
+from sim.geometry.alignment import affine_between
+from tracker.thermal.config import ContourConfig
+
+WIDTH_PX: Final = 1600
+COLUMNS: Final = 4
+MOMENTS: Final = 12
+
+_GAP, _CAPTION = 14, 46
+_TILE: Final = (WIDTH_PX - 2 * MARGIN_PX - (COLUMNS - 1) * _GAP) // COLUMNS
+_TYPICAL_DEPTH_M = 4.0
+_NOTE: Final = "Moments"  # of the PNG: where each tile is, and what it shows
+_CHIP: Final[Rgb] = (58, 64, 74)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tile:
+    """One moment of a sheet that was read back: its images without the caption, and what that says."""
+
+    picture: Image.Image
+    words: str
+
+
+class ContactSheet:
+    """Collects the key moments of a run and draws them.
+
+    Args:
+        title: what stands above them.
+        robot: whose cameras they are; the default robot's if None.
+        contour: proportions of the outlines to draw; the default ones if None.
+    """
+
+    def __init__(
+        self, title: str, robot: RobotConfig | None = None, contour: ContourConfig | None = None
+    ) -> None:
+        self._title = title
+        self._robot = RobotConfig() if robot is None else robot
+        self._contour = ContourConfig() if contour is None else contour
+        self._moments = KeyMoments()
+        self._last: Tick | None = None
+
+    def add(self, tick: Tick, events: Sequence[LogLine]) -> None:
+        """Look at one tick and what happened at it; few ticks are kept."""
+        self._moments.add(tick, events)
+        self._last = tick
+
+    def save(self, path: Path) -> None:
+        """Write the sheet as a PNG.
+
+        Raises:
+            BadInput: it cannot be written there.
+        """
+        with writing_to(path):
+            self.draw().save(path, compress_level=3, pnginfo=self._note())
+
+    def draw(self) -> Image.Image:
+        """Draw the sheet, `WIDTH_PX` wide."""
+        moments = self._moments.choose(MOMENTS)
+        tiles = [self._tile(moment) for moment in moments]
+        rows = [tiles[start : start + COLUMNS] for start in range(0, len(tiles), COLUMNS)]
+        heights = [max(tile.height for tile in row) for row in rows]
+        bottom = HEAD_PX + sum(heights) + _GAP * (len(rows) - 1) + MARGIN_PX
+        page = Image.new("RGB", (WIDTH_PX, bottom), PAGE)
+        draw_head(page, self._title, self._length())
+        top = HEAD_PX
+        for row, height in zip(rows, heights, strict=True):
+            for column, tile in enumerate(row):
+                page.paste(tile, (MARGIN_PX + column * (_TILE + _GAP), top))
+            top += height + _GAP
+        return page
+
+    def _note(self) -> PngInfo:
+        """Where the images of each moment are: left, top, right, bottom, and what they show."""
+        note, top, tiles = PngInfo(), HEAD_PX, []
+        moments = self._moments.choose(MOMENTS)
+        for start in range(0, len(moments), COLUMNS):
+            row = moments[start : start + COLUMNS]
+            bottom = top + max(self._tile(moment).height for moment in row)
+            for column, moment in enumerate(row):
+                left = MARGIN_PX + column * (_TILE + _GAP)
+                words = f"{moment.time_s:.1f} s: {'; '.join(moment.words)}"
+                tiles.append({"box": [left, top + _CAPTION, left + _TILE, bottom], "words": words})
+            top = bottom + _GAP
+        note.add_text(_NOTE, json.dumps(tiles))
+        return note
+
+    def _length(self) -> str:
+        if self._last is None:
+            return counted(0, "frame")
+        return f"{counted(self._last.frame, 'frame')}, {self._last.observation.time_s:.1f} s"
+
+    def _tile(self, moment: Moment) -> Image.Image:
+        """Draw one moment: caption, thermal, colour."""
+        thermal, colour = self._thermal_picture(moment), self._colour_picture(moment)
+        height = _CAPTION + thermal.shape[0] + 3 + colour.shape[0]
+        tile = Image.new("RGB", (_TILE, height), PAGE)
+        _caption(tile, moment)
+        tile.paste(Image.fromarray(thermal), (0, _CAPTION))
+        tile.paste(Image.fromarray(colour), (0, _CAPTION + thermal.shape[0] + 3))
+        return tile
+
+    def _thermal_picture(self, moment: Moment) -> Picture:
+        scale = _TILE / moment.thermal.shape[1]
+        picture = enlarge(show_thermal(moment.thermal), scale)
+        plates: list[Plate] = []
+        picture = draw_tracks(picture, moment.tracks, scale, self._contour, plates=plates)
+        return draw_truth(picture, moment.people, scale, plates=plates)
+
+    def _colour_picture(self, moment: Moment) -> Picture:
+        scale = _TILE / moment.colour.shape[1]
+        affine = affine_between(self._robot.thermal.camera, self._robot.colour.camera, _TYPICAL_DEPTH_M)
+        return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, self._contour, affine)
+
+
+def read_tiles(path: Path) -> list[Tile]:
+    """Cut a sheet that was saved into its tiles; the whole sheet is one if it does not say where they are.
+
+    Raises:
+        BadInput: there is no such picture.
+    """
+    try:
+        with Image.open(path) as opened:
+            sheet = opened.convert("RGB")
+            note = json.loads(opened.info.get(_NOTE, "[]"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read as a contact sheet: {error}") from error
+    tiles = [Tile(sheet.crop(tuple(one["box"])), one["words"]) for one in note]
+    return tiles or [Tile(sheet, "key moments of the run")]
+
+
+def _caption(tile: Image.Image, moment: Moment) -> None:
+    """Write time, mode and what happened above the images."""
+    draw = ImageDraw.Draw(tile)
+    draw.text((0, 11), f"{moment.time_s:.1f} s", STRONG, font(17, is_bold=True), anchor="lm")
+    start = draw.textlength(f"{moment.time_s:.1f} s", font(17, is_bold=True)) + 10
+    if moment.mode:
+        end = start + draw.textlength(moment.mode, font(13)) + 14
+        draw.rounded_rectangle((start, 2, end, 20), 9, _CHIP)
+        draw.text((start + 7, 11), moment.mode, STRONG, font(13), anchor="lm")
+    draw.text((0, 33), _fitting(draw, moment.words, font(14)), WEAK, font(14), anchor="lm")
+
+
+def _fitting(draw: ImageDraw.ImageDraw, words: Sequence[str], letters: ImageFont.FreeTypeFont) -> str:
+    """Join as many texts as fit above a tile; cut the first if even that one does not fit."""
+    text = words[0]
+    for more in words[1:]:
+        if draw.textlength(f"{text}; {more}", letters) > _TILE:
+            break
+        text = f"{text}; {more}"
+    return cut(draw, text, letters, _TILE)

@@ -1,0 +1,201 @@
+"""Choose the few moments of a run that tell its story, while it goes and without keeping it all."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenarios.drawing.wording import describe
+from scenarios.loop.loop import Tick
+from scenarios.loop.run_events import LogLine
+from sim.truth.truth import PersonTruth
+from tracker.track import Status, Track
+
+# What a moment may be about, the most telling first, and how many of each kind are kept.
+_KINDS = {
+    "start": 1,
+    "detected": 3,
+    "contact starts": 3,
+    "most hidden": 4,
+    "closest": 1,
+    "occlusion starts": 4,
+    "occlusion ends": 4,
+    "mode": 6,
+    "lost": 3,
+    "re-identified": 3,
+    "enters view": 4,
+    "leaves view": 4,
+}
+_ORDER = {kind: place for place, kind in enumerate(_KINDS)}
+_NEAR_S = 0.19
+_SPARE = 24
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Moment:
+    """What is needed to draw one instant.
+
+    Attributes:
+        frame, time_s, mode: as in the tick.
+        thermal, colour: (H, W) and (H, W, 3) what the cameras saw.
+        tracks: what the tracker made of it.
+        people: what was true.
+        words: what happened, the most telling first.
+    """
+
+    frame: int
+    time_s: float
+    mode: str
+    thermal: NDArray[np.uint8]
+    colour: NDArray[np.uint8]
+    tracks: tuple[Track, ...]
+    people: tuple[PersonTruth, ...]
+    words: tuple[str, ...] = ()
+
+
+# Says what a moment is about, of the one that is shown, which may be another just before or after.
+Words = Callable[[Moment], str]
+
+
+@dataclass(slots=True)
+class _Occlusion:
+    """The worst of one occlusion so far."""
+
+    slot: tuple[str, int]
+    hidden: float = 0.0
+
+
+class KeyMoments:
+    """Collects moments while a run goes: about 60 at most, however long it is."""
+
+    def __init__(self) -> None:
+        self._kept: dict[tuple[str, int], tuple[Moment, Words]] = {}
+        self._counts: Counter[str] = Counter()
+        self._occlusions: dict[str, _Occlusion] = {}
+        self._closest_m = np.inf
+        self._spare: list[Moment] = []
+        self._stride = 1
+
+    def add(self, tick: Tick, events: Sequence[LogLine]) -> None:
+        """Look at one tick and what happened at it."""
+        moment = _moment(tick)
+        if not self._spare:
+            self._keep_new("start", moment, partial(_always, "start"))
+        for line in events:
+            self._keep_new(line.kind, moment, partial(_always, describe(line)))
+            self._follow_occlusion(line)
+        self._look_for_worst(moment)
+        self._look_for_closest(moment)
+        self._keep_spare(moment)
+
+    def choose(self, count: int) -> list[Moment]:
+        """Choose at most `count` moments: what happened, then others as far from them as can be; in time."""
+        chosen: list[Moment] = []
+        words: dict[int, tuple[str, ...]] = {}
+        # The first of every kind comes before the second of any.
+        for _, (moment, say) in sorted(
+            self._kept.items(), key=lambda item: (item[0][1], _ORDER[item[0][0]], item[1][0].frame)
+        ):
+            same = next((m for m in chosen if abs(m.time_s - moment.time_s) < _NEAR_S), None)
+            if same is not None:
+                words[same.frame] += (say(same),)
+            elif len(chosen) < count - count // 6:  # the rest is for what happens when nothing does
+                chosen.append(moment)
+                words[moment.frame] = (say(moment),)
+        self._fill(chosen, count)
+        return [_with_words(m, words.get(m.frame, ())) for m in sorted(chosen, key=lambda m: m.frame)]
+
+    def _keep_new(self, kind: str, moment: Moment, say: Words) -> tuple[str, int] | None:
+        """Keep a moment of this kind if there are not too many yet, and return where."""
+        slot = (kind, self._counts[kind])
+        if slot[1] >= _KINDS.get(kind, 0):
+            return None
+        self._counts[kind] += 1
+        self._kept[slot] = (moment, say)
+        return slot
+
+    def _follow_occlusion(self, line: LogLine) -> None:
+        if line.kind == "occlusion starts":
+            number = self._counts["most hidden"]
+            if number < _KINDS["most hidden"]:
+                self._counts["most hidden"] += 1
+                self._occlusions[line.who] = _Occlusion(("most hidden", number))
+        elif line.kind in ("occlusion ends", "leaves view"):
+            self._occlusions.pop(line.who, None)
+
+    def _look_for_worst(self, moment: Moment) -> None:
+        for person in moment.people:
+            occlusion = self._occlusions.get(person.name)
+            if occlusion is not None and person.occluded_fraction > occlusion.hidden:
+                occlusion.hidden = person.occluded_fraction
+                self._kept[occlusion.slot] = (moment, partial(_hidden, person))
+
+    def _look_for_closest(self, moment: Moment) -> None:
+        for person in moment.people:
+            if person.visible_px > 0 and person.distance_m < self._closest_m:
+                self._closest_m = person.distance_m
+                text = f"closest: {person.name}, {person.distance_m:.1f} m"
+                self._kept[("closest", 0)] = (moment, partial(_always, text))
+
+    def _keep_spare(self, moment: Moment) -> None:
+        """Keep every n-th moment, n doubling whenever there are too many."""
+        if (moment.frame - 1) % self._stride == 0:
+            self._spare.append(moment)
+        if len(self._spare) > _SPARE:
+            self._stride *= 2
+            self._spare = [m for m in self._spare if (m.frame - 1) % self._stride == 0]
+
+    def _fill(self, chosen: list[Moment], count: int) -> None:
+        """Add spare moments, each time the one farthest from all that are chosen."""
+        while len(chosen) < count:
+            gaps = [min(abs(spare.frame - m.frame) for m in chosen) for spare in self._spare]
+            if not gaps or max(gaps) == 0:
+                return
+            chosen.append(self._spare[gaps.index(max(gaps))])
+
+
+def _always(text: str, moment: Moment) -> str:  # noqa: ARG001
+    return text
+
+
+def _hidden(person: PersonTruth, moment: Moment) -> str:
+    """Say how much of a person is hidden at a moment, which may be shown instead of the worst one."""
+    shown = next((other for other in moment.people if other.name == person.name), person)
+    by = f" by {shown.occluder}" if shown.occluder else ""
+    return f"{shown.name}: {shown.occluded_fraction:.0%} hidden{by}"
+
+
+def _moment(tick: Tick) -> Moment:
+    senses = tick.observation
+    return Moment(
+        frame=tick.frame,
+        time_s=senses.time_s,
+        mode=tick.mode,
+        thermal=senses.thermal,
+        colour=senses.colour,
+        tracks=tick.tracks,
+        people=tick.truth.people,
+    )
+
+
+def _with_words(moment: Moment, words: tuple[str, ...]) -> Moment:
+    """Say what happened, or else who is there."""
+    if not words:
+        seen = sum(person.visible_px > 0 for person in moment.people)
+        sure = sum(track.status is not Status.TENTATIVE for track in moment.tracks)
+        words = (f"{seen} in view, {sure} tracked",)
+    return Moment(
+        frame=moment.frame,
+        time_s=moment.time_s,
+        mode=moment.mode,
+        thermal=moment.thermal,
+        colour=moment.colour,
+        tracks=moment.tracks,
+        people=moment.people,
+        words=words,
+    )

@@ -1,0 +1,222 @@
+"""Draw tracks and truth on images.
+
+Everything is given in pixels of the camera's own image and drawn on an enlarged one, so that lines stay thin
+against people.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+from typing import Protocol
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
+from sim.geometry.pinhole import Matrix
+from tracker.thermal.config import ContourConfig
+from tracker.thermal.contour.ellipse import outline
+from tracker.track import Status, Track
+
+Picture = NDArray[np.uint8]  # (H, W, 3) RGB
+Box = tuple[float, float, float, float]
+Plate = tuple[int, int, int, int]  # left, top, right, bottom of a label on the enlarged picture
+
+SCALE = 2
+
+PALETTES = {"grey": None, "inferno": cv2.COLORMAP_INFERNO}
+
+_SUBPIXEL_BITS = 4
+_FONT = cv2.FONT_HERSHEY_SIMPLEX
+_DASH_PX = 8.0
+_EDGE: Rgb = (20, 20, 20)
+_UNTURNED = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+_DIM = 0.6  # of a tentative track
+_MOVES = (0, 1, 2, 3, -1, -2, 4, 5)  # rows by which a label gives way to others, away from its box first
+_SHORT = {Status.PARTLY_OCCLUDED: " partly", Status.TOTALLY_OCCLUDED: " hidden"}
+
+
+class TrueBox(Protocol):
+    """What is drawn of the truth about a person."""
+
+    @property
+    def name(self) -> str:
+        """As in the scenario."""
+        ...
+
+    @property
+    def box(self) -> Box | None:
+        """The truth box; None behind the camera."""
+        ...
+
+    @property
+    def visible_fraction(self) -> float:
+        """Share of the whole silhouette that is seen."""
+        ...
+
+
+def enlarge(image: Picture, scale: float = SCALE) -> Picture:
+    """Make an (H, W, 3) image `scale` times as large, or small, smoothly."""
+    way = cv2.INTER_CUBIC if scale > 1 else cv2.INTER_AREA
+    return np.asarray(cv2.resize(image, None, fx=scale, fy=scale, interpolation=way), np.uint8)
+
+
+def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
+    """Turn an (H, W) thermal image into an RGB picture of the same size, in one of `PALETTES`."""
+    colours = PALETTES[palette]
+    if colours is None:
+        return np.asarray(cv2.cvtColor(thermal, cv2.COLOR_GRAY2RGB), np.uint8)
+    return np.asarray(cv2.cvtColor(cv2.applyColorMap(thermal, colours), cv2.COLOR_BGR2RGB), np.uint8)
+
+
+def encode_jpeg(image: NDArray[np.uint8], quality: int, *, has_own_codes: bool = True) -> bytes:
+    """Encode an (H, W) grey or (H, W, 3) RGB image; quality 0..100.
+
+    Codes of its own make one image smaller. Many images that are packed together are smaller if they share
+    the standard's.
+    """
+    stored = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
+    options = [cv2.IMWRITE_JPEG_QUALITY, quality, cv2.IMWRITE_JPEG_OPTIMIZE, int(has_own_codes)]
+    return cv2.imencode(".jpg", stored, options)[1].tobytes()
+
+
+def draw_tracks(
+    picture: Picture,
+    tracks: Iterable[Track],
+    scale: float = SCALE,
+    contour: ContourConfig | None = None,
+    affine: Matrix | None = None,
+    plates: list[Plate] | None = None,
+) -> Picture:
+    """Draw ellipses, boxes, ids, confidence and status of tracks.
+
+    Tentative ones are dim, and their label is their id with a question mark.
+
+    Args:
+        picture: the camera's image, `scale` times enlarged; it stays as it is.
+        tracks: what to draw.
+        scale: how much the picture is enlarged.
+        contour: whose outline to draw; the default proportions if None.
+        affine: (2, 3) thermal pixels to the picture's, before enlarging; None for the thermal image itself.
+        plates: where labels are already, which these give way to; theirs are added.
+    """
+    canvas, tracks = picture.copy(), tuple(tracks)
+    taken = [] if plates is None else plates
+    mapping = _UNTURNED if affine is None else affine
+    body = max(round(scale), 1)
+    for track in tracks:
+        is_sure = track.status is not Status.TENTATIVE
+        colour = track_colour(track.id) if is_sure else faded(track_colour(track.id), _DIM)
+        box = map_box(track.box, mapping)
+        outlines = outline(track.ellipse, ContourConfig() if contour is None else contour)
+        lines = [box_corners(box), *(line @ mapping[:, :2].T + mapping[:, 2] for line in outlines)]
+        # Dark edges set the lines off from garments of their own colour.
+        for shade, extra in ((_EDGE, 1), (colour, 0)):
+            for line, thickness in zip(lines, (1, body, body), strict=True):
+                draw_line(canvas, line, shade, scale, thickness + extra)
+    for track in tracks:
+        box = map_box(track.box, mapping)
+        if _is_inside(box, canvas, scale):
+            _label(canvas, _track_text(track), box, track_colour(track.id), scale, taken)
+    return canvas
+
+
+def draw_truth(
+    picture: Picture,
+    people: Iterable[TrueBox],
+    scale: float = SCALE,
+    affine: Matrix | None = None,
+    plates: list[Plate] | None = None,
+) -> Picture:
+    """Draw thin dashed boxes, with name and visible share under them; arguments as in `draw_tracks`."""
+    canvas = picture.copy()
+    taken = [] if plates is None else plates
+    for person in people:
+        if person.box is None:
+            continue
+        box = map_box(person.box, _UNTURNED if affine is None else affine)
+        if not _is_inside(box, canvas, scale):
+            continue
+        for dash in _dashes(box_corners(box), _DASH_PX / scale):
+            draw_line(canvas, dash, TRUTH, scale, thickness=1)
+        text = f"{person.name} {person.visible_fraction:.0%}"
+        _label(canvas, text, box, TRUTH, scale, taken, is_below=True)
+    return canvas
+
+
+def map_box(box: Box, affine: Matrix) -> Box:
+    """Map a box by a (2, 3) affine that does not turn it, or take the upright box around the turned one."""
+    corners = box_corners(box) @ affine[:, :2].T + affine[:, 2]
+    (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
+    return float(left), float(top), float(right - left), float(bottom - top)
+
+
+def box_corners(box: Box) -> NDArray[np.float64]:
+    """Give the closed line (5, 2) around a box."""
+    left, top, width, height = box
+    right, bottom = left + width, top + height
+    return np.array([[left, top], [right, top], [right, bottom], [left, bottom], [left, top]])
+
+
+def draw_line(
+    canvas: Picture, points: NDArray[np.float64], colour: Rgb, scale: float = 1, thickness: int = 1
+) -> None:
+    """Draw a smooth line through points (K, 2) of the camera's image onto its enlarged picture, in place."""
+    # Pixel (0, 0) spans -0.5..0.5, so its enlarged copy does not begin at scale * 0.
+    enlarged = (points + 0.5) * scale - 0.5
+    fixed = np.round(np.clip(enlarged, -1e4, 1e4) * (1 << _SUBPIXEL_BITS)).astype(np.int32)
+    cv2.polylines(canvas, [fixed], False, colour, thickness, cv2.LINE_AA, _SUBPIXEL_BITS)
+
+
+def _is_inside(box: Box, canvas: Picture, scale: float) -> bool:
+    left, top, width, height = box
+    rows, columns = canvas.shape[0] / scale, canvas.shape[1] / scale
+    return left < columns and top < rows and left + width > 0.0 and top + height > 0.0
+
+
+def _track_text(track: Track) -> str:
+    if track.status is Status.TENTATIVE:
+        return f"{track.id}?"
+    return f"{track.id}: {track.confidence:.2f}{_SHORT.get(track.status, '')}"
+
+
+def _dashes(line: NDArray[np.float64], length: float) -> Iterable[NDArray[np.float64]]:
+    for start, end in pairwise(line):
+        count = max(int(np.linalg.norm(end - start) / length) // 2 * 2 + 1, 1)
+        marks = start + (end - start) * np.linspace(0.0, 1.0, count + 1)[:, None]
+        yield from (marks[k : k + 2] for k in range(0, count, 2))
+
+
+def _label(
+    canvas: Picture,
+    text: str,
+    box: Box,
+    colour: Rgb,
+    scale: float,
+    taken: list[Plate],
+    is_below: bool = False,
+) -> None:
+    """Write on a dark plate above or below a box, inside the picture and clear of other plates."""
+    size = max(0.2 * scale, 0.4)
+    (width, height), descent = cv2.getTextSize(text, _FONT, size, 1)
+    line = height + descent + 3
+    left, top = box[0] * scale, box[1] * scale
+    bottom = (box[1] + box[3]) * scale + line if is_below else top - 4
+    rows, columns = canvas.shape[:2]
+    x = round(min(max(left, 2.0), max(columns - width - 2.0, 2.0)))
+    places = []
+    for move in _MOVES:
+        wanted = bottom + (line if is_below else -line) * move
+        y = round(min(max(wanted, height + 3.0), rows - descent - 2.0))
+        places.append((x - 2, y - height - 2, x + width + 2, y + descent + 1))
+    plate = next((place for place in places if not any(_touch(place, other) for other in taken)), places[0])
+    taken.append(plate)
+    under = canvas[max(plate[1], 0) : plate[3], max(plate[0], 0) : plate[2]]
+    under[:] = under // 3
+    cv2.putText(canvas, text, (x, plate[3] - descent - 1), _FONT, size, colour, 1, cv2.LINE_AA)
+
+
+def _touch(one: Plate, other: Plate) -> bool:
+    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]

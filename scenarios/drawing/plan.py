@@ -1,0 +1,92 @@
+"""The plan of a scenario: the place from above, warm things, people's ways and times, the robot's view."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+
+from bad_input import BadInput
+from scenarios.drawing.labels import Labels
+from scenarios.drawing.plan_legend import draw_legend
+from scenarios.drawing.plan_people import draw_person
+from scenarios.drawing.plan_place import SPAN_C, WARMTH, draw_floor, draw_things, draw_walls, label_things
+from scenarios.drawing.plan_robot import draw_robot
+from scenarios.drawing.plan_sheet import INK, PAPER, lay_out, sections
+from scenarios.files.scenario import Scenario
+from scenarios.run_folder.out_folder import writing_to
+from sim.config import WorldConfig
+
+_PEOPLE = ("#1f6fb4", "#2f7d32", "#7b3fa0", "#a8327a", "#00798c", "#5d4a1f")
+_WIDTH_IN, _HEAD_IN, _FOOT_IN, _SIDE_IN, _DPI = 11.0, 0.85, 1.3, 0.25, 130
+_BAR_IN = 0.9  # for the scale of temperatures on the right
+
+
+def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
+    """Draw a scenario as it is played with a seed, and save the picture.
+
+    Args:
+        scenario: what to draw.
+        seed: whose variations to draw.
+        path: of the picture, such as plan.png.
+    """
+    config = scenario.world(seed)
+    figure = Figure(dpi=_DPI, facecolor=PAPER)
+    FigureCanvasAgg(figure)
+    found = lay_out(
+        figure,
+        sections(scenario.place.bounds),
+        _WIDTH_IN,
+        head_in=_HEAD_IN,
+        foot_in=_FOOT_IN,
+        side_in=(_SIDE_IN, _SIDE_IN + _BAR_IN),
+    )
+    for axes in found:
+        _draw_section(axes, scenario, config)
+    _caption(figure, scenario, seed)
+    _temperatures(figure, found)
+    draw_legend(figure, _SIDE_IN)
+    with writing_to(path):
+        try:
+            figure.savefig(path, dpi=_DPI)
+        except ValueError as error:
+            raise BadInput(
+                f"{path}: cannot write the plan: {error}; give a path that ends in .png"
+            ) from error
+
+
+def _draw_section(axes: Axes, scenario: Scenario, config: WorldConfig) -> None:
+    labels = Labels(axes)
+    draw_floor(axes, scenario.plan)
+    draw_walls(axes, labels, scenario.place)
+    draw_robot(axes, labels, scenario, config.robot)
+    draw_things(axes, labels, scenario.place)
+    for index, person in enumerate(config.people):
+        draw_person(axes, labels, person, scenario.duration_s, _PEOPLE[index % len(_PEOPLE)])
+    label_things(labels, scenario.place)
+
+
+def _caption(figure: Figure, scenario: Scenario, seed: int) -> None:
+    height = figure.get_figheight()
+    left = _SIDE_IN / _WIDTH_IN
+    figure.text(left, 1.0 - 0.26 / height, scenario.name, size=15, weight="bold", color=INK, va="center")
+    about = textwrap.fill(scenario.description, 140)
+    figure.text(left, 1.0 - 0.5 / height, about, size=8.5, color=INK, va="top", linespacing=1.35)
+    lights = ", ".join(f"{100.0 * light.level:g} % at {light.at_s:g} s" for light in scenario.spec.lights)
+    facts = [f"seed {seed}", f"{scenario.duration_s:g} s", f"robot: {scenario.robot.behaviour}"]
+    note = "   ·   ".join([*facts, *([f"light: {lights}"] if lights else [])])
+    figure.text(1.0 - left, 1.0 - 0.26 / height, note, size=8.5, color=INK, va="center", ha="right")
+
+
+def _temperatures(figure: Figure, found: list[Axes]) -> None:
+    """What the colours of things mean, beside the plan."""
+    top, bottom = found[0].get_position().y1, found[-1].get_position().y0
+    height = min(0.85 * (top - bottom), 3.5 / figure.get_figheight())
+    bar = figure.add_axes((1.0 - 0.72 / _WIDTH_IN, (top + bottom - height) / 2.0, 0.12 / _WIDTH_IN, height))
+    figure.colorbar(ScalarMappable(SPAN_C, WARMTH), cax=bar, extend="both")
+    bar.set_title("things, °C", size=8, color=INK)
+    bar.tick_params(labelsize=7, colors=INK)

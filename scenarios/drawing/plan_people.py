@@ -1,0 +1,112 @@
+"""People's ways on a plan: the line they walk, a mark every five seconds, their pauses, and the end."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle
+from numpy.typing import NDArray
+
+from scenarios.drawing.labels import Labels
+from sim.people.person import PersonConfig
+from sim.people.walking.walk import ALONE, Walker
+
+_STEP_S = 0.05
+_MARK_EVERY_S = 5.0
+_SHORTEST_PAUSE_S = 0.5
+_ARRIVED_M = 0.05
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Way:
+    """Where a person that nobody disturbs is: times (T,) [s] and places (T, 2) [m], and how it ends."""
+
+    times: NDArray[np.float64]
+    places: NDArray[np.float64]
+    end: str
+
+
+def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, colour: str) -> None:
+    """Draw a person's way, the time along it, the pauses, and the name at the start."""
+    way = _walk(person, end_s)
+    axes.plot(way.places[:, 0], way.places[:, 1], color=colour, lw=1.6, alpha=0.9, zorder=7)
+    _draw_arrows(axes, way, colour)
+    start = way.places[0]
+    axes.add_patch(Circle(start, 0.11, facecolor=colour, edgecolor="white", lw=1.0, zorder=8))
+    labels.block(start[0], start[1], 0.12)
+    for x, y in np.unique(np.round(way.places, 1), axis=0):  # once where the person stands
+        labels.block(x, y, 0.05)
+    entry = f", from {person.enter_s:.1f} s" if person.enter_s > 0.0 else ""
+    name = f"{person.name} {person.height_m:.2f} m{entry}"
+    labels.write(start[0], start[1], name, size=8, color=colour, weight="bold")
+    _draw_pauses(axes, labels, person, way, colour)
+    _draw_times(axes, labels, way, colour)
+
+
+def _walk(person: PersonConfig, end_s: float) -> _Way:
+    walker = Walker(person.path, yields=False, radius_m=0.0)
+    end = end_s if person.leave_s is None else min(end_s, person.leave_s)
+    places = [walker.position.copy()]
+    for _ in range(max(round((end - person.enter_s) / _STEP_S), 1)):
+        walker.step(_STEP_S, ALONE)
+        places.append(walker.position.copy())
+    times = person.enter_s + _STEP_S * np.arange(len(places), dtype=np.float64)
+    leaves = person.leave_s is not None and person.leave_s < end_s
+    return _Way(times=times, places=np.array(places), end="leaves at" if leaves else "run ends at")
+
+
+def _draw_arrows(axes: Axes, way: _Way, colour: str) -> None:
+    """An arrow head every two metres walked, between the marks."""
+    steps = np.linalg.norm(np.diff(way.places, axis=0), axis=1)
+    walked = np.cumsum(steps)
+    for distance in np.arange(1.0, walked[-1], 2.0):
+        index = int(np.searchsorted(walked, distance))
+        tail, head = way.places[index], way.places[min(index + 2, len(way.places) - 1)]
+        if math.dist(tail, head) > 1e-3:
+            axes.annotate(
+                "",
+                head,
+                tail,
+                arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.2, "shrinkA": 0, "shrinkB": 0},
+                zorder=7,
+            )
+
+
+def _draw_pauses(axes: Axes, labels: Labels, person: PersonConfig, way: _Way, colour: str) -> None:
+    for waypoint in person.path[:-1]:
+        if waypoint.pause_s < _SHORTEST_PAUSE_S:
+            continue
+        gaps = np.linalg.norm(way.places - np.array(waypoint.at_m), axis=1)
+        if gaps.min() > 0.1:
+            continue  # the scenario ends before
+        axes.add_patch(Circle(waypoint.at_m, 0.16, facecolor="none", edgecolor=colour, lw=1.2, zorder=8))
+        labels.block(*waypoint.at_m, 0.16)
+        what = "" if waypoint.posture == "standing" else f" {waypoint.posture.replace('_', ' ')}"
+        facing = f", faces {waypoint.face}" if isinstance(waypoint.face, str) else ""
+        text = f"pauses {waypoint.pause_s:g} s{what}{facing}"
+        labels.write(*waypoint.at_m, text, size=6.5, color=colour, style="italic")
+
+
+def _draw_times(axes: Axes, labels: Labels, way: _Way, colour: str) -> None:
+    """Dots at whole multiples of five seconds on the way, and what becomes of the person at its end."""
+    far = np.linalg.norm(way.places - way.places[-1], axis=1)
+    on_the_way = np.flatnonzero(far > _ARRIVED_M)
+    if len(on_the_way) == 0:
+        return
+    arrival = int(on_the_way[-1]) + 1
+    before = way.places[0]
+    first = math.floor(way.times[0] / _MARK_EVERY_S) + 1
+    for time_s in np.arange(first * _MARK_EVERY_S, way.times[arrival] - 0.5, _MARK_EVERY_S):
+        place = way.places[round((time_s - way.times[0]) / _STEP_S)]
+        if math.dist(place, before) > 0.1:
+            axes.plot(*place, "o", ms=4.0, mfc="white", mec=colour, mew=1.1, zorder=8)
+            labels.write(place[0], place[1], f"{time_s:g} s", size=6.8, color=colour)
+        before = place
+    x, y = way.places[-1]
+    axes.plot(x, y, "s", ms=4.5, mfc=colour, mec="white", mew=0.8, zorder=8)
+    stays = way.times[-1] - way.times[arrival] > _SHORTEST_PAUSE_S
+    what = f"stays from {way.times[arrival]:.0f} s" if stays else f"{way.end} {way.times[-1]:.0f} s"
+    labels.write(x, y, what, size=6.8, color=colour, weight="bold")

@@ -1,0 +1,269 @@
+"""Any scenario as a gymnasium environment, in which anybody's controller drives the robot."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final, SupportsFloat
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from bad_input import BadInput
+from scenarios.environments.observations import (
+    KINDS,
+    Arrays,
+    feel,
+    observation_space,
+    see_images,
+    see_tracks,
+    see_truth,
+)
+from scenarios.environments.randomise import check_options, vary
+from scenarios.environments.rewards import TASKS, TERMS, reward_terms
+from scenarios.environments.scene_picture import ScenePicture
+from scenarios.environments.situation import Episode
+from scenarios.files.load import load_scenario
+from scenarios.files.scenario import Scenario
+from scenarios.loop.loop import make_frame
+from scenarios.scores.score import following_task
+from sim.config import RobotConfig, WorldConfig
+from sim.geometry.pinhole import Camera
+from sim.observation import Observation, Senses
+from sim.random_streams import stream
+from sim.rendering.render import BLIND
+from sim.robot.peoplebot import Planar
+from sim.truth.image_free_truth import Scene
+from sim.world import World
+from tracker.track import Track
+from tracker.trackers import DEFAULT_TRACKER, Tracker, make_tracker
+
+# A quarter of the rate of a run. The robot's ways differ by millimetres, and a step takes half the time.
+PHYSICS_HZ: Final = 60
+SMALLEST_PX: Final = (80, 60)
+LARGEST_PX: Final = (1280, 960)
+DEFAULT_PX: Final = (320, 240)
+_KEEP_M: Final = 3.9  # where there is nobody whose height would tell
+_SEEDS: Final = 2**31
+
+
+class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
+    """A robot among people, driven by actions; one step is one image, 1/15 s.
+
+    Action: (2,) within -1..1, the shares of the robot's forward speed limit (0.8 m/s) and turn rate limit
+    (150 deg/s, positive to the left); beyond is clipped. Observations are told in `observations`, the
+    reward in `rewards`. An episode terminates when the robot touches anything, or, unless the task is
+    "corridor", when the person to follow has been out of sight for 10 s; it is truncated when the
+    scenario's time is over. `info` holds `truth` (a `Scene`), `reward` (its terms), `metrics` (see
+    `Episode.metrics`), `events` (what is new, and with whom), and `seed`.
+
+    `reset(seed=3)` plays the world of `peopleboy run --seed 3`; `reset()` goes on to a seed drawn from it.
+    `reset(options=...)` varies that one episode, see `scenarios.environments.randomise.LIMITS`.
+
+    Args:
+        scenario: name in the library or path of a YAML file.
+        task: "follow", "corridor" or "patrol", which decides the reward.
+        observation: "pixels"; "tracks", what the tracker makes of the images; or "truth", what a perfect
+            tracker would, for which nothing is rendered.
+        image_size: width and height [px] of both images.
+        tracker: name of the tracker behind "tracks".
+        randomise: options of every episode for which `reset` is given none.
+        render_mode: "rgb_array" or None.
+
+    Raises:
+        BadInput: an argument cannot be used.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 15}  # noqa: RUF012
+
+    def __init__(
+        self,
+        scenario: str | Path = "single_follow",
+        *,
+        task: str = "follow",
+        observation: str = "tracks",
+        image_size: tuple[int, int] = DEFAULT_PX,
+        tracker: str = DEFAULT_TRACKER,
+        randomise: Mapping[str, Any] | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        self._world: World | None = None
+        _check_word("task", task, TASKS)
+        _check_word("observation", observation, KINDS)
+        _check_word("render_mode", render_mode, (None, *self.metadata["render_modes"]))
+        _check_size(image_size)
+        make_tracker(tracker, stream(0, "tracker"))  # refuses an unknown name now
+        self._randomise = {} if randomise is None else dict(randomise)
+        check_options(self._randomise)
+        self._scenario = load_scenario(scenario)
+        self._task, self._kind, self._size, self._tracker_name = task, observation, image_size, tracker
+        self.render_mode = render_mode
+        self._robot = _resize(self._scenario.world(0).robot, image_size)
+        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        self.observation_space = observation_space(observation, self._robot)
+        self._picture = ScenePicture(self._scenario.plan, self._scenario.place) if render_mode else None
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Arrays, dict[str, Any]]:
+        """Begin an episode; see the class.
+
+        Raises:
+            BadInput: options that there are not.
+        """
+        super().reset(seed=seed)
+        chosen = self._randomise if options is None else options
+        check_options(chosen)
+        self.close()
+        self._seed = int(self.np_random.integers(_SEEDS)) if seed is None else seed
+        config = self._config(chosen)
+        self._world = World(config)
+        self._limits, self._dt_s = config.robot.drive, 1.0 / config.control_hz
+        self._frames = round(self._scenario.duration_s * config.control_hz)
+        self._frame = 0
+        self._action = (0.0, 0.0)
+        self._tracker: Tracker = make_tracker(self._tracker_name, stream(self._seed, "tracker"))
+        self._keep_m = _keep_m(self._scenario, config)
+        self._episode = Episode(
+            self._scenario.plan, self._keep_m, self._dt_s, may_lose=self._task != "corridor"
+        )
+        self._start: Planar | None = None
+        self._tracks: tuple[Track, ...] = ()
+        self._is_over = False
+        observation = self._observe()
+        self._episode.judge(self._scene)
+        return observation, self._info(dict.fromkeys(TERMS, 0.0))
+
+    def step(
+        self, action: NDArray[np.float32] | Sequence[float]
+    ) -> tuple[Arrays, SupportsFloat, bool, bool, dict[str, Any]]:
+        """Drive for one control step.
+
+        Raises:
+            BadInput: the action is not two finite numbers, or there is no episode under way.
+        """
+        world = self._running()
+        shares = _check_action(action)
+        limits = self._limits
+        world.step(shares[0] * limits.max_linear_m_s, shares[1] * limits.max_angular_rad_s)
+        self._frame += 1
+        observation = self._observe()
+        situation = self._episode.judge(self._scene)
+        terms = reward_terms(
+            self._task, situation, dt_s=self._dt_s, keep_m=self._keep_m,
+            max_linear_m_s=limits.max_linear_m_s, action=shares, before=self._action,
+        )  # fmt: skip
+        self._action = shares
+        terminated = situation.collided or situation.is_lost
+        truncated = self._frame >= self._frames
+        self._is_over = terminated or truncated
+        return observation, math.fsum(terms.values()), terminated, truncated, self._info(terms)
+
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """Draw thermal image, colour image and plan side by side, (360, 1440, 3).
+
+        Raises:
+            BadInput: there is no episode yet.
+        """
+        if self._picture is None:
+            return None
+        self._running(even_over=True)
+        assert isinstance(self._senses, Observation)
+        return self._picture.draw(self._senses, self._scene, self._tracks)
+
+    def close(self) -> None:
+        """Free the physics world."""
+        if self._world is not None:
+            self._world.close()
+            self._world = None
+
+    def _config(self, options: Mapping[str, Any]) -> WorldConfig:
+        config = self._scenario.world(self._seed)
+        needs_images = self._kind != "truth" or self.render_mode is not None
+        renderer = config.renderer if needs_images else BLIND
+        config = replace(config, robot=self._robot, physics_hz=PHYSICS_HZ, renderer=renderer)
+        return vary(config, options, stream(self._seed, "environment.options"))
+
+    def _observe(self) -> Arrays:
+        """Sense once, and put it into the form that was asked for."""
+        world = self._running()
+        before = self._start if self._start is None else self._senses.odometry
+        has_images = world.config.renderer != BLIND
+        self._senses: Senses = world.observe() if has_images else world.sense()
+        self._scene: Scene = world.scene()
+        if self._start is None:
+            self._start = self._senses.odometry
+        found = feel(self._senses, self._start)
+        if self._kind == "truth":
+            return found | see_truth(self._scene, self._robot)
+        assert isinstance(self._senses, Observation)
+        if self._kind == "pixels":
+            return found | see_images(self._senses)
+        self._tracks = self._tracker.update(make_frame(self._senses, before))
+        return found | see_tracks(self._tracks, self._robot)
+
+    def _info(self, terms: dict[str, float]) -> dict[str, Any]:
+        return {
+            "truth": self._scene,
+            "reward": terms,
+            "metrics": self._episode.metrics(),
+            "events": self._episode.events,
+            "seed": self._seed,
+        }
+
+    def _running(self, *, even_over: bool = False) -> World:
+        if self._world is None or (self._is_over and not even_over):
+            raise BadInput("environment: no episode is under way; call reset() first")
+        return self._world
+
+
+def _check_word(name: str, word: str | None, known: Sequence[str | None]) -> None:
+    if word not in known:
+        raise BadInput(f"{name} {word!r}: there is no such; choose from {', '.join(map(str, known))}")
+
+
+def _check_size(size: tuple[int, int]) -> None:
+    is_fine = len(size) == 2 and all(
+        isinstance(got, int) and low <= got <= high
+        for got, low, high in zip(size, SMALLEST_PX, LARGEST_PX, strict=True)
+    )
+    if not is_fine:
+        (narrow, flat), (wide, tall) = SMALLEST_PX, LARGEST_PX
+        raise BadInput(
+            f"image_size {size!r} must be width and height [px], {narrow} x {flat} to {wide} x {tall}"
+        )
+
+
+def _check_action(action: NDArray[np.float32] | Sequence[float]) -> tuple[float, float]:
+    """Give the two shares, clipped."""
+    shares = np.asarray(action, np.float64)
+    if shares.shape != (2,) or not np.isfinite(shares).all():
+        raise BadInput(f"action {action!r} must be two finite numbers: shares of speed and turn rate")
+    linear, angular = np.clip(shares, -1.0, 1.0).tolist()
+    return linear, angular
+
+
+def _resize(robot: RobotConfig, size: tuple[int, int]) -> RobotConfig:
+    """Let both cameras take images of another size, of the same height of view and as sharp."""
+    thermal, colour = robot.thermal, robot.colour
+
+    def camera(usual: Camera) -> Camera:
+        return replace(usual, width=size[0], height=size[1])
+
+    blur = thermal.blur_px * size[1] / thermal.camera.height
+    return replace(
+        robot,
+        thermal=replace(thermal, camera=camera(thermal.camera), blur_px=blur),
+        colour=replace(colour, camera=camera(colour.camera)),
+    )
+
+
+def _keep_m(scenario: Scenario, config: WorldConfig) -> float:
+    """Distance [m] at which the first person looks as tall as the scenario asks."""
+    if not config.people:
+        return _KEEP_M
+    return following_task(config, scenario.follow_config().keep_height).keep_m

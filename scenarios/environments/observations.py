@@ -1,0 +1,124 @@
+"""What a controller in an environment is told: images, tracks, or the truth in the form of tracks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any, Final
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from sim.config import RobotConfig
+from sim.observation import Observation, Senses
+from sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
+from sim.truth.image_free_truth import Bystander, Scene
+from tracker.track import Status, Track
+
+Arrays = dict[str, NDArray[Any]]
+Row = tuple[float, ...]
+
+KINDS: Final = ("pixels", "tracks", "truth")
+MOST_TRACKS: Final = 5
+COLUMNS: Final = ("id", "x", "height", "top", "bottom", "confidence", "is_visible")
+"""The seven numbers of each of the five people in `tracks`, the tallest and so nearest first.
+
+id is 1 or more and stays with a person; a row of zeros is nobody. x is in half image widths, -1 at the left
+border, +1 at the right one; height, top and bottom are in image heights from the top; confidence is 0..1;
+is_visible is 0 while a person is wholly hidden.
+"""
+
+SEEN_SHARE: Final = 0.3  # of a person's middle that must be visible for the person to count as seen
+_LOWEST: Final = (0.0, -10.0, 0.0, -10.0, -10.0, 0.0, 0.0)
+_HIGHEST: Final = (1e6, 10.0, 10.0, 10.0, 10.0, 1.0, 1.0)
+_SONARS: Final = 16
+_FARTHEST_M: Final = 1e4
+_FASTEST: Final = 10.0
+
+
+def observation_space(kind: str, robot: RobotConfig) -> spaces.Dict:
+    """Give the space of one of `KINDS`.
+
+    `sonar` is (16,) [m], counted from the left to the front and round; `odometry` is (6,): x, y [m] from the
+    start in its frame, cosine and sine of the heading since the start, forward speed [m/s], turn rate
+    [rad/s]. `pixels` has `thermal` (H, W, 1) and `colour` (H, W, 3) uint8 beside them; `tracks` and `truth`
+    have `tracks` (35,), five rows of `COLUMNS`.
+    """
+    sonar = robot.sonar
+    odometry = np.array([_FARTHEST_M, _FARTHEST_M, 1.0, 1.0, _FASTEST, _FASTEST], np.float32)
+    found: dict[str, spaces.Space[Any]] = {
+        "sonar": spaces.Box(sonar.nearest_m, sonar.farthest_m, (_SONARS,), np.float32),
+        "odometry": spaces.Box(-odometry, odometry, dtype=np.float32),
+    }
+    if kind == "pixels":
+        thermal, colour = robot.thermal.camera, robot.colour.camera
+        found["thermal"] = spaces.Box(0, 255, (thermal.height, thermal.width, 1), np.uint8)
+        found["colour"] = spaces.Box(0, 255, (colour.height, colour.width, 3), np.uint8)
+    else:
+        lowest, highest = (np.tile(np.array(row, np.float32), MOST_TRACKS) for row in (_LOWEST, _HIGHEST))
+        found["tracks"] = spaces.Box(lowest, highest, dtype=np.float32)
+    return spaces.Dict(found)
+
+
+def feel(senses: Senses, start: Planar) -> Arrays:
+    """Give what every observation has: sonar and odometry."""
+    here = senses.odometry
+    turned = here.heading - start.heading
+    cos, sin = math.cos(start.heading), math.sin(start.heading)
+    dx, dy = here.x - start.x, here.y - start.y
+    left, right = senses.wheel_speeds_m_s
+    odometry = (
+        cos * dx + sin * dy, cos * dy - sin * dx, math.cos(turned), math.sin(turned),
+        (left + right) / 2.0, (right - left) / WHEEL_DISTANCE_M,
+    )  # fmt: skip
+    return {"sonar": senses.sonar_m.astype(np.float32), "odometry": np.array(odometry, np.float32)}
+
+
+def see_images(observation: Observation) -> Arrays:
+    """Give the images of `pixels`."""
+    return {"thermal": observation.thermal[:, :, None], "colour": observation.colour}
+
+
+def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> Arrays:
+    """Give what the tracker is sure of."""
+    return _table(
+        _row(track.id, track.box, track.confidence, track.status is not Status.TOTALLY_OCCLUDED, robot)
+        for track in tracks
+        if track.status is not Status.TENTATIVE
+    )
+
+
+def see_truth(scene: Scene, robot: RobotConfig) -> Arrays:
+    """Give what a perfect tracker would say: everybody within the image, hidden or not."""
+    return _table(
+        _row(person.id, person.box, 1.0, person.visible_share >= SEEN_SHARE, robot)
+        for person in scene.people
+        if person.box is not None and _is_inside(person, robot)
+    )
+
+
+def _is_inside(person: Bystander, robot: RobotConfig) -> bool:
+    """Whether a person's middle lies between the borders."""
+    assert person.box is not None
+    middle = person.box[0] + person.box[2] / 2.0
+    return -0.5 <= middle <= robot.thermal.camera.width - 0.5
+
+
+def _row(
+    number: int, box: tuple[float, float, float, float], confidence: float, visible: bool, robot: RobotConfig
+) -> Row:
+    left, top, box_width, box_height = box
+    width, height = robot.thermal.camera.width, robot.thermal.camera.height
+    x = (left + box_width / 2.0 - (width - 1) / 2.0) / (width / 2.0)
+    upper, lower = (top + 0.5) / height, (top + box_height + 0.5) / height
+    return float(number), x, box_height / height, upper, lower, confidence, float(visible)
+
+
+def _table(rows: Iterable[Row]) -> Arrays:
+    """Put the tallest first, and nobody into the rest."""
+    tallest = sorted(rows, key=lambda row: -row[2])[:MOST_TRACKS]
+    table = np.zeros((MOST_TRACKS, len(COLUMNS)), np.float32)
+    if tallest:
+        table[: len(tallest)] = np.clip(tallest, _LOWEST, _HIGHEST)
+    return {"tracks": table.reshape(-1)}

@@ -1,0 +1,58 @@
+"""The written behaviours as controllers of an environment: observations in, actions out."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from behaviours.behaviour import Behaviour
+from behaviours.percept import SeenPerson, Sight
+from scenarios.environments.observations import COLUMNS, Arrays
+from sim.config import DriveConfig
+from sim.robot.sonar import SONAR_ANGLE_RAD
+
+_DT_S = 1.0 / 15.0
+
+
+class WrittenController:
+    """Lets a behaviour drive in an environment, to be compared with controllers of other kinds.
+
+    Use one for each episode, as behaviours remember. An environment has no emergency stop: there a robot
+    brakes as it always does.
+
+    Args:
+        behaviour: fresh, such as `load_scenario("single_follow").make_behaviour()`.
+        limits: of the robot's drive, of which actions are shares.
+    """
+
+    def __init__(self, behaviour: Behaviour, limits: DriveConfig | None = None) -> None:
+        self._behaviour = behaviour
+        self._limits = DriveConfig() if limits is None else limits
+        self._time_s = 0.0
+
+    def __call__(self, observation: Arrays) -> NDArray[np.float32]:
+        """Give the action (2,) for an observation with `tracks`; called once for every step."""
+        rows = observation["tracks"].reshape(-1, len(COLUMNS)).tolist()
+        speed, turn_rate = observation["odometry"][4:].tolist()
+        sight = Sight(
+            time_s=self._time_s,
+            people=tuple(_person(row) for row in rows if row[0] > 0),
+            sonar_m=observation["sonar"].astype(np.float64),
+            sonar_angle_rad=SONAR_ANGLE_RAD,
+            linear_m_s=speed,
+            angular_rad_s=turn_rate,
+            colour=observation.get("colour"),
+        )
+        self._time_s += _DT_S
+        command = self._behaviour.command(sight)
+        limits = self._limits
+        shares = command.linear_m_s / limits.max_linear_m_s, command.angular_rad_s / limits.max_angular_rad_s
+        return np.clip(np.array(shares, np.float32), -1.0, 1.0)
+
+
+def _person(row: list[float]) -> SeenPerson:
+    number, x, height, top, bottom, confidence, is_visible = row
+    return SeenPerson(
+        id=int(number), x=x, height=height, top=top, bottom=bottom, confidence=confidence,
+        is_visible=is_visible > 0.5,
+    )  # fmt: skip

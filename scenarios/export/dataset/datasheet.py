@@ -1,0 +1,55 @@
+"""The README of a rendered set, under the questions of a datasheet.
+
+The questions are those of Gebru et al., "Datasheets for Datasets", 2021.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from scenarios.export.dataset.checks import Check
+from scenarios.export.dataset.statistics import Bin, Statistics
+from scenarios.files.equip_robot import equip_robot
+from scenarios.files.scenario import Scenario
+
+_TEMPLATE = Path(__file__).parent / "datasheet.md.jinja"
+
+
+def write_datasheet(
+    path: Path,
+    statistics: Mapping[str, Statistics],
+    checks: Sequence[Check],
+    about: Mapping[str, Any],
+    scenarios: Sequence[Scenario],
+) -> None:
+    """Write the datasheet of a set.
+
+    Args:
+        path: the file.
+        statistics: of all, and of each split that has runs.
+        checks: what was looked at.
+        about: scenarios as given, seeds, images, tracker, versions, size_mb, and which splits are lacking.
+        scenarios: what was played.
+    """
+    environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment.filters |= {"span": _span, "quote": shlex.quote}
+    template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
+    text = template.render(
+        statistics=statistics, checks=checks, about=about, scenarios=scenarios, sizes=_image_sizes(scenarios)
+    )
+    path.write_text(text, encoding="utf-8")
+
+
+def _image_sizes(scenarios: Sequence[Scenario]) -> list[str]:
+    robots = [equip_robot(scenario.spec.robot) for scenario in scenarios]
+    cameras = [sensor.camera for robot in robots for sensor in (robot.thermal, robot.colour)]
+    return list(dict.fromkeys(f"{camera.width}x{camera.height}" for camera in cameras))
+
+
+def _span(one: Bin) -> str:
+    return f"{one.start:g} and more" if one.end == float("inf") else f"{one.start:g} to {one.end:g}"

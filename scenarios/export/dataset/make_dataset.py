@@ -1,0 +1,160 @@
+"""Render a data set: every scenario with every seed, then splits, statistics, checks and the datasheet."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from bad_input import BadInput
+from scenarios.export.dataset.checks import Check, check_set
+from scenarios.export.dataset.datasheet import write_datasheet
+from scenarios.export.dataset.splits import SPLITS, lacking_splits, split_file, split_lines, split_of
+from scenarios.export.dataset.statistics import Statistics, measure
+from scenarios.files.load import load_scenario
+from scenarios.run_folder.folder import versions
+from scenarios.run_folder.out_folder import check_named, writing_to
+from scenarios.running.run import RunOptions
+from scenarios.running.sweep import Job, run_jobs, unfinished
+
+ABOUT = "dataset.json"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderedSet:
+    """A finished set.
+
+    Attributes:
+        folder: where it lies.
+        runs: folders of its runs, in the order of scenarios, then seeds.
+        statistics: of each split that has runs, and of "all".
+        checks: what was looked at.
+        size_mb: [MB] of the runs on disk; exports may lie beside them.
+        lacking: which splits have no run, and how many seeds they need; empty if all have one.
+    """
+
+    folder: Path
+    runs: tuple[Path, ...]
+    statistics: dict[str, Statistics]
+    checks: tuple[Check, ...]
+    size_mb: float
+    lacking: str
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether every check holds."""
+        return not any(check.failures for check in self.checks)
+
+
+def render_set(
+    scenarios: Sequence[str], seeds: int, folder: Path, *, frames: bool, tracker: str, processes: int
+) -> RenderedSet:
+    """Render a set, or what is missing of it; complete runs stay.
+
+    The datasheet and `dataset.json` are written last: without them a set is not finished.
+
+    Args:
+        scenarios: names, or paths of scenario files.
+        seeds: how many of each, from 0 on.
+        folder: of the set.
+        frames: whether images are written.
+        tracker: whose eyes steer robots that follow people; "truth" for the true boxes.
+        processes: how many runs at the same time.
+
+    Raises:
+        BadInput: as for a run; or the folder holds something that is no set.
+    """
+    loaded = [load_scenario(scenario) for scenario in scenarios]
+    names = [scenario.name for scenario in loaded]
+    if len(set(names)) < len(names):
+        raise BadInput(f"render: {', '.join(names)}: two scenarios have the same name; give each once")
+    _claim(folder)
+    jobs = [
+        Job(
+            scenario,
+            RunOptions(
+                seed=seed, out=folder / f"{name}-{seed}", frames=frames, tracker=tracker, record=False
+            ),
+        )
+        for scenario, name in zip(scenarios, names, strict=True)
+        for seed in range(seeds)
+    ]
+    waiting = unfinished(jobs)
+    _reopen(folder)
+    runs = tuple(job.options.out for job in jobs)
+    numbers = [job.options.seed for job in jobs]
+    _write_splits(folder, [run.name for run in runs], numbers)
+    run_jobs(waiting, processes, folder.name)
+    done = RenderedSet(
+        folder=folder,
+        runs=runs,
+        statistics=_statistics(runs, numbers),
+        checks=tuple(check_set(folder, runs, loaded[0], jobs[0].options)),
+        size_mb=sum(path.stat().st_size for run in runs for path in run.rglob("*") if path.is_file()) / 1e6,
+        lacking=lacking_splits(seeds),
+    )
+    about = {"scenarios": names, "seeds": seeds, "images": frames, "tracker": tracker, "versions": versions()}
+    content = about | {"given": list(scenarios), "size_mb": done.size_mb, "lacking": done.lacking}
+    write_datasheet(folder / "README.md", done.statistics, done.checks, content, loaded)
+    _write_about(done, about)
+    return done
+
+
+def _claim(folder: Path) -> None:
+    """Make the folder.
+
+    Raises:
+        BadInput: something else lies there.
+    """
+    check_named(folder)
+    if folder.exists() and (not folder.is_dir() or (any(folder.iterdir()) and not _is_ours(folder))):
+        raise BadInput(f"{folder}: holds something that is no rendered set; give another --out")
+    with writing_to(folder):
+        (folder / "splits").mkdir(parents=True, exist_ok=True)
+
+
+def _reopen(folder: Path) -> None:
+    """Take back what says that the set is finished."""
+    for name in ("README.md", ABOUT):
+        (folder / name).unlink(missing_ok=True)
+
+
+def refuse_unfinished(folder: Path) -> None:
+    """Refuse a set of which runs may be missing; folders that are no set are none of its business.
+
+    Raises:
+        BadInput: it is not finished.
+    """
+    if _is_ours(folder) and not (folder / ABOUT).is_file():
+        raise BadInput(
+            f"{folder}: this set is not finished; the same `peopleboy render` goes on where it was, "
+            "or name runs of it"
+        )
+
+
+def _is_ours(folder: Path) -> bool:
+    return (folder / "splits").is_dir()
+
+
+def _write_splits(folder: Path, names: Sequence[str], seeds: Sequence[int]) -> None:
+    for split in SPLITS:
+        split_file(folder, split).write_text(split_lines(names, seeds, split), encoding="utf-8")
+
+
+def _statistics(runs: Sequence[Path], seeds: Sequence[int]) -> dict[str, Statistics]:
+    groups = {"all": list(runs)} | {
+        split: [run for run, seed in zip(runs, seeds, strict=True) if split_of(seed) == split]
+        for split in SPLITS
+    }
+    return {name: measure(group) for name, group in groups.items() if group}
+
+
+def _write_about(done: RenderedSet, about: dict[str, Any]) -> None:
+    content = about | {
+        "runs": [run.name for run in done.runs],
+        "statistics": {name: each.to_json() for name, each in done.statistics.items()},
+        "checks": [asdict(check) for check in done.checks],
+    }
+    (done.folder / ABOUT).write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")

@@ -1,0 +1,128 @@
+"""From what a scenario file says about a place to the place itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from bad_input import BadInput
+from scenarios.files.place_things import make_things, resolve_colour
+from scenarios.files.schema import (
+    Colour,
+    CorridorSpec,
+    DoorSpec,
+    LCorridorSpec,
+    PlaceSpec,
+    RoomSpec,
+    ScenarioSpec,
+)
+from scenarios.files.schema_errors import hint
+from sim.places.floor_plan import Door, FloorPlan, check_doors
+from sim.places.place import Place
+from sim.places.rooms import Surfaces, build_place, l_corridor, straight_corridor, t_corridor
+from sim.shapes.materials import Look
+
+
+def make_floor_plan(spec: PlaceSpec) -> FloorPlan:
+    """Lay out the floor of a place, with its doors.
+
+    Raises:
+        BadInput: an unknown wall, or a door that does not fit.
+    """
+    plan = _areas(spec)
+    for index, door in enumerate(spec.doors):
+        check_wall(plan, f"place.doors[{index}].wall", door.wall)
+        if door.height_m > spec.height_m - 0.1:
+            raise BadInput(
+                f"place.doors[{index}].height_m: {door.height_m:g} is too high; "
+                f"the ceiling is at {spec.height_m:g} m and a lintel needs 0.1 m"
+            )
+    plan = replace(plan, doors=tuple(_door(door) for door in spec.doors))
+    try:
+        check_doors(plan)
+    except BadInput as error:
+        raise BadInput(f"place.{error}") from error
+    return plan
+
+
+def make_place(spec: ScenarioSpec, folder: Path) -> Place:
+    """Build the whole place of a scenario.
+
+    Args:
+        spec: the scenario.
+        folder: where the scenario file lies, for its own URDF files.
+
+    Raises:
+        BadInput: something does not fit; the message begins with the key.
+    """
+    plan = make_floor_plan(spec.place)
+    return build_place(
+        plan,
+        height_m=spec.place.height_m,
+        surfaces=_surfaces(spec.place, plan),
+        things=tuple(f for fixtures in make_things(spec, plan, folder).values() for f in fixtures),
+        surroundings_c=spec.place.temperatures.surroundings_c,
+        light=tuple((step.at_s, step.level) for step in spec.lights) or ((0.0, 1.0),),
+    )
+
+
+def check_wall(plan: FloorPlan, key: str, name: str) -> None:
+    """Refuse the name of a wall that the plan lacks.
+
+    Raises:
+        BadInput: with the key and the walls that there are.
+    """
+    known = [wall.name for wall in plan.walls()]
+    if name not in known:
+        raise BadInput(f"{key}: unknown wall {name!r}; {hint(name, known)}")
+
+
+def _areas(spec: PlaceSpec) -> FloorPlan:
+    if isinstance(spec, RoomSpec | CorridorSpec):
+        return straight_corridor(spec.length_m, spec.width_m)
+    if isinstance(spec, LCorridorSpec):
+        _check_longer(spec.first_m, "place.first_m", spec.width_m)
+        return l_corridor(spec.first_m, spec.second_m, spec.width_m, spec.turn)
+    _check_longer(spec.bar_m, "place.bar_m", spec.width_m)
+    return t_corridor(spec.stem_m, spec.bar_m, spec.width_m)
+
+
+def _check_longer(length_m: float, key: str, width_m: float) -> None:
+    if length_m <= width_m:
+        raise BadInput(f"{key}: {length_m:g} must be more than the corridor's width of {width_m:g} m")
+
+
+def _door(spec: DoorSpec) -> Door:
+    return Door(
+        wall=spec.wall,
+        along_m=spec.along_m,
+        width_m=spec.width_m,
+        height_m=spec.height_m,
+        is_open=spec.open,
+        lobby_m=spec.lobby_m,
+    )
+
+
+def _surfaces(spec: PlaceSpec, plan: FloorPlan) -> Surfaces:
+    usual, temperatures, colours = Surfaces(), spec.temperatures, spec.colours
+    walls = _look(usual.walls, temperatures.walls_c, colours.walls)
+    for name in temperatures.single_walls_c:
+        check_wall(plan, "place.temperatures.single_walls_c", name)
+    return Surfaces(
+        floor=_look(usual.floor, temperatures.floor_c, colours.floor),
+        ceiling=_look(usual.ceiling, temperatures.ceiling_c, colours.ceiling),
+        walls=walls,
+        door=_look(usual.door, usual.door.temperature_c, colours.doors),
+        named={
+            name: replace(walls, temperature_c=temperature)
+            for name, temperature in temperatures.single_walls_c.items()
+        },
+    )
+
+
+def _look(usual: Look, temperature_c: float, colour: Colour | None) -> Look:
+    if colour is None:
+        return replace(usual, temperature_c=temperature_c)
+    rgb = resolve_colour(colour)
+    darker = (0.85 * rgb[0], 0.85 * rgb[1], 0.85 * rgb[2])
+    return replace(usual, temperature_c=temperature_c, rgb=rgb, second_rgb=darker)

@@ -1,0 +1,197 @@
+"""What a schema cannot see: people in walls, robots in tables, two of one name."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bad_input import BadInput
+from scenarios.files.place_things import describe_floor, name_things
+from scenarios.files.schema import PersonSpec, RobotSpec, ScenarioSpec, WaypointSpec
+from scenarios.files.schema_errors import hint
+from sim.places.floor_plan import FloorPlan
+from sim.places.place import Place
+from sim.places.rectangle import Rectangle
+from sim.places.things import KINDS
+
+BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
+ROBOT_M = 0.27  # radius of the circle around the robot
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ground:
+    """Where people can walk.
+
+    Attributes:
+        plan: the floor.
+        boxes: walls and things, grown by half a person.
+        names: theirs.
+        seats: names of things that one may sit on.
+    """
+
+    plan: FloorPlan
+    boxes: tuple[Rectangle, ...]
+    names: tuple[str, ...]
+    seats: frozenset[str]
+
+    def fault(self, path: Sequence[WaypointSpec]) -> str | None:
+        """Say what is wrong with a path, beginning with its key; None if people can walk it."""
+        for index, waypoint in enumerate(path):
+            fault = self._point_fault(waypoint)
+            if fault is None and index > 0:
+                fault = self._leg_fault(path[index - 1], waypoint)
+            if fault is not None:
+                return f"path[{index}].at_m: {fault}"
+        return None
+
+    def _point_fault(self, waypoint: WaypointSpec) -> str | None:
+        x, y = waypoint.at_m
+        for box, name in self._blocking(waypoint):
+            if box.contains(x, y):
+                return f"({x:g}, {y:g}) is in or within {BODY_M:g} m of {name!r}; move it away"
+        if not any(area.contains(x, y) for area in self.plan.walkable()):
+            return f"({x:g}, {y:g}) is outside the floor; {describe_floor(self.plan)}"
+        return None
+
+    def _leg_fault(self, start: WaypointSpec, end: WaypointSpec) -> str | None:
+        for box, name in self._blocking(start, end):
+            if crosses(box, start.at_m, end.at_m):
+                (x0, y0), (x1, y1) = start.at_m, end.at_m
+                return (
+                    f"the straight way from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) runs through "
+                    f"or within {BODY_M:g} m of {name!r}; add a point beside it"
+                )
+        return None
+
+    def _blocking(self, *waypoints: WaypointSpec) -> Iterator[tuple[Rectangle, str]]:
+        """Everything in the way; a seat is not, for who sits down or gets up."""
+        may_sit = any(waypoint.posture == "sitting" for waypoint in waypoints)
+        for box, name in zip(self.boxes, self.names, strict=True):
+            if not (may_sit and name in self.seats):
+                yield box, name
+
+
+def make_ground(spec: ScenarioSpec, plan: FloorPlan, place: Place) -> Ground:
+    """Collect what people must walk around."""
+    named = zip(name_things(spec.things), spec.things, strict=True)
+    return Ground(
+        plan=plan,
+        boxes=tuple(_rectangle(row).grown(BODY_M) for row in place.obstacles),
+        names=place.obstacle_names,
+        seats=frozenset(name for name, thing in named if thing.kind in KINDS and KINDS[thing.kind].is_seat),
+    )
+
+
+def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[str, PersonSpec]], ground: Ground) -> None:
+    """Refuse what cannot be played.
+
+    Args:
+        spec: the scenario.
+        people: everybody, groups included, each with its key in the file.
+        ground: where one can walk.
+
+    Raises:
+        BadInput: the message begins with the key.
+    """
+    _check_names(people)
+    _check_robot(spec, ground)
+    _check_order("lights", "at_s", [light.at_s for light in spec.lights])
+    for key, person in people:
+        _check_times(key, person, spec.duration_s)
+        _check_faces(key, person, [other.name for _, other in people])
+        fault = ground.fault(person.path)
+        if fault is not None:
+            raise BadInput(f"{key}.{fault}")
+        _check_distance(key, person, spec.robot)
+
+
+def crosses(box: Rectangle, start: tuple[float, float], end: tuple[float, float]) -> bool:
+    """Whether a straight line has a point inside a rectangle (slab method)."""
+    origin, way = np.array(start), np.subtract(end, start)
+    low, high = np.array([box.min_x, box.min_y]), np.array([box.max_x, box.max_y])
+    first, last = 0.0, 1.0
+    for axis in range(2):
+        if abs(way[axis]) < 1e-12:
+            if not low[axis] < origin[axis] < high[axis]:
+                return False
+            continue
+        near, far = sorted(((low[axis] - origin[axis]) / way[axis], (high[axis] - origin[axis]) / way[axis]))
+        first, last = max(first, near), min(last, far)
+    return first < last
+
+
+def _check_names(people: Sequence[tuple[str, PersonSpec]]) -> None:
+    seen: dict[str, str] = {}
+    for key, person in people:
+        if person.name == "robot":
+            raise BadInput(f"{key}: name 'robot' is taken by the robot; choose another")
+        if person.name in seen:
+            raise BadInput(
+                f"{key}: name {person.name!r} is also that of {seen[person.name]}; give each its own"
+            )
+        seen[person.name] = key
+
+
+def _check_robot(spec: ScenarioSpec, ground: Ground) -> None:
+    x, y = spec.robot.at_m
+    margin = ROBOT_M - BODY_M
+    for box, name in zip(ground.boxes, ground.names, strict=True):
+        if box.grown(margin).contains(x, y):
+            raise BadInput(
+                f"robot.at_m: ({x:g}, {y:g}) is in or within {ROBOT_M:g} m of {name!r}; move it away"
+            )
+    if not any(area.contains(x, y) for area in ground.plan.walkable()):
+        raise BadInput(f"robot.at_m: ({x:g}, {y:g}) is outside the floor; {describe_floor(ground.plan)}")
+    if spec.robot.commands and spec.robot.behaviour != "scripted":
+        raise BadInput(
+            f"robot.commands: a robot that is to {spec.robot.behaviour} takes none; use 'scripted'"
+        )
+    if spec.robot.keep_height is not None and spec.robot.behaviour != "follow_person":
+        raise BadInput("robot.keep_height: only a robot that is to 'follow_person' takes it")
+    if spec.robot.walls_by is not None and spec.robot.behaviour != "follow_corridor":
+        raise BadInput("robot.walls_by: only a robot that is to 'follow_corridor' takes it")
+    _check_order("robot.commands", "from_s", [command.from_s for command in spec.robot.commands])
+
+
+def _check_order(key: str, unit_key: str, times: Sequence[float]) -> None:
+    for index in range(1, len(times)):
+        if times[index] <= times[index - 1]:
+            raise BadInput(
+                f"{key}[{index}].{unit_key}: {times[index]:g} must be after {times[index - 1]:g} before it"
+            )
+
+
+def _check_times(key: str, person: PersonSpec, duration_s: float) -> None:
+    if person.leave_s is not None and person.leave_s <= person.enter_s:
+        raise BadInput(f"{key}.leave_s: {person.leave_s:g} must be after enter_s {person.enter_s:g}")
+    if person.enter_s >= duration_s:
+        raise BadInput(f"{key}.enter_s: {person.enter_s:g} must be before the end, duration_s {duration_s:g}")
+    for index in range(1, len(person.path)):
+        if math.dist(person.path[index - 1].at_m, person.path[index].at_m) < 0.05:
+            raise BadInput(f"{key}.path[{index}].at_m: it is the point before; use pause_s there to stay")
+
+
+def _check_faces(key: str, person: PersonSpec, names: Sequence[str]) -> None:
+    known = [*(name for name in names if name != person.name), "robot"]
+    for index, waypoint in enumerate(person.path):
+        if isinstance(waypoint.face, str) and waypoint.face not in known:
+            raise BadInput(
+                f"{key}.path[{index}].face: unknown name {waypoint.face!r}; {hint(waypoint.face, known)}"
+            )
+
+
+def _check_distance(key: str, person: PersonSpec, robot: RobotSpec) -> None:
+    distance = math.dist(person.path[0].at_m, robot.at_m)
+    if distance < ROBOT_M + BODY_M:
+        raise BadInput(
+            f"{key}.path[0].at_m: {person.name!r} starts {distance:.2g} m from the robot's middle, "
+            f"inside it; keep {ROBOT_M + BODY_M:g} m"
+        )
+
+
+def _rectangle(row: NDArray[np.float64]) -> Rectangle:
+    return Rectangle(*(float(value) for value in row))

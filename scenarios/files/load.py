@@ -1,0 +1,88 @@
+"""Find scenarios, by name in the library or by path, and read them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from bad_input import BadInput
+from scenarios.files.read_yaml import read_yaml
+from scenarios.files.scenario import Scenario, make_scenario
+from scenarios.files.schema import ScenarioSpec
+from scenarios.files.schema_errors import explain, hint
+
+LIBRARY = Path(__file__).parents[1] / "library"
+SUITES = Path(__file__).parents[1] / "suites"
+
+
+def load_scenario(name_or_path: str | Path) -> Scenario:
+    """Load a scenario by its library name, or by the path of a YAML file.
+
+    Raises:
+        BadInput: there is no such scenario, or the file is wrong: file, key, value and what would be right.
+    """
+    path = _find(name_or_path)
+    return parse_scenario(read_yaml(path), source=_shown(path), folder=path.parent)
+
+
+def parse_scenario(data: dict[Any, Any], *, source: str, folder: Path) -> Scenario:
+    """Check the data of a scenario file.
+
+    Args:
+        data: what the file holds.
+        source: the file's name, for messages.
+        folder: where URDF files of the scenario's own lie.
+
+    Raises:
+        BadInput: the data are wrong.
+    """
+    try:
+        return make_scenario(ScenarioSpec.model_validate(_filled_in(data)), folder)
+    except ValidationError as error:
+        raise BadInput(f"{source}: {explain(error, ScenarioSpec)}") from error
+    except BadInput as error:
+        raise BadInput(f"{source}: {error}") from error
+
+
+def library() -> dict[str, str]:
+    """Names and descriptions of the scenarios that come with PeopleBoy, by name."""
+    scenarios = [load_scenario(path.stem) for path in sorted(LIBRARY.glob("*.yaml"))]
+    return {scenario.name: scenario.description for scenario in scenarios}
+
+
+def _filled_in(data: dict[Any, Any], via: tuple[str, ...] = ()) -> dict[Any, Any]:
+    """The data with the keys of the scenario that it is like; its own replace them whole.
+
+    Raises:
+        BadInput: there is no such scenario in the library, or it is in the end like itself.
+    """
+    if not isinstance(data.get("like"), str):
+        return data
+    path = _find_in_library(data["like"], "like: ")
+    if path.stem in via:
+        raise BadInput(f"like: {path.stem!r} is like itself, by way of {', '.join(via)}; leave it out of one")
+    model = _filled_in(read_yaml(path), (*via, path.stem))
+    return {key: value for key, value in (model | data).items() if key != "like"}
+
+
+def _find(name_or_path: str | Path) -> Path:
+    text = str(name_or_path)
+    if "/" in text or text.endswith((".yaml", ".yml")) or isinstance(name_or_path, Path):
+        return Path(name_or_path)
+    return _find_in_library(text)
+
+
+def _find_in_library(name: str, key: str = "") -> Path:
+    known = [path.stem for path in LIBRARY.glob("*.yaml")]
+    if (SUITES / f"{name}.yaml").is_file():
+        raise BadInput(f"{key}{name} is a suite of scenarios, which only `peopleboy run` takes whole")
+    if name not in known:
+        raise BadInput(f"{key}unknown scenario {name!r}; {hint(name, known)}; a file's path ends in .yaml")
+    return LIBRARY / f"{name}.yaml"
+
+
+def _shown(path: Path) -> str:
+    """The path as the user gave it; a library file as library/NAME.yaml."""
+    return f"library/{path.name}" if path.parent == LIBRARY else str(path)

@@ -1,0 +1,196 @@
+"""A scenario that was read and checked, ready to be played with any seed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from bad_input import BadInput
+from behaviours.behaviour import Behaviour
+from behaviours.command import Command
+from behaviours.corridor.corridor_from_image import CameraView
+from behaviours.corridor.follow_corridor import CorridorConfig
+from behaviours.following.follow_person import FollowConfig
+from behaviours.registry import make_behaviour
+from scenarios.files.build_place import make_floor_plan, make_place
+from scenarios.files.cast_people import cast, make_config, members
+from scenarios.files.check import Ground, check_scenario, make_ground
+from scenarios.files.drives import KEPT, Repeat, pack_drive, read_drive
+from scenarios.files.equip_robot import equip_robot
+from scenarios.files.outfits import tell_apart
+from scenarios.files.own_files import read_own_files
+from scenarios.files.schema import DrawnSpec, PersonSpec, RobotSpec, ScenarioSpec
+from sim.config import WorldConfig
+from sim.places.floor_plan import FloorPlan
+from sim.places.place import Place
+from sim.random_streams import stream
+
+RENDERERS = ("raycast", "bullet")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scenario:
+    """What is to be played: a place, things, people, and a robot that does something.
+
+    Attributes:
+        spec: what the file says.
+        plan: the floor.
+        place: everything that stands still.
+        ground: where people can walk.
+        files: contents of the files of its own that it names, by path from its own folder.
+        drive: commands, one a control step, that the robot repeats instead of behaving; None to behave.
+    """
+
+    spec: ScenarioSpec
+    plan: FloorPlan
+    place: Place
+    ground: Ground
+    files: Mapping[str, bytes]
+    drive: tuple[Command, ...] | None = None
+
+    @property
+    def name(self) -> str:
+        """One word, for folders."""
+        return self.spec.name
+
+    @property
+    def description(self) -> str:
+        """What happens, in a sentence or two."""
+        return " ".join(self.spec.description.split())
+
+    @property
+    def duration_s(self) -> float:
+        """Seconds from start to end."""
+        return self.spec.duration_s
+
+    @property
+    def seed(self) -> int:
+        """The seed that everything was drawn from, in a run's own scenario file; 0 in any other."""
+        return 0 if self.spec.drawn is None else self.spec.drawn.seed
+
+    @property
+    def robot(self) -> RobotSpec:
+        """What the file says about the robot."""
+        return self.spec.robot
+
+    def people(self, seed: int) -> tuple[PersonSpec, ...]:
+        """Everybody, groups included, with all that the seed decides.
+
+        Raises:
+            BadInput: a negative seed.
+        """
+        if seed < 0:
+            raise BadInput(f"seed {seed} must be 0 or more")
+        people = tuple(person for _, person in _everybody(self.spec))
+        if self.spec.clothes_differ:
+            people = tell_apart(people, stream(seed, "scenario.colours"))
+        return tuple(cast(person, seed, lambda path: self.ground.fault(path) is None) for person in people)
+
+    def world(self, seed: int, renderer: str = "raycast") -> WorldConfig:
+        """Settings of the world; the same seed gives equal settings.
+
+        Raises:
+            BadInput: a negative seed or an unknown renderer.
+        """
+        if renderer not in RENDERERS:
+            raise BadInput(f"unknown renderer {renderer!r}; choose from {', '.join(RENDERERS)}")
+        return WorldConfig(
+            place=self.place,
+            people=tuple(make_config(person) for person in self.people(seed)),
+            robot=equip_robot(self.spec.robot),
+            seed=seed,
+            renderer=renderer,
+        )
+
+    def lasting(self, duration_s: float) -> Scenario:
+        """The same scenario, but shorter or longer."""
+        return replace(self, spec=self.spec.model_copy(update={"duration_s": duration_s}))
+
+    def driven(self, drive: Sequence[Command]) -> Scenario:
+        """The same scenario, but the robot repeats recorded commands."""
+        return replace(self, drive=tuple(drive))
+
+    def steered_by(self, behaviour: str) -> Scenario:
+        """The same scenario, but another behaviour drives the robot."""
+        robot = self.robot.model_copy(update={"behaviour": behaviour})
+        return replace(self, spec=self.spec.model_copy(update={"robot": robot}), drive=None)
+
+    def make_behaviour(self) -> Behaviour:
+        """What drives the robot, fresh from the start."""
+        if self.drive is not None:
+            return Repeat(self.drive)
+        script = [
+            (c.from_s, Command(linear_m_s=c.linear_m_s, angular_rad_s=math.radians(c.angular_deg_s)))
+            for c in self.robot.commands
+        ]
+        return make_behaviour(
+            self.robot.behaviour, script=script, follow=self.follow_config(), corridor=self.corridor_config()
+        )
+
+    def follow_config(self) -> FollowConfig:
+        """Gains and heights of a robot that follows a person."""
+        keep_height = self.robot.keep_height
+        return FollowConfig() if keep_height is None else FollowConfig(keep_height=keep_height)
+
+    def corridor_config(self) -> CorridorConfig:
+        """The sense that tells a robot the walls of a corridor, and its colour camera."""
+        camera = equip_robot(self.robot).colour.camera
+        view = CameraView(focal_px=camera.focal_px, position_m=camera.position_m)
+        return CorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
+
+    def resolved(self, seed: int, versions: dict[str, str] | None = None) -> dict[str, Any]:
+        """The scenario as plain data with everything drawn; beside `kept_files` it gives the same world.
+
+        Args:
+            seed: of the run.
+            versions: of the packages, by name, to be kept beside the seed.
+        """
+        drawn = DrawnSpec(
+            seed=seed,
+            versions={} if versions is None else versions,
+            drive=None if self.drive is None else KEPT,
+        )
+        resolved = self.spec.model_copy(update={"people": self.people(seed), "groups": (), "drawn": drawn})
+        data: dict[str, Any] = resolved.model_dump(mode="json", exclude_none=True)
+        return data
+
+    def kept_files(self) -> dict[str, bytes]:
+        """Contents of all files that must lie beside the resolved scenario, by path from it."""
+        return dict(self.files) | ({} if self.drive is None else {KEPT: pack_drive(self.drive)})
+
+
+def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
+    """Build and check everything that does not depend on the seed.
+
+    Args:
+        spec: what the file says.
+        folder: where the file lies.
+
+    Raises:
+        BadInput: something cannot be; the message begins with the key, or is about a file beside.
+    """
+    plan = make_floor_plan(spec.place)
+    place = make_place(spec, folder)
+    ground = make_ground(spec, plan, place)
+    check_scenario(spec, _everybody(spec), ground)
+    is_driven = spec.drawn is not None and spec.drawn.drive is not None
+    return Scenario(
+        spec=spec,
+        plan=plan,
+        place=place,
+        ground=ground,
+        files=read_own_files(spec, folder),
+        drive=read_drive(folder / KEPT) if is_driven else None,
+    )
+
+
+def _everybody(spec: ScenarioSpec) -> tuple[tuple[str, PersonSpec], ...]:
+    """All people with the keys that stand for them in the file."""
+    single = tuple((f"people[{index}]", person) for index, person in enumerate(spec.people))
+    grouped = tuple(
+        (f"groups[{index}]", person) for index, group in enumerate(spec.groups) for person in members(group)
+    )
+    return (*single, *grouped)

@@ -1,0 +1,98 @@
+"""Suites: lists of scenarios with seeds, such as the data sets that stand for those of the thesis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationError
+
+from bad_input import BadInput
+from scenarios.files.drives import read_drive
+from scenarios.files.load import SUITES, load_scenario
+from scenarios.files.read_yaml import read_yaml
+from scenarios.files.scenario import Scenario
+from scenarios.files.schema import Key, Strict
+from scenarios.files.schema_errors import explain, hint
+
+DRIVES = SUITES / "drives"
+
+
+class EntrySpec(Strict):
+    """A scenario of a suite, played once with each seed."""
+
+    scenario: Key
+    """name in the library"""
+    seeds: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(strict=False, min_length=1)]
+    duration_s: Annotated[float, Field(gt=0.0, le=36000.0)] | None = None
+    """where the scenario's own will not do"""
+    repeats_drive: bool = False
+    """whether the robot repeats the drive that is kept for this suite, scenario and seed"""
+
+
+class SuiteSpec(Strict):
+    """A suite file."""
+
+    name: Key
+    description: Annotated[str, Field(min_length=1, max_length=1000)]
+    runs: Annotated[tuple[EntrySpec, ...], Field(strict=False, min_length=1)]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SuiteRun:
+    """One run of a suite: a scenario, as long as the suite wants it, with a seed."""
+
+    scenario: Scenario
+    seed: int
+
+    @property
+    def name(self) -> str:
+        """Its folder's name."""
+        return f"{self.scenario.name}-{self.seed}"
+
+
+def suite_names() -> list[str]:
+    """Names of the suites that come with PeopleBoy."""
+    return sorted(path.stem for path in SUITES.glob("*.yaml"))
+
+
+def load_suite(name: str) -> SuiteSpec:
+    """Read a suite by its name.
+
+    Raises:
+        BadInput: there is no such suite, or its file is wrong.
+    """
+    if name not in suite_names():
+        raise BadInput(f"unknown suite {name!r}; {hint(name, suite_names())}")
+    data: dict[Any, Any] = read_yaml(SUITES / f"{name}.yaml")
+    try:
+        return SuiteSpec.model_validate(data)
+    except ValidationError as error:
+        raise BadInput(f"suites/{name}.yaml: {explain(error, SuiteSpec)}") from error
+
+
+def runs_of(suite: SuiteSpec, *, with_drives: bool = True) -> Iterator[SuiteRun]:
+    """Yield every run of a suite.
+
+    Args:
+        suite: which.
+        with_drives: whether robots repeat recorded drives, where the suite says so.
+
+    Raises:
+        BadInput: a scenario or a drive is missing.
+    """
+    for entry in suite.runs:
+        scenario = load_scenario(entry.scenario)
+        if entry.duration_s is not None:
+            scenario = scenario.lasting(entry.duration_s)
+        for seed in entry.seeds:
+            is_driven = entry.repeats_drive and with_drives
+            drive = read_drive(drive_path(suite.name, entry.scenario, seed)) if is_driven else None
+            yield SuiteRun(scenario if drive is None else scenario.driven(drive), seed)
+
+
+def drive_path(suite: str, scenario: str, seed: int) -> Path:
+    """Where the drive of a suite's run is kept."""
+    return DRIVES / f"{suite}-{scenario}-{seed}.parquet"

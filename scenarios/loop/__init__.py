@@ -1,0 +1,1 @@
+"""The closed loop, tick by tick, with its events, faults and the oracle."""

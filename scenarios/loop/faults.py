@@ -1,0 +1,99 @@
+"""Faults of sensors and tracker that a scenario asks for, to see what a controller makes of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from scenarios.files.schema import FaultSpec
+from scenarios.loop.loop import Stage
+from sim.observation import Observation
+from sim.robot.peoplebot import Planar
+from sim.truth.truth import Truth
+from tracker.frame import Frame
+from tracker.thermal.filter.particles import Particles
+from tracker.track import Track
+from tracker.trackers import Tracker
+
+JUMP_EVERY_S = 1.0
+JUMP = Planar(x=0.7, y=-0.4, heading=math.radians(50.0))
+
+
+class FaultySensors:
+    """A world whose sensors fail as a scenario says; the truth stays the truth."""
+
+    def __init__(self, world: Stage, faults: Sequence[FaultSpec], sonar_reach_m: float) -> None:
+        self._world = world
+        self._faults = faults
+        self._reach_m = sonar_reach_m
+        self._last: Observation | None = None
+
+    def observe(self) -> Observation:
+        """Read every sensor once, and spoil what is to be spoilt."""
+        seen = self._world.observe()
+        now = active(self._faults, seen.time_s)
+        if "camera_frozen" in now and self._last is not None:
+            old = self._last
+            seen = replace(seen, thermal=old.thermal, thermal_c=old.thermal_c, colour=old.colour)
+        self._last = seen
+        if "camera_black" in now:
+            noise = seen.thermal & np.uint8(1)  # a dead picture still flickers
+            seen = replace(seen, thermal=noise, colour=np.zeros_like(seen.colour))
+        if "sonar_maximum" in now:
+            seen = replace(seen, sonar_m=np.full_like(seen.sonar_m, self._reach_m))
+        if "odometry_jumps" in now:
+            seen = replace(seen, odometry=_jumped(seen.odometry, now["odometry_jumps"]))
+        return seen
+
+    def truth(self) -> Truth:
+        """Tell what is true at this instant."""
+        return self._world.truth()
+
+    def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
+        """Drive the robot for one control step."""
+        self._world.step(linear_m_s, angular_rad_s, is_emergency=is_emergency)
+
+
+class FaultyTracker:
+    """A tracker that raises an error at every image for as long as a scenario says."""
+
+    def __init__(self, tracker: Tracker, faults: Sequence[FaultSpec]) -> None:
+        self._tracker = tracker
+        self._faults = faults
+
+    @property
+    def particles(self) -> Mapping[int, Particles]:
+        """Those of the tracker."""
+        return self._tracker.particles
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame, or fail.
+
+        Raises:
+            RuntimeError: the scenario wants it.
+        """
+        if "tracker_raises" in active(self._faults, frame.time_s):
+            raise RuntimeError("as the scenario asks")
+        return self._tracker.update(frame)
+
+
+def active(faults: Sequence[FaultSpec], time_s: float) -> dict[str, float]:
+    """Tell which faults there are at a time, and for how long [s] each has lasted."""
+    return {
+        fault.kind: time_s - fault.from_s
+        for fault in faults
+        if 0.0 <= time_s - fault.from_s < (math.inf if fault.lasts_s is None else fault.lasts_s)
+    }
+
+
+def _jumped(pose: Planar, lasted_s: float) -> Planar:
+    """Give an odometry that has jumped once, and again every second."""
+    jumps = 1 + int(lasted_s / JUMP_EVERY_S)
+    return Planar(
+        pose.x + jumps * JUMP.x,
+        pose.y + jumps * JUMP.y,
+        math.remainder(pose.heading + jumps * JUMP.heading, math.tau),
+    )

@@ -1,0 +1,77 @@
+"""Eyes that are told the truth, in a tracker's place: following without errors of seeing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from bad_input import BadInput
+from sim.random_streams import stream
+from sim.truth.truth import PersonTruth, Truth
+from tracker.frame import Frame
+from tracker.thermal.filter.particles import Particles
+from tracker.track import Ellipse, Status, Track
+from tracker.trackers import TRACKERS, Tracker, make_tracker
+
+TRUTH = "truth"
+SEEN = 0.3  # share of a silhouette above which a person counts as seen
+
+
+class TrueEyes:
+    """Gives everybody's true box under the person's own number, as long as enough of it is to be seen.
+
+    Who is hidden in the image goes on as a totally occluded track; who is out of the image has none.
+    """
+
+    def __init__(self, truth: Callable[[], Truth]) -> None:
+        self._truth = truth
+        self._first_s: dict[int, float] = {}
+
+    @property
+    def particles(self) -> Mapping[int, Particles]:
+        """None: nothing is sampled."""
+        return {}
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Look at the truth instead of the frame."""
+        return tuple(
+            self._track(person, frame.time_s)
+            for person in self._truth().people
+            if person.box is not None and person.inside_fraction > SEEN
+        )
+
+    def _track(self, person: PersonTruth, time_s: float) -> Track:
+        assert person.box is not None
+        left, top, width, height = person.box
+        is_seen = person.visible_fraction > SEEN
+        return Track(
+            id=person.id,
+            ellipse=Ellipse(
+                x=left + width / 2.0, y=top + 0.56 * height, w=width / 2.0, h=0.44 * height, d=0.0,
+                vx=0.0, vy=0.0, vw=0.0, vh=0.0,
+            ),
+            box=person.box,
+            confidence=1.0,
+            status=Status.TRACKED if is_seen else Status.TOTALLY_OCCLUDED,
+            age_s=time_s - self._first_s.setdefault(person.id, time_s),
+            uncertainty_px2=0.0,
+        )  # fmt: skip
+
+
+def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
+    """Make a tracker by its name; "truth" is none, but knows.
+
+    Raises:
+        BadInput: an unknown name.
+    """
+    check_eyes(name)
+    return TrueEyes(truth) if name == TRUTH else make_tracker(name, stream(seed, "tracker"))
+
+
+def check_eyes(name: str) -> None:
+    """Refuse the name of a tracker that there is not.
+
+    Raises:
+        BadInput: an unknown name.
+    """
+    if name not in (*TRACKERS, TRUTH):
+        raise BadInput(f"unknown tracker {name!r}; there are: {', '.join((*TRACKERS, TRUTH))}")

@@ -1,0 +1,62 @@
+"""The event log of a run: what happens in the world, to the tracks, and in the robot's mind."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from scenarios.loop.loop import Tick
+from scenarios.loop.track_events import TrackEvents
+from sim.truth.events import EventLog
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LogLine:
+    """One line of events.jsonl.
+
+    Attributes:
+        frame: 1, 2, ...
+        time_s: [s] since the start.
+        kind: what happened; those of `sim.truth.events.Event` and `TrackEvent`, and "mode".
+        who: a person, "robot", or "track 3".
+        other: who or what else takes part: an occluder, what is touched, or the new mode.
+        why: of a change of mode and of a lost track, the reason; of a re-identified one, since when.
+    """
+
+    frame: int
+    time_s: float
+    kind: str
+    who: str
+    other: str = ""
+    why: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        """Give the line as a JSON object; `why` is left out where there is none."""
+        line = asdict(self)
+        if not self.why:
+            del line["why"]
+        return line
+
+
+class RunEvents:
+    """Collects the events of one tick after another."""
+
+    def __init__(self) -> None:
+        self._world = EventLog()
+        self._tracks = TrackEvents()
+        self._mode = ""
+
+    def update(self, tick: Tick) -> list[LogLine]:
+        """Return what is new at this tick."""
+        time_s, width = tick.truth.time_s, tick.observation.thermal.shape[1]
+        found = [(event.kind, event.person, event.other, "") for event in self._world.update(tick.truth)]
+        for event in self._tracks.update(tick.tracks, time_s, width):
+            by = "" if event.by is None else f"track {event.by}"
+            found.append((event.kind, f"track {event.track}", by, event.why))
+        if tick.mode != self._mode:
+            found.append(("mode", "robot", tick.mode, tick.reason))
+        self._mode = tick.mode
+        return [
+            LogLine(frame=tick.frame, time_s=time_s, kind=kind, who=who, other=other, why=why)
+            for kind, who, other, why in found
+        ]

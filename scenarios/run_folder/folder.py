@@ -1,0 +1,139 @@
+"""A run's folder: every file that a run leaves, written so that a cut-off run says so and stays readable."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TextIO
+
+import yaml
+
+from scenarios.loop.loop import Tick
+from scenarios.run_folder.image_files import make_image_folders, write_images
+from scenarios.run_folder.out_folder import check_out, writing_to
+from scenarios.run_folder.tables import (
+    ROBOT,
+    TRACKS,
+    TRUTH,
+    Row,
+    robot_row,
+    track_rows,
+    truth_rows,
+    write_table,
+)
+from tracker.evaluation.mot_files import track_line, truth_line
+from tracker.track import Status
+
+_VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet", "scipy")
+
+
+class RunFolder:
+    """Writes one run; use it as a context manager.
+
+    `run.json` says "running" from the first moment on, "complete" after `complete`, and "cut off" when the
+    block is left by an error or an interrupt. The text files grow line by line, the tables are written at
+    the end, also of a run that was cut off.
+    """
+
+    def __init__(
+        self, path: Path, scenario: Mapping[str, Any], about: Mapping[str, Any], *, frames: bool
+    ) -> None:
+        self.path = path
+        self._about = dict(about) | {"versions": versions()}
+        self._writes_frames = frames
+        self._truth: list[Row] = []
+        self._tracks: list[Row] = []
+        self._robot: list[Row] = []
+        self._is_complete = False
+        self._write_json("run.json", {"status": "running", **self._about})
+        (path / "scenario.yaml").write_text(
+            yaml.safe_dump(dict(scenario), sort_keys=False, allow_unicode=True), encoding="utf-8"
+        )
+        (path / "truth").mkdir()
+        if frames:
+            make_image_folders(path)
+        self._gt = self._open("truth/gt.txt")
+        self._results = self._open("tracks.txt")
+        self._events = self._open("events.jsonl")
+
+    def __enter__(self) -> RunFolder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for file in (self._gt, self._results, self._events):
+            file.close()
+        write_table(self.path / "truth.parquet", self._truth, TRUTH)
+        write_table(self.path / "tracks.parquet", self._tracks, TRACKS)
+        write_table(self.path / "robot.parquet", self._robot, ROBOT)
+        status = "complete" if self._is_complete and kind is None else "cut off"
+        self._write_json("run.json", {"status": status, "frames": len(self._robot), **self._about})
+
+    def write(self, tick: Tick, events: Sequence[Mapping[str, Any]]) -> None:
+        """Write one tick and what happened at it."""
+        self._truth += truth_rows(tick)
+        self._tracks += track_rows(tick)
+        self._robot.append(robot_row(tick))
+        self._gt.writelines(gt_lines(tick))
+        self._results.writelines(result_lines(tick))
+        self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
+        if self._writes_frames:
+            write_images(self.path, tick.frame, tick.observation)
+
+    def complete(self, metrics: Mapping[str, Any]) -> None:
+        """Write the metrics; the run is whole."""
+        self._write_json("metrics.json", metrics)
+        self._is_complete = True
+
+    def flush(self) -> None:
+        """Bring the text files to disk, so that they can be read while the run goes on."""
+        for file in (self._gt, self._results, self._events):
+            file.flush()
+
+    def _open(self, name: str) -> TextIO:
+        return (self.path / name).open("w", encoding="utf-8", newline="\n")
+
+    def _write_json(self, name: str, content: Mapping[str, Any]) -> None:
+        (self.path / name).write_text(json.dumps(dict(content), indent=2) + "\n", encoding="utf-8")
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of the packages on which the bytes of a run depend."""
+    return {name: version(name) for name in _VERSIONED}
+
+
+def claim_folder(path: Path, *, overwrite: bool) -> None:
+    """Make the folder of a new run.
+
+    Raises:
+        BadInput: there is something at this path that must not be replaced, or the folder cannot be written.
+    """
+    with writing_to(path):
+        check_out(path, "run", overwrite=overwrite)
+        if path.exists() and any(path.iterdir()):
+            shutil.rmtree(path)
+        path.mkdir(parents=True, exist_ok=True)
+        (path / "run.json").touch()
+
+
+def gt_lines(tick: Tick) -> list[str]:
+    """MOTChallenge truth of everybody whose silhouette reaches into the image: one line a person."""
+    return [
+        truth_line(tick.frame, person.id, person.box, person.is_counted, person.visible_fraction)
+        for person in tick.truth.people
+        if person.box is not None and person.is_in_image
+    ]
+
+
+def result_lines(tick: Tick) -> list[str]:
+    """MOTChallenge results: one line per confirmed track."""
+    return [
+        track_line(tick.frame, track.id, track.box, track.confidence)
+        for track in tick.tracks
+        if track.status is not Status.TENTATIVE
+    ]

@@ -1,0 +1,207 @@
+"""What a finished run of a scenario left: its files, held against what they must be, and against each other.
+
+A run of another version, or one whose files were changed since, is refused here with one line.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from bad_input import BadInput
+from scenarios.files.schema_errors import explain
+from scenarios.run_folder.tables import MAY_BE_EMPTY, ROBOT, TRACKS, TRUTH
+from scenarios.scores.suite_table import is_in_image
+from tracker.evaluation.mot_files import read_tracks, read_truth
+from tracker.evaluation.sequence import Rows, Tracks, Truth
+from tracker.track import Status
+
+_AGAIN = "run the scenario again"
+_TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
+# What tells which rows of the tables are in the text files too.
+_WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
+_WRITTEN_TRACKS = ("frame", "id", "status")
+
+
+class About(BaseModel):
+    """What run.json must say of a run of a scenario; it may say more."""
+
+    model_config = ConfigDict(strict=True, frozen=True)
+
+    scenario: str
+    seed: Annotated[int, Field(ge=0)]
+    tracker: str
+    renderer: Literal["raycast", "bullet"]
+    rate_hz: Annotated[int, Field(ge=1)]
+    frames: Annotated[int, Field(ge=0)]
+    versions: dict[str, str]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RunFiles:
+    """The tables of a run.
+
+    Attributes:
+        truth, tracks: truth/gt.txt and tracks.txt.
+        people, beliefs, robot: truth.parquet, tracks.parquet, robot.parquet.
+    """
+
+    truth: Truth
+    tracks: Tracks
+    people: pa.Table
+    beliefs: pa.Table
+    robot: pa.Table
+
+
+def read_run(folder: Path) -> dict[str, Any]:
+    """Read what run.json says of a complete run.
+
+    Raises:
+        BadInput: there is no run, or it is not complete.
+    """
+    path = folder / "run.json"
+    try:
+        about = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read as a run; give the folder of a finished run") from error
+    if not isinstance(about, dict) or about.get("status") != "complete":
+        raise BadInput(
+            f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
+        )
+    if not isinstance(about.get("frames"), int):
+        raise BadInput(f"{path}: frames: must be a whole number, got {about.get('frames')!r}; run it again")
+    return about
+
+
+def read_about(folder: Path) -> About:
+    """Read what run.json says of a complete run of a scenario.
+
+    Raises:
+        BadInput: there is no such run.
+    """
+    data = read_run(folder)
+    if "footage" in data:
+        raise BadInput(f"{folder}: is a run of footage; only runs of scenarios can be looked into so")
+    try:
+        return About.model_validate(data)
+    except ValidationError as error:
+        raise BadInput(f"{folder / 'run.json'}: {explain(error, About)}; {_AGAIN}") from error
+
+
+def read_files(
+    folder: Path,
+    frames: int,
+    people: Sequence[str] = TRUTH.names,
+    robot: Sequence[str] = ROBOT.names,
+) -> RunFiles:
+    """Read the tables of a run that has so many frames.
+
+    Args:
+        folder: of the run.
+        frames: how many.
+        people: the columns wanted of truth.parquet; those that tell who is in the image among them.
+        robot: the columns wanted of robot.parquet, `frame` among them.
+
+    Raises:
+        BadInput: a file is missing or spoilt, of a version that had not all columns, or does not belong to
+            the others.
+    """
+    files = RunFiles(
+        truth=read_truth(folder / _TRUTH_TEXT),
+        tracks=read_tracks(folder / _TRACKS_TEXT),
+        people=_read_table(folder / "truth.parquet", TRUTH, people),
+        beliefs=_read_table(folder / "tracks.parquet", TRACKS, TRACKS.names),
+        robot=_read_table(folder / "robot.parquet", ROBOT, robot),
+    )
+    if files.robot["frame"].to_pylist() != list(range(1, frames + 1)):
+        raise BadInput(
+            f"{folder / 'robot.parquet'}: must have a row for each of the {frames} frames, "
+            f"got {files.robot.num_rows}; {_AGAIN}"
+        )
+    for name in set(pc.unique(files.beliefs["status"]).to_pylist()) - set(Status):
+        raise BadInput(f"{folder / 'tracks.parquet'}: unknown status {name!r}; {_AGAIN}")
+    check_end(files.truth, folder / _TRUTH_TEXT, frames)
+    check_end(files.tracks, folder / _TRACKS_TEXT, frames)
+    _check_rows(files.truth, folder / _TRUTH_TEXT, _written_truth(files.people))
+    _check_rows(files.tracks, folder / _TRACKS_TEXT, _written_tracks(files.beliefs))
+    return files
+
+
+def check_whole(folder: Path, truth: Truth, tracks: Tracks) -> None:
+    """Refuse a run whose text files have not the boxes of its tables, as far as it has tables.
+
+    Args:
+        folder: of the run.
+        truth: what its truth/gt.txt says.
+        tracks: what its tracks.txt says.
+
+    Raises:
+        BadInput: a box is missing, or nobody's, or a table is spoilt.
+    """
+    if (folder / "truth.parquet").is_file():
+        people = _read_table(folder / "truth.parquet", TRUTH, _WRITTEN_TRUTH)
+        _check_rows(truth, folder / _TRUTH_TEXT, _written_truth(people))
+    if (folder / "tracks.parquet").is_file():
+        beliefs = _read_table(folder / "tracks.parquet", TRACKS, _WRITTEN_TRACKS)
+        _check_rows(tracks, folder / _TRACKS_TEXT, _written_tracks(beliefs))
+
+
+def check_end(rows: Rows, path: Path, frames: int) -> None:
+    """Refuse a file that goes on after the run.
+
+    Raises:
+        BadInput: it does.
+    """
+    if rows.last_frame > frames:
+        raise BadInput(f"{path}: must end with frame {frames}, the run's last, got {rows.last_frame}")
+
+
+def _read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Table:
+    try:
+        found = pq.read_schema(path)
+        for name in columns:
+            if name not in found.names:
+                raise BadInput(f"{path}: has no column {name!r}; {_AGAIN}")
+            was, must = found.field(name).type, schema.field(name).type
+            if was != must:
+                raise BadInput(f"{path}: column {name!r} must be {must}, got {was}; {_AGAIN}")
+        table = pq.read_table(path, columns=list(columns))
+    except (OSError, pa.ArrowException) as error:
+        raise BadInput(f"{path}: cannot be read as a table of a run; {_AGAIN}") from error
+    for name in columns:
+        if table[name].null_count and name not in MAY_BE_EMPTY:
+            raise BadInput(f"{path}: column {name!r} has rows without a value; {_AGAIN}")
+    return table
+
+
+def _written_truth(people: pa.Table) -> pa.Table:
+    """Keep the rows of people who have a line in truth/gt.txt."""
+    return people.filter(pc.and_(pa.array(is_in_image(people)), pc.is_valid(people["left_px"])))
+
+
+def _written_tracks(beliefs: pa.Table) -> pa.Table:
+    """Keep the rows of tracks that have a line in tracks.txt."""
+    return beliefs.filter(pc.not_equal(beliefs["status"], str(Status.TENTATIVE)))
+
+
+def _check_rows(rows: Rows, path: Path, table: pa.Table) -> None:
+    """Refuse a text file that has not just the frames and ids of the table, each line whole."""
+    if len(rows) and not path.read_bytes().endswith(b"\n"):
+        raise BadInput(f"{path}: ends in the middle of a line; {_AGAIN}")
+    said = set(zip(rows.frame.tolist(), rows.id.tolist(), strict=True))
+    known = set(zip(table["frame"].to_pylist(), table["id"].to_pylist(), strict=True))
+    for frame, number in sorted(said - known)[:1]:
+        raise BadInput(f"{path}: frame {frame}: id {number} is not in the run's tables; {_AGAIN}")
+    for frame, number in sorted(known - said)[:1]:
+        raise BadInput(
+            f"{path}: has {len(said & known)} of the {len(known)} boxes in the run's tables, the first "
+            f"that is missing is id {number} in frame {frame}; {_AGAIN}"
+        )

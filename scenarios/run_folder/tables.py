@@ -1,0 +1,187 @@
+"""The parquet tables of a run: truth, tracks and robot, one row per frame and person, track or robot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from scenarios.loop.loop import Tick
+from sim.truth.truth import PersonTruth
+from tracker.track import Ellipse, Status, Track
+
+Row = dict[str, Any]
+
+
+def _box_fields(prefix: str) -> list[pa.Field]:
+    return [pa.field(f"{prefix}{edge}_px", pa.float64()) for edge in ("left", "top", "width", "height")]
+
+
+def _floats(*names: str) -> list[pa.Field]:
+    return [pa.field(name, pa.float64()) for name in names]
+
+
+_EDGES = ("left_px", "top_px", "width_px", "height_px")
+_STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
+_INSTANT = [pa.field("frame", pa.int64()), pa.field("time_s", pa.float64())]
+
+TRUTH = pa.schema(
+    [
+        *_INSTANT,
+        pa.field("id", pa.int64()),
+        pa.field("name", pa.string()),
+        *_floats("x_m", "y_m", "heading_rad", "velocity_x_m_s", "velocity_y_m_s", "distance_m"),
+        pa.field("posture", pa.string()),
+        pa.field("is_counted", pa.bool_()),
+        *_box_fields(""),
+        *_box_fields("whole_"),
+        *_box_fields("visible_"),
+        pa.field("whole_px", pa.int64()),
+        pa.field("visible_px", pa.int64()),
+        *_floats("visible_fraction", "occluded_fraction"),
+        pa.field("occluder", pa.string()),
+        pa.field("hidden_by", pa.map_(pa.string(), pa.float64())),
+        pa.field("part_temperature_c", pa.map_(pa.string(), pa.float64())),
+        pa.field("joints_m", pa.list_(pa.float64(), 51)),
+        pa.field("joints_px", pa.list_(pa.float64(), 34)),
+        pa.field("joint_is_visible", pa.list_(pa.bool_(), 17)),
+    ]
+)
+
+TRACKS = pa.schema(
+    [
+        *_INSTANT,
+        pa.field("id", pa.int64()),
+        pa.field("status", pa.string()),
+        *_floats("confidence", "age_s", "uncertainty_px2"),
+        *_box_fields(""),
+        *_floats(*_STATE),
+        pa.field("occluder", pa.int64()),
+    ]
+)
+
+ROBOT = pa.schema(
+    [
+        *_INSTANT,
+        *_floats("x_m", "y_m", "heading_rad", "linear_m_s", "angular_rad_s"),
+        *_floats("odometry_x_m", "odometry_y_m", "odometry_heading_rad", "left_wheel_m_s", "right_wheel_m_s"),
+        *_floats("command_linear_m_s", "command_angular_rad_s"),
+        pa.field("command_is_emergency", pa.bool_()),
+        pa.field("mode", pa.string()),
+        pa.field("sonar_m", pa.list_(pa.float64(), 16)),
+        pa.field("contacts", pa.list_(pa.string())),
+    ]
+)
+
+MAY_BE_EMPTY = frozenset(
+    ("occluder", *(f"{prefix}{edge}" for prefix in ("", "whole_", "visible_") for edge in _EDGES))
+)
+"""Columns that have no value where there is nobody or nothing to tell of."""
+
+
+def truth_rows(tick: Tick) -> list[Row]:
+    """Rows of the truth table for one tick: one per person present."""
+    return [_person_row(tick, person) for person in tick.truth.people]
+
+
+def track_rows(tick: Tick) -> list[Row]:
+    """Rows of the tracks table for one tick: one per track, tentative ones too."""
+    return [track_row(tick.frame, tick.truth.time_s, track) for track in tick.tracks]
+
+
+def robot_row(tick: Tick) -> Row:
+    """Row of the robot table for one tick."""
+    truth, senses = tick.truth, tick.observation
+    left, right = senses.wheel_speeds_m_s
+    return _instant(tick) | {
+        "x_m": truth.robot.x,
+        "y_m": truth.robot.y,
+        "heading_rad": truth.robot.heading,
+        "linear_m_s": truth.robot_velocity[0],
+        "angular_rad_s": truth.robot_velocity[1],
+        "odometry_x_m": senses.odometry.x,
+        "odometry_y_m": senses.odometry.y,
+        "odometry_heading_rad": senses.odometry.heading,
+        "left_wheel_m_s": left,
+        "right_wheel_m_s": right,
+        "command_linear_m_s": tick.command.linear_m_s,
+        "command_angular_rad_s": tick.command.angular_rad_s,
+        "command_is_emergency": tick.command.is_emergency,
+        "mode": tick.mode,
+        "sonar_m": senses.sonar_m.tolist(),
+        "contacts": list(truth.contacts),
+    }
+
+
+def write_table(path: Path, rows: list[Row], schema: pa.Schema) -> None:
+    """Write rows as a parquet file; no rows give an empty table with the same columns."""
+    pq.write_table(pa.Table.from_pylist(rows, schema=schema), path)
+
+
+def _instant(tick: Tick) -> Row:
+    return {"frame": tick.frame, "time_s": tick.truth.time_s}
+
+
+def _box(prefix: str, box: tuple[float, float, float, float] | None) -> Row:
+    names = [f"{prefix}{edge}_px" for edge in ("left", "top", "width", "height")]
+    return dict(zip(names, box or (None,) * 4, strict=True))
+
+
+def _person_row(tick: Tick, person: PersonTruth) -> Row:
+    row = {
+        "id": person.id,
+        "name": person.name,
+        "x_m": person.position_m[0],
+        "y_m": person.position_m[1],
+        "heading_rad": person.heading_rad,
+        "velocity_x_m_s": person.velocity_m_s[0],
+        "velocity_y_m_s": person.velocity_m_s[1],
+        "distance_m": person.distance_m,
+        "posture": person.posture,
+        "is_counted": person.is_counted,
+        "whole_px": person.whole_px,
+        "visible_px": person.visible_px,
+        "visible_fraction": person.visible_fraction,
+        "occluded_fraction": person.occluded_fraction,
+        "occluder": person.occluder,
+        "hidden_by": dict(person.hidden_by),
+        "part_temperature_c": dict(person.part_temperature_c),
+        "joints_m": person.joints_m.ravel().tolist(),
+        "joints_px": person.joints_px.ravel().tolist(),
+        "joint_is_visible": person.joint_is_visible.tolist(),
+    }
+    boxes = _box("", person.box) | _box("whole_", person.whole_box) | _box("visible_", person.visible_box)
+    return _instant(tick) | row | boxes
+
+
+def track_row(frame: int, time_s: float, track: Track) -> Row:
+    """Row of the tracks table for one track at one instant."""
+    ellipse = track.ellipse
+    state = {name: getattr(ellipse, name) for name in _STATE}
+    row = {
+        "id": track.id,
+        "status": str(track.status),
+        "confidence": track.confidence,
+        "age_s": track.age_s,
+        "uncertainty_px2": track.uncertainty_px2,
+    }
+    hider = {"occluder": track.occluder}
+    return {"frame": frame, "time_s": time_s} | row | _box("", track.box) | state | hider
+
+
+def track_of(row: Mapping[str, Any]) -> Track:
+    """Read a track back from a row of the tracks table."""
+    left, top, width, height = (row[edge] for edge in _EDGES)
+    return Track(
+        id=row["id"],
+        ellipse=Ellipse(**{name: row[name] for name in _STATE}),
+        box=(left, top, width, height),
+        confidence=row["confidence"],
+        status=Status(row["status"]),
+        age_s=row["age_s"],
+        uncertainty_px2=row["uncertainty_px2"],
+        occluder=row["occluder"],
+    )

@@ -1,0 +1,1 @@
+"""Running scenarios: one, many seeds, suites, behaviours side by side."""

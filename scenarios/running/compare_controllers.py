@@ -1,0 +1,136 @@
+"""Controllers against each other: the same scenario, the same seeds, and how sure the differences are."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.progress import track
+
+from bad_input import BadInput
+from behaviours.registry import make_behaviour
+from scenarios.files.load import load_scenario
+from scenarios.loop.oracle_tracker import check_eyes
+from scenarios.running.run import RunOptions, run
+from tracker.trackers import DEFAULT_TRACKER
+
+GROUPS = ("following", "corridor")  # of metrics.json: how the robot drove
+DRAWS = 2000
+LEVEL = 0.95
+
+
+@dataclass(frozen=True, slots=True)
+class Controller:
+    """A behaviour by name, and the tracker that is its eyes; written behaviour@tracker."""
+
+    behaviour: str
+    eyes: str
+
+    def __str__(self) -> str:
+        """Leave the usual tracker out."""
+        return self.behaviour if self.eyes == DEFAULT_TRACKER else f"{self.behaviour}@{self.eyes}"
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A mean and where it lies with a confidence of 95 %; NaN where nothing was measured."""
+
+    mean: float
+    low: float
+    high: float
+
+
+Figures = Mapping[str, float]
+
+
+def parse_controller(text: str) -> Controller:
+    """Read behaviour or behaviour@tracker.
+
+    Raises:
+        BadInput: there is no such behaviour or tracker.
+    """
+    behaviour, at, eyes = text.strip().partition("@")
+    make_behaviour(behaviour)
+    controller = Controller(behaviour, eyes if at else DEFAULT_TRACKER)
+    check_eyes(controller.eyes)
+    return controller
+
+
+def compare(
+    scenario: str, controllers: Sequence[Controller], seeds: Iterable[int], out: Path, jobs: int
+) -> dict[Controller, list[Figures]]:
+    """Run a scenario with every controller and seed, and collect how the robot drove.
+
+    Args:
+        scenario: name or path.
+        controllers: who drives.
+        seeds: the same for all of them.
+        out: where the runs' folders go, each CONTROLLER-SEED; earlier ones are replaced.
+        jobs: runs at the same time.
+
+    Returns:
+        For each controller the figures of each seed, NaN for what is undefined.
+
+    Raises:
+        BadInput: as for a single run, or a controller is named twice.
+    """
+    if len(set(controllers)) < len(controllers):
+        raise BadInput(f"--controllers {','.join(map(str, controllers))}: each may be there once only")
+    runs = [
+        (controller, RunOptions(
+            seed=seed, out=out / f"{controller}-{seed}", tracker=controller.eyes, record=False, overwrite=True
+        ))
+        for seed in seeds
+        for controller in controllers
+    ]  # fmt: skip
+    found: dict[Controller, list[Figures]] = {controller: [] for controller in controllers}
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        done = [
+            pool.submit(_run_one, scenario, controller.behaviour, options) for controller, options in runs
+        ]
+        names = [controller for controller, _ in runs]
+        for controller, future in zip(
+            names, track(done, scenario, console=Console(stderr=True)), strict=True
+        ):
+            found[controller].append(future.result())
+    return found
+
+
+def bootstrap(values: Sequence[float], rng: np.random.Generator) -> Interval:
+    """Give the mean of some values and the percentiles of the means of resamples; NaN are left out.
+
+    Source: B. Efron, Bootstrap methods: another look at the jackknife, Annals of Statistics 7, 1979.
+    """
+    known = np.array([value for value in values if not math.isnan(value)])
+    if known.size == 0:
+        return Interval(math.nan, math.nan, math.nan)
+    means = known[rng.integers(0, known.size, (DRAWS, known.size))].mean(axis=1)
+    low, high = np.quantile(means, [(1.0 - LEVEL) / 2.0, (1.0 + LEVEL) / 2.0])
+    return Interval(float(known.mean()), float(low), float(high))
+
+
+def intervals(runs: Sequence[Figures], rng: np.random.Generator) -> dict[str, Interval]:
+    """Give every figure's mean over some runs, with its interval."""
+    names = list(dict.fromkeys(name for figures in runs for name in figures))
+    return {name: bootstrap([figures.get(name, math.nan) for figures in runs], rng) for name in names}
+
+
+def figures_of(folder: Path) -> dict[str, float]:
+    """Read from a run's folder how the robot drove; yes and no are 1 and 0."""
+    metrics = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
+    groups = [metrics[name] for name in GROUPS if name in metrics]
+    return {
+        name: math.nan if value is None else float(value) for group in groups for name, value in group.items()
+    }
+
+
+def _run_one(scenario: str, behaviour: str, options: RunOptions) -> dict[str, float]:
+    run(load_scenario(scenario).steered_by(behaviour), options, lambda _tick, _frames: None)
+    return figures_of(options.out)

@@ -1,0 +1,48 @@
+"""Whether a run is there already, so that a sweep or a suite that was killed goes on where it was."""
+
+from __future__ import annotations
+
+import json
+
+import yaml
+
+from bad_input import BadInput
+from scenarios.files.own_files import are_kept
+from scenarios.files.scenario import Scenario
+from scenarios.run_folder.folder import versions
+from scenarios.running.run import RunOptions
+
+
+def is_finished(scenario: Scenario, options: RunOptions) -> bool:
+    """Tell whether the folder holds this very run, complete, with its images if they are wanted.
+
+    Never, if it is to be replaced.
+
+    Raises:
+        BadInput: it holds a complete run of another scenario, seed, tracker or version.
+    """
+    try:
+        about = json.loads((options.out / "run.json").read_text(encoding="utf-8"))
+        played = yaml.safe_load((options.out / "scenario.yaml").read_text(encoding="utf-8"))
+    except (OSError, ValueError, yaml.YAMLError):
+        return False
+    if options.overwrite or about.get("status") != "complete":
+        return False
+    if about["tracker"] != options.tracker:
+        raise BadInput(
+            f"{options.out}: was run with tracker {about['tracker']!r}; give --overwrite, or another --out"
+        )
+    if options.frames and not about["images"]:
+        return False
+    resolved = _as_read(scenario.resolved(options.seed, versions()))
+    if (played, about["renderer"]) != (resolved, options.renderer) or not are_kept(
+        scenario.kept_files(), options.out
+    ):
+        raise BadInput(
+            f"{options.out}: is a run of another scenario or version; give --overwrite, or another --out"
+        )
+    return True
+
+
+def _as_read(data: object) -> object:
+    return yaml.safe_load(yaml.safe_dump(data))

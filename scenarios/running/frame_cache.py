@@ -1,0 +1,226 @@
+"""Rendered frames kept on disk: any number of trackers see the same ones, and none is rendered twice."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import astuple, dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+import sim
+from bad_input import BadInput
+from scenarios.files.scenario import Scenario
+from scenarios.loop.loop import closed_loop, make_frame
+from scenarios.run_folder.folder import gt_lines, versions
+from scenarios.run_folder.out_folder import writing_to
+from scenarios.run_folder.tables import TRUTH, truth_rows
+from sim.world import World
+from tracker.evaluation.mot_files import read_truth
+from tracker.evaluation.sequence import Truth
+from tracker.frame import Frame
+from tracker.thermal.filter.particles import Particles
+from tracker.track import Track
+
+_GROUP = 16  # frames that are read or written at once
+_FRAMES = pa.schema(
+    [
+        pa.field("time_s", pa.float64()),
+        pa.field("turn_rad", pa.float64()),
+        pa.field("advance_m", pa.float64()),
+        pa.field("thermal", pa.binary()),
+        pa.field("colour", pa.binary()),
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Film:
+    """One run's frames and truth on disk.
+
+    Attributes:
+        folder: where frames.parquet, truth.parquet and gt.txt lie.
+        scenario: the scenario's name.
+        seed: of the run.
+        frames: how many.
+        thermal: (height, width) [px].
+        colour: (height, width, 3).
+    """
+
+    folder: Path
+    scenario: str
+    seed: int
+    frames: int
+    thermal: tuple[int, int]
+    colour: tuple[int, int, int]
+
+    def truth(self) -> Truth:
+        """Read who was there, as the evaluation wants it."""
+        return read_truth(self.folder / "gt.txt")
+
+    def people(self) -> pa.Table:
+        """Read the whole truth: one row per frame and person (`scenarios.run_folder.tables.TRUTH`)."""
+        return pq.read_table(self.folder / "truth.parquet")
+
+
+def film(
+    scenario: Scenario, seed: int, folder: Path, report: Callable[[int, int], None] | None = None
+) -> Film:
+    """Find the frames of a run, or render them.
+
+    What is found was made by the same scenario, seed, packages and simulator source. A film that was not
+    finished is made anew; several processes may make the same one.
+
+    Args:
+        scenario: what is played; its robot must not depend on a tracker.
+        seed: of the run.
+        folder: where films are kept, each in a folder of its own.
+        report: called with the number of frames rendered and of all frames.
+
+    Raises:
+        BadInput: the robot follows what a tracker sees, and has no recorded drive.
+    """
+    if scenario.robot.behaviour not in ("stand", "scripted") and scenario.drive is None:
+        raise BadInput(
+            f"{scenario.name}: its robot goes where the tracker sees a person, so frames cannot be kept; "
+            "take a scenario whose robot stands or is scripted"
+        )
+    home = folder / f"{scenario.name}-{seed}-{film_key(scenario, seed)[:12]}"
+    if not (home / "about.json").is_file():
+        _shoot(scenario, seed, home, report)
+    return open_film(home)
+
+
+def open_film(folder: Path) -> Film:
+    """Open a finished film by its folder.
+
+    Raises:
+        BadInput: there is none.
+    """
+    try:
+        about = json.loads((folder / "about.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{folder}: there are no finished frames here") from error
+    shapes = {name: tuple(about[name]) for name in ("thermal", "colour")}
+    return Film(folder=folder, **(about | shapes))
+
+
+def frames_of(shot: Film) -> Iterator[Frame]:
+    """Yield a film's frames, equal to the byte to those of the run; a few are in memory at a time."""
+    for batch in pq.ParquetFile(shot.folder / "frames.parquet").iter_batches(batch_size=_GROUP):
+        for row in batch.to_pylist():
+            yield Frame(
+                thermal=_unpack(row["thermal"], shot.thermal),
+                time_s=row["time_s"],
+                colour=_unpack(row["colour"], shot.colour),
+                turn_rad=row["turn_rad"],
+                advance_m=row["advance_m"],
+            )
+
+
+def film_key(scenario: Scenario, seed: int) -> str:
+    """A hash of all that the frames depend on."""
+    drive = [] if scenario.drive is None else [astuple(command) for command in scenario.drive]
+    files = {name: hashlib.sha256(content).hexdigest() for name, content in scenario.files.items()}
+    parts = [scenario.resolved(seed), seed, versions(), _source_digest(), drive, files]
+    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+
+
+class _Blind:
+    """A tracker that sees nobody."""
+
+    @property
+    def particles(self) -> Mapping[int, Particles]:
+        return {}
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:  # noqa: ARG002
+        return ()
+
+
+def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int], None] | None) -> None:
+    """Render a film beside its place, and put it there when it is whole."""
+    part = home.parent / f".{home.name}.{os.getpid()}"
+    shutil.rmtree(part, ignore_errors=True)
+    with writing_to(home.parent, "--films"):
+        part.mkdir(parents=True)
+    try:
+        about = _render(scenario, seed, part, report)
+        (part / "about.json").write_text(json.dumps(about) + "\n", encoding="utf-8")
+        if not (home / "about.json").is_file():
+            shutil.rmtree(home, ignore_errors=True)
+            part.rename(home)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+def _render(
+    scenario: Scenario, seed: int, part: Path, report: Callable[[int, int], None] | None
+) -> dict[str, Any]:
+    config = scenario.world(seed)
+    count = round(scenario.duration_s * config.control_hz)
+    with (
+        World(config) as world,
+        pq.ParquetWriter(part / "frames.parquet", _FRAMES, compression="zstd") as frames,
+        pq.ParquetWriter(part / "truth.parquet", TRUTH, compression="zstd") as truth,
+        (part / "gt.txt").open("w", encoding="utf-8", newline="\n") as boxes,
+    ):
+        before = None
+        images: list[dict[str, Any]] = []
+        people: list[dict[str, Any]] = []
+        for tick in closed_loop(world, _Blind(), scenario.make_behaviour(), count):
+            images.append(_row(make_frame(tick.observation, before)))
+            people += truth_rows(tick)
+            boxes.writelines(gt_lines(tick))
+            before = tick.observation.odometry
+            if len(images) == _GROUP or tick.frame == count:
+                frames.write_table(pa.Table.from_pylist(images, schema=_FRAMES))
+                truth.write_table(pa.Table.from_pylist(people, schema=TRUTH))
+                images.clear()
+                people.clear()
+            if report is not None:
+                report(tick.frame, count)
+    shapes = {"thermal": tick.observation.thermal.shape, "colour": tick.observation.colour.shape}
+    return {"scenario": scenario.name, "seed": seed, "frames": count, **shapes}
+
+
+def _row(frame: Frame) -> dict[str, Any]:
+    assert frame.colour is not None
+    return {
+        "time_s": frame.time_s,
+        "turn_rad": frame.turn_rad,
+        "advance_m": frame.advance_m,
+        "thermal": _pack(frame.thermal),
+        "colour": _pack(frame.colour),
+    }
+
+
+def _pack(image: NDArray[np.uint8]) -> bytes:
+    """An image as differences between its rows, which compress better than the rows."""
+    rows = image.copy()
+    rows[1:] -= image[:-1]
+    return rows.tobytes()
+
+
+def _unpack(packed: bytes, shape: tuple[int, ...]) -> NDArray[np.uint8]:
+    image: NDArray[np.uint8] = np.cumsum(
+        np.frombuffer(packed, dtype=np.uint8).reshape(shape), axis=0, dtype=np.uint8
+    )
+    return image
+
+
+@cache
+def _source_digest() -> str:
+    """A hash of the simulator's own source, which may change within a version."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(sim.__path__[0]).rglob("*.py")):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()

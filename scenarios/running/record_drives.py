@@ -1,0 +1,41 @@
+"""Record the drives of a suite: `python -m scenarios.running.record_drives dataset2`.
+
+A robot that follows people goes where its tracker sees them. For the frames of a data set to be the same for
+every tracker, the default one drives it once, and the commands are kept.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+
+from behaviours.command import Command
+from scenarios.files.drives import write_drive
+from scenarios.files.suite import SuiteRun, drive_path, load_suite, runs_of
+from scenarios.loop.loop import closed_loop
+from sim.random_streams import stream
+from sim.world import World
+from tracker.trackers import DEFAULT_TRACKER, make_tracker
+
+
+def record(run: SuiteRun) -> Iterator[Command]:
+    """Play a run with the default tracker, and yield what the robot was told at each step."""
+    config = run.scenario.world(run.seed)
+    tracker = make_tracker(DEFAULT_TRACKER, stream(run.seed, "tracker"))
+    frames = round(run.scenario.duration_s * config.control_hz)
+    with World(config) as world:
+        for tick in closed_loop(world, tracker, run.scenario.make_behaviour(), frames):
+            yield tick.command
+
+
+def main(suite: str) -> None:
+    """Record every drive of a suite that is not there yet."""
+    for run in runs_of(load_suite(suite), with_drives=False):
+        path = drive_path(suite, run.scenario.name, run.seed)
+        if not path.exists():
+            write_drive(path, list(record(run)))
+            print(path)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,113 @@
+"""One run: build the world of a scenario, close the loop, and leave a folder behind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from bad_input import BadInput
+from scenarios.files.own_files import keep_own_files
+from scenarios.files.scenario import Scenario
+from scenarios.loop.faults import FaultySensors, FaultyTracker
+from scenarios.loop.loop import Tick, closed_loop
+from scenarios.loop.oracle_tracker import check_eyes, make_eyes
+from scenarios.recording.recorder import Recorder
+from scenarios.run_folder.folder import RunFolder, claim_folder, versions
+from scenarios.running.watchers import Watchers
+from scenarios.scores.score import RunScores, following_task, score_run
+from sim.world import World
+from tracker.trackers import TRACKERS
+
+FOLLOWERS = ("follow_person", "patrol")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """How to run a scenario.
+
+    Attributes:
+        seed: 0 or more; everything random follows from it.
+        out: the run's folder.
+        frames: whether to write every image.
+        tracker: name of the tracker, or "truth".
+        renderer: "raycast" or "bullet".
+        record: whether to write recording.rrd.
+        viewer: address of a viewer to show the recording at once; None for none.
+        overwrite: whether an earlier run in that folder may be replaced.
+    """
+
+    seed: int
+    out: Path
+    frames: bool = False
+    tracker: str = "peopleboy"
+    renderer: str = "raycast"
+    record: bool = True
+    viewer: str | None = None
+    overwrite: bool = False
+
+
+def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], None]) -> RunScores:
+    """Run a scenario from start to end and write its folder.
+
+    Args:
+        scenario: what to run.
+        options: how.
+        report: called after every tick with the number of all ticks, such as by a progress bar.
+
+    Raises:
+        BadInput: an option cannot be used; nothing is written then.
+    """
+    if options.seed < 0:
+        raise BadInput(f"--seed {options.seed}: must be 0 or more")
+    check_eyes(options.tracker)
+    config = scenario.world(options.seed, options.renderer)
+    about = {
+        "scenario": scenario.name,
+        "seed": options.seed,
+        "tracker": options.tracker,
+        "renderer": options.renderer,
+        "rate_hz": config.control_hz,
+        "images": options.frames,
+    }
+    with ExitStack() as stack:
+        world = stack.enter_context(World(config))
+        tracker = make_eyes(options.tracker, options.seed, world.truth)
+        claim_folder(options.out, overwrite=options.overwrite)
+        folder = stack.enter_context(
+            RunFolder(options.out, scenario.resolved(options.seed, versions()), about, frames=options.frames)
+        )
+        keep_own_files(scenario.kept_files(), options.out)
+        title = f"{scenario.name}, seed {options.seed}, tracker {options.tracker}"
+        recorder = None
+        if options.record:
+            recorder = stack.enter_context(
+                Recorder(
+                    options.out / "recording.rrd",
+                    config,
+                    title=title,
+                    tracker=TRACKERS.get(options.tracker),
+                    viewer=options.viewer,
+                )
+            )
+        watchers = Watchers(config, title, recorder)
+        frames = round(scenario.duration_s * config.control_hz)
+        stage = FaultySensors(world, scenario.spec.faults, config.robot.sonar.farthest_m)
+        eyes = FaultyTracker(tracker, scenario.spec.faults)
+        for tick in closed_loop(stage, eyes, scenario.make_behaviour(), frames):
+            events = watchers.update(tick)
+            folder.write(tick, [event.to_json() for event in events])
+            report(tick, frames)
+        folder.flush()
+        following = None
+        if scenario.robot.behaviour in FOLLOWERS and config.people:
+            task = following_task(config, scenario.follow_config().keep_height)
+            following = watchers.following.score(task)
+        corridor = None
+        if scenario.robot.behaviour == "follow_corridor":
+            corridor = watchers.corridor.score(scenario.plan)
+        scores = score_run(options.out, frames, following, corridor)
+        watchers.save(options.out)
+        folder.complete(scores.to_json())
+    return scores

@@ -1,0 +1,119 @@
+"""A comparison of controllers as a table, a picture and a file of figures."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from rich.console import Console
+from rich.table import Table
+
+from scenarios.running.compare_controllers import Controller, Figures, Interval, intervals
+
+_SHARES = {
+    "found", "followed", "in_band", "facing", "in_band_and_facing", "followed_to_end", "path_efficiency"
+}  # fmt: skip
+_COLUMNS = 4
+_DOTS = np.random.default_rng(0).uniform(-0.12, 0.12, 1000)
+
+
+def show_comparison(scenario: str, runs: Mapping[Controller, Sequence[Figures]], out: Path) -> None:
+    """Print the table, and write comparison.png and comparison.json."""
+    rng = np.random.default_rng(0)
+    means = {controller: intervals(figures, rng) for controller, figures in runs.items()}
+    names = list(dict.fromkeys(name for of_one in means.values() for name in of_one))
+    seeds = len(next(iter(runs.values())))
+    table = Table(title=f"{scenario}, {seeds} seeds: mean [95 % interval]", title_justify="left", box=None)
+    table.add_column("figure")
+    for controller in means:
+        table.add_column(str(controller), justify="right")
+    for name in names:
+        table.add_row(_label(name), *[_cell(of_one.get(name), name) for of_one in means.values()])
+    Console(width=None if sys.stdout.isatty() else 44 + 30 * len(means)).print(table)
+    _write_figures(out / "comparison.json", scenario, runs, means)
+    _draw(out / "comparison.png", scenario, names, runs, means)
+
+
+def _label(name: str) -> str:
+    """Turn a key of metrics.json into words with a unit."""
+    stem, unit = name, "%" if name in _SHARES else ""
+    for ending, written in (("_m_s3", "m/s3"), ("_m_s", "m/s"), ("_rad", "deg"), ("_m", "m"), ("_s", "s")):
+        if stem.endswith(ending):
+            stem, unit = stem.removesuffix(ending), written
+            break
+    words = stem.replace("_", " ")
+    return f"{words}, {unit}" if unit else words
+
+
+def _scale(name: str) -> float:
+    return 100.0 if name in _SHARES else math.degrees(1.0) if name.endswith("_rad") else 1.0
+
+
+def _cell(interval: Interval | None, name: str) -> str:
+    if interval is None or math.isnan(interval.mean):
+        return "-"
+    mean, low, high = (_scale(name) * value for value in (interval.mean, interval.low, interval.high))
+    return f"{mean:.2f} [{low:.2f}, {high:.2f}]"
+
+
+def _write_figures(
+    path: Path,
+    scenario: str,
+    runs: Mapping[Controller, Sequence[Figures]],
+    means: Mapping[Controller, Mapping[str, Interval]],
+) -> None:
+    content = {
+        "scenario": scenario,
+        "controllers": {
+            str(controller): {
+                "runs": [{k: _or_none(v) for k, v in figures.items()} for figures in of_one],
+                "mean": {
+                    name: [_or_none(value) for value in (i.mean, i.low, i.high)]
+                    for name, i in means[controller].items()
+                },
+            }
+            for controller, of_one in runs.items()
+        },
+    }
+    path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+
+
+def _or_none(value: float) -> float | None:
+    return None if math.isnan(value) else value
+
+
+def _draw(
+    path: Path,
+    scenario: str,
+    names: Sequence[str],
+    runs: Mapping[Controller, Sequence[Figures]],
+    means: Mapping[Controller, Mapping[str, Interval]],
+) -> None:
+    """Draw a panel for each figure: every seed as a dot, the mean with its interval beside."""
+    rows = max(math.ceil(len(names) / _COLUMNS), 1)
+    figure = Figure(figsize=(3.6 * _COLUMNS, 0.8 + rows * (1.1 + 0.32 * len(runs))), layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle(f"{scenario}: every seed, and the mean with its 95 % interval")
+    grid = figure.subplots(rows, _COLUMNS, squeeze=False)
+    for axes, name in zip(grid.flat, names, strict=False):
+        for row, controller in enumerate(runs):
+            values = np.array([_scale(name) * of_run.get(name, math.nan) for of_run in runs[controller]])
+            axes.plot(values, row + _DOTS[: len(values)], ".", color=f"C{row}", alpha=0.35, markersize=5)
+            interval = means[controller].get(name)
+            if interval is not None and not math.isnan(interval.mean):
+                low, mean, high = (_scale(name) * v for v in (interval.low, interval.mean, interval.high))
+                axes.plot([low, high], [row, row], color=f"C{row}", linewidth=2.5)
+                axes.plot([mean], [row], "D", color=f"C{row}", markersize=6)
+        axes.set_title(_label(name), fontsize=9)
+        axes.set_yticks(range(len(runs)), [str(controller) for controller in runs], fontsize=7)
+        axes.set_ylim(len(runs) - 0.5, -0.5)
+        axes.tick_params(axis="x", labelsize=7)
+    for axes in grid.flat[len(names) :]:
+        axes.set_axis_off()
+    figure.savefig(path, dpi=110)

@@ -1,0 +1,38 @@
+"""Everything that looks on while a run goes: event log, scores of following, contact sheet, recording."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from scenarios.drawing.contact_sheet import ContactSheet
+from scenarios.loop.loop import Tick
+from scenarios.loop.run_events import LogLine, RunEvents
+from scenarios.recording.recorder import Recorder
+from scenarios.scores.corridor_score import CorridorLog
+from scenarios.scores.score import FollowingLog
+from sim.config import WorldConfig
+
+
+class Watchers:
+    """Hands each tick to all who look on; a recorder only if there is one."""
+
+    def __init__(self, config: WorldConfig, title: str, recorder: Recorder | None) -> None:
+        self.following = FollowingLog()
+        self.corridor = CorridorLog()
+        self._events = RunEvents()
+        self._sheet = ContactSheet(title, config.robot)
+        self._recorder = recorder
+
+    def update(self, tick: Tick) -> list[LogLine]:
+        """Look at one tick and return what happened at it."""
+        events = self._events.update(tick)
+        self.following.add(tick)
+        self.corridor.add(tick)
+        self._sheet.add(tick, events)
+        if self._recorder is not None:
+            self._recorder.log(tick, events)
+        return events
+
+    def save(self, folder: Path) -> None:
+        """Save what is drawn at the end."""
+        self._sheet.save(folder / "contact_sheet.png")

@@ -1,0 +1,121 @@
+"""How well a corridor was followed: in its middle, along its direction, without touching anything."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bad_input import BadInput
+from scenarios.scores.following_metrics import Flags, Floats, Row
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """The centre line of a straight piece of corridor, from end to end.
+
+    Attributes:
+        start_m, end_m: [m] (x, y) in the world frame.
+        width_m: [m] from wall to wall.
+    """
+
+    start_m: tuple[float, float]
+    end_m: tuple[float, float]
+    width_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CorridorScore:
+    """Scores of one run.
+
+    Errors are over the frames on a leg, no nearer to its ends or a junction than its width: there the robot
+    turns. They count every frame there, also those in which it waits for people or passes them.
+
+    Attributes:
+        lateral_rms_m: [m] root mean square distance to the centre line.
+        lateral_max_m: [m] largest.
+        heading_error_rad: [rad] mean absolute angle to the centre line, either way along it.
+        contacts: contacts begun, over the whole run.
+        mean_speed_m_s: [m/s] way driven by time, over the whole run.
+        way_m: [m] driven, over the whole run.
+        legs: on how many legs the robot was.
+
+    What is not defined (never on a leg) is NaN.
+    """
+
+    lateral_rms_m: float
+    lateral_max_m: float
+    heading_error_rad: float
+    contacts: int
+    mean_speed_m_s: float
+    way_m: float
+    legs: int
+
+    def rows(self) -> list[Row]:
+        """Give the scores as table rows: name, value, unit, explanation."""
+        return [
+            ("lateral error RMS", self.lateral_rms_m, "m", "distance to the centre line, root mean square"),
+            ("lateral error max", self.lateral_max_m, "m", "the largest"),
+            ("heading error", math.degrees(self.heading_error_rad), "deg", "mean angle to the centre line"),
+            ("contacts", float(self.contacts), "", "contacts begun in the run"),
+            ("mean speed", self.mean_speed_m_s, "m/s", "way driven by time"),
+            ("way", self.way_m, "m", "driven in the run"),
+            ("legs", float(self.legs), "", "straight pieces of corridor that the robot was on"),
+        ]
+
+
+def score_corridor(*, time_s: Floats, robot: Floats, is_contact: Flags, legs: Sequence[Leg]) -> CorridorScore:
+    """Score one run in which the robot was to follow corridors.
+
+    Args:
+        time_s: (T,) [s] rising.
+        robot: (T, 3) [m, m, rad] x, y, heading in the world frame.
+        is_contact: (T,) whether the robot touched anything or anyone.
+        legs: the corridors.
+
+    Raises:
+        BadInput: the arrays do not have these shapes.
+    """
+    frames = len(time_s)
+    if frames == 0 or (robot.shape, is_contact.shape) != ((frames, 3), (frames,)):
+        raise BadInput(
+            f"corridor: shapes must be (T,), (T, 3), (T,) with T > 0, "
+            f"got {time_s.shape}, {robot.shape}, {is_contact.shape}"
+        )
+    errors = [_errors(robot, leg, legs) for leg in legs]
+    lateral = np.concatenate([np.zeros(0), *(lateral for lateral, _ in errors)])
+    heading = np.concatenate([np.zeros(0), *(heading for _, heading in errors)])
+    way_m = float(np.sum(np.hypot(*np.diff(robot[:, :2], axis=0).T)))
+    lasted_s = float(time_s[-1] - time_s[0])
+    return CorridorScore(
+        lateral_rms_m=math.sqrt(float(np.mean(lateral**2))) if len(lateral) else math.nan,
+        lateral_max_m=float(np.max(lateral)) if len(lateral) else math.nan,
+        heading_error_rad=float(np.mean(heading)) if len(heading) else math.nan,
+        contacts=int(np.sum(is_contact & ~np.concatenate([[False], is_contact[:-1]]))),
+        mean_speed_m_s=way_m / lasted_s if lasted_s > 0.0 else math.nan,
+        way_m=way_m,
+        legs=sum(len(lateral) > 0 for lateral, _ in errors),
+    )
+
+
+def _errors(robot: Floats, leg: Leg, legs: Sequence[Leg]) -> tuple[Floats, Floats]:
+    """Give lateral [m] and heading error [rad] of the frames on a leg, away from its ends: (M,) each."""
+    way = np.subtract(leg.end_m, leg.start_m)
+    place = _along_and_beside(robot[:, :2], leg)
+    ends = _along_and_beside(np.array([end for other in legs for end in (other.start_m, other.end_m)]), leg)
+    ends = ends[np.abs(ends[:, 1]) < leg.width_m]  # its own, and those of legs that branch off
+    is_clear = np.all(np.abs(place[:, :1] - ends[:, 0]) > leg.width_m, axis=1)
+    is_on = (place[:, 0] > 0.0) & (place[:, 0] < np.hypot(*way)) & (np.abs(place[:, 1]) < leg.width_m / 2.0)
+    is_counted = is_on & is_clear
+    off = robot[is_counted, 2] - math.atan2(way[1], way[0])
+    return np.abs(place[is_counted, 1]), np.abs(np.arcsin(np.sin(off)))
+
+
+def _along_and_beside(points: Floats, leg: Leg) -> Floats:
+    """Express points in a leg: (N, 2) [m] from its start along it, and to the left of its centre line."""
+    way = np.subtract(leg.end_m, leg.start_m)
+    x, y = way / np.hypot(*way)
+    places: Floats = (points - leg.start_m) @ np.array([[x, -y], [y, x]])
+    return places

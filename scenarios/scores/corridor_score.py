@@ -1,0 +1,43 @@
+"""The scores of a corridor run, from its ticks and its floor plan."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scenarios.loop.loop import Tick
+from scenarios.scores.corridor_metrics import CorridorScore, Leg, score_corridor
+from sim.places.floor_plan import FloorPlan
+from sim.places.rectangle import Rectangle
+
+
+class CorridorLog:
+    """Keeps what the scores of corridor following need, tick by tick."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[float, ...]] = []
+
+    def add(self, tick: Tick) -> None:
+        """Take in one tick."""
+        robot = tick.truth.robot
+        self._rows.append(
+            (tick.truth.time_s, robot.x, robot.y, robot.heading, float(bool(tick.truth.contacts)))
+        )
+
+    def score(self, plan: FloorPlan) -> CorridorScore:
+        """Score the run so far in the corridors of a floor plan."""
+        table = np.array(self._rows, dtype=np.float64)
+        return score_corridor(
+            time_s=table[:, 0],
+            robot=table[:, 1:4],
+            is_contact=table[:, 4] > 0.0,
+            legs=tuple(centre_line(area) for _, area in plan.areas),
+        )
+
+
+def centre_line(area: Rectangle) -> Leg:
+    """Take an area for a corridor along its longer side."""
+    x, y = area.centre
+    across, up = area.max_x - area.min_x, area.max_y - area.min_y
+    if across >= up:
+        return Leg((area.min_x, y), (area.max_x, y), up)
+    return Leg((x, area.min_y), (x, area.max_y), across)

@@ -1,0 +1,62 @@
+"""Scores of finished runs, from the files in their folders."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from bad_input import BadInput
+from scenarios.run_folder.run_files import check_end, check_whole, read_run
+from tracker.evaluation.evaluate import Scores, evaluate
+from tracker.evaluation.mot_files import read_tracks
+from tracker.evaluation.sequence import Tracks
+from tracker.evaluation.uncounted import MIN_VISIBLE
+from tracker.footage.truth_files import GivenTruth, find_truth, load_truth
+
+
+def evaluate_files(
+    truth: Path, tracks: Path, frames: int | None = None, min_visible: float = MIN_VISIBLE
+) -> Scores:
+    """Score MOTChallenge tracks against truth of any format that footage comes with.
+
+    People of whom no more than min_visible is seen do not count. Figures that need everybody are undefined
+    where the truth has one person alone.
+    """
+    return _score(load_truth(truth, None), read_tracks(tracks), frames, min_visible)
+
+
+def evaluate_runs(folders: Sequence[Path], min_visible: float = MIN_VISIBLE) -> list[Scores]:
+    """Score the runs in these folders, one by one; min_visible as for files.
+
+    Raises:
+        BadInput: a folder holds no run, or one that was cut off, or whose files do not belong together, or
+            one of footage without truth.
+    """
+    return [_evaluate_run(folder, min_visible) for folder in folders]
+
+
+def runs_in(folder: Path) -> list[Path]:
+    """List the folders of runs that a folder stands for: itself, or those in it.
+
+    Raises:
+        BadInput: there is no such folder.
+    """
+    if not folder.is_dir():
+        raise BadInput(f"{folder}: there is no such folder; give the folder of a finished run")
+    inner = sorted(path.parent for path in folder.glob("*/run.json"))
+    return inner if inner and not (folder / "run.json").exists() else [folder]
+
+
+def _evaluate_run(folder: Path, min_visible: float) -> Scores:
+    about, truth = read_run(folder), find_truth(folder)
+    if truth is None:
+        raise BadInput(f"{folder}: has no truth to score against; give --truth with --tracks")
+    given, found = load_truth(truth, None), read_tracks(folder / "tracks.txt")
+    check_end(given.truth, truth, about["frames"])
+    check_end(found, folder / "tracks.txt", about["frames"])
+    check_whole(folder, given.truth, found)
+    return _score(given, found, about["frames"], min_visible)
+
+
+def _score(given: GivenTruth, found: Tracks, frames: int | None, min_visible: float) -> Scores:
+    return evaluate(given.truth, found, frames=frames, min_visible=min_visible, is_single=given.is_single)

@@ -1,0 +1,106 @@
+"""Tables of scores for the terminal."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.table import Table
+
+from scenarios.scores.corridor_metrics import CorridorScore
+from scenarios.scores.following_metrics import FollowingScore, Row
+from tracker.evaluation.evaluate import Scores, combine
+from tracker.evaluation.table import rows, spread
+
+
+def print_scores(scores: Scores) -> None:
+    """Print every figure of one run, or of several taken together, that the truth can tell."""
+    if scores.counts.partly_annotated:
+        _console().print(f"{_single_person(scores)}\n", soft_wrap=True)
+    table = _table("people", "figure", "value", "meaning")
+    for row in rows(scores):
+        if row.figure.is_told_by(scores):
+            table.add_row(row.figure.name, _number(row.value, row.figure.unit), row.figure.meaning)
+    _print(table)
+    _tell_unknown(scores)
+
+
+def print_following(score: FollowingScore) -> None:
+    """Print how well one person was followed."""
+    _print_rows("following", score.rows())
+
+
+def print_corridor(score: CorridorScore) -> None:
+    """Print how well corridors were followed."""
+    _print_rows("corridor", score.rows())
+
+
+def _print_rows(title: str, rows: Sequence[Row]) -> None:
+    table = _table(title, "figure", "value", "meaning")
+    for name, value, unit, meaning in rows:
+        table.add_row(name, _number(value, unit), meaning)
+    _print(table)
+
+
+def print_spread(sequences: Sequence[Scores]) -> None:
+    """Print every figure over several runs: of all frames together, and mean and deviation over runs."""
+    if len(sequences) == 1:
+        print_scores(sequences[0])
+        return
+    table = _table(
+        f"people, {len(sequences)} runs", "figure", "all frames", "mean of runs", "deviation", "meaning"
+    )
+    whole = combine(sequences)
+    for row, over in zip(rows(whole), spread(sequences), strict=True):
+        if not row.figure.is_told_by(whole):
+            continue
+        unit = row.figure.unit
+        numbers = [_number(value, unit) for value in (row.value, over.mean, over.sd)]
+        table.add_row(row.figure.name, *numbers, row.figure.meaning)
+    _print(table)
+    _tell_unknown(whole)
+
+
+def _single_person(scores: Scores) -> str:
+    """Say how one person was kept who alone is annotated."""
+    mot, counts = scores.mot, scores.counts
+    ids = f"{counts.true_tracks} {'id is' if counts.true_tracks == 1 else 'ids are'}"
+    return (
+        f"One id keeps the annotated person in {_number(mot.identity.idr, '%')} of its frames (IoU 0.5), "
+        f"any in {_number(scores.thesis.cr, '%')}; {ids} on it at some time."
+    )
+
+
+def _tell_unknown(scores: Scores) -> None:
+    unknown = [row.figure.name for row in rows(scores) if not row.figure.is_told_by(scores)]
+    if unknown:
+        _console().print(
+            f"Unknown: {', '.join(unknown)}. One person alone is annotated, so that nobody can say whether "
+            "boxes elsewhere are wrong.\n"
+        )
+
+
+def _table(title: str, *columns: str) -> Table:
+    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    for column in columns:
+        table.add_column(column, justify="left" if column in ("figure", "meaning") else "right")
+    return table
+
+
+def _number(value: float, unit: str) -> str:
+    if math.isnan(value):
+        return "-"
+    digits = 2 if unit else 0 if value == int(value) else 2
+    return f"{value:.{digits}f} {unit}".rstrip()
+
+
+def _print(table: Table) -> None:
+    console = _console()
+    console.print(table)
+    console.print()
+
+
+def _console() -> Console:
+    return Console() if sys.stdout.isatty() else Console(width=120)

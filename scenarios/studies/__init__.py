@@ -1,0 +1,1 @@
+"""Studies: the sources measured again, and learning who is in front."""

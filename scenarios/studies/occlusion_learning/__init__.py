@@ -1,0 +1,1 @@
+"""Learning from runs who of two people is in front."""

@@ -1,0 +1,265 @@
+"""Every table and figure with numbers of the two sources."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from bad_input import BadInput
+from scenarios.studies.reproduce.experiments.contents import Contents
+from scenarios.studies.reproduce.experiments.delay import Delay
+from scenarios.studies.reproduce.experiments.experiment import Experiment, Line
+from scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
+from scenarios.studies.reproduce.experiments.timing import TIMINGS
+from scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, Tracking, Trial
+from scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting, Value
+from tracker.evaluation.uncounted import Rule
+from tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
+
+LITERAL, STRICT, OURS = "literal", "literal, strict", "default"
+"""The source's tracker; the same, with candidates on uncounted people as false alarms; ours."""
+
+SINGLE = ("dataset1", "dataset2")
+SEVERAL = ("dataset3", "dataset4")
+
+
+def _per_suite(number: str, suites: Sequence[str], literal: str) -> Tracking:
+    """Give one figure per data set, by both rules."""
+    kinds: tuple[tuple[str, str, Rule], ...] = (
+        (LITERAL, literal, "ignore"),
+        (STRICT, literal, "absent"),
+        (OURS, "peopleboy", "ignore"),
+    )
+    trials = (
+        Trial(Line(suite, who), Setting(base), (suite,), rule)
+        for suite in suites
+        for who, base, rule in kinds
+    )
+    return Tracking(number, THESIS, tuple(trials), "bars", THESIS)
+
+
+def _sweep(
+    number: str,
+    metrics: tuple[str, ...],
+    literal: str,
+    suites: tuple[str, ...],
+    paths: tuple[str, ...],
+    values: dict[str, Value],
+    quick: tuple[str, ...],
+) -> Tracking:
+    """Change one number; `values` gives it by the name that the source has for it."""
+    trials = (
+        Trial(
+            Line(name, who), Setting(base, tuple((p, value) for p in paths)), suites, "ignore", name in quick
+        )
+        for name, value in values.items()
+        for who, base in ((LITERAL, literal), (OURS, "peopleboy"))
+    )
+    return Tracking(number, metrics, tuple(trials), "lines", (metrics[-1],))
+
+
+def _counts(*counts: int) -> dict[str, Value]:
+    return {str(count): count for count in counts}
+
+
+_BOTH_COUNTS = ("person.count", "detector.count")
+_BOTH_FRESH = ("person.fresh_share", "detector.fresh_share")
+_BOTH_BEST = ("person.estimate_share", "detector.estimate_share")
+
+_SWEEPS = (
+    _sweep(
+        "figure-4.9a",
+        THESIS,
+        "thesis-single",
+        SINGLE,
+        _BOTH_COUNTS,
+        _counts(100, 200, 300, 500, 1000, 2000, 5000),
+        ("100", "300", "1000"),
+    ),
+    _sweep(
+        "figure-4.9b",
+        THESIS,
+        "thesis-single",
+        SINGLE,
+        _BOTH_FRESH,
+        {f"{percent} %": percent / 100 for percent in (0, 10, 20, 30, 50, 70, 90)},
+        ("0 %", "20 %", "50 %", "90 %"),
+    ),
+    _sweep(
+        "figure-5.5a",
+        THESIS,
+        "thesis-thermal",
+        SEVERAL,
+        ("person.count",),
+        _counts(100, 200, 300, 500, 1000, 2000),
+        ("100", "200", "1000"),
+    ),
+    _sweep(
+        "figure-5.5b",
+        THESIS,
+        "thesis-thermal",
+        SEVERAL,
+        ("interaction.total_count",),
+        _counts(200, 300, 500, 1000, 2000),
+        ("200", "500", "1000"),
+    ),
+    _sweep(
+        "figure-5.6",
+        THESIS,
+        "thesis-thermal",
+        SEVERAL,
+        ("detector.count",),
+        _counts(100, 200, 300, 500, 1000, 2000),
+        ("100", "500", "1000"),
+    ),
+    _sweep(
+        "paper-table-1",
+        PAPER,
+        "paper-single",
+        SINGLE,
+        _BOTH_COUNTS,
+        _counts(100, 200, 300, 500, 1000, 2000, 5000),
+        ("100", "300", "1000"),
+    ),
+    _sweep(
+        "paper-table-2",
+        PAPER,
+        "paper-single",
+        SINGLE,
+        _BOTH_FRESH,
+        # The table gives the share that is resampled.
+        {f"{percent} %": round(1 - percent / 100, 2) for percent in (95, 90, 85, 80, 70, 60, 50)},
+        ("90 %", "50 %"),
+    ),
+    _sweep(
+        "paper-table-3",
+        PAPER,
+        "paper-single",
+        SINGLE,
+        _BOTH_BEST,
+        {f"{percent} %": percent / 100 for percent in (5, 10, 15, 20, 30, 40, 50)},
+        ("5 %", "30 %", "50 %"),
+    ),
+)
+
+_STEPS = {"thermal": "thermal", "thermal + colour": "colour", "thermal + colour + occlusions": "occlusion"}
+
+
+def _chapters(number: str, groups: Iterable[str]) -> Tracking:
+    """Compare thermal alone, with colour, and with occlusion handling."""
+    trials = (
+        Trial(Line(group, who), Setting(base), SEVERAL)
+        for group in groups
+        for who, base in ((LITERAL, f"thesis-{_STEPS[group]}"), (OURS, _ours(_STEPS[group])))
+    )
+    return Tracking(number, THESIS, tuple(trials), "bars", THESIS)
+
+
+def _ours(step: str) -> str:
+    return "peopleboy" if step == "occlusion" else f"peopleboy-{step}"
+
+
+def _colours(
+    number: str, kinds: dict[str, Changes | None], slow: tuple[str, ...], quick_changes: Changes = ()
+) -> Tracking:
+    """Compare ways to describe colours; None is no colour at all."""
+    trials = (
+        Trial(
+            Line(name, who),
+            Setting(thermal) if changes is None else Setting(colour, changes),
+            SEVERAL,
+            "ignore",
+            name not in slow,
+            quick_changes,
+        )
+        for name, changes in kinds.items()
+        for who, thermal, colour in (
+            (LITERAL, "thesis-thermal", "thesis-colour"),
+            (OURS, "peopleboy-thermal", "peopleboy-moments"),
+        )
+    )
+    return Tracking(number, THESIS, tuple(trials), "bars", ("CA", "AA"))
+
+
+def _histogram(space: str) -> Changes:
+    return (("colour.representation", "histogram"), ("colour.space", space))
+
+
+_REPRESENTATIONS: dict[str, Changes | None] = {
+    "no colour": None,
+    "1 moment": (("colour.representation", "moments1"),),
+    "2 moments": (("colour.representation", "moments2"),),
+    "3 moments": (("colour.representation", "moments3"),),
+    "histogram": _histogram("rgb"),
+}
+_SPACES: dict[str, Changes | None] = {
+    "no colour": None,
+    "grey": _histogram("grey"),
+    "RGB": _histogram("rgb"),
+    "HSV": _histogram("hsv"),
+}
+
+
+def _paper_figure_5() -> Tracking:
+    trials = (
+        Trial(Line("several persons", LITERAL), Setting("paper-several"), SEVERAL),
+        Trial(Line("several persons", STRICT), Setting("paper-several"), SEVERAL, "absent"),
+        Trial(Line("several persons", OURS), Setting("peopleboy"), SEVERAL),
+    )
+    return Tracking("paper-figure-5", PAPER, trials, "bars", PAPER)
+
+
+_TABLE_7_1 = (Way("thermal", THERMAL), Way("colour", COLOUR), Way("both"))
+_TABLE_7_2 = (Way("single", most=1), Way("weighted pairs"), Way("weighted triplets", most=3))
+_TABLE_7_3 = tuple(Way(name, (name,), 1) for name in FEATURES)
+
+_ALL: tuple[Experiment, ...] = (
+    Contents(),
+    _per_suite("figure-4.8", SINGLE, "thesis-single"),
+    *_SWEEPS[:2],
+    TIMINGS[0],
+    _per_suite("figure-5.4", SEVERAL, "thesis-thermal"),
+    *_SWEEPS[2:5],
+    Delay(SINGLE, {LITERAL: Setting("thesis-single"), OURS: Setting("peopleboy")}),
+    TIMINGS[1],
+    _chapters("figure-6.4", list(_STEPS)[:2]),
+    _colours("figure-6.5", _REPRESENTATIONS, ("histogram",)),
+    # A histogram takes so long that few samples have to do when there is little time.
+    _colours("figure-6.6", _SPACES, (), (("person.count", 200),)),
+    *TIMINGS[2:],
+    Learning("table-7.1", _TABLE_7_1),
+    Learning("table-7.2", _TABLE_7_2),
+    Learning("table-7.3", _TABLE_7_3),
+    BestClassifiers(),
+    _chapters("figure-7.3", _STEPS),
+    *_SWEEPS[5:],
+    _paper_figure_5(),
+)
+
+EXPERIMENTS: dict[str, Experiment] = {experiment.id: experiment for experiment in _ALL}
+"""By id, in the order of the page."""
+
+
+def choose(names: Sequence[str]) -> list[Experiment]:
+    """Find experiments by id or by number: "4.9" is figures 4.9a and 4.9b, "paper" all of the paper.
+
+    Raises:
+        BadInput: nothing has this name.
+    """
+    if not names:
+        return list(EXPERIMENTS.values())
+    chosen = {number for name in names for number in _matching(name)}
+    return [experiment for number, experiment in EXPERIMENTS.items() if number in chosen]
+
+
+def _matching(name: str) -> list[str]:
+    found = [number for number in EXPERIMENTS if _is_called(number, name.lower())]
+    if not found:
+        raise BadInput(f"nothing is called {name!r}; choose from {', '.join(EXPERIMENTS)}")
+    return found
+
+
+def _is_called(number: str, name: str) -> bool:
+    last = number.rsplit("-", 1)[-1]
+    plain = number.startswith("paper") or name in (last, last.rstrip("ab"))
+    names = (number, number.rstrip("ab"), number.split("-")[0])
+    return name in names or (plain and not number.startswith("paper"))

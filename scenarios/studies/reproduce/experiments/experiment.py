@@ -1,0 +1,67 @@
+"""What an experiment is: work to be done, and the samples that come of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenarios.studies.reproduce.measuring.store import Result
+from scenarios.studies.reproduce.measuring.units import Unit
+from scenarios.studies.reproduce.measuring.workload import Plan
+
+Chart = Literal["bars", "lines", "none"]
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line of a table.
+
+    Attributes:
+        group: what is varied, as in the source: a data set, a number of samples, a step.
+        who: whose figures these are: a tracker, or a way to count.
+    """
+
+    group: str
+    who: str
+
+
+Samples = Mapping[Line, Mapping[str, NDArray[np.float64]]]
+"""Of each line, by the column's name: (R,) one figure per repeat."""
+
+Done = Mapping[str, Result]
+
+
+class Experiment(Protocol):
+    """A table or figure of a source."""
+
+    @property
+    def id(self) -> str:
+        """A name such as "figure-4.8" or "paper-table-1", as in the file of the source's figures."""
+        ...
+
+    @property
+    def chart(self) -> Chart:
+        """How it is drawn."""
+        ...
+
+    @property
+    def plotted(self) -> tuple[str, ...]:
+        """Columns that are drawn."""
+        ...
+
+    def wants(self, plan: Plan, done: Done) -> Iterable[Unit]:
+        """List the work that is missing and can be begun; nothing once all is done."""
+        ...
+
+    def samples(self, plan: Plan, done: Done) -> Samples:
+        """Give the figures, once all is done."""
+        ...
+
+
+def missing(units: Iterable[Unit], done: Done) -> list[Unit]:
+    """Keep the units that have no result."""
+    return [unit for unit in units if unit.key not in done]

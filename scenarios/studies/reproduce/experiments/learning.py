@@ -1,0 +1,100 @@
+"""Experiments on telling who is in front: the thesis's tables 7.1 to 7.4."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenarios.studies.occlusion_learning.train_occlusion import TRAINING, UNSEEN
+from scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
+from scenarios.studies.reproduce.measuring.learn_units import LearnUnit, PairUnit, examples
+from scenarios.studies.reproduce.measuring.units import Unit
+from scenarios.studies.reproduce.measuring.workload import Plan
+from tracker.thermal.occlusion.pair_features import FEATURES
+
+SHARE = "right [%]"
+TESTS = ("held out", "unseen scenarios")
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A way to build weak classifiers.
+
+    Attributes:
+        name: as in the source's table.
+        uses: names of the features.
+        most: how many of them are added up.
+    """
+
+    name: str
+    uses: tuple[str, ...] = FEATURES
+    most: int = 2
+
+    def unit(self, plan: Plan, done: Done, split: int) -> LearnUnit:
+        """Give the work of one split; the examples must have been collected."""
+        rounds = 1 if len(self.uses) == 1 else plan.rounds
+        training, unseen = (
+            tuple(example for unit in pair_units(plan, names) for example in examples(unit, done[unit.key]))
+            for names in (TRAINING, UNSEEN)
+        )
+        return LearnUnit(self.uses, self.most, rounds, split, training, unseen)
+
+
+@dataclass(frozen=True, slots=True)
+class Learning:
+    """Ways to build weak classifiers, side by side."""
+
+    id: str
+    ways: tuple[Way, ...]
+    chart: Chart = "bars"
+    plotted: tuple[str, ...] = (SHARE,)
+
+    def wants(self, plan: Plan, done: Done) -> list[Unit]:
+        """Examples first, then what is learned from them."""
+        pairs = missing(pair_units(plan, (*TRAINING, *UNSEEN)), done)
+        return pairs or missing([unit for way in self._ways(plan) for unit in _splits(way, plan, done)], done)
+
+    def samples(self, plan: Plan, done: Done) -> Samples:
+        """Give the share of right answers, split by split."""
+        return {
+            Line(way.name, test): {
+                SHARE: np.array([done[unit.key][test] for unit in _splits(way, plan, done)])
+            }
+            for way in self._ways(plan)
+            for test in TESTS
+        }
+
+    def _ways(self, plan: Plan) -> list[Way]:
+        return [way for way in self.ways if way.most <= (3 if plan.triplets else 2)]
+
+
+@dataclass(frozen=True, slots=True)
+class BestClassifiers:
+    """The ten weak classifiers that are chosen first, with their weights."""
+
+    id: str = "table-7.4"
+    chart: Chart = "none"
+    plotted: tuple[str, ...] = ()
+    way: Way = Way("both")
+
+    def wants(self, plan: Plan, done: Done) -> list[Unit]:
+        """The same work as for table 7.1."""
+        return Learning(self.id, (self.way,)).wants(plan, done)
+
+    def samples(self, plan: Plan, done: Done) -> Samples:
+        """Give the weights of the first split; NaN for features that a classifier does not use."""
+        best = done[self.way.unit(plan, done, 0).key]["best"]
+        return {
+            Line(str(place), "simulated"): {name: np.array([weights.get(name, np.nan)]) for name in FEATURES}
+            for place, weights in enumerate(best, 1)
+        }
+
+
+def pair_units(plan: Plan, names: tuple[str, ...]) -> list[PairUnit]:
+    """List where examples come from."""
+    return [PairUnit(name, seed) for name in names for seed in range(plan.pair_seeds)]
+
+
+def _splits(way: Way, plan: Plan, done: Done) -> list[LearnUnit]:
+    return [way.unit(plan, done, split) for split in range(plan.splits)]

@@ -1,0 +1,114 @@
+"""Experiments in which trackers see films: each line is a tracker on some data sets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
+from scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting
+from scenarios.studies.reproduce.measuring.units import RECORDS, FilmUnit, TrackUnit, Unit, restored
+from scenarios.studies.reproduce.measuring.workload import Plan
+from tracker.evaluation.uncounted import Rule
+
+THESIS = ("CR", "CP", "CA", "AR", "AP", "AA")
+PAPER = ("OC", "DC", "OCR", "OCP", "OCA", "OAR", "BAP", "ADC")
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A tracker on some data sets.
+
+    Attributes:
+        line: where its figures go.
+        setting: the tracker.
+        suites: names of the data sets, taken together.
+        rule: for people who are not counted.
+        is_quick: whether it is tried as well when time is short.
+        quick_changes: further changes of the tracker when time is short.
+    """
+
+    line: Line
+    setting: Setting
+    suites: tuple[str, ...]
+    rule: Rule = "ignore"
+    is_quick: bool = True
+    quick_changes: Changes = ()
+
+    def setting_in(self, plan: Plan) -> Setting:
+        """Give the tracker as the plan wants it."""
+        changes = self.quick_changes if plan.is_quick else ()
+        return replace(self.setting, changes=self.setting.changes + changes)
+
+
+@dataclass(frozen=True, slots=True)
+class Tracking:
+    """Trackers on data sets, repeated with other random numbers.
+
+    Attributes:
+        id: as `experiment.Experiment` says, like `chart` and `plotted`.
+        metrics: names of the columns.
+        trials: one a line.
+    """
+
+    id: str
+    metrics: tuple[str, ...]
+    trials: tuple[Trial, ...]
+    chart: Chart = "bars"
+    plotted: tuple[str, ...] = ()
+
+    def wants(self, plan: Plan, done: Done) -> list[Unit]:
+        """Films first, then who sees them."""
+        films = [
+            FilmUnit(play, plan.cache)
+            for trial in self._trials(plan)
+            for name in trial.suites
+            for play in plan.suites[name]
+        ]
+        return missing(films, done) or missing(self._units(plan), done)
+
+    def samples(self, plan: Plan, done: Done) -> Samples:
+        """Add up the runs of each repeat, and take the metrics of the sums."""
+        return {trial.line: self._figures(trial, plan, done) for trial in self._trials(plan)}
+
+    def _trials(self, plan: Plan) -> list[Trial]:
+        return [trial for trial in self.trials if trial.is_quick or not plan.is_quick]
+
+    def _units(self, plan: Plan) -> Iterator[TrackUnit]:
+        for repeat in range(plan.repeats):
+            for trial in self._trials(plan):
+                yield from units_of(trial, plan, repeat)
+
+    def _figures(self, trial: Trial, plan: Plan, done: Done) -> dict[str, NDArray[np.float64]]:
+        rows = []
+        for repeat in range(plan.repeats):
+            sums = add_up([done[unit.key][trial.rule] for unit in units_of(trial, plan, repeat)])
+            rows.append([metric(sums, name) for name in self.metrics])
+        return dict(zip(self.metrics, np.array(rows).T, strict=True))
+
+
+def units_of(trial: Trial, plan: Plan, repeat: int) -> list[TrackUnit]:
+    """List the work of one repeat of a trial."""
+    return [
+        TrackUnit(play, plan.cache, trial.setting_in(plan), repeat)
+        for name in trial.suites
+        for play in plan.suites[name]
+    ]
+
+
+def add_up(results: list[dict[str, Any]]) -> dict[str, Any]:
+    """Take the runs' sums of numerators and denominators together, record by record."""
+    totals: dict[str, Any] = {}
+    for name, kind in RECORDS.items():
+        first, *others = [restored(kind, result[name]) for result in results]
+        totals[name] = sum(others, start=first)
+    return totals
+
+
+def metric(sums: dict[str, Any], name: str) -> float:
+    """Read a metric off the sums [%]."""
+    return float(getattr(sums["thesis" if name in THESIS else "paper"], name.lower()))

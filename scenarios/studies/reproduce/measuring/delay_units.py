@@ -1,0 +1,80 @@
+"""How many frames a tracker needs until it has found somebody who is in plain view."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.files.suite import SuiteRun
+from scenarios.running.frame_cache import film, frames_of
+from scenarios.studies.reproduce.measuring.store import Result
+from scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from scenarios.studies.reproduce.measuring.units import play_key
+from sim.random_streams import stream
+from tracker.evaluation.association import GATE
+from tracker.evaluation.boxes import iou
+from tracker.evaluation.sequence import Truth
+from tracker.track import Status
+from tracker.trackers import Tracker
+
+PATIENCE = 30  # frames after which a tracker has not found the person
+EVERY = 15  # frames between two starts
+PLAIN = 0.9  # visible fraction from which a person is in plain view
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DelayUnit:
+    """Switch a tracker on many times in one film, each time while somebody is in plain view.
+
+    Attributes:
+        play: what is on the film.
+        cache: where films are; it is rendered if it is not there.
+        setting: the tracker.
+        repeat: number of the random stream, from 0.
+    """
+
+    play: SuiteRun
+    cache: Path
+    setting: Setting
+    repeat: int
+    is_timing: bool = False
+
+    @property
+    def key(self) -> str:
+        """Film, tracker and repeat."""
+        return f"delay {play_key(self.play)} | {self.setting.key} | {self.repeat}"
+
+    def run(self) -> Result:
+        """Count the starts, and the frames of each that found the person, the one of the start included."""
+        shot = film(self.play.scenario, self.play.seed, self.cache)
+        truth = shot.truth()
+        starts = set(plain_starts(truth))
+        boxes = dict(zip(truth.frame.tolist(), truth.box, strict=True))
+        rng = stream(self.repeat, "reproduce.delay")
+        waiting: list[tuple[int, Tracker]] = []
+        needed: list[int] = []
+        for number, frame in enumerate(frames_of(shot), 1):
+            if number in starts:
+                waiting.append((number, self.setting.make(rng)))
+            for start, tracker in list(waiting):
+                said = [track.box for track in tracker.update(frame) if track.status is not Status.TENTATIVE]
+                if said and iou(boxes[number][None], np.array(said)).max() > GATE:
+                    needed.append(number - start + 1)
+                    waiting.remove((start, tracker))
+            waiting = [(start, tracker) for start, tracker in waiting if number - start + 1 < PATIENCE]
+        return {"starts": len(starts), "needed": needed}
+
+
+def plain_starts(truth: Truth) -> Iterator[int]:
+    """Give frames from which on exactly one person is there, counted and in plain view, for long enough."""
+    people = np.bincount(truth.frame, minlength=truth.last_frame + 1)
+    plain = np.bincount(truth.frame[truth.counted & (truth.visible > PLAIN)], minlength=len(people))
+    is_plain = (people == 1) & (plain == 1)
+    following = 0
+    for start in range(1, len(is_plain) - PATIENCE + 1):
+        if start >= following and is_plain[start : start + PATIENCE].all():
+            yield start
+            following = start + EVERY

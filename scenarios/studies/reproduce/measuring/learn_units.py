@@ -1,0 +1,102 @@
+"""Units of work about who is in front of whom: examples, and learning from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, collect, mirrored
+from scenarios.studies.occlusion_learning.train_occlusion import PAIRS, accuracy
+from scenarios.studies.reproduce.measuring.store import Result
+from scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from sim.random_streams import stream
+
+TRAINING_SHARE = 0.6
+COLLECTS = Setting("peopleboy")
+
+
+@dataclass(frozen=True, slots=True)
+class PairUnit:
+    """Run a tracker through a scenario, and keep what it measured of people who overlap."""
+
+    scenario: str
+    seed: int
+    is_timing: bool = False
+
+    @property
+    def key(self) -> str:
+        """Scenario and seed."""
+        return f"pairs {self.scenario}-{self.seed}"
+
+    def run(self) -> Result:
+        """Collect the examples."""
+        found = collect(self.scenario, self.seed, COLLECTS.config())
+        return {"pairs": [_plain(example) for example in found]}
+
+
+def _plain(example: PairExample) -> list[object]:
+    return [example.frame, example.one, example.other, bool(example.is_front), *example.features.tolist()]
+
+
+def examples(unit: PairUnit, result: Result) -> list[PairExample]:
+    """Make examples out of a unit's result."""
+    return [
+        PairExample(
+            scenario=unit.scenario,
+            seed=unit.seed,
+            frame=frame,
+            one=one,
+            other=other,
+            is_front=is_front,
+            features=np.array(features),
+        )
+        for frame, one, other, is_front, *features in result["pairs"]
+    ]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LearnUnit:
+    """Draw as many examples as the thesis has, learn from 60 %, and test on the rest and elsewhere.
+
+    Attributes:
+        uses: names of the features.
+        most: how many of them a weak classifier may add up.
+        rounds: of boosting.
+        split: number of the random split, from 0.
+        training: examples to split.
+        unseen: examples of other scenarios.
+    """
+
+    uses: tuple[str, ...]
+    most: int
+    rounds: int
+    split: int
+    training: tuple[PairExample, ...]
+    unseen: tuple[PairExample, ...]
+    is_timing: bool = False
+
+    @property
+    def key(self) -> str:
+        """What is learned from how many examples, and the split."""
+        count = f"{len(self.training)}+{len(self.unseen)}"
+        uses = f"{','.join(self.uses)} by {self.most}"
+        return f"learn {uses} | {count} pairs, {self.rounds} rounds | {self.split}"
+
+    def run(self) -> Result:
+        """Learn and test.
+
+        Source: thesis, section 7.4.
+        """
+        # Only here: what needs scikit-learn is not needed for anything else.
+        from tracker.thermal.occlusion.boosting import train
+
+        order = stream(self.split, "reproduce.split").permutation(len(self.training))[:PAIRS]
+        cut = round(TRAINING_SHARE * len(order))
+        chosen, rest = ([self.training[i] for i in rows] for rows in (order[:cut], order[cut:]))
+        table = train(*mirrored(chosen), most=self.most, uses=self.uses, rounds=self.rounds)
+        return {
+            "held out": accuracy(table, rest),
+            "unseen scenarios": accuracy(table, self.unseen),
+            "best": [weak.weights for weak in table.classifiers[:10]],
+        }

@@ -1,0 +1,141 @@
+"""Units of work: each is a value that any process can run, and its result is plain data."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import asdict, dataclass, fields, is_dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any, Protocol, TypeVar, get_type_hints
+
+import numpy as np
+
+from scenarios.files.suite import SuiteRun
+from scenarios.running.frame_cache import Film, film, frames_of
+from scenarios.scores.suite_table import count
+from scenarios.studies.reproduce.measuring.store import Result
+from scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from sim.random_streams import stream
+from tracker.evaluation.evaluate import Counts, evaluate
+from tracker.evaluation.metrics.paper_metrics import PaperMetrics
+from tracker.evaluation.metrics.sums import Sums
+from tracker.evaluation.metrics.thesis_metrics import ThesisMetrics
+from tracker.evaluation.sequence import Tracks
+from tracker.evaluation.uncounted import Rule
+from tracker.track import Status
+from tracker.trackers import Tracker
+
+RULES: tuple[Rule, ...] = ("ignore", "absent")
+RECORDS: dict[str, type[Sums]] = {"counts": Counts, "thesis": ThesisMetrics, "paper": PaperMetrics}
+
+Record = TypeVar("Record", bound=Sums)
+
+
+class Unit(Protocol):
+    """A piece of work."""
+
+    @property
+    def key(self) -> str:
+        """What it is, in one line; no two units have the same."""
+        ...
+
+    @property
+    def is_timing(self) -> bool:
+        """Whether it measures time, and has to run alone."""
+        ...
+
+    def run(self) -> Result:
+        """Do the work and give plain data."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FilmUnit:
+    """Render a run's frames into the cache, and count what they hold."""
+
+    play: SuiteRun
+    cache: Path
+    is_timing: bool = False
+
+    @property
+    def key(self) -> str:
+        """The film's name."""
+        return f"film {play_key(self.play)}"
+
+    def run(self) -> Result:
+        """Render, unless it is there, and count as in the thesis's table 3.1."""
+        shot = film(self.play.scenario, self.play.seed, self.cache)
+        return asdict(count(shot.people(), shot.frames, _rate_hz(shot)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackUnit:
+    """Let one tracker, with one stream of random numbers, see one film.
+
+    Attributes:
+        play: what is on the film.
+        cache: where films are; it is rendered if it is not there.
+        setting: the tracker.
+        repeat: number of the random stream, from 0.
+    """
+
+    play: SuiteRun
+    cache: Path
+    setting: Setting
+    repeat: int
+    is_timing: bool = False
+
+    @property
+    def key(self) -> str:
+        """Film, tracker and repeat."""
+        return f"track {play_key(self.play)} | {self.setting.key} | {self.repeat}"
+
+    def run(self) -> Result:
+        """Track, and score by both rules for people who are not counted."""
+        shot = film(self.play.scenario, self.play.seed, self.cache)
+        start = time.process_time()
+        found = track_film(shot, self.setting.make(stream(self.repeat, "reproduce.tracker")))
+        seconds = time.process_time() - start
+        result: Result = {"cpu_s": round(seconds, 3), "frames": shot.frames}
+        for rule in RULES:
+            scores = evaluate(shot.truth(), found, frames=shot.frames, uncounted=rule)
+            result[rule] = {name: asdict(getattr(scores, name)) for name in RECORDS}
+        return result
+
+
+def play_key(play: SuiteRun) -> str:
+    """Name a run with its length, which is cut where there is little time."""
+    return f"{play.name} {play.scenario.duration_s:g}s"
+
+
+def track_film(shot: Film, tracker: Tracker) -> Tracks:
+    """Let a tracker see a film; who is only tentative is not yet claimed."""
+    rows = [
+        (number, track.id, track.box, track.confidence)
+        for number, frame in enumerate(frames_of(shot), 1)
+        for track in tracker.update(frame)
+        if track.status is not Status.TENTATIVE
+    ]
+    frame, identity, box, confidence = zip(*rows, strict=True) if rows else ((), (), (), ())
+    return Tracks(
+        frame=np.array(frame, dtype=np.int64),
+        id=np.array(identity, dtype=np.int64),
+        box=np.array(box, dtype=np.float64).reshape(-1, 4),
+        confidence=np.array(confidence, dtype=np.float64),
+    )
+
+
+def restored(kind: type[Record], data: dict[str, Any]) -> Record:
+    """Make a record of sums out of the plain data that `asdict` made of it."""
+    hints = get_type_hints(kind)
+    nested = {
+        field.name: restored(hints[field.name], data[field.name])
+        for field in fields(kind)
+        if is_dataclass(hints[field.name])
+    }
+    return kind(**(data | nested))
+
+
+def _rate_hz(shot: Film) -> float:
+    times = [frame.time_s for frame in islice(frames_of(shot), 2)]
+    return 1.0 / (times[1] - times[0]) if len(times) == 2 else 15.0

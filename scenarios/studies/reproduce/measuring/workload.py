@@ -1,0 +1,68 @@
+"""How much is done: everything, or a little in a few minutes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from scenarios.files.suite import SuiteRun, load_suite, runs_of
+
+DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Plan:
+    """How much of everything.
+
+    Attributes:
+        cache: where rendered frames are kept.
+        suites: runs by the name of their data set.
+        repeats: random streams per tracker.
+        is_quick: whether sweeps take fewer values, too.
+        pair_seeds: seeds per scenario from which examples of overlapping people are taken.
+        splits: of the examples into those to learn from and those to test with.
+        triplets: whether weighted triplets are tried, which take minutes.
+        rounds: of boosting.
+        timing_steps: how often each step is timed.
+    """
+
+    cache: Path
+    suites: Mapping[str, Sequence[SuiteRun]] = field(default_factory=dict)
+    repeats: int = 10
+    is_quick: bool = False
+    pair_seeds: int = 10
+    splits: int = 10
+    triplets: bool = True
+    rounds: int = 40
+    timing_steps: int = 200
+
+
+QUICK_S = 20.0
+
+
+def full_plan(cache: Path) -> Plan:
+    """Everything, as the sources did it."""
+    return Plan(cache=cache, suites={name: tuple(runs_of(load_suite(name))) for name in DATASETS})
+
+
+def quick_plan(cache: Path) -> Plan:
+    """A little of everything: the start of one run per data set, three repeats, fewer values."""
+    suites = {name: (_middle_run(name),) for name in DATASETS}
+    return Plan(
+        cache=cache,
+        suites=suites,
+        repeats=3,
+        is_quick=True,
+        pair_seeds=1,
+        splits=3,
+        triplets=False,
+        rounds=20,
+        timing_steps=60,
+    )
+
+
+def _middle_run(name: str) -> SuiteRun:
+    runs = list(runs_of(load_suite(name)))
+    play = runs[len(runs) // 2]
+    return SuiteRun(play.scenario.lasting(min(QUICK_S, play.scenario.duration_s)), play.seed)

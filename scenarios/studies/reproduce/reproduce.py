@@ -1,0 +1,90 @@
+"""Measure the tables and figures of the sources again, and write the page."""
+
+from __future__ import annotations
+
+import os
+import platform
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from scenarios.run_folder.folder import versions
+from scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
+from scenarios.studies.reproduce.measuring.store import Store
+from scenarios.studies.reproduce.measuring.units import Unit
+from scenarios.studies.reproduce.measuring.workers import Report, run_units
+from scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan
+from scenarios.studies.reproduce.showing.source_page import About, write_page
+
+PAGE = "index.html"
+RESULTS = "units.jsonl"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Means:
+    """With what the work is done.
+
+    Attributes:
+        out: folder of the page and the results.
+        jobs: processes at the same time; -1 for one a core.
+        scheduler: address of a Dask scheduler; None to work here.
+        command: by which the user began it.
+    """
+
+    out: Path
+    jobs: int = -1
+    scheduler: str | None = None
+    command: str = "peopleboy reproduce"
+
+
+def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means, report: Report) -> Path:
+    """Do what is missing, and write the page.
+
+    Whoever is killed begins again with the same folder: results that are there are taken from there.
+
+    Returns:
+        The page.
+
+    Raises:
+        BadInput: the folder or the scheduler cannot be used.
+    """
+    start = time.monotonic()
+    store = Store(means.out / RESULTS)
+    while wanted := unique_units(experiments, plan, store):
+        run_units(wanted, store, means.jobs, means.scheduler, report)
+    results: list[tuple[Experiment, Samples]] = [(one, one.samples(plan, store)) for one in experiments]
+    page = means.out / PAGE
+    write_page(page, results, _about(plan, means, store, time.monotonic() - start))
+    return page
+
+
+def unique_units(experiments: Sequence[Experiment], plan: Plan, store: Store) -> list[Unit]:
+    """List the work that can be begun now; what several experiments need is done once."""
+    units = {unit.key: unit for one in experiments for unit in one.wants(plan, store)}
+    return list(units.values())
+
+
+def _about(plan: Plan, means: Means, store: Store, seconds: float) -> About:
+    spent = sum(result.get("cpu_s", 0.0) for result in store.values())
+    facts: Mapping[str, str] = {
+        "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
+        "Python": platform.python_version(),
+        "Seeds": f"random streams of the trackers 0 to {plan.repeats - 1}; data sets as in their files",
+        "Machine": f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}",
+        "Time": f"{seconds / 60:.1f} min for this call; {spent / 60:.1f} min of processor time in trackers",
+        "Results": f"{len(store)} units of work in {RESULTS}, beside this page",
+    }
+    return About(command=means.command, is_quick=plan.is_quick, amount=_amount(plan), facts=facts)
+
+
+def _amount(plan: Plan) -> str:
+    runs = {name: len(plays) for name, plays in plan.suites.items()}
+    if plan.is_quick:
+        return (
+            f"One run per data set and of it {QUICK_S:g} s at most, {plan.repeats} repeats instead of 10, "
+            "fewer values of each parameter, figure 6.6 with 200 samples instead of 1000, pairs of people "
+            "from one run per scenario, no weighted triplets."
+        )
+    total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
+    return f"{plan.repeats} repeats of everything with other random numbers in the trackers. {total}."

@@ -1,0 +1,1 @@
+"""Ours beside the sources': figures, plots, the page."""

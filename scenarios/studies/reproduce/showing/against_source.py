@@ -1,0 +1,106 @@
+"""Ours beside the source's: means over repeats, and whether the source's claims hold for us."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import ttest_rel
+
+from scenarios.studies.reproduce.experiments.experiment import Line, Samples
+from scenarios.studies.reproduce.showing.source import Claim
+
+SIGNIFICANT = 0.01
+ALIKE = 2.0  # [points] within which two figures are called alike, where the source has no test
+BLIND = 5.0  # [%] below which both figures say only that nobody is found
+
+Floats = NDArray[np.float64]
+
+
+class Outcome(StrEnum):
+    """How a claim fares."""
+
+    HOLDS = "holds"
+    UNCLEAR = "undecided"
+    FAILS = "does not hold"
+    BLIND = "finds too few people to tell"
+    UNKNOWN = "not measured"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether a claim of the source holds for one of our trackers.
+
+    Attributes:
+        who: which tracker.
+        first, second: our means of the two groups.
+        p: of the paired t-test over the repeats; NaN where there is none.
+        outcome: how the claim fares.
+    """
+
+    who: str
+    first: float
+    second: float
+    p: float
+    outcome: Outcome
+
+    @property
+    def by(self) -> float:
+        """Difference of the means."""
+        return self.first - self.second
+
+
+def paired_t_test(one: Floats, other: Floats) -> float:
+    """Give the p-value of Student's t-test for paired samples (R,), two-sided.
+
+    NaN with fewer than two repeats; 1 where all pairs are equal, 0 where all differ by the same.
+    """
+    if one.shape != other.shape or one.size < 2 or np.isnan(one).any() or np.isnan(other).any():
+        return float("nan")
+    away = one - other
+    if np.ptp(away) < 1e-12:
+        return 1.0 if abs(away[0]) < 1e-12 else 0.0
+    return float(ttest_rel(one, other).pvalue)
+
+
+def judge(claim: Claim, samples: Samples) -> Iterator[Verdict]:
+    """Check a claim for everybody who has figures in both of its groups."""
+    first, second = claim.groups
+    for line, figures in samples.items():
+        other = samples.get(Line(second, line.who))
+        if line.group == first and other is not None and claim.metric in figures:
+            yield _verdict(claim, line.who, figures[claim.metric], other[claim.metric])
+
+
+def _verdict(claim: Claim, who: str, one: Floats, other: Floats) -> Verdict:
+    p = paired_t_test(one, other)
+    first, second = float(one.mean()), float(other.mean())
+    if np.isnan(first - second):
+        outcome = Outcome.UNKNOWN
+    elif max(first, second) < BLIND:
+        outcome = Outcome.BLIND
+    else:
+        outcome = _outcome(claim, first - second, p)
+    return Verdict(who, first, second, p, outcome)
+
+
+def _outcome(claim: Claim, by: float, p: float) -> Outcome:
+    """Compare a difference with a claim; where the source tests, ours has to be significant as well."""
+    is_clear = p < SIGNIFICANT or not claim.tested
+    if claim.expect in ("alike", "no less"):
+        if by >= -ALIKE and (by <= ALIKE or claim.expect == "no less"):
+            return Outcome.HOLDS
+        return Outcome.UNCLEAR if claim.tested and p >= SIGNIFICANT else Outcome.FAILS
+    ways = {"more": by > 0, "less": by < 0, "differs": by != 0}
+    if not ways[claim.expect]:
+        return Outcome.FAILS
+    return Outcome.HOLDS if is_clear else Outcome.UNCLEAR
+
+
+def mean_and_spread(values: Floats) -> tuple[float, float | None]:
+    """Give mean and standard deviation over the repeats; None where there is one only."""
+    spread = float(values.std(ddof=1)) if values.size > 1 else None
+    return float(values.mean()), spread

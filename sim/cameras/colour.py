@@ -1,0 +1,113 @@
+"""The colour image: diffuse shading, patterned surfaces, a light that can change or go out, sensor noise."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from sim.cameras.blur import rotation_blur
+from sim.cameras.noise import gaussian
+from sim.cameras.surfaces import LookTable, part_from_pixel, pattern_value, surface_point
+from sim.config import ColourConfig
+from sim.geometry.pinhole import Matrix
+from sim.rendering.render import View
+
+# The room's lamps hang above and a little to one side, so that walls and sides of people differ in shade.
+_LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])
+_AMBIENT = 0.55
+
+
+@njit(cache=True, fastmath=True)
+def _radiance_image(
+    part: NDArray[np.int32],
+    depth: NDArray[np.float32],
+    normal: NDArray[np.float32],
+    matrices: NDArray[np.float64],
+    colour: NDArray[np.float64],
+    kind: NDArray[np.int64],
+    period: NDArray[np.float64],
+    phase: NDArray[np.float64],
+    light: NDArray[np.float64],
+    level: float,
+) -> NDArray[np.float32]:
+    height, width = part.shape
+    image = np.zeros((height, width, 3), np.float32)
+    for v in range(height):
+        for u in range(width):
+            p = part[v, u]
+            if p < 0:
+                continue
+            x, y, z = surface_point(matrices, p, u, v, depth[v, u])
+            second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
+            facing = normal[v, u, 0] * light[0] + normal[v, u, 1] * light[1] + normal[v, u, 2] * light[2]
+            shade = level * (_AMBIENT + (1.0 - _AMBIENT) * max(facing, 0.0)) + colour[p, 6]
+            for c in range(3):
+                image[v, u, c] = shade * colour[p, second + c]
+    return image
+
+
+def _gamma_table() -> NDArray[np.uint8]:
+    """Return the 8-bit code of 4096 linear levels 0..1, by the sRGB transfer curve (IEC 61966-2-1)."""
+    linear = np.linspace(0.0, 1.0, 4096)
+    coded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return np.rint(coded * 255.0).astype(np.uint8)
+
+
+_GAMMA = _gamma_table()
+
+
+def colour_image(
+    view: View,
+    looks: LookTable,
+    config: ColourConfig,
+    world_from_camera: Matrix,
+    world_from_part: Matrix,
+    light_level: float,
+    turned_rad: float,
+) -> NDArray[np.float32]:
+    """Form the noise-free colour image.
+
+    Args:
+        view: what each pixel sees.
+        looks: of the P parts.
+        config: camera and gain.
+        world_from_camera: (4, 4).
+        world_from_part: (P, 4, 4).
+        light_level: 1 is the room's full light, 0 is dark; glowing surfaces stay bright.
+        turned_rad: [rad] turned about the vertical axis while the exposure lasted.
+
+    Returns:
+        (H, W, 3) linear light, 1 being full scale.
+    """
+    matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
+    image = _radiance_image(
+        view.part, view.depth, view.normal, matrices, looks.colour, looks.kind, looks.period, looks.phase,
+        _LIGHT, light_level * config.gain,
+    )  # fmt: skip
+    return rotation_blur(image, config.camera, turned_rad)
+
+
+def expose(linear: NDArray[np.float32], config: ColourConfig, rng: np.random.Generator) -> NDArray[np.uint8]:
+    """Add read and shot noise to an (H, W, 3) linear image and encode it as 8-bit sRGB."""
+    noise = gaussian(linear.shape, rng)
+    return _encode(linear, noise, _GAMMA, np.float32(config.read_noise), np.float32(config.shot_noise))
+
+
+@njit(cache=True, fastmath=True)
+def _encode(
+    linear: NDArray[np.float32],
+    noise: NDArray[np.float32],
+    gamma: NDArray[np.uint8],
+    read: np.float32,
+    shot: np.float32,
+) -> NDArray[np.uint8]:
+    image = np.empty(linear.shape, np.uint8)
+    source, random, target = linear.reshape(-1), noise.reshape(-1), image.reshape(-1)
+    last = np.float32(gamma.shape[0] - 1)
+    half, none, full = np.float32(0.5), np.float32(0.0), np.float32(1.0)
+    for i in range(source.shape[0]):
+        sigma = np.sqrt(read * read + shot * shot * source[i])
+        level = min(max(source[i] + sigma * random[i], none), full)
+        target[i] = gamma[np.int32(level * last + half)]
+    return image

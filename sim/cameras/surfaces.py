@@ -1,0 +1,140 @@
+"""Where on a surface a pixel falls, and what pattern and variation it finds there (numba kernels).
+
+Patterns live in the frame of their part, so they move with it; every value depends on the point alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from sim.geometry.pinhole import Camera, Matrix
+from sim.shapes.materials import Look, PatternKind
+
+# Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
+_OFFSET = 0.137
+
+_STRIPES = int(PatternKind.STRIPES)
+_CHECKS = int(PatternKind.CHECKS)
+_PATCH = int(PatternKind.PATCH)
+_SPECKLE = int(PatternKind.SPECKLE)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LookTable:
+    """The looks of all P parts as arrays; row i belongs to part i.
+
+    Attributes:
+        thermal: (P, 5) temperature [degC], emissivity, variation [K], waves per metre [1/m], contrast [K].
+        colour: (P, 7) first and second reflectance, glow.
+        kind: (P, 2) PatternKind of the thermal and of the colour pattern.
+        period: (P, 2) [m] of the same.
+        phase: (P, 3) [waves] offsets of the smooth variation.
+    """
+
+    thermal: NDArray[np.float64]
+    colour: NDArray[np.float64]
+    kind: NDArray[np.int64]
+    period: NDArray[np.float64]
+    phase: NDArray[np.float64]
+
+
+def make_look_table(looks: Sequence[Look], rng: np.random.Generator) -> LookTable:
+    """Put the looks of all parts into arrays; the generator draws each part's phase of variation."""
+    return LookTable(
+        thermal=np.array(
+            [(k.temperature_c, k.emissivity, k.variation_k, 1.0 / k.variation_m, k.contrast_k) for k in looks]
+        ).reshape(-1, 5),
+        colour=np.array([(*k.rgb, *k.second_rgb, k.glow) for k in looks]).reshape(-1, 7),
+        kind=np.array([(k.thermal_pattern.kind, k.colour_pattern.kind) for k in looks], np.int64).reshape(
+            -1, 2
+        ),
+        period=np.array([(k.thermal_pattern.period_m, k.colour_pattern.period_m) for k in looks]).reshape(
+            -1, 2
+        ),
+        phase=rng.uniform(0.0, 1.0, (len(looks), 3)),
+    )
+
+
+def part_from_pixel(camera: Camera, world_from_camera: Matrix, world_from_part: Matrix) -> Matrix:
+    """Combine camera and part poses so that a kernel reaches a part's frame in one product.
+
+    Args:
+        camera: the pinhole camera.
+        world_from_camera: (4, 4) optical frame to world.
+        world_from_part: (P, 4, 4).
+
+    Returns:
+        (P, 3, 4): the point of part p at pixel (u, v) and depth z is M[:, :3] @ (u z, v z, z) + M[:, 3].
+    """
+    rotation = np.swapaxes(world_from_part[:, :3, :3], 1, 2)
+    matrices = np.empty((len(world_from_part), 3, 4))
+    matrices[:, :, :3] = rotation @ (world_from_camera[:3, :3] @ _rays(camera))
+    offset = world_from_camera[:3, 3] - world_from_part[:, :3, 3]
+    matrices[:, :, 3] = np.einsum("pij,pj->pi", rotation, offset)
+    return matrices
+
+
+@lru_cache(maxsize=16)
+def _rays(camera: Camera) -> Matrix:
+    """(3, 3): the ray through pixel (u, v) in the optical frame is this @ (u, v, 1)."""
+    rays = np.asarray(np.linalg.inv(camera.intrinsics), np.float64)
+    rays.setflags(write=False)
+    return rays
+
+
+@njit(cache=True, fastmath=True)
+def surface_point(
+    matrices: NDArray[np.float64], part: int, u: float, v: float, z: float
+) -> tuple[float, float, float]:
+    """Return the point [m] in the part's frame that pixel (u, v) sees at depth z."""
+    m, a, b = matrices, u * z, v * z
+    return (
+        m[part, 0, 0] * a + m[part, 0, 1] * b + m[part, 0, 2] * z + m[part, 0, 3],
+        m[part, 1, 0] * a + m[part, 1, 1] * b + m[part, 1, 2] * z + m[part, 1, 3],
+        m[part, 2, 0] * a + m[part, 2, 1] * b + m[part, 2, 2] * z + m[part, 2, 3],
+    )
+
+
+@njit(cache=True, fastmath=True)
+def _wave(at: float) -> float:
+    """Return a wave of period 1 within -1..1, made of parabolas: smooth as a sine to the eye, and quick."""
+    t = at - math.floor(at) - 0.5
+    return 8.0 * t * (1.0 - 2.0 * abs(t))
+
+
+@njit(cache=True, fastmath=True)
+def smooth_variation(
+    x: float, y: float, z: float, waves: float, phase: NDArray[np.float64], part: int
+) -> float:
+    """Return a smooth function of a point [m] of a part, within -1..1: three crossed waves, so many a m."""
+    a = _wave(waves * (x + 0.6 * z) + phase[part, 0])
+    b = _wave(waves * (y - 0.8 * x) + phase[part, 1])
+    c = _wave(waves * 0.7 * (z + 0.5 * y) + phase[part, 2])
+    return (a + b + c) / 3.0
+
+
+@njit(cache=True, fastmath=True)
+def pattern_value(
+    kind: int, period: float, x: float, y: float, z: float, phase: NDArray[np.float64], part: int
+) -> int:
+    """Return 1 where the pattern's second value applies at a point [m] of a part, else 0."""
+    if kind == _STRIPES:
+        return math.floor(2.0 * z / period + _OFFSET) & 1
+    if kind == _CHECKS:
+        half = 2.0 / period
+        return (
+            math.floor(x * half + _OFFSET) + math.floor(y * half + _OFFSET) + math.floor(z * half + _OFFSET)
+        ) & 1
+    if kind == _PATCH:
+        across, along = y / (0.35 * period), z / (0.5 * period)
+        return int(x > 0.0 and across * across + along * along < 1.0)
+    if kind == _SPECKLE:
+        return int(smooth_variation(x, y, z, 1.0 / period, phase, part) > 0.15)
+    return 0

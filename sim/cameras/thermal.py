@@ -1,0 +1,189 @@
+"""The thermal image: from surface temperatures to the grey picture that a robot gets.
+
+Temperature of each surface point -> band radiance, with emissivity and mirrored surroundings -> optics and
+rotation blur -> apparent temperature -> detector noise -> 8 bit over 24..36 degC (T ch. 3), 16 bit at 10 mK.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from sim.cameras.blur import optics_blur, rotation_blur
+from sim.cameras.noise import gaussian
+from sim.cameras.surfaces import LookTable, part_from_pixel, pattern_value, smooth_variation, surface_point
+from sim.config import ThermalConfig
+from sim.geometry.pinhole import Matrix
+from sim.rendering.render import View
+
+_LOWEST_C, _HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
+
+
+def band_radiance(temperature_c: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Integrate Planck's law over the long-wave band of 8..14 um.
+
+    Args:
+        temperature_c: (N,) [degC].
+
+    Returns:
+        (N,) [W / (m2 sr)].
+    """
+    wavelength = np.linspace(8e-6, 14e-6, 241)
+    kelvin = temperature_c[:, None] + 273.15
+    first, second = 1.191042972e-16, 1.438776877e-2  # 2 h c^2 [W m2], h c / k [m K], CODATA 2018
+    spectral = first / wavelength**5 / np.expm1(second / (wavelength * kelvin))
+    return np.asarray(np.trapezoid(spectral, wavelength, axis=1))
+
+
+def _tables() -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
+    """Return radiance by temperature, temperature by radiance, and the span of that radiance."""
+    temperature = np.arange(_LOWEST_C, _HIGHEST_C + _STEP_K, _STEP_K)
+    radiance = band_radiance(temperature)
+    grid = np.linspace(radiance[0], radiance[-1], 16384)
+    return radiance, np.interp(grid, radiance, temperature), float(radiance[0]), float(radiance[-1])
+
+
+_RADIANCE, _TEMPERATURE, _DIMMEST, _BRIGHTEST = _tables()
+
+
+@lru_cache(maxsize=16)
+def _mirrored(surroundings_c: float) -> float:
+    """Band radiance of the surroundings, the same in every image of a run."""
+    return float(band_radiance(np.array([surroundings_c]))[0])
+
+
+@njit(cache=True, fastmath=True)
+def _look_up(table: NDArray[np.float64], low: float, high: float, value: float) -> float:
+    """Interpolate a table over an evenly spaced grid low..high; values outside take the table's ends."""
+    last = table.shape[0] - 1
+    position = min(max((value - low) / (high - low) * last, 0.0), last - 1e-9)
+    index = int(position)
+    result: float = table[index] + (position - index) * (table[index + 1] - table[index])
+    return result
+
+
+@njit(cache=True, fastmath=True)
+def _radiance_image(
+    part: NDArray[np.int32],
+    depth: NDArray[np.float32],
+    matrices: NDArray[np.float64],
+    thermal: NDArray[np.float64],
+    kind: NDArray[np.int64],
+    period: NDArray[np.float64],
+    phase: NDArray[np.float64],
+    table: NDArray[np.float64],
+    surroundings: float,
+    span: tuple[float, float],
+) -> NDArray[np.float32]:
+    height, width = part.shape
+    image = np.empty((height, width), np.float32)
+    for v in range(height):
+        for u in range(width):
+            p = part[v, u]
+            if p < 0:
+                image[v, u] = surroundings
+                continue
+            temperature = thermal[p, 0]
+            if thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
+                x, y, z = surface_point(matrices, p, u, v, depth[v, u])
+                temperature += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
+                temperature += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
+            emitted = _look_up(table, span[0], span[1], temperature)
+            image[v, u] = thermal[p, 1] * emitted + (1.0 - thermal[p, 1]) * surroundings
+    return image
+
+
+@njit(cache=True, fastmath=True)
+def _apparent_c(radiance: NDArray[np.float32], table: NDArray[np.float64], low: float, high: float) -> None:
+    """Replace radiance by the temperature of a black body that gives as much, in place."""
+    flat = radiance.reshape(-1)
+    for i in range(flat.shape[0]):
+        flat[i] = _look_up(table, low, high, float(flat[i]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Detector:
+    """What one detector does wrong in the same way all through a run.
+
+    Attributes:
+        offset_k: (H, W) [K] fixed-pattern offsets.
+        dead: (H, W) whether a pixel is dead.
+        dead_c: [degC] what a dead pixel reads.
+    """
+
+    offset_k: NDArray[np.float32]
+    dead: NDArray[np.bool_]
+    dead_c: float
+
+
+def make_detector(config: ThermalConfig, rng: np.random.Generator) -> Detector:
+    """Draw the detector of one run."""
+    shape = (config.camera.height, config.camera.width)
+    offset = rng.standard_normal(shape, np.float32) * np.float32(config.fixed_pattern_k)
+    return Detector(offset, rng.random(shape) < config.dead_pixels, config.lowest_c)
+
+
+def surface_image(
+    view: View,
+    looks: LookTable,
+    config: ThermalConfig,
+    world_from_camera: Matrix,
+    world_from_part: Matrix,
+    surroundings_c: float,
+    turned_rad: float,
+) -> NDArray[np.float32]:
+    """Form the noise-free image of apparent temperature.
+
+    A surface of emissivity e at temperature T sends e B(T) + (1 - e) B(surroundings), B being the radiance of
+    a black body; blur acts on that radiance. In a world of one temperature the image has one value.
+
+    Args:
+        view: what each pixel sees.
+        looks: of the P parts.
+        config: camera and optics.
+        world_from_camera: (4, 4).
+        world_from_part: (P, 4, 4).
+        surroundings_c: [degC] what surfaces mirror, and what is seen where nothing is.
+        turned_rad: [rad] turned about the vertical axis while the exposure lasted.
+
+    Returns:
+        (H, W) [degC].
+    """
+    matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
+    radiance = _radiance_image(
+        view.part, view.depth, matrices, looks.thermal, looks.kind, looks.period, looks.phase,
+        _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
+    )  # fmt: skip
+    radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)
+    radiance = np.ascontiguousarray(radiance)
+    _apparent_c(radiance, _TEMPERATURE, _DIMMEST, _BRIGHTEST)
+    return radiance
+
+
+def detect(
+    apparent_c: NDArray[np.float32], detector: Detector, config: ThermalConfig, rng: np.random.Generator
+) -> NDArray[np.float32]:
+    """Add the detector's noise to an (H, W) image of apparent temperature [degC]; returns a new image."""
+    noise = gaussian(apparent_c.shape, rng)
+    noise *= np.float32(config.netd_k)
+    noise += apparent_c
+    noise += detector.offset_k
+    noise[detector.dead] = detector.dead_c
+    return noise
+
+
+def encode_8bit(
+    temperature_c: NDArray[np.float32], lowest_c: float = 24.0, highest_c: float = 36.0
+) -> NDArray[np.uint8]:
+    """Encode [degC] as grey: round((T - lowest) / (highest - lowest) * 255), clipped (T ch. 3)."""
+    grey = (temperature_c - np.float32(lowest_c)) * np.float32(255.0 / (highest_c - lowest_c))
+    return np.asarray(np.clip(np.rint(grey), 0.0, 255.0), np.uint8)
+
+
+def encode_16bit(temperature_c: NDArray[np.float32]) -> NDArray[np.uint16]:
+    """Encode [degC] as hundredths of a kelvin, as radiometric cameras do: round((T + 273.15) * 100)."""
+    return np.clip(np.rint((temperature_c.astype(np.float64) + 273.15) * 100.0), 0, 65535).astype(np.uint16)

@@ -1,0 +1,1 @@
+"""Cameras as pinholes, poses, vectors, and the map between two cameras."""

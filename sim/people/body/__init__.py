@@ -1,0 +1,1 @@
+"""One person's body: bones, shapes, clothes, postures and gait."""

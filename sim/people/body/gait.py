@@ -1,0 +1,222 @@
+"""Walking: motion capture above the hips, feet that stand still on the floor below them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from sim.people.body.body_shapes import SIDES, sole_points
+from sim.people.body.motion_capture import CLIP_LEG_M, fourier_basis, load_walking_clip
+from sim.people.body.postures import standing_rotations
+from sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral
+
+Array = NDArray[np.float64]
+
+_PHASES = 48
+_AMPLITUDES = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.0, 1.2, 1.4])
+_FULL_SPEED_M_S = 1.1  # a stride as long as the clip's, for a leg as long as the clip's
+# The left foot of the clip is on the floor between these phases [cycles].
+_HEEL_STRIKE, _TOE_OFF = 0.485, 1.085
+_TOE_OUT_RAD = math.radians(7.0)
+_FLAT_RAD = math.radians(3.0)
+_MAX_REACH = 0.998  # [leg lengths] a walking knee is never quite straight
+_STANDING_REACH = 0.9998
+_LEAD = (
+    0.055  # [cycles] how far the body is ahead of the middle of its feet, which makes the most of the legs
+)
+_BOB = 0.7  # people rise and fall less in each step than stiff legs would make them
+# The clip's figure holds its arms far off and leans forward; people take less of both.
+_ARM_SPREAD = 0.35
+_LEAN = 0.5
+
+
+class Gait:
+    """Poses of one body for every phase and length of its stride.
+
+    The motion capture clip gives the movement of pelvis, trunk and arms and the pitch of the feet; its swing
+    is scaled by an amplitude. The feet follow the floor: during stance the sole rolls from heel over the flat
+    foot to the toe without slipping, between stances the clip's own path is bent to meet both ends (after
+    Kovar, Schreiner and Gleicher 2002, Footskate cleanup for motion capture editing). Thighs and shins then
+    follow by inverse kinematics.
+    """
+
+    def __init__(self, offsets: Array, stature_m: float) -> None:
+        self._offsets = offsets
+        self._soles = sole_points(stature_m)
+        leg = -offsets[BONE_INDEX["left_shin"], 2] - offsets[BONE_INDEX["left_foot"], 2]
+        self._scale = leg / CLIP_LEG_M
+        self.unit_stride_m = load_walking_clip().stride_m * self._scale
+        tables = [self._make_table(float(a)) for a in _AMPLITUDES]
+        self._rotations = np.stack([rotations for rotations, _ in tables])  # (A, P, 17, 3)
+        self._sway = np.stack([sway for _, sway in tables])  # (A, P, 3)
+
+    def amplitude(self, speed_m_s: float) -> float:
+        """Length of the stride against the clip's at a walking speed.
+
+        It grows with the root of speed, as cadence does.
+        """
+        return min(math.sqrt(abs(speed_m_s) / (_FULL_SPEED_M_S * math.sqrt(self._scale))), 1.4)
+
+    def stride_m(self, amplitude: float) -> float:
+        """Travel [m] in a cycle."""
+        return float(self.unit_stride_m * amplitude)
+
+    def pose(self, phase: float, amplitude: float) -> tuple[Array, Array]:
+        """Look up the pose at a phase [cycles].
+
+        Returns:
+            (17, 3) [rad] rotation vectors of the bones, and (2,) [m] the pelvis' offset from the person's
+            steadily moving position, to the front and to the left.
+        """
+        row = float(np.interp(amplitude, _AMPLITUDES, np.arange(len(_AMPLITUDES))))
+        column = (phase % 1.0) * _PHASES
+        i, j = min(int(row), len(_AMPLITUDES) - 2), int(column) % _PHASES
+        di, dj, following = row - i, column - int(column), (j + 1) % _PHASES
+        corners = (
+            (i, j, (1.0 - di) * (1.0 - dj)),
+            (i, following, (1.0 - di) * dj),
+            (i + 1, j, di * (1.0 - dj)),
+            (i + 1, following, di * dj),
+        )
+        rotations, sway = np.zeros((len(BONES), 3)), np.zeros(3)
+        for row_index, column_index, weight in corners:
+            rotations += weight * self._rotations[row_index, column_index]
+            sway += weight * self._sway[row_index, column_index]
+        return rotations, sway[:2]
+
+    def _make_table(self, amplitude: float) -> tuple[Array, Array]:
+        """Compute (P, 17, 3) rotation vectors and (P, 3) pelvis offsets at every phase, for one amplitude."""
+        phases = np.arange(_PHASES) / _PHASES
+        rotations = self._clip_rotations(phases, amplitude)
+        sway = fourier_basis(phases) @ load_walking_clip().sway * self._scale * min(amplitude, 1.0)
+        feet = {side: self._foot_path(side, phases, amplitude) for side in SIDES}
+        share = min(amplitude / 0.3, 1.0)
+        reach = _STANDING_REACH + share * (_MAX_REACH - _STANDING_REACH)
+        pelvis = np.column_stack([sway[:, :2], self._hip_height(rotations, sway, feet, reach)])
+        for side in SIDES:
+            self._bend_leg(side, rotations, pelvis, *feet[side])
+        return rotations, pelvis
+
+    def _clip_rotations(self, phases: Array, amplitude: float) -> Array:
+        """Scale the clip's swing about its mean, and the mean towards standing; legs come later."""
+        coefficients = load_walking_clip().rotations
+        swing = np.tensordot(fourier_basis(phases)[:, 1:], coefficients[1:], axes=1)
+        mean = coefficients[0].copy()
+        mean[ARM_BONES, 0::2] *= _ARM_SPREAD
+        mean[BONE_INDEX["pelvis"]] *= _LEAN
+        share = min(amplitude / 0.5, 1.0)
+        standing = standing_rotations()
+        rotations: Array = standing + share * (mean - standing) + min(amplitude, 1.1) * swing
+        return rotations
+
+    def _foot_path(self, side: str, phases: Array, amplitude: float) -> tuple[Array, Array]:
+        """Where the ankle goes, and how the foot is pitched.
+
+        Returns:
+            (P, 3) [m] ankle in the person's frame, and (P,) [rad] pitch of the foot, toe down positive.
+        """
+        own = phases if side == "left" else phases + 0.5
+        since_strike = (own - _HEEL_STRIKE) % 1.0
+        stance = _TOE_OFF - _HEEL_STRIKE
+        pitch = self._clip_pitch(own, amplitude)
+        x, z = self._roll(since_strike, pitch, amplitude)
+        swinging = since_strike > stance
+        time = (since_strike[swinging] - stance) / (1.0 - stance)
+        lift = np.sin(np.pi * time) * self._scale
+        x[swinging] = self._swing(time, amplitude, axis=0)
+        z[swinging] = np.maximum(
+            self._swing(time, amplitude, axis=1) + 0.035 * min(amplitude, 1.2) * np.sin(np.pi * time) * lift,
+            z[swinging] + 0.02 * min(amplitude / 0.5, 1.0) * lift,
+        )
+        hip_y = self._offsets[BONE_INDEX["left_thigh"], 1] * (1.0 - 0.45 * min(amplitude / 0.5, 1.0))
+        y = lateral(side) * (hip_y + math.sin(_TOE_OUT_RAD) * self._rolled(pitch))
+        return np.stack([x, y, z], axis=-1), pitch
+
+    def _clip_pitch(self, own: Array, amplitude: float) -> Array:
+        """(P,) [rad] pitch of the clip's left foot at its own phases; small pitches count as flat."""
+        coefficients = load_walking_clip().rotations
+        chain = [BONE_INDEX[name] for name in ("pelvis", "left_thigh", "left_shin", "left_foot")]
+        vectors = np.tensordot(fourier_basis(own), coefficients[:, chain], axes=1)
+        pitch = vectors[..., 1].sum(axis=-1) * min(amplitude, 1.1)
+        flat: Array = np.sign(pitch) * np.maximum(np.abs(pitch) - _FLAT_RAD, 0.0)
+        return flat
+
+    def _rolled(self, pitch: Array) -> Array:
+        """How far the ankle has rolled forward [m] from where it is over the flat foot."""
+        forward: Array = self._pivot(pitch) * (1.0 - np.cos(pitch)) - self._soles[0, 2] * np.sin(pitch)
+        return forward
+
+    def _pivot(self, pitch: Array) -> Array:
+        """Where along the sole the foot touches the floor [m]: at the toe or at the heel."""
+        pivot: Array = np.where(pitch > 0.0, self._soles[2, 0], self._soles[0, 0])
+        return pivot
+
+    def _roll(self, since_strike: Array, pitch: Array, amplitude: float) -> tuple[Array, Array]:
+        """Ankle x, z [m] of a foot that rolls on the floor, in the frame of the steadily moving person."""
+        middle = (_TOE_OFF - _HEEL_STRIKE) / 2.0 - _LEAD
+        anchor = self.stride_m(amplitude) * (middle - since_strike)
+        height = -self._soles[0, 2] * np.cos(pitch) + self._pivot(pitch) * np.sin(pitch)
+        return anchor + math.cos(_TOE_OUT_RAD) * self._rolled(pitch), height
+
+    def _swing(self, time: Array, amplitude: float, axis: int) -> Array:
+        """Join the end of a stance (time 0) to the next (time 1) by a cubic of the same velocities."""
+        stance, step = _TOE_OFF - _HEEL_STRIKE, 1e-3
+        around = np.array([stance - step, stance, 0.0, step])
+        pitch = self._clip_pitch(around + _HEEL_STRIKE, amplitude)
+        before, start, finish, after = self._roll(around, pitch, amplitude)[axis]
+        leave, arrive = np.array([start - before, after - finish]) / step * (1.0 - stance)
+        t, rest = time, 1.0 - time
+        ends = start * rest**2 * (1.0 + 2.0 * t) + finish * t**2 * (1.0 + 2.0 * rest)
+        curve: Array = ends + leave * t * rest**2 - arrive * t**2 * rest
+        return curve
+
+    def _hip_height(
+        self, rotations: Array, sway: Array, feet: dict[str, tuple[Array, Array]], reach: float
+    ) -> Array:
+        """(P,) [m] heights of the pelvis at which both legs reach their feet: a smooth curve."""
+        limits = []
+        reach = reach * self._leg_lengths().sum()
+        for side in SIDES:
+            hips = Rotation.from_rotvec(rotations[:, 0]).apply(self._offsets[BONE_INDEX[f"{side}_thigh"]])
+            gap = feet[side][0] - hips - sway * [1.0, 1.0, 0.0]
+            limits.append(gap[:, 2] + np.sqrt(reach**2 - gap[:, 0] ** 2 - gap[:, 1] ** 2))
+        limit = np.min(limits, axis=0)
+        twice_a_cycle = fourier_basis(np.arange(_PHASES) / _PHASES)[:, [0, 3, 4]]
+        curve = twice_a_cycle @ (np.linalg.lstsq(twice_a_cycle, limit, rcond=None)[0] * [1.0, _BOB, _BOB])
+        height: Array = curve - np.max(curve - limit)
+        return height
+
+    def _leg_lengths(self) -> Array:
+        """(2,) [m] thigh and shin."""
+        return -self._offsets[[BONE_INDEX["left_shin"], BONE_INDEX["left_foot"]], 2]
+
+    def _bend_leg(self, side: str, rotations: Array, pelvis: Array, ankle: Array, pitch: Array) -> None:
+        """Turn thigh, shin and foot so that the ankle is where it should be (two-bone inverse kinematics)."""
+        thigh, shin = self._leg_lengths()
+        hip_turn = Rotation.from_rotvec(rotations[:, 0])
+        gap = ankle - pelvis - hip_turn.apply(self._offsets[BONE_INDEX[f"{side}_thigh"]])
+        distance = np.minimum(np.linalg.norm(gap, axis=1), thigh + shin - 1e-6)
+        knee = np.arccos(np.clip((distance**2 - thigh**2 - shin**2) / (2.0 * thigh * shin), -1.0, 1.0))
+        before_knee = np.arctan2(shin * np.sin(knee), thigh + shin * np.cos(knee))
+        yaw = lateral(side) * _TOE_OUT_RAD
+        across = np.array([-math.sin(yaw), math.cos(yaw), 0.0])
+        up = -gap / np.linalg.norm(gap, axis=1, keepdims=True)
+        front = np.cross(across, up)
+        front /= np.linalg.norm(front, axis=1, keepdims=True)
+        leg = Rotation.from_matrix(np.stack([front, np.cross(up, front), up], axis=-1))
+        about_y = np.array([0.0, 1.0, 0.0])
+        thigh_turn = leg * Rotation.from_rotvec(-before_knee[:, None] * about_y)
+        shin_turn = Rotation.from_rotvec(knee[:, None] * about_y)
+        foot = Rotation.from_euler("ZY", np.stack([np.full_like(pitch, yaw), pitch], axis=-1))
+        rotations[:, BONE_INDEX[f"{side}_thigh"]] = (hip_turn.inv() * thigh_turn).as_rotvec()
+        rotations[:, BONE_INDEX[f"{side}_shin"]] = shin_turn.as_rotvec()
+        rotations[:, BONE_INDEX[f"{side}_foot"]] = ((thigh_turn * shin_turn).inv() * foot).as_rotvec()
+
+
+def lowest_sole(poses: Array, soles: Array) -> float:
+    """Height [m] of the lowest point of both soles, from (17, 4, 4) poses and (3, 3) points of a foot."""
+    feet = poses[[BONE_INDEX["left_foot"], BONE_INDEX["right_foot"]]]
+    return float((feet[:, 2, :3] @ soles.T + feet[:, 2, 3:]).min())

@@ -1,0 +1,1 @@
+"""How people get about: paths, scripts, giving way."""

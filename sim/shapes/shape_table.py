@@ -1,0 +1,107 @@
+"""All visible shapes of a world as arrays, which the ray caster's kernels walk through."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.geometry.pinhole import Matrix, transform
+from sim.shapes.meshes import load_triangles
+from sim.shapes.shapes import ShapeKind, Vector
+
+# How many surfaces a shape has, each a piece of a plane or of a quadric: a mesh has one a triangle.
+_SURFACES = {
+    ShapeKind.SPHERE: 1,
+    ShapeKind.CAPSULE: 3,
+    ShapeKind.CYLINDER: 3,
+    ShapeKind.BOX: 6,
+    ShapeKind.PLANE: 1,
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VisualShape:
+    """One visible shape as PyBullet reports it.
+
+    Attributes:
+        part: index into `Bullet.parts()`.
+        kind, size, mesh: as in `Shape`.
+        part_from_shape: (4, 4) pose of the shape in its part's frame.
+    """
+
+    part: int
+    kind: ShapeKind
+    size: Vector
+    part_from_shape: Matrix
+    mesh: Path | None
+
+
+class ShapeTable(NamedTuple):
+    """S shapes with M surfaces and T triangles in all; the arrays cannot be written to.
+
+    Attributes:
+        kind: (S,) ShapeKind.
+        size: (S, 3) as in `Shape`.
+        part: (S,) number of the part that the shape belongs to.
+        part_from_shape: (S, 4, 4) pose in the part's frame; of a mesh the identity.
+        triangle_range: (S, 2) first and one after the last triangle of a mesh, 0 and 0 for other shapes.
+        triangles: (T, 3, 3) [m] corners, in the part's frame.
+        extent: (S, 2, 3) [m] least and greatest corner of a mesh, in the part's frame; 0 for other shapes.
+        first_surface: (S,) number of the shape's first surface.
+        surface_part: (M,) number of the part that a surface belongs to.
+    """
+
+    kind: NDArray[np.int64]
+    size: NDArray[np.float64]
+    part: NDArray[np.int64]
+    part_from_shape: NDArray[np.float64]
+    triangle_range: NDArray[np.int64]
+    triangles: NDArray[np.float64]
+    extent: NDArray[np.float64]
+    first_surface: NDArray[np.int64]
+    surface_part: NDArray[np.int32]
+
+
+def make_shape_table(shapes: Sequence[VisualShape]) -> ShapeTable:
+    """Put shapes into arrays, in their order.
+
+    Raises:
+        BadInput: a mesh file cannot be read.
+    """
+    meshes = [_triangles(shape) for shape in shapes]
+    ends = np.cumsum([0, *map(len, meshes)])
+    counts = [_SURFACES.get(shape.kind, len(mesh)) for shape, mesh in zip(shapes, meshes, strict=True)]
+    part = np.array([shape.part for shape in shapes], np.int64)
+    poses = [np.eye(4) if shape.kind == ShapeKind.MESH else shape.part_from_shape for shape in shapes]
+    table = ShapeTable(
+        kind=np.array([shape.kind for shape in shapes], np.int64),
+        size=np.array([shape.size for shape in shapes], np.float64).reshape(-1, 3),
+        part=part,
+        part_from_shape=np.array(poses, np.float64).reshape(-1, 4, 4),
+        triangle_range=np.stack([ends[:-1], ends[1:]], axis=1).astype(np.int64),
+        triangles=np.concatenate([np.zeros((0, 3, 3)), *meshes]),
+        extent=np.array([_extent(mesh) for mesh in meshes], np.float64).reshape(-1, 2, 3),
+        first_surface=np.cumsum([0, *counts])[:-1].astype(np.int64),
+        surface_part=np.repeat(part, counts).astype(np.int32),
+    )
+    for array in table:
+        array.setflags(write=False)
+    return table
+
+
+def _triangles(shape: VisualShape) -> NDArray[np.float64]:
+    """(T, 3, 3) triangles of a mesh in its part's frame, none of any other shape."""
+    if shape.kind != ShapeKind.MESH or shape.mesh is None:
+        return np.zeros((0, 3, 3))
+    return transform(shape.part_from_shape, load_triangles(shape.mesh) * np.array(shape.size))
+
+
+def _extent(triangles: NDArray[np.float64]) -> NDArray[np.float64]:
+    if len(triangles) == 0:
+        return np.zeros((2, 3))
+    return np.stack([triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))])

@@ -1,0 +1,195 @@
+"""The exact truth about one instant: who is where, what the camera sees of them, and who hides whom."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from sim.geometry.pinhole import Camera, Matrix
+from sim.robot.peoplebot import Planar
+
+Box = tuple[float, float, float, float]
+
+# Persons nearer than 3 m or farther than 10 m are not counted (T 3.3).
+COUNTED_NEAREST_M = 3.0
+COUNTED_FARTHEST_M = 10.0
+
+# What the border of the image cuts off is hidden by this.
+BORDER = "border"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PersonTruth:
+    """All that is true of one person at one instant. Arrays are read-only.
+
+    Boxes are left, top, width, height [px] in the thermal image, whose pixel (0, 0) spans -0.5..0.5.
+
+    Attributes:
+        id: 1, 2, ... in the scenario's order.
+        name: as in the scenario.
+        position_m: (x, y) on the floor, world frame.
+        heading_rad: [rad] where the body faces, world frame.
+        velocity_m_s: (x, y) [m/s] world frame.
+        posture: such as "standing".
+        distance_m: [m] on the floor from the thermal camera.
+        is_counted: whether that distance is one at which the sources count persons (T 3.3).
+        box: head to feet, and as wide as the torso without arms, as if nothing hid it (T 3.3); None when
+            nothing of it is in front of the camera.
+        whole_box: the whole silhouette as if nothing hid it, also outside the image; None as above.
+        visible_box: the visible pixels; None when there are none.
+        whole_px: pixels of the whole silhouette, those outside the image included, as far as one image size
+            beyond each border.
+        visible_px: pixels in which the person is what the camera sees.
+        visible_fraction: visible_px / whole_px; 0 when whole_px is 0.
+        hidden_by: share of the whole silhouette hidden by each thing or person, by name, "border" being what
+            lies outside the image; with visible_fraction they sum to 1. A pixel counts for the foremost.
+            Empty when whole_px is 0.
+        part_temperature_c: [degC] mean surface temperature by part name.
+        joints_m: (17, 3) [m] COCO keypoints, world frame.
+        joints_px: (17, 2) [px] u, v of the same; NaN behind the camera.
+        joint_is_visible: (17,) whether the person is what the camera sees at that pixel.
+    """
+
+    id: int
+    name: str
+    position_m: tuple[float, float]
+    heading_rad: float
+    velocity_m_s: tuple[float, float]
+    posture: str
+    distance_m: float
+    is_counted: bool
+    box: Box | None
+    whole_box: Box | None
+    visible_box: Box | None
+    whole_px: int
+    visible_px: int
+    visible_fraction: float
+    hidden_by: Mapping[str, float]
+    part_temperature_c: Mapping[str, float]
+    joints_m: Matrix
+    joints_px: Matrix
+    joint_is_visible: NDArray[np.bool_]
+
+    @property
+    def inside_fraction(self) -> float:
+        """Share of the whole silhouette that lies inside the image, hidden or not."""
+        return 1.0 - self.hidden_by.get(BORDER, 0.0) if self.whole_px else 0.0
+
+    @property
+    def is_in_image(self) -> bool:
+        """Whether any of the silhouette lies inside the image, hidden or not."""
+        return self.inside_fraction > 0.0
+
+    @property
+    def occluded_fraction(self) -> float:
+        """Share of the silhouette inside the image that others hide; 1 when none of it is in the image."""
+        inside = self.inside_fraction
+        return 1.0 - self.visible_fraction / inside if inside > 0.0 else 1.0
+
+    @property
+    def occluder(self) -> str | None:
+        """The person or thing that hides most of this person, the image border aside; None if none does."""
+        others = {name: share for name, share in self.hidden_by.items() if name != BORDER}
+        return max(others, key=lambda name: others[name]) if others else None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Truth:
+    """The truth about the instant of one observation. Arrays are read-only.
+
+    Attributes:
+        time_s: [s] since the start.
+        people: everybody who is present, seen or not.
+        instance: (H, W) uint8, the id of the person seen at each thermal pixel, 0 for none.
+        body_part: (H, W) uint8, the PART_CLASSES number of the part of a person seen, 0 for none.
+        depth_m: (H, W) float32 [m] along the optical axis of the thermal camera, inf for none.
+        camera: the thermal camera.
+        world_from_camera: (4, 4) its pose, optical frame.
+        robot: true pose of the robot.
+        robot_velocity: true forward speed [m/s] and turn rate [rad/s].
+        contacts: names of what the robot touches, the floor aside.
+    """
+
+    time_s: float
+    people: tuple[PersonTruth, ...]
+    instance: NDArray[np.uint8]
+    body_part: NDArray[np.uint8]
+    depth_m: NDArray[np.float32]
+    camera: Camera
+    world_from_camera: Matrix
+    robot: Planar
+    robot_velocity: tuple[float, float]
+    contacts: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cover:
+    """Who covers how many pixels of whom.
+
+    Attributes:
+        seen: (N, M) pixels of person n's silhouette inside the image at which owner m is seen.
+        bounds: (N, 4) first and last column and row of each person's visible pixels; last < first for none.
+    """
+
+    seen: NDArray[np.int64]
+    bounds: NDArray[np.int64]
+
+
+def count_cover(
+    part: NDArray[np.int32],
+    cover: NDArray[np.uint64],
+    owner_of_part: NDArray[np.int64],
+    people: int,
+    owners: int,
+) -> Cover:
+    """Count, for each person's silhouette, what is seen there.
+
+    Args:
+        part: (H, W) part seen.
+        cover: (H, W) bit n where person n's silhouette lies, hidden or not.
+        owner_of_part: (P,) owner of each part; person n is owner n.
+        people: N.
+        owners: M, persons first.
+    """
+    return Cover(*_count(part, cover, owner_of_part, people, owners))
+
+
+@njit(cache=True)
+def _count(
+    part: NDArray[np.int32],
+    cover: NDArray[np.uint64],
+    owner_of_part: NDArray[np.int64],
+    people: int,
+    owners: int,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    height, width = part.shape
+    seen = np.zeros((people, owners), np.int64)
+    bounds = np.empty((people, 4), np.int64)
+    bounds[:, 0], bounds[:, 1], bounds[:, 2], bounds[:, 3] = width, -1, height, -1
+    for v in range(height):
+        for u in range(width):
+            bits = cover[v, u]
+            if bits == 0:
+                continue
+            owner = owner_of_part[part[v, u]]
+            for person in range(people):
+                if (bits >> np.uint64(person)) & np.uint64(1):
+                    seen[person, owner] += 1
+            if owner < people:
+                bounds[owner, 0], bounds[owner, 1] = min(bounds[owner, 0], u), max(bounds[owner, 1], u)
+                bounds[owner, 2], bounds[owner, 3] = min(bounds[owner, 2], v), max(bounds[owner, 3], v)
+    return seen, bounds
+
+
+def box_from_bounds(first_u: float, last_u: float, first_v: float, last_v: float) -> Box:
+    """Return the box that spans whole pixels, first to last column and row included."""
+    return (first_u - 0.5, first_v - 0.5, last_u - first_u + 1.0, last_v - first_v + 1.0)
+
+
+def is_counted(distance_m: float) -> bool:
+    """Whether the sources count a person at this distance (T 3.3)."""
+    return COUNTED_NEAREST_M <= distance_m <= COUNTED_FARTHEST_M

@@ -1,0 +1,192 @@
+"""Makes the truth: puts what the renderer saw beside what the people's bodies say."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
+from sim.people.crowd import Crowd
+from sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
+from sim.physics.bodies import PartKey
+from sim.rendering.render import View
+from sim.rendering.silhouette import silhouette_area, silhouette_bounds
+from sim.robot.peoplebot import Planar
+from sim.shapes.materials import Look
+from sim.shapes.shape_table import ShapeTable
+from sim.truth.truth import BORDER, Box, Cover, PersonTruth, Truth, box_from_bounds, count_cover, is_counted
+
+_Scene = tuple[ShapeTable, Matrix, Camera, Matrix]
+_Bounds = tuple[float, float, float, float]
+A = TypeVar("A", bound=NDArray[Any])
+
+
+class TruthMaker:
+    """Knows which part belongs to whom, and makes the truth of one instant after another."""
+
+    def __init__(
+        self,
+        keys: Sequence[PartKey],
+        table: ShapeTable,
+        crowd: Crowd,
+        looks: Sequence[Look],
+        camera: Camera,
+    ) -> None:
+        self._table = table
+        self._people = crowd.people
+        self._camera = camera
+        owners = [key.name.split("/")[0] for key in keys]
+        names = [person.name for person in self._people]
+        self._owner_names = names + sorted(set(owners) - set(names))
+        number = {name: k for k, name in enumerate(self._owner_names)}
+        self._owner_of_part = np.array([number[owner] for owner in owners], np.int64)
+        self.person_of_part = np.where(self._owner_of_part < len(names), self._owner_of_part, -1)
+        parts = [key.name.split("/")[-1] for key in keys]
+        is_person = self.person_of_part >= 0
+        classes = [PART_CLASSES.get(p, 0) if own else 0 for p, own in zip(parts, is_person, strict=True)]
+        # The last entry is for part -1, where nothing is seen.
+        self._class_of_part = np.array([*classes, 0], np.uint8)
+        self._id_of_part = np.array([*(self.person_of_part + 1), 0], np.uint8)
+        self._outlines = [_Outline(k, parts, self.person_of_part) for k in range(len(names))]
+        self._temperatures = [
+            {parts[p]: looks[p].temperature_c for p in np.flatnonzero(outline.whole).tolist()}
+            for outline in self._outlines
+        ]
+
+    def make(
+        self,
+        *,
+        time_s: float,
+        view: View,
+        world_from_camera: Matrix,
+        world_from_part: Matrix,
+        robot: Planar,
+        robot_velocity: tuple[float, float],
+        contacts: tuple[str, ...],
+    ) -> Truth:
+        """Make the truth of the instant that the thermal camera's view shows."""
+        cover = count_cover(
+            view.part, view.cover, self._owner_of_part, len(self._people), len(self._owner_names)
+        )
+        people = tuple(
+            self._person(k, cover, view, world_from_camera, world_from_part)
+            for k, person in enumerate(self._people)
+            if person.present
+        )
+        return Truth(
+            time_s=time_s,
+            people=people,
+            instance=_frozen(self._id_of_part[view.part]),
+            body_part=_frozen(self._class_of_part[view.part]),
+            depth_m=_frozen(view.depth),
+            camera=self._camera,
+            world_from_camera=_frozen(world_from_camera),
+            robot=robot,
+            robot_velocity=robot_velocity,
+            contacts=contacts,
+        )
+
+    def _person(
+        self, k: int, cover: Cover, view: View, world_from_camera: Matrix, world_from_part: Matrix
+    ) -> PersonTruth:
+        person, outline = self._people[k], self._outlines[k]
+        distance = float(np.hypot(*(person.position - world_from_camera[:2, 3])))
+        scene = (self._table, world_from_part, self._camera, world_from_camera)
+        whole = silhouette_bounds(*scene, outline.whole)
+        visible = int(cover.seen[k, k])
+        area = self._whole_area(k, cover, scene, whole)
+        joints, pixels, is_visible = self._joints(k, person, view, world_from_camera)
+        return PersonTruth(
+            id=k + 1,
+            name=person.name,
+            position_m=(float(person.position[0]), float(person.position[1])),
+            heading_rad=float(person.heading),
+            velocity_m_s=(float(person.velocity[0]), float(person.velocity[1])),
+            posture=str(person.posture),
+            distance_m=distance,
+            is_counted=is_counted(distance),
+            box=_thesis_box(scene, outline),
+            whole_box=_box(whole),
+            visible_box=box_from_bounds(*map(float, cover.bounds[k])) if visible else None,
+            whole_px=area,
+            visible_px=visible,
+            visible_fraction=visible / area if area else 0.0,
+            hidden_by=self._hidden_by(k, cover, area),
+            part_temperature_c=self._temperatures[k],
+            joints_m=_frozen(joints),
+            joints_px=_frozen(pixels),
+            joint_is_visible=_frozen(is_visible),
+        )
+
+    def _whole_area(self, k: int, cover: Cover, scene: _Scene, whole: _Bounds) -> int:
+        """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
+        inside = int(cover.seen[k].sum())
+        if self._is_inside(whole):
+            return inside
+        # TinyRenderer's silhouettes may be a few pixels larger.
+        return max(inside, silhouette_area(*scene, self._outlines[k].whole))
+
+    def _is_inside(self, bounds: _Bounds) -> bool:
+        left, top, right, bottom = bounds
+        width, height = self._camera.width, self._camera.height
+        return math.isnan(left) or (
+            left > -0.5 and top > -0.5 and right < width - 0.5 and bottom < height - 0.5
+        )
+
+    def _hidden_by(self, k: int, cover: Cover, area: int) -> dict[str, float]:
+        """Share of the whole silhouette that each other owner, or the border, hides."""
+        if not area:
+            return {}
+        seen = cover.seen[k]
+        shares = {
+            self._owner_names[owner]: int(seen[owner]) / area for owner in np.flatnonzero(seen) if owner != k
+        }
+        outside = area - int(seen.sum())
+        return shares | {BORDER: outside / area} if outside > 0 else shares
+
+    def _joints(
+        self, k: int, person: Person, view: View, world_from_camera: Matrix
+    ) -> tuple[Matrix, Matrix, NDArray[np.bool_]]:
+        joints = person.joints()
+        pixels = self._camera.project(transform(invert_pose(world_from_camera), joints))
+        size = np.array([self._camera.width, self._camera.height])
+        is_inside = np.all((pixels > -0.5) & (pixels < size - 0.5), axis=1)
+        u, v = np.rint(pixels[is_inside]).astype(np.int64).T
+        is_visible = np.zeros(len(joints), np.bool_)
+        is_visible[is_inside] = self._id_of_part[view.part[v, u]] == k + 1
+        return joints, pixels, is_visible
+
+
+class _Outline:
+    """The parts of one person that make up each edge of the boxes, as (P,) masks."""
+
+    def __init__(self, person: int, parts: Sequence[str], person_of_part: NDArray[np.int64]) -> None:
+        is_arm, is_torso, is_body = (
+            np.isin(parts, names) for names in (ARM_PARTS, TORSO_PARTS, list(PART_CLASSES))
+        )
+        self.whole = (person_of_part == person) & is_body
+        self.height = self.whole & ~is_arm
+        self.torso = self.whole & is_torso
+
+
+def _thesis_box(scene: _Scene, outline: _Outline) -> Box | None:
+    """Head to feet, as wide as the torso without arms (T 3.3)."""
+    height, torso = silhouette_bounds(*scene, outline.height), silhouette_bounds(*scene, outline.torso)
+    return _box((torso[0], height[1], torso[2], height[3]))
+
+
+def _box(bounds: _Bounds) -> Box | None:
+    """Return left, top, width, height; None where nothing is before the camera."""
+    left, top, right, bottom = bounds
+    return None if math.isnan(left + top) else (left, top, right - left, bottom - top)
+
+
+def _frozen(array: A) -> A:
+    """Give a view of an array that cannot be written to."""
+    view = array.view()
+    view.setflags(write=False)
+    return view

@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image
+
+from scenarios.drawing.labels import Labels
+from scenarios.drawing.plan import draw_plan
+from scenarios.drawing.plan_sheet import MARGIN_M, lay_out, sections
+from scenarios.files.load import load_scenario
+
+
+@given(st.floats(2.0, 100.0), st.floats(2.0, 20.0))
+def test_sections_are_equal_overlap_and_cover_the_place(length: float, width: float) -> None:
+    pieces = sections((0.0, 0.0, length, width))
+    assert pieces[0][0] == pytest.approx(-MARGIN_M)
+    assert pieces[-1][2] == pytest.approx(length + MARGIN_M)
+    assert all(before[2] > after[0] for before, after in pairwise(pieces))
+    assert max(p[2] - p[0] for p in pieces) == pytest.approx(min(p[2] - p[0] for p in pieces))
+
+
+def test_a_room_stays_whole_and_a_long_corridor_is_cut() -> None:
+    assert len(sections((0.0, 0.0, 10.0, 8.0))) == 1
+    assert len(sections((0.0, 0.0, 54.0, 3.4))) > 2
+
+
+def test_all_sections_have_one_scale() -> None:
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    for axes in lay_out(figure, sections((0.0, 0.0, 54.0, 3.4)), 11.0, head_in=0.8, foot_in=1.0):
+        extent, (low, high), (bottom, top) = axes.get_window_extent(), axes.get_xlim(), axes.get_ylim()
+        assert extent.width / (high - low) == pytest.approx(extent.height / (top - bottom))
+
+
+def test_nothing_is_written_of_what_lies_outside_a_section() -> None:
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    first, *_ = lay_out(figure, sections((0.0, 0.0, 54.0, 3.4)), 11.0, head_in=0.8, foot_in=1.0)
+    count = len(first.texts)
+    labels = Labels(first)
+    labels.write(50.0, 1.0, "far away")
+    labels.write(2.0, 1.0, "here")
+    assert [text.get_text() for text in first.texts[count:]] == ["here"]
+
+
+def test_the_plan_of_a_long_corridor_is_no_strip(tmp_path: Path) -> None:
+    draw_plan(load_scenario("corridor_patrol"), 0, tmp_path / "plan.png")
+    with Image.open(tmp_path / "plan.png") as picture:
+        assert picture.height > 0.7 * picture.width

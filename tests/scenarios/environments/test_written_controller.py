@@ -1,0 +1,53 @@
+import numpy as np
+import pytest
+
+from behaviours.command import Command
+from behaviours.percept import Sight
+from scenarios.environments.environment import PeopleBoyEnv
+from scenarios.environments.written_controller import WrittenController
+from scenarios.files.load import load_scenario
+
+
+class Echo:
+    """Keeps what it is told, and asks for more than the robot can do."""
+
+    mode, reason, following = "echo", "", None
+
+    def __init__(self) -> None:
+        self.told: list[Sight] = []
+
+    def command(self, sight: Sight) -> Command:
+        self.told.append(sight)
+        return Command(linear_m_s=0.4, angular_rad_s=-99.0)
+
+
+def test_a_behaviour_is_told_the_tracks_in_its_own_words_and_its_command_becomes_shares() -> None:
+    tracks = np.zeros(35, np.float32)
+    tracks[:7] = (3, -0.25, 0.5, 0.25, 0.75, 0.9, 0)
+    observation = {
+        "tracks": tracks,
+        "sonar": np.linspace(0.5, 5.0, 16, dtype=np.float32),
+        "odometry": np.array([1, 2, 1, 0, 0.3, -0.1], np.float32),
+    }
+    echo = Echo()
+    controller = WrittenController(echo)
+    np.testing.assert_allclose(controller(observation), [0.5, -1.0])
+    controller(observation)
+    (first, second) = echo.told
+    (person,) = first.people
+    assert (person.id, person.x, person.height, person.is_visible) == (3, -0.25, 0.5, False)
+    assert (first.linear_m_s, first.angular_rad_s) == (pytest.approx(0.3), pytest.approx(-0.1))
+    assert second.time_s - first.time_s == pytest.approx(1 / 15)
+
+
+def test_the_written_follower_finds_and_follows_in_an_environment() -> None:
+    env = PeopleBoyEnv("single_follow", observation="truth")
+    controller = WrittenController(load_scenario("single_follow").make_behaviour())
+    observation, info = env.reset(seed=0)
+    for _ in range(20 * 15):
+        observation, _, terminated, _, info = env.step(controller(observation))
+        assert not terminated
+    assert info["metrics"]["found"] == 1.0
+    assert info["metrics"]["seen"] > 0.9
+    assert info["metrics"]["in_band"] > 0.7
+    env.close()

@@ -1,0 +1,117 @@
+"""Data sets for others: split, counted, checked."""
+
+import json
+import re
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scenarios.cli import main
+from scenarios.export.dataset.splits import SPLITS, lacking_splits, split_lines, split_of
+from tracker.evaluation.mot_files import read_truth
+
+SCENE = """
+name: tiny
+description: One person walks past.
+duration_s: 0.4
+place: {kind: room, length_m: 8.0, width_m: 6.0}
+people:
+  - name: anna
+    path: [{at_m: [4.0, -1.0]}, {at_m: [4.0, 1.0]}]
+robot: {at_m: [0.6, 0.0], thermal: {width_px: 160, height_px: 120}}
+"""
+
+
+def render(*arguments: object) -> int:
+    with pytest.raises(SystemExit) as end:
+        main(["render", *map(str, arguments)])
+    return int(end.value.code or 0)
+
+
+@pytest.fixture(scope="module")
+def rendered(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    home = tmp_path_factory.mktemp("rendered")
+    (home / "tiny.yaml").write_text(SCENE)
+    assert render(home / "tiny.yaml", "--frames", "--seeds", 2, "--jobs", 1, "--out", home / "set") == 0
+    return home
+
+
+@given(st.integers(1, 60))
+def test_every_seed_is_in_one_split_and_stays_there(seeds: int) -> None:
+    names = [f"tiny-{seed}" for seed in range(seeds)]
+    lines = {split: split_lines(names, range(seeds), split).split() for split in SPLITS}
+    assert sorted(name for own in lines.values() for name in own) == sorted(names)
+    assert all(f"tiny-{seed}" in lines[split_of(seed)] for seed in range(seeds))
+    said, told, _ = lacking_splits(seeds).partition(" empty: ")
+    assert {split for split in SPLITS if split in said} == {split for split in SPLITS if not lines[split]}
+    if told:
+        enough = int(lacking_splits(seeds).split()[-1])
+        assert lacking_splits(enough) == "" != lacking_splits(enough - 1)
+
+
+def test_what_is_lacking_is_said_in_one_line() -> None:
+    assert lacking_splits(3) == "val and test are empty: the first are seeds 5 and 6; give --seeds 7"
+    assert lacking_splits(6) == "test is empty: the first is seed 6; give --seeds 7"
+
+
+def test_a_set_is_sound_and_its_numbers_are_those_of_its_files(rendered: Path) -> None:
+    folder = rendered / "set"
+    about = json.loads((folder / "dataset.json").read_text())
+    assert about["runs"] == ["tiny-0", "tiny-1"]
+    assert [check["failures"] for check in about["checks"]] == [[]] * len(about["checks"])
+    whole = about["statistics"]["all"]
+    boxes = sum(len(read_truth(folder / run / "truth" / "gt.txt")) for run in about["runs"])
+    assert whole["content"]["frames"] == 12
+    assert sum(bar["boxes"] for bar in whole["visible"]) == boxes
+    assert sum(bar["boxes"] for bar in whole["distance"]) == boxes
+    assert sum(whole["hidden_mostly_by"].values()) == boxes
+    first = [cv2.imread(str(folder / run / "colour" / "000001.png"))[..., ::-1] for run in about["runs"]]
+    assert np.allclose(whole["image_mean"]["colour"], np.mean(first, axis=(0, 1, 2)), atol=0.01)
+    assert "FAILS" not in (folder / "README.md").read_text()
+    assert "| runs | 2 | 2 |" in (folder / "README.md").read_text()
+    assert "Images are 160x120 or 320x240 pixels" in (folder / "README.md").read_text()
+    assert (
+        f"peopleboy render {rendered / 'tiny.yaml'} --frames --seeds 2" in (folder / "README.md").read_text()
+    )
+
+
+def test_a_call_that_is_refused_leaves_a_finished_set_as_it_was(rendered: Path) -> None:
+    folder = rendered / "set"
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    order = (rendered / "tiny.yaml", "--seeds", 9, "--jobs", 1, "--out", folder)
+    assert render(*order, "--tracker", "thesis") == 2
+    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
+
+
+def test_a_set_grows_without_rendering_again_and_broken_images_are_found(
+    rendered: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = rendered / "set"
+    stamp = (folder / "tiny-1" / "run.json").stat().st_mtime_ns
+    image = folder / "tiny-1" / "thermal" / "000001.png"
+    image.write_bytes(b"")
+    (folder / "export-coco").mkdir()
+    with (folder / "export-coco" / "images.bin").open("wb") as export:
+        export.truncate(500_000_000)
+    order = (rendered / "tiny.yaml", "--frames", "--seeds", 3, "--jobs", 1, "--out", folder)
+    assert render(*order) == 1
+    told, sheet = capsys.readouterr().out, (folder / "README.md").read_text()
+    assert "FAILS: every image is there" in told
+    assert f"\n{lacking_splits(3)}\n" in told
+    assert f"**{lacking_splits(3)}.**" in sheet
+    assert 0 < int(re.search(r"The runs take (\d+) MB", sheet)[1]) < 100
+    assert (folder / "tiny-1" / "run.json").stat().st_mtime_ns == stamp
+    assert (folder / "splits" / "train.txt").read_text().split() == ["tiny-0", "tiny-1", "tiny-2"]
+
+
+def test_a_folder_of_something_else_is_refused_and_left_alone(
+    rendered: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "thesis.txt").write_text("do not lose me")
+    assert render(rendered / "tiny.yaml", "--out", tmp_path) == 2
+    assert "no rendered set" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]

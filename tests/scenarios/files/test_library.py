@@ -1,0 +1,174 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+import yaml
+
+from bad_input import BadInput
+from scenarios.drawing.plan import draw_plan
+from scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
+from scenarios.files.schema import RobotSpec, json_schema
+from sim.config import WorldConfig
+from sim.people.timetable import timetable
+
+NAMES = sorted(path.stem for path in LIBRARY.glob("*.yaml"))
+every_scenario = pytest.mark.parametrize("name", NAMES)
+
+
+def same(a: WorldConfig, b: WorldConfig) -> bool:
+    """Whether two worlds have equal settings; places compare by what stands in them."""
+    return (
+        (a.people, a.robot, a.seed, a.renderer) == (b.people, b.robot, b.seed, b.renderer)
+        and a.place.fixtures == b.place.fixtures
+        and a.place.light == b.place.light
+        and a.place.surroundings_c == b.place.surroundings_c
+        and np.array_equal(a.place.obstacles, b.place.obstacles)
+    )
+
+
+def test_the_library_holds_the_eight_scenarios_with_descriptions() -> None:
+    assert set(library()) >= {
+        "single_stationary",
+        "single_follow",
+        "corridor_meeting",
+        "pass_behind",
+        "crossing_pair",
+        "empty_room",
+        "fast_turn",
+        "dark_room",
+    }
+    assert all(description and "\n" not in description for description in library().values())
+
+
+@every_scenario
+def test_a_file_is_called_as_its_scenario(name: str) -> None:
+    assert load_scenario(name).name == name
+
+
+@every_scenario
+def test_a_scenario_repeats_with_its_seed_and_varies_with_another(name: str) -> None:
+    world = load_scenario(name).world(3)
+    assert same(world, load_scenario(LIBRARY / f"{name}.yaml").world(3))
+    assert world.seed == 3
+    others = [load_scenario(name).world(seed) for seed in (4, 5)]
+    assert not any(same(world, other) for other in others)
+    if world.people:
+        assert len({repr(config.people) for config in (world, *others)}) == 3
+
+
+@every_scenario
+def test_a_resolved_scenario_gives_the_same_world_from_its_file(name: str, tmp_path: Path) -> None:
+    scenario = load_scenario(name)
+    path = tmp_path / "scenario.yaml"
+    path.write_text(yaml.safe_dump(scenario.resolved(7, {"peopleboy": "0.1.0"}), sort_keys=False))
+    again = load_scenario(path)
+    assert same(again.world(7), scenario.world(7))
+    assert again.resolved(7, {"peopleboy": "0.1.0"}) == scenario.resolved(7, {"peopleboy": "0.1.0"})
+    assert again.world(8).people == scenario.world(7).people  # nothing is left to draw
+
+
+@every_scenario
+def test_people_get_to_the_end_of_their_paths_in_time(name: str) -> None:
+    scenario = load_scenario(name)
+    for seed in range(3):
+        for person in scenario.world(seed).people:
+            assert timetable(person)[-1].time_s < scenario.duration_s + 3.0
+
+
+@every_scenario
+def test_every_seed_keeps_people_clear_of_walls_and_things(name: str) -> None:
+    scenario = load_scenario(name)
+    for seed in range(10):
+        for person in scenario.people(seed):
+            assert scenario.ground.fault(person.path) is None
+
+
+@pytest.mark.parametrize("name", NAMES[::4])
+def test_a_plan_is_drawn(name: str, tmp_path: Path) -> None:
+    draw_plan(load_scenario(name), 0, tmp_path / "plan.png")
+    assert (tmp_path / "plan.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_worlds_are_the_same_in_a_fresh_process() -> None:
+    code = "from scenarios.files.load import load_scenario; print(load_scenario('dark_room').world(5).people)"
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert out.strip() == str(load_scenario("dark_room").world(5).people)
+
+
+def test_another_person_in_the_file_changes_nobody_else() -> None:
+    alone = load_scenario("dark_room")
+    data = alone.spec.model_dump(mode="json", exclude_none=True)
+    data["people"].insert(0, {"name": "zoe", "path": [{"at_m": [7.0, -3.0]}]})
+    more = parse_scenario(data, source="x.yaml", folder=LIBRARY)
+    assert more.world(1).people[1:] == alone.world(1).people
+
+
+def test_what_a_file_says_about_looks_is_kept_for_every_seed() -> None:
+    scenario = load_scenario("pass_behind")
+    for seed in range(5):
+        bernd = scenario.world(seed).people[0]
+        assert (bernd.height_m, bernd.sex, bernd.build, bernd.clothes.top) == (
+            1.86,
+            "male",
+            "stout",
+            "jacket",
+        )
+
+
+def test_groups_walk_abreast() -> None:
+    data = load_scenario("empty_room").spec.model_dump(mode="json", exclude_none=True)
+    path = [{"at_m": [1.5, -1.0]}, {"at_m": [3.0, -1.0]}]
+    data |= {"things": [], "groups": [{"names": ["a", "b", "c"], "spacing_m": 0.8, "path": path}]}
+    people = parse_scenario(data, source="x.yaml", folder=LIBRARY).world(0).people
+    assert [person.name for person in people] == ["a", "b", "c"]
+    assert [person.path[0].at_m for person in people] == [(1.5, -1.8), (1.5, -1.0), (1.5, -0.2)]
+
+
+def test_nobody_at_all_is_fine() -> None:
+    assert load_scenario("empty_room").world(0).people == ()
+
+
+def test_a_following_robot_and_a_scripted_one_get_their_behaviour() -> None:
+    for name in NAMES:
+        scenario = load_scenario(name)
+        assert scenario.make_behaviour() is not scenario.make_behaviour()
+        assert scenario.robot.behaviour in get_args(RobotSpec.model_fields["behaviour"].annotation)
+
+
+@pytest.mark.parametrize(("seed", "renderer"), [(-1, "raycast"), (0, "opengl")])
+def test_a_negative_seed_and_an_unknown_renderer_are_refused(seed: int, renderer: str) -> None:
+    with pytest.raises(BadInput, match=r"must be 0 or more|raycast, bullet"):
+        load_scenario("empty_room").world(seed, renderer)
+
+
+def test_the_json_schema_knows_the_keys_and_says_what_they_mean() -> None:
+    schema = json_schema()
+    assert {"name", "place", "people", "robot", "things"} <= set(schema["properties"])
+    assert "waypoint" in str(schema).lower()
+    assert schema["additionalProperties"] is False
+
+
+def test_people_whose_clothes_differ_share_no_colour() -> None:
+    for seed in range(5):
+        clothes = [person.clothes for person in load_scenario("crowd_8").people(seed)]
+        tops = {c.top_colour for c in clothes if c is not None}
+        bottoms = {c.bottom_colour for c in clothes if c is not None}
+        assert (len(tops), len(bottoms)) == (8, 8)
+
+
+def test_a_file_that_is_like_another_replaces_whole_keys_and_keeps_the_rest() -> None:
+    dark, model = load_scenario("dark_crossing"), load_scenario("crossing_2")
+    assert dark.spec.people == model.spec.people
+    assert (dark.name, len(dark.spec.lights)) == ("dark_crossing", 3)
+    assert dark.spec.like is None
+
+
+def test_a_file_that_is_like_nothing_known_is_refused() -> None:
+    data = {"name": "x", "description": "x", "like": "crosing_2"}
+    with pytest.raises(BadInput, match=r"x\.yaml: like: unknown scenario 'crosing_2'; did you mean"):
+        parse_scenario(data, source="x.yaml", folder=LIBRARY)

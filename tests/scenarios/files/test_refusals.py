@@ -1,0 +1,333 @@
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bad_input import BadInput
+from scenarios.files.load import load_scenario, parse_scenario
+
+Data = dict[str, Any]
+Change = Callable[[Data], object]
+
+GOOD: Data = {
+    "name": "try_out",
+    "description": "A room to break.",
+    "duration_s": 20.0,
+    "place": {"kind": "room", "length_m": 8.0, "width_m": 6.0, "doors": [{"wall": "north", "along_m": 5.0}]},
+    "things": [
+        {"kind": "table", "at_m": [6.0, -1.5]},
+        {"kind": "monitor", "on_top_of": "table_1"},
+        {"kind": "chair", "at_m": [4.0, -2.0]},
+        {"kind": "radiator", "wall": "east", "along_m": 1.5},
+    ],
+    "people": [
+        {"name": "anna", "path": [{"at_m": [3.0, 1.0]}, {"at_m": [5.0, 1.0]}, {"at_m": [5.0, 4.0]}]},
+        {"name": "ben", "path": [{"at_m": [3.0, -1.0], "face": "anna"}], "enter_s": 2.0, "leave_s": 9.0},
+    ],
+    "robot": {"at_m": [1.0, 0.0]},
+}
+
+
+def refusal(data: Data, folder: Path = Path("/nowhere")) -> str:
+    with pytest.raises(BadInput) as caught:
+        parse_scenario(data, source="my.yaml", folder=folder)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert message.startswith("my.yaml: ")
+    return message
+
+
+def test_the_scenario_that_the_other_tests_break_is_good() -> None:
+    assert parse_scenario(GOOD, source="my.yaml", folder=Path("/nowhere")).world(0).people[1].name == "ben"
+
+
+MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
+    "misspelt key": (
+        lambda d: d["people"][0]["path"][1].update(speed_ms=1.0),
+        ("people[0].path[1]: unknown key 'speed_ms'", "did you mean 'speed_m_s'?"),
+    ),
+    "misspelt key at the top": (
+        lambda d: d.update(peple=[]),
+        ("unknown key 'peple'", "did you mean 'people'?"),
+    ),
+    "misspelt key of a place": (
+        lambda d: d["place"].update(lenght_m=3.0),
+        ("place: unknown key 'lenght_m'", "'length_m'"),
+    ),
+    "missing key": (lambda d: d["place"].pop("width_m"), ("place: missing key 'width_m'",)),
+    "missing kind": (lambda d: d["place"].pop("kind"), ("place: missing key 'kind'",)),
+    "unknown place": (lambda d: d["place"].update(kind="rooom"), ("unknown place 'rooom'", "'room'")),
+    "unknown thing": (
+        lambda d: d["things"][3].update(kind="radiatr"),
+        ("things[3].kind: unknown", "'radiator'"),
+    ),
+    "unknown garment": (
+        lambda d: d["people"][0].update(clothes={"top": "t_shrt"}),
+        ("people[0].clothes.top: unknown top 't_shrt'", "'t_shirt'"),
+    ),
+    "unknown colour": (
+        lambda d: d["people"][0].update(clothes={"top_colour": "rad"}),
+        ("people[0].clothes.top_colour: unknown top_colour 'rad'", "'red'"),
+    ),
+    "unknown colour of a wall": (
+        lambda d: d["place"].update(colours={"walls": "gren"}),
+        ("place.colours.walls: unknown walls 'gren'", "'green'"),
+    ),
+    "unknown posture": (
+        lambda d: d["people"][1]["path"][0].update(posture="siting"),
+        ("people[1].path[0].posture: unknown posture 'siting'", "'sitting'"),
+    ),
+    "unknown wall of a door": (
+        lambda d: d["place"]["doors"][0].update(wall="nort"),
+        ("place.doors[0].wall: unknown wall 'nort'", "'north'"),
+    ),
+    "unknown wall of a thing": (
+        lambda d: d["things"][3].update(wall="eastt"),
+        ("things[3].wall: unknown wall 'eastt'", "'east'"),
+    ),
+    "unknown wall of a temperature": (
+        lambda d: d["place"].update(temperatures={"single_walls_c": {"up": 20.0}}),
+        ("place.temperatures.single_walls_c: unknown wall 'up'", "east, north, south, west"),
+    ),
+    "unknown thing below": (
+        lambda d: d["things"][1].update(on_top_of="tabel_1"),
+        ("things[1].on_top_of: unknown thing 'tabel_1'", "'table_1'"),
+    ),
+    "unknown face": (
+        lambda d: d["people"][1]["path"][0].update(face="ana"),
+        ("people[1].path[0].face: unknown name 'ana'", "'anna'"),
+    ),
+    "NaN": (lambda d: d.update(duration_s=float("nan")), ("duration_s: must be a finite number, got nan",)),
+    "infinity": (
+        lambda d: d["robot"].update(at_m=[float("inf"), 0.0]),
+        ("robot.at_m[0]: must be a finite number, got inf",),
+    ),
+    "negative speed": (
+        lambda d: d["people"][0]["path"][1].update(speed_m_s=-1.0),
+        ("people[0].path[1].speed_m_s: must be at least 0.1, got -1.0",),
+    ),
+    "no duration": (lambda d: d.update(duration_s=0), ("duration_s: must be greater than 0, got 0",)),
+    "number as text": (lambda d: d.update(duration_s="20"), ("duration_s: must be a number, got '20'",)),
+    "yes as a number": (lambda d: d.update(duration_s=True), ("duration_s: must be a number, got True",)),
+    "point of one number": (lambda d: d["robot"].update(at_m=[1.0]), ("robot.at_m[1]: missing value",)),
+    "no path": (lambda d: d["people"][0].update(path=[]), ("people[0].path: must have at least 1 ",)),
+    "leave before enter": (
+        lambda d: d["people"][1].update(leave_s=1.0),
+        ("people[1].leave_s: 1 must be after enter_s 2",),
+    ),
+    "enter after the end": (
+        lambda d: d["people"][0].update(enter_s=20.0),
+        ("people[0].enter_s: 20 must be before the end",),
+    ),
+    "two people of one name": (
+        lambda d: d["people"][1].update(name="anna"),
+        ("people[1]: name 'anna' is also that of people[0]",),
+    ),
+    "person called robot": (
+        lambda d: d["people"][1].update(name="robot"),
+        ("people[1]: name 'robot' is taken",),
+    ),
+    "two things of one name": (
+        lambda d: d["things"][2].update(name="table_1"),
+        ("things[2].name: 'table_1' is also things[0]",),
+    ),
+    "waypoint in a wall": (
+        lambda d: d["people"][0]["path"][0].update(at_m=[3.0, 3.05]),
+        ("people[0].path[0].at_m: (3, 3.05)", "'wall_north'"),
+    ),
+    "waypoint in a thing": (
+        lambda d: d["people"][0]["path"][0].update(at_m=[6.0, -1.5]),
+        ("people[0].path[0].at_m: (6, -1.5)", "'table_1'"),
+    ),
+    "waypoint outside": (
+        lambda d: d["people"][0]["path"][0].update(at_m=[30.0, 0.0]),
+        ("people[0].path[0].at_m: (30, 0) is outside the floor", "x 0 to 8"),
+    ),
+    "way through a wall": (
+        lambda d: d["people"][0]["path"][1].update(at_m=[3.5, 2.0]),
+        ("people[0].path[2].at_m: the straight way from (3.5, 2) to (5, 4)", "'wall_north'"),
+    ),
+    "way through a thing": (
+        lambda d: d["people"][0]["path"].insert(1, {"at_m": [6.0, -2.7]}),
+        ("people[0].path[1].at_m: the straight way from (3, 1) to (6, -2.7)", "'table_1'"),
+    ),
+    "the same point twice": (
+        lambda d: d["people"][0]["path"].insert(1, {"at_m": [3.0, 1.0]}),
+        ("people[0].path[1].at_m: it is the point before", "pause_s"),
+    ),
+    "robot in a thing": (
+        lambda d: d["robot"].update(at_m=[6.0, -1.2]),
+        ("robot.at_m: (6, -1.2)", "'table_1'"),
+    ),
+    "robot in a wall": (
+        lambda d: d["robot"].update(at_m=[0.1, 0.0]),
+        ("robot.at_m: (0.1, 0)", "'wall_west'"),
+    ),
+    "robot outside": (lambda d: d["robot"].update(at_m=[-5.0, 0.0]), ("robot.at_m: (-5, 0) is outside",)),
+    "person in the robot": (
+        lambda d: d["people"][1]["path"][0].update(at_m=[1.3, 0.0]),
+        ("people[1].path[0].at_m: 'ben' starts 0.3 m from the robot's middle",),
+    ),
+    "commands for a standing robot": (
+        lambda d: d["robot"].update(commands=[{"from_s": 0.0}]),
+        ("robot.commands: a robot that is to stand takes none; use 'scripted'",),
+    ),
+    "commands out of order": (
+        lambda d: d["robot"].update(behaviour="scripted", commands=[{"from_s": 2.0}, {"from_s": 1.0}]),
+        ("robot.commands[1].from_s: 1 must be after 2 before it",),
+    ),
+    "unknown behaviour": (
+        lambda d: d["robot"].update(behaviour="folow_person"),
+        ("robot.behaviour: unknown behaviour 'folow_person'", "'follow_person'"),
+    ),
+    "lights out of order": (
+        lambda d: d.update(lights=[{"at_s": 5.0, "level": 0.0}, {"at_s": 5.0, "level": 1.0}]),
+        ("lights[1].at_s: 5 must be after",),
+    ),
+    "door beyond its wall": (
+        lambda d: d["place"]["doors"][0].update(along_m=7.9),
+        ("place.doors[0].along_m: 7.9 does not leave room", "'north'"),
+    ),
+    "door as high as the ceiling": (
+        lambda d: d["place"]["doors"][0].update(height_m=2.7),
+        ("place.doors[0].height_m: 2.7 is too high",),
+    ),
+    "thing without a place": (
+        lambda d: d["things"][0].pop("at_m"),
+        ("things[0]: missing key 'at_m'", "'wall' and 'along_m'"),
+    ),
+    "thing outside": (
+        lambda d: d["things"][2].update(at_m=[40.0, 0.0]),
+        ("things[2].at_m: (40, 0) is outside the floor",),
+    ),
+    "thing with two places": (
+        lambda d: d["things"][3].update(at_m=[1.0, 1.0]),
+        ("things[3].wall: give either 'wall' with 'along_m', or 'at_m'",),
+    ),
+    "group in a wall": (
+        lambda d: d.update(groups=[{"names": ["x", "y"], "path": [{"at_m": [3, 2.5]}, {"at_m": [4, 2.5]}]}]),
+        ("groups[0].path[0].at_m:", "'wall_north'"),
+    ),
+    "absolute URDF": (
+        lambda d: d["things"].append({"kind": "urdf", "at_m": [4, 2], "urdf": "/etc/passwd"}),
+        ("things[4].urdf: '/etc/passwd' must be a file of pybullet_data",),
+    ),
+    "URDF that climbs out": (
+        lambda d: d["things"].append({"kind": "urdf", "at_m": [4, 2], "urdf": "../../secret.urdf"}),
+        ("things[4].urdf: '../../secret.urdf' must be", "no '..'"),
+    ),
+    "unknown URDF": (
+        lambda d: d["things"].append({"kind": "urdf", "at_m": [4, 2], "urdf": "tabel.urdf"}),
+        ("things[4].urdf: 'tabel.urdf' is neither in pybullet_data nor",),
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_is_refused_with_file_key_and_what_would_be_right(mistake: str) -> None:
+    change, expected = MISTAKES[mistake]
+    data = copy.deepcopy(GOOD)
+    change(data)
+    message = refusal(data)
+    for part in expected:
+        assert part in message
+
+
+def test_several_mistakes_come_on_one_line_the_misspelt_key_first() -> None:
+    data = copy.deepcopy(GOOD)
+    data["duration_s"] = -1.0
+    data["robot"]["comands"] = []
+    for person in data["people"]:
+        person["height_m"] = 9.0
+    message = refusal(data)
+    assert message.startswith("my.yaml: robot: unknown key 'comands'; did you mean 'commands'?; duration_s:")
+    assert message.endswith("; and 1 more")
+
+
+def test_a_person_may_sit_on_a_chair_but_not_stand_in_it() -> None:
+    data = copy.deepcopy(GOOD)
+    seat = {"at_m": [4.0, -2.0], "pause_s": 3.0, "posture": "sitting"}
+    data["people"][1]["path"] = [{"at_m": [3.0, -1.0]}, seat, {"at_m": [3.0, -1.2]}]
+    parse_scenario(data, source="my.yaml", folder=Path("/nowhere"))
+    seat["posture"] = "standing"
+    assert "'chair_1'" in refusal(data)
+
+
+def test_a_urdf_of_the_scenario_s_own_folder_is_found(tmp_path: Path) -> None:
+    (tmp_path / "box.urdf").write_text(
+        '<robot name="box"><link name="base"><visual><geometry><box size="0.4 0.4 0.4"/></geometry></visual>'
+        "</link></robot>"
+    )
+    data = copy.deepcopy(GOOD)
+    data["things"].append({"kind": "urdf", "at_m": [4.0, 2.0], "urdf": "box.urdf", "name": "crate"})
+    place = parse_scenario(data, source="my.yaml", folder=tmp_path).place
+    crate = place.obstacles[place.obstacle_names.index("crate")]
+    assert crate == pytest.approx([3.8, 1.8, 4.2, 2.2])
+
+
+def test_a_urdf_that_reads_a_mesh_elsewhere_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "spy.urdf").write_text(
+        '<robot name="spy"><link name="base"><visual><geometry><mesh filename="../../key.obj"/></geometry>'
+        "</visual></link></robot>"
+    )
+    data = copy.deepcopy(GOOD)
+    data["things"].append({"kind": "urdf", "at_m": [4.0, 2.0], "urdf": "spy.urdf"})
+    assert "outside the file's folder" in refusal(data, tmp_path)
+
+
+def test_a_link_that_leads_out_of_the_folder_is_refused(tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    (tmp_path / "far.urdf").write_text("<robot/>")
+    (home / "near.urdf").symlink_to(tmp_path / "far.urdf")
+    data = copy.deepcopy(GOOD)
+    data["things"].append({"kind": "urdf", "at_m": [4.0, 2.0], "urdf": "near.urdf"})
+    assert "neither in pybullet_data nor" in refusal(data, home)
+
+
+def test_an_unknown_library_name_gets_a_hint() -> None:
+    with pytest.raises(BadInput, match=r"unknown scenario 'pas_behind'; did you mean 'pass_behind'\?"):
+        load_scenario("pas_behind")
+
+
+JUNK = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.floats(),
+    st.integers(-(10**400), 10**400),
+    st.text(max_size=5),
+    st.lists(st.one_of(st.none(), st.floats(), st.text(max_size=3)), max_size=3),
+    st.dictionaries(st.one_of(st.integers(), st.text(max_size=3)), st.none(), max_size=2),
+)
+
+
+def outcome(data: Data) -> str | None:
+    """What the refusal says; None if the data are read."""
+    try:
+        parse_scenario(data, source="my.yaml", folder=Path("/nowhere")).world(0)
+    except BadInput as error:
+        return str(error)
+    return None
+
+
+def places(data: Any) -> list[tuple[Any, Any]]:
+    """Every container of the data with every key or index in it."""
+    pairs = list(data.items() if isinstance(data, dict) else enumerate(data))
+    below = [pair for _, value in pairs if isinstance(value, dict | list) for pair in places(value)]
+    return [(data, key) for key, _ in pairs] + below
+
+
+@given(st.data())
+@settings(max_examples=300, deadline=None)
+def test_junk_anywhere_is_read_or_refused_on_one_line(random: st.DataObject) -> None:
+    data = copy.deepcopy(GOOD)
+    container, key = random.draw(st.sampled_from(places(data)))
+    container[key] = random.draw(JUNK)
+    message = outcome(data)
+    assert message is None or (message.startswith("my.yaml: ") and "\n" not in message)

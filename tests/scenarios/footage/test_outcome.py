@@ -1,0 +1,55 @@
+import re
+
+import pytest
+
+from scenarios.footage.outcome import outcome_lines
+from scenarios.footage.track_footage import Tracked, TrackOptions
+from tests.helpers.footage_calls import call
+from tests.helpers.footage_files import box, write_empty, write_folder
+from tracker.footage.grey import Radiometry
+from tracker.trackers import TRACKERS
+
+START = ",".join(str(edge) for edge in box(0))
+
+
+def tracked(frames=2, tracks=2):
+    return Tracked(frames=frames, per_second=10.0, tracks=tracks, scores=None, notes=())
+
+
+def test_if_nobody_is_found_that_is_said_with_what_to_look_at(tmp_path):
+    out = tmp_path / "out"
+    told = call(write_empty(tmp_path / "clip"), "--out", out).stdout
+    assert "3 frames, 0 tracks" in told
+    assert "shows them" not in told
+    assert f"Nobody was found. Look at {out / 'contact_sheet.png'}: is warm bright there?" in told
+    assert "give --black-hot" in told
+
+
+@pytest.mark.parametrize("name", TRACKERS)
+def test_the_heights_told_are_those_that_the_tracker_looks_for(tmp_path, name):
+    options = TrackOptions(footage=tmp_path, out=tmp_path, tracker=name)
+    shown = outcome_lines(tracked(tracks=0), options)[1]
+    least, *most = (int(number) for number in re.findall(r"(\d+)%", shown))
+    config = TRACKERS[name]
+    limits = [100 * config.box.height_per_h * share for share in config.detector.limits.h]
+    assert least == pytest.approx(limits[0], abs=1)
+    assert most == ([pytest.approx(limits[1], abs=1)] if limits[1] < 100 else [])
+
+
+def test_who_gave_black_hot_is_told_to_leave_it_out(tmp_path):
+    options = TrackOptions(footage=tmp_path, out=tmp_path, radiometry=Radiometry(is_inverted=True))
+    assert "leave --black-hot out" in outcome_lines(tracked(tracks=0), options)[1]
+
+
+def test_one_is_not_a_plural(tmp_path):
+    told = call(write_folder(tmp_path / "clip", 1), "--out", tmp_path / "out", "--start", START).stdout
+    assert "1 frame, 1 track, " in told
+
+
+def test_with_a_film_the_last_line_names_it(tmp_path):
+    pytest.importorskip("av")
+    clip = write_folder(tmp_path / "clip", 3)
+    told = call(clip, "--out", tmp_path / "out", "--start", START, "--film").stdout
+    film = tmp_path / "out" / "overlay.mp4"
+    assert told.endswith(f"{tmp_path / 'out' / 'contact_sheet.png'} and {film} show them.\n")
+    assert film.is_file()

@@ -1,0 +1,86 @@
+import numpy as np
+import pytest
+
+from bad_input import BadInput
+from tests.helpers.footage_calls import call, call_afresh, refusal
+from tests.helpers.footage_files import write_counts, write_folder
+from tracker.footage.grey import CENTIKELVIN, Radiometry
+from tracker.footage.plausible import check_plausible
+
+
+@pytest.mark.parametrize(
+    ("scale", "words"),
+    [
+        ("1,0", ("--scale 1,0: pictures then hold 29315..30415 degC", "is it --scale centikelvin?")),
+        ("0.01,0", ("hold 293..304 degC", "is it --scale centikelvin?")),
+        ("0.1,-273.15", ("hold 2658..2768 degC", "is it --scale centikelvin?")),
+    ],
+)
+def test_temperatures_of_no_place_with_people_are_refused_with_the_scale_that_fits(tmp_path, scale, words):
+    told = refusal(write_counts(tmp_path / "clip"), "--out", tmp_path / "out", "--scale", scale)
+    assert all(word in told for word in words), told
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_temperature_range_in_kelvin_is_refused():
+    given = Radiometry(span_c=(297.0, 309.0))
+    with pytest.raises(BadInput, match=r"--temperature-range 297 309: .* is it kelvin\? give degC"):
+        check_plausible(given, given.values(np.arange(256, dtype=np.uint8).reshape(16, 16), []))
+
+
+@pytest.mark.parametrize(("per_k", "scale"), [(10, "0.1,-273.15"), (1, "1,-273.15"), (25, "0.04,-273.15")])
+def test_other_counts_of_kelvin_are_recognised(per_k, scale):
+    counts = np.full((30, 40), round(295 * per_k), np.uint16)
+    given = Radiometry(scale=(2.0, 0.0))
+    with pytest.raises(BadInput, match=f"is it --scale {scale}\\?"):
+        check_plausible(given, given.values(counts, []))
+
+
+def test_dead_pixels_an_empty_border_and_unknown_units_are_plausible():
+    counts = np.full((30, 40), 29500, np.uint16)
+    counts[:, :10], counts[3, 20:25] = 0, 65535
+    given = Radiometry(scale=CENTIKELVIN)
+    check_plausible(given, given.values(counts, []))
+    check_plausible(Radiometry(), np.full((30, 40), 30000.0, np.float32))
+    counts[:20] = 0
+    with pytest.raises(BadInput):  # once there are more dead pixels than others
+        check_plausible(given, given.values(counts, []))
+
+
+@pytest.mark.parametrize(
+    "start", ["400,10,20,50", "150,10,20,50", "-5,10,20,50", "nan,10,20,50", "10,100,20,50"]
+)
+def test_a_start_that_is_not_inside_the_pictures_is_refused(tmp_path, start):
+    told = refusal(write_folder(tmp_path / "clip", 3), "--out", tmp_path / "out", "--start", start)
+    assert f"--start {start}: X,Y,W,H must lie inside the pictures, which are 160x120" in told
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_start_may_touch_every_edge(tmp_path):
+    clip = write_folder(tmp_path / "clip", 3)
+    assert call(clip, "--out", tmp_path / "out", "--start", "0,0,160,120").exit_code == 0
+
+
+def test_the_tracker_that_lives_on_colour_is_refused_without(tmp_path):
+    clip = write_folder(tmp_path / "clip", 3)
+    assert "needs --colour" in refusal(clip, "--out", tmp_path / "out", "--tracker", "colour")
+    colour = write_folder(tmp_path / "colour", 3, "jpg")
+    options = ("--out", tmp_path / "out", "--tracker", "colour", "--colour", colour)
+    assert call(clip, *options).exit_code == 0
+
+
+@pytest.mark.parametrize("content", [b"", b"a text that somebody called a video\n" * 40])
+def test_a_video_that_is_none_is_refused_on_one_line_and_no_library_adds_another(tmp_path, content):
+    video = tmp_path / "clip.mp4"
+    video.write_bytes(content)
+    done = call_afresh(video, "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"peopleboy: {video}: cannot be read as a video")
+    assert done.stderr.count("\n") == 1, done.stderr
+
+
+def test_counts_of_temperatures_are_never_black_hot(tmp_path):
+    clip = write_counts(tmp_path / "clip", 3)
+    told = refusal(clip, "--out", tmp_path / "out", "--scale", "centikelvin", "--black-hot")
+    assert "--black-hot" in told
+    assert "--scale" in told

@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+from scenarios.loop.track_events import TrackEvent, TrackEvents
+from tests.helpers import synthetic_ticks as made
+from tracker.track import Status, Track
+
+WIDTH = 320
+
+
+def play(*frames: tuple[Track, ...]) -> list[list[TrackEvent]]:
+    """What happens when these frames, a second apart, follow each other."""
+    events = TrackEvents()
+    return [events.update(tracks, float(second), WIDTH) for second, tracks in enumerate(frames)]
+
+
+def hidden(by: int | None) -> Track:
+    return replace(made.with_status(Status.TOTALLY_OCCLUDED), occluder=by)
+
+
+def partly(by: int) -> Track:
+    return replace(made.with_status(Status.PARTLY_OCCLUDED), occluder=by)
+
+
+def test_a_track_is_detected_once_and_not_while_it_is_tentative() -> None:
+    found = play((made.with_status(Status.TENTATIVE),), (made.TRACK,), (made.TRACK,))
+    assert found == [[], [TrackEvent(kind="detected", track=1)], []]
+
+
+def test_who_was_hidden_and_forgotten_is_re_identified_under_the_old_id() -> None:
+    found = play((made.TRACK,), (hidden(2),), (), (), (made.TRACK,))
+    assert [[event.kind for event in events] for events in found] == [
+        ["detected"], ["hidden"], ["lost"], [], ["re-identified"],
+    ]  # fmt: skip
+    assert found[1][0].by == 2
+    assert found[2][0].why == "hidden by track 2 for too long to know where"
+    assert found[4][0].why == "after 3.0 s"
+
+
+def test_a_lost_track_left_the_image_or_its_contour_is_gone() -> None:
+    outside = made.with_box((300.0, 50.0, 40.0, 170.0))
+    weak = replace(made.with_status(Status.TENTATIVE), confidence=0.12)
+    assert play((outside,), ())[1][0].why == "left the image on the right"
+    assert play((made.with_box((-20.0, 50.0, 40.0, 170.0)),), ())[1][0].why == "left the image on the left"
+    assert play((made.TRACK,), (weak,))[1][0].why == "the contour is gone, confidence 0.12"
+
+
+def test_an_occlusion_is_told_once_per_pair_however_often_it_flickers() -> None:
+    events = TrackEvents()
+    found = [
+        [event.kind for event in events.update((track,), 0.1 * k, WIDTH)]
+        for k, track in enumerate([made.TRACK, partly(2), made.TRACK, partly(2), partly(3)])
+    ]
+    assert found == [["detected"], ["occluded"], [], [], ["occluded"]]

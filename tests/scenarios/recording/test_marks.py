@@ -1,0 +1,83 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from scenarios.drawing.palette import track_colour
+from scenarios.recording.marks import (
+    PARTICLES_A_FILTER,
+    PARTICLES_AT_MOST,
+    Trails,
+    particle_points,
+    track_boxes,
+    track_contours,
+    track_offset,
+    truth_boxes,
+)
+from tests.helpers import synthetic_ticks as made
+from tracker.thermal.config import ContourConfig
+from tracker.track import Status
+
+
+def test_boxes_of_tracks_say_the_id_and_what_is_unusual() -> None:
+    hidden = replace(made.with_status(Status.TOTALLY_OCCLUDED), occluder=2)
+    boxes = track_boxes([made.TRACK, made.with_status(Status.TENTATIVE), hidden])
+    assert boxes.label == ["1", "1 doubtful", "1 hidden behind 2"]
+    assert boxes.box == pytest.approx(np.array([made.TRACK.box] * 3), rel=1e-6)
+    assert boxes.colour.tolist() == [list(track_colour(1))] * 3
+
+
+def test_true_boxes_are_mapped_at_the_distance_of_each_person() -> None:
+    asked: list[float] = []
+
+    def affine_at(depth_m: float) -> np.ndarray:
+        asked.append(depth_m)
+        return np.array([[1.0, 0.0, depth_m], [0.0, 1.0, 0.0]])
+
+    people = made.make_tick(1).truth.people
+    boxes = truth_boxes(people, affine_at)
+    assert asked == [4.0, 6.0]
+    assert boxes.box[:, 0].tolist() == [144.0, 146.0]
+    assert boxes.label == ["anna 100%", "ben 100%"]
+
+
+def test_every_track_has_an_outline_of_body_and_head() -> None:
+    lines = track_contours([made.TRACK, made.TRACK], ContourConfig())
+    assert len(lines.line) == len(lines.colour) == 4
+
+
+def test_the_offset_is_one_at_the_right_edge_of_the_image() -> None:
+    _, top, width, height = made.TRACK.box
+    at_edge = made.with_box((319.5 - width / 2.0, top, width, height))
+    assert track_offset(at_edge, 320) == pytest.approx(1.0)
+
+
+def test_many_filters_share_the_particles_that_are_shown() -> None:
+    cloud = made.make_tick(10).particles[1]
+    assert len(particle_points(dict.fromkeys(range(1, 6), cloud)).place) == PARTICLES_AT_MOST
+
+
+def test_the_strongest_particles_are_shown_brightest() -> None:
+    cloud = made.make_tick(10).particles[1]
+    weight = np.linspace(0.0, 2.0 / len(cloud), len(cloud), dtype=np.float32)
+    points = particle_points({1: type(cloud)(cloud.state, weight)})
+    assert len(points.place) == PARTICLES_A_FILTER
+    brightness = points.colour.sum(axis=1)
+    assert np.array_equal(points.place[0], cloud.state[-1, :2])
+    assert brightness[0] == brightness.max() > 2 * brightness.min()
+
+
+def test_few_particles_are_all_shown_and_none_are_none() -> None:
+    cloud = made.make_tick(10).particles[1]
+    few = type(cloud)(cloud.state[:7], np.full(7, 1 / 7, np.float32))
+    assert len(np.unique(particle_points({1: few}).place, axis=0)) == 7
+    assert particle_points({}).place.shape == (0, 2)
+
+
+def test_a_trail_joins_places_and_breaks_where_somebody_was_away() -> None:
+    trails = Trails()
+    counts = [len(trails.update(made.make_tick(frame)).line) for frame in (1, 2, 60, 3, 4)]
+    # Robot, anna and ben; ben is away at frame 60.
+    assert counts == [0, 3, 2, 2, 3]

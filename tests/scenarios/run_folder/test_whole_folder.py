@@ -1,0 +1,149 @@
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bad_input import BadInput
+from scenarios.drawing.plan import draw_plan
+from scenarios.export.dataset.make_dataset import render_set
+from scenarios.files.load import load_scenario
+from scenarios.run_folder.folder import claim_folder
+from scenarios.run_folder.whole_folder import whole_folder
+from scenarios.running.frame_cache import film
+from scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
+from scenarios.studies.reproduce.measuring.store import Store
+from tests.helpers.footage_calls import refusal
+from tests.helpers.footage_files import write_folder
+
+WAIT = """
+import sys, time
+from pathlib import Path
+from scenarios.run_folder.whole_folder import whole_folder
+with whole_folder(Path(sys.argv[1]), {}, overwrite=True) as folder:
+    (folder / "half").touch()
+    print("begun", flush=True)
+    time.sleep(60)
+"""
+
+
+def begin(out: Path) -> "subprocess.Popen[str]":
+    """Start a process that writes a folder, and wait until it has begun."""
+    process = subprocess.Popen([sys.executable, "-c", WAIT, str(out)], stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    assert process.stdout.readline() == "begun\n"
+    return process
+
+
+def end(process: "subprocess.Popen[str]", how: signal.Signals) -> int:
+    process.send_signal(how)
+    process.communicate()
+    return process.returncode
+
+
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT])
+def test_a_process_told_to_end_leaves_nothing_behind_and_the_earlier_folder_whole(tmp_path, how):
+    with whole_folder(tmp_path / "out", {}, overwrite=False) as folder:
+        (folder / "earlier").touch()
+    assert end(begin(tmp_path / "out"), how) in (128 + how, -how)
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+    assert (tmp_path / "out" / "earlier").is_file()
+
+
+def test_what_a_killed_process_has_left_goes_with_the_next_call_and_a_running_ones_stays(tmp_path):
+    out, others = tmp_path / "out", tmp_path / ".out.tex.1.new"
+    others.mkdir()
+    end(begin(out), signal.SIGKILL)
+    assert len(list(tmp_path.iterdir())) == 2
+    running = begin(out)
+    with whole_folder(out, {}, overwrite=False):
+        left = {path.name for path in tmp_path.iterdir()}
+    assert left == {".out.tex.1.new", f".out.{running.pid}.new", f".out.{os.getpid()}.new"}
+    end(running, signal.SIGTERM)
+    assert {path.name for path in tmp_path.iterdir()} == {"out", ".out.tex.1.new"}
+
+
+def test_an_earlier_folder_is_back_if_the_new_one_cannot_take_its_place(tmp_path, monkeypatch):
+    out, rename = tmp_path / "out", Path.rename
+    with whole_folder(out, {}, overwrite=False):
+        pass
+
+    def fail_at_the_second(path: Path, target: Path) -> Path:
+        if path.name.endswith(".new"):
+            raise OSError(28, "No space left on device")
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", fail_at_the_second)
+    with pytest.raises(BadInput, match="No space left"), whole_folder(out, {}, overwrite=True):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+    assert (out / "export.json").is_file()
+
+
+def test_handlers_of_sigterm_are_as_before(tmp_path):
+    before = signal.getsignal(signal.SIGTERM)
+    with whole_folder(tmp_path / "out", {}, overwrite=False):
+        assert signal.getsignal(signal.SIGTERM) != before
+    assert signal.getsignal(signal.SIGTERM) == before
+
+
+def write_run(path):
+    with whole_folder(path, {}, overwrite=False, kind="run"):
+        pass
+
+
+FOLDERS = {
+    "export or track": write_run,
+    "run": lambda path: claim_folder(path, overwrite=False),
+    "render": lambda path: render_set(["pass_behind"], 1, path, frames=False, tracker="truth", processes=1),
+}
+OTHERS = {
+    "show": lambda path: draw_plan(load_scenario("pass_behind"), 0, path),
+    "reproduce": lambda path: Store(path / "units.jsonl"),
+    "train-occlusion": lambda path: give_lesson(
+        path, "peopleboy", 1, triplets=False, again=False, ship=False
+    ),
+    "datasets": lambda path: film(load_scenario("pass_behind"), 0, path),
+}
+
+
+@pytest.mark.parametrize("command", FOLDERS | OTHERS)
+def test_a_place_that_cannot_be_written_is_named_as_it_was_given(tmp_path, command):
+    place = tmp_path / "README.md" / "x.png"
+    place.parent.touch()
+    with pytest.raises(BadInput) as caught:
+        (FOLDERS | OTHERS)[command](place)
+    option = "--films" if command == "datasets" else "--out"
+    assert str(caught.value) == f"{place}: cannot write here: Not a directory; give another {option}"
+
+
+@pytest.mark.parametrize("write", FOLDERS.values(), ids=FOLDERS)
+def test_an_out_without_a_name_is_refused(tmp_path, monkeypatch, write):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BadInput, match="--out must name a folder"):
+        write(Path(""))
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("is_file", [True, False])
+def test_what_is_no_run_is_never_offered_for_replacement(tmp_path, is_file):
+    mine = tmp_path / "mine"
+    if not is_file:
+        mine.mkdir()
+    (mine if is_file else mine / "thesis.tex").write_text("years of work")
+    clip = write_folder(tmp_path / "clip", 3)
+    words = f"{mine}: is no run and will not be replaced; give another --out"
+    assert refusal(clip, "--out", mine) == refusal(clip, "--out", mine, "--overwrite") == words
+    for overwrite in (False, True):
+        with pytest.raises(BadInput, match="is no run and will not be replaced"):
+            claim_folder(mine, overwrite=overwrite)
+
+
+def test_an_earlier_run_is_replaced_only_if_asked(tmp_path):
+    write_run(tmp_path / "out")
+    clip = write_folder(tmp_path / "clip", 3)
+    assert "exists already; give --overwrite to replace this run" in refusal(clip, "--out", tmp_path / "out")
+    with pytest.raises(BadInput, match="exists already; give --overwrite to replace this run"):
+        claim_folder(tmp_path / "out", overwrite=False)

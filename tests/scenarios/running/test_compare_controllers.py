@@ -1,0 +1,63 @@
+import json
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bad_input import BadInput
+from scenarios.running.compare_controllers import Controller, bootstrap, compare, intervals, parse_controller
+from scenarios.running.show_comparison import show_comparison
+
+NAN = math.nan
+
+
+@given(st.lists(st.floats(-1e3, 1e3) | st.just(NAN), min_size=1, max_size=20))
+def test_the_interval_holds_the_mean_and_lies_within_the_values(values):
+    found = bootstrap(values, np.random.default_rng(0))
+    known = [value for value in values if not math.isnan(value)]
+    if not known:
+        assert math.isnan(found.mean)
+        return
+    assert min(known) - 1e-6 <= found.low <= found.high <= max(known) + 1e-6
+    assert found.mean == pytest.approx(np.mean(known))
+
+
+def test_the_interval_of_many_normal_values_is_that_of_the_standard_error():
+    values = np.random.default_rng(1).normal(5.0, 2.0, 400)
+    found = bootstrap(values.tolist(), np.random.default_rng(0))
+    assert (found.high - found.low) / 2.0 == pytest.approx(1.96 * values.std() / 20.0, rel=0.1)
+
+
+def test_a_controller_is_a_behaviour_and_the_eyes_it_sees_by():
+    assert parse_controller("follow_person@truth") == Controller("follow_person", "truth")
+    assert str(parse_controller("patrol@peopleboy")) == "patrol"
+    with pytest.raises(BadInput, match="unknown name 'dance'"):
+        parse_controller("dance")
+    with pytest.raises(BadInput, match="unknown tracker 'sonar'"):
+        parse_controller("stand@sonar")
+
+
+def test_a_controller_named_twice_is_refused(tmp_path):
+    with pytest.raises(BadInput, match="once"):
+        compare("single_follow", [parse_controller("stand")] * 2, range(1), tmp_path, 1)
+
+
+def test_a_comparison_is_printed_drawn_and_kept(tmp_path, capsys):
+    runs = {
+        Controller("a", "truth"): [{"followed": 0.5, "jerk_m_s3": 1.0}, {"followed": 1.0, "jerk_m_s3": NAN}],
+        Controller("b", "truth"): [{"lateral_m": 0.1}, {"lateral_m": 0.1}],
+    }
+    show_comparison("scene", runs, tmp_path)
+    printed = capsys.readouterr().out
+    assert "followed, %" in printed
+    assert "75.00 [50.00, 100.00]" in printed
+    kept = json.loads((tmp_path / "comparison.json").read_text())["controllers"]
+    assert kept["b@truth"]["mean"]["lateral_m"] == pytest.approx([0.1] * 3)
+    assert kept["a@truth"]["runs"][1]["jerk_m_s3"] is None
+    assert (tmp_path / "comparison.png").stat().st_size > 5000
+    assert set(intervals(runs[Controller("a", "truth")], np.random.default_rng(0))) == {
+        "followed",
+        "jerk_m_s3",
+    }

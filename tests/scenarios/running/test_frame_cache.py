@@ -1,0 +1,96 @@
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bad_input import BadInput
+from behaviours.command import Command
+from scenarios.files.drives import read_drive, write_drive
+from scenarios.files.load import load_scenario
+from scenarios.loop.loop import make_frame
+from scenarios.running import frame_cache
+from scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
+from sim.world import World
+from tracker.frame import Frame
+
+SCENARIO = load_scenario("fast_turn").lasting(2.6)
+
+
+@pytest.fixture(scope="module")
+def shot(tmp_path_factory: pytest.TempPathFactory) -> Film:
+    return film(SCENARIO, 3, tmp_path_factory.mktemp("films"))
+
+
+def played() -> Iterator[Frame]:
+    before = None
+    with World(SCENARIO.world(3)) as world:
+        for k in range(39):
+            seen = world.observe()
+            yield make_frame(seen, before)
+            before = seen.odometry
+            # The script turns the robot from second 2 on; nothing is in its way.
+            world.step(0.0, np.radians(90.0) if 30 <= k < 37.5 else 0.0)
+
+
+def test_frames_from_disk_equal_those_of_the_run_to_the_byte(shot: Film) -> None:
+    kept = list(frames_of(shot))
+    assert len(kept) == shot.frames == 39
+    for one, other in zip(kept, played(), strict=True):
+        assert np.array_equal(one.thermal, other.thermal)
+        assert np.array_equal(one.colour, other.colour)  # type: ignore[arg-type]
+        assert (one.time_s, one.turn_rad, one.advance_m) == (other.time_s, other.turn_rad, other.advance_m)
+
+
+def test_truth_lies_beside_the_frames(shot: Film) -> None:
+    assert shot.truth().last_frame == 39
+    assert shot.people().num_rows == 39
+
+
+def test_a_film_is_made_once(shot: Film, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(frame_cache, "World", None)
+    assert film(SCENARIO, 3, shot.folder.parent) == shot
+
+
+def test_a_film_that_was_cut_off_is_made_anew(tmp_path: Path) -> None:
+    def stop(done: int, _all: int) -> None:
+        if done == 5:
+            raise KeyboardInterrupt
+
+    short = SCENARIO.lasting(1.0)
+    with pytest.raises(KeyboardInterrupt):
+        film(short, 0, tmp_path, stop)
+    assert list(tmp_path.iterdir()) == []
+    assert film(short, 0, tmp_path).frames == 15
+
+
+def test_another_seed_length_or_drive_gives_another_key() -> None:
+    drive = [Command(linear_m_s=0.1, angular_rad_s=0.0)]
+    keys = {film_key(SCENARIO, 3), film_key(SCENARIO, 4), film_key(SCENARIO.lasting(2.0), 3)}
+    assert len(keys | {film_key(SCENARIO.driven(drive), 3)}) == 4
+    assert film_key(load_scenario("fast_turn").lasting(2.6), 3) in keys
+
+
+def test_a_robot_that_follows_what_a_tracker_sees_is_refused_until_its_drive_is_recorded(
+    tmp_path: Path,
+) -> None:
+    following = load_scenario("single_follow").lasting(0.2)
+    with pytest.raises(BadInput, match="stands or is scripted"):
+        film(following, 0, tmp_path)
+    assert film(following.driven([]), 0, tmp_path).frames == 3
+
+
+def test_no_film_is_said_so(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="no finished frames"):
+        open_film(tmp_path)
+
+
+def test_a_drive_is_read_as_it_was_written(tmp_path: Path) -> None:
+    drive = (Command(linear_m_s=0.1, angular_rad_s=1.0 / 3.0), Command(linear_m_s=0.0, angular_rad_s=-0.2))
+    write_drive(tmp_path / "drive.parquet", drive)
+    assert read_drive(tmp_path / "drive.parquet") == drive
+    (tmp_path / "drive.parquet").write_text("no")
+    with pytest.raises(BadInput, match="recorded drive"):
+        read_drive(tmp_path / "drive.parquet")

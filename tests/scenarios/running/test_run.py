@@ -1,0 +1,300 @@
+import hashlib
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+import yaml
+
+from bad_input import BadInput
+from scenarios.cli import main
+from scenarios.files.load import load_scenario, parse_scenario
+from scenarios.running.run import RunOptions, run
+from scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
+from tracker.trackers import TRACKERS
+
+SCENE = {
+    "name": "tiny",
+    "description": "One person crosses a room.",
+    "duration_s": 2.0,
+    "place": {"kind": "room", "length_m": 8.0, "width_m": 6.0},
+    "people": [{"name": "anna", "path": [{"at_m": [4.5, -1.0]}, {"at_m": [4.5, 1.5], "speed_m_s": 1.2}]}],
+    "robot": {"at_m": [0.6, 0.0], "thermal": {"width_px": 160, "height_px": 120}},
+}
+FOLDER = {
+    "run.json", "scenario.yaml", "truth", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",
+    "events.jsonl", "metrics.json", "contact_sheet.png",
+}  # fmt: skip
+FRAMES = {"thermal", "thermal16", "colour"}
+
+
+def scene(**changes: object) -> dict[str, object]:
+    return SCENE | changes
+
+
+def write_scene(path: Path, **changes: object) -> Path:
+    path.write_text(yaml.safe_dump(scene(**changes)), encoding="utf-8")
+    return path
+
+
+def run_cli(*arguments: object) -> int:
+    with pytest.raises(SystemExit) as stop:
+        main([str(argument) for argument in arguments])
+    assert isinstance(stop.value.code, int)
+    return stop.value.code
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """Hash of everything whose bytes are promised: images, truth, tracks, scores and the scenario."""
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.suffix != ".rrd"
+    }
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("runs")
+    path = write_scene(folder / "tiny.yaml")
+    assert run_cli("run", path, "--out", folder / "one", "--seed", 5, "--frames") == 0
+    return folder / "one"
+
+
+def test_a_run_leaves_the_whole_folder(finished: Path) -> None:
+    assert {path.name for path in finished.iterdir()} == FOLDER | FRAMES | {"recording.rrd"}
+    about = json.loads((finished / "run.json").read_text())
+    assert (about["status"], about["frames"], about["seed"]) == ("complete", 30, 5)
+    for name in FRAMES:
+        assert len(list((finished / name).glob("*.png"))) == 30
+
+
+def test_truth_in_text_and_table_agree(finished: Path) -> None:
+    rows = pq.read_table(finished / "truth.parquet").to_pylist()
+    lines = [line.split(",") for line in (finished / "truth" / "gt.txt").read_text().splitlines()]
+    assert len(lines) == len(rows) == 30
+    for row, line in zip(rows, lines, strict=True):
+        assert int(line[0]) == row["frame"]
+        assert float(line[2]) == pytest.approx(row["left_px"], abs=0.006)
+        assert float(line[8]) == pytest.approx(row["visible_fraction"], abs=1e-4)
+        shares = dict(row["hidden_by"])
+        assert row["visible_fraction"] + sum(shares.values()) == pytest.approx(1.0)
+
+
+def test_a_fresh_process_gives_the_same_bytes_and_another_seed_does_not(
+    finished: Path, tmp_path: Path
+) -> None:
+    scenario = write_scene(tmp_path / "tiny.yaml")
+    for name, seed in (("same", 5), ("other", 6)):
+        command = [
+            "run",
+            str(scenario),
+            "--out",
+            str(tmp_path / name),
+            "--seed",
+            str(seed),
+            "--frames",
+            "--no-rrd",
+        ]
+        subprocess.run(
+            [sys.executable, "-m", "scenarios", *command], check=True, capture_output=True, cwd=tmp_path
+        )
+    first, same, other = digests(finished), digests(tmp_path / "same"), digests(tmp_path / "other")
+    assert first == same
+    assert first.keys() == other.keys()
+    for name in ("thermal/000009.png", "colour/000009.png", "truth.parquet", "tracks.parquet"):
+        assert first[name] != other[name]
+
+
+def test_the_resolved_scenario_gives_the_same_world_again(finished: Path, tmp_path: Path) -> None:
+    assert run_cli("run", finished / "scenario.yaml", "--out", tmp_path / "again", "--no-rrd") == 0
+    again = digests(tmp_path / "again")
+    assert {name: again[name] for name in ("truth/gt.txt", "tracks.txt")} == {
+        name: digests(finished)[name] for name in ("truth/gt.txt", "tracks.txt")
+    }
+
+
+def test_evaluate_prints_the_same_scores_for_a_run_and_for_its_files(
+    finished: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = ("--truth", finished / "truth" / "gt.txt", "--tracks", finished / "tracks.txt")
+    assert run_cli("evaluate", *files) == 0
+    alone = capsys.readouterr().out
+    assert run_cli("evaluate", finished) == 0
+    together = capsys.readouterr().out
+    assert run_cli("evaluate", finished.parent) == 0
+    assert capsys.readouterr().out == together
+    for figure in ("CP", "AA", "HOTA"):
+        value = next(line.split()[1] for line in alone.splitlines() if line.startswith(figure))
+        assert next(line.split()[1] for line in together.splitlines() if line.startswith(figure)) == value
+
+
+def test_people_of_whom_little_is_seen_can_be_left_out(tmp_path: Path) -> None:
+    truth = "1,1,10,10,20,60,1,1,0.2000\n1,2,100,10,20,60,1,1,0.9000\n"
+    (tmp_path / "gt.txt").write_text(truth)
+    (tmp_path / "tracks.txt").write_text("1,1,100,10,20,60,0.9,-1,-1,-1\n")
+    files = (tmp_path / "gt.txt", tmp_path / "tracks.txt")
+    assert evaluate_files(*files).thesis.cr == pytest.approx(50.0)
+    assert evaluate_files(*files, min_visible=0.3).thesis.cr == pytest.approx(100.0)
+    assert run_cli("evaluate", "--truth", files[0], "--tracks", files[1], "--min-visible", "0.3") == 0
+    assert run_cli("evaluate", "--truth", files[0], "--tracks", files[1], "--min-visible", "1.5") == 2
+
+
+def test_nobody_is_a_sensible_run(tmp_path: Path) -> None:
+    path = write_scene(tmp_path / "tiny.yaml", people=[], duration_s=0.4)
+    assert run_cli("run", path, "--out", tmp_path / "run", "--no-rrd") == 0
+    assert (tmp_path / "run" / "truth" / "gt.txt").read_text() == ""
+
+
+def test_an_interrupted_run_says_so_and_stays_readable(tmp_path: Path) -> None:
+    scenario = parse_scenario(scene(), source="tiny", folder=tmp_path)
+
+    def interrupt(tick: object, _frames: int) -> None:
+        if getattr(tick, "frame", 0) == 7:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(scenario, RunOptions(seed=0, out=tmp_path / "run", record=False), interrupt)
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "cut off"
+    assert pq.read_table(tmp_path / "run" / "robot.parquet").num_rows == 7
+    with pytest.raises(BadInput, match="cut off"):
+        evaluate_runs([tmp_path / "run"])
+
+
+MISTAKES = {
+    "misspelt key": ({"duration": 3.0}, "duration_s"),
+    "NaN": ({"duration_s": float("nan")}, "duration_s"),
+    "negative speed": (
+        {"people": [{"name": "anna", "path": [{"at_m": [4, 0]}, {"at_m": [5, 0], "speed_m_s": -1.0}]}]},
+        "people[0].path[1].speed_m_s",
+    ),
+    "waypoint in a wall": (
+        {"people": [{"name": "anna", "path": [{"at_m": [4, 0]}, {"at_m": [4, 3.02]}]}]},
+        "people[0].path[1]",
+    ),
+    "unknown garment": (
+        {"people": [{"name": "anna", "clothes": {"top": "t_shrit"}, "path": [{"at_m": [4, 0]}]}]},
+        "t_shirt",
+    ),
+    "one name for two": (
+        {"people": [{"name": "anna", "path": [{"at_m": [4, y]}]} for y in (0, 1)]},
+        "anna",
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_in_the_file_is_one_line_and_leaves_nothing(
+    mistake: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    changes, clue = MISTAKES[mistake]
+    path = write_scene(tmp_path / "tiny.yaml", **changes)
+    assert run_cli("run", path, "--out", tmp_path / "run") == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "tiny.yaml" in error
+    assert clue in error
+    assert not (tmp_path / "run").exists()
+
+
+def test_help_names_every_tracker(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_cli("run", "--help") == 0
+    text = capsys.readouterr().out
+    assert [name for name in (*TRACKERS, "truth") if name not in text] == []
+
+
+def test_no_command_prints_the_commands(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_cli() == 2
+    assert "  sweep  " in capsys.readouterr().out
+
+
+def test_another_tracker_has_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = write_scene(tmp_path / "tiny.yaml", duration_s=0.2)
+    for tracker in ("peopleboy", "paper"):
+        assert run_cli("run", path, "--tracker", tracker, "--no-rrd") == 0
+    assert {folder.name for folder in (tmp_path / "runs").iterdir()} == {"tiny-0", "tiny-0-paper"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "clue"),
+    [
+        (("run", "no_such_scene"), "single_follow"),
+        (("run", "missing.yaml"), "missing.yaml"),
+        (("run", "empty_room", "--tracker", "best"), "peopleboy"),
+        (("run", "empty_room", "--renderer", "opengl"), "raycast"),
+        (("run", "empty_room", "--seed", "-1"), "seed"),
+        (("run", "empty_room", "--sed", "1"), "--sed"),
+        (("run", "empty_room", "--out", "/dev/null/run"), "/dev/null/run"),
+        (("evaluate", "--truth", "gt.txt"), "--tracks"),
+        (("evaluate",), "--truth"),
+        (("evaluate", "no_run"), "no such folder"),
+        (("show", "dataset1"), "suite"),
+        (("run", "dataset1", "--seed", "1"), "seeds of its own"),
+        (("view", "no_run"), "no_run"),
+        (("show", "empty_room", "--out", "/dev/null/plan.png"), "/dev/null/plan.png"),
+    ],
+)
+def test_a_mistake_on_the_command_line_is_one_line_and_exit_code_2(
+    arguments: tuple[str, ...],
+    clue: str,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run_cli(*arguments) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert clue in error
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_earlier_run_is_replaced_only_when_asked_and_other_folders_never(
+    finished: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = write_scene(tmp_path / "tiny.yaml", duration_s=0.2)
+    keep = tmp_path / "mine"
+    keep.mkdir()
+    (keep / "thesis.txt").write_text("do not lose me")
+    assert run_cli("run", scenario, "--out", finished) == 2
+    assert "--overwrite" in capsys.readouterr().err
+    assert run_cli("run", scenario, "--out", keep, "--overwrite") == 2
+    assert (keep / "thesis.txt").exists()
+    out = tmp_path / "run"
+    assert run_cli("run", scenario, "--out", out, "--no-rrd") == 0
+    assert run_cli("run", scenario, "--out", out, "--no-rrd", "--overwrite", "--seed", 1) == 0
+    assert json.loads((out / "run.json").read_text())["seed"] == 1
+
+
+def test_every_library_scenario_runs_a_little(tmp_path: Path) -> None:
+    from scenarios.files.load import library
+
+    for name in library():
+        loaded = load_scenario(name)
+        short = replace(loaded, spec=loaded.spec.model_copy(update={"duration_s": 0.3}))
+        run(short, RunOptions(seed=1, out=tmp_path / name, record=False), lambda _tick, _frames: None)
+        assert (tmp_path / name / "contact_sheet.png").stat().st_size > 10_000
+
+
+def test_a_sweep_goes_on_where_it_was_and_takes_no_other_run_for_its_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = write_scene(tmp_path / "tiny.yaml", duration_s=0.2)
+    out = tmp_path / "runs"
+    assert run_cli("sweep", scenario, "--seeds", 1, "--out", out) == 0
+    stamp = (out / "tiny-0" / "run.json").stat().st_mtime_ns
+    assert run_cli("sweep", scenario, "--seeds", 2, "--out", out) == 0
+    assert (out / "tiny-0" / "run.json").stat().st_mtime_ns == stamp
+    for folder in out.iterdir():
+        about = json.loads((folder / "run.json").read_text())
+        (folder / "run.json").write_text(json.dumps(about | {"status": "running"}))
+    assert run_cli("sweep", scenario, "--seeds", 2, "--out", out) == 0
+    assert (out / "tiny-0" / "run.json").stat().st_mtime_ns != stamp
+    capsys.readouterr()
+    write_scene(tmp_path / "tiny.yaml", duration_s=0.4)
+    assert run_cli("sweep", scenario, "--seeds", 2, "--out", out) == 2
+    assert "another scenario" in capsys.readouterr().err

@@ -1,0 +1,94 @@
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from bad_input import BadInput
+from scenarios.cli import cli
+from scenarios.files import suite as suites
+from scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, runs_of, suite_names
+from scenarios.running import run_suite as module
+from scenarios.running.run import RunOptions
+from scenarios.running.run_suite import run_suite
+from scenarios.scores.suite_table import THESIS, Content, add_up, count
+from scenarios.studies.reproduce.showing.show_contents import count_suite
+
+TINY = SuiteSpec(
+    name="tiny",
+    description="Two short runs.",
+    runs=(EntrySpec(scenario="crossing_2", seeds=(0, 1), duration_s=0.6),),
+)
+
+
+@pytest.mark.parametrize("name", suite_names())
+def test_every_run_of_a_suite_is_there(name: str) -> None:
+    runs = list(runs_of(load_suite(name)))
+    assert len({run.name for run in runs}) == len(runs)
+
+
+@pytest.mark.parametrize("name", list(THESIS))
+def test_data_sets_are_as_long_as_those_of_the_thesis(name: str) -> None:
+    frames = sum(round(run.scenario.duration_s * 15) for run in runs_of(load_suite(name)))
+    assert frames == pytest.approx(THESIS[name].frames, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "name", ["dataset1", *(pytest.param(n, marks=pytest.mark.heavy) for n in list(THESIS)[1:])]
+)
+def test_data_sets_hold_what_those_of_the_thesis_hold_within_5_percent(name: str, tmp_path: Path) -> None:
+    ours, theirs = asdict(count_suite(name, tmp_path)), asdict(THESIS[name])
+    if theirs["at_once"] == 1:
+        del ours["occlusions"]  # the thesis counts none for single persons
+    for key, value in ours.items():
+        assert value == pytest.approx(theirs[key], rel=0.05), key
+
+
+def test_counts_agree_with_counting_by_hand(tmp_path: Path) -> None:
+    shot = module.film(next(iter(runs_of(TINY))).scenario, 0, tmp_path)
+    assert count(shot.people(), shot.frames, 15.0) == Content(
+        frames_with_persons=9, frames=9, tracks=2, detections=18, occlusions=0, at_once=2
+    )
+    two = [count(shot.people(), shot.frames, 15.0)] * 2
+    assert add_up(two).detections == 36
+    assert add_up(two).at_once == 2
+
+
+@pytest.fixture
+def tiny(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "load_suite", lambda _: TINY)
+    monkeypatch.setattr(suites, "suite_names", lambda: ["tiny"])
+
+
+@pytest.mark.usefixtures("tiny")
+def test_a_suite_skips_complete_runs_and_redoes_those_that_were_cut_off(tmp_path: Path) -> None:
+    options = RunOptions(seed=0, out=tmp_path)
+    first, second = run_suite("tiny", options)
+    made = [path.stat().st_mtime_ns for path in (first / "tracks.txt", second / "tracks.txt")]
+    about = json.loads((second / "run.json").read_text())
+    (second / "run.json").write_text(json.dumps(about | {"status": "running"}))  # as a killed run leaves it
+    assert run_suite("tiny", options) == [first, second]
+    assert (first / "tracks.txt").stat().st_mtime_ns == made[0]
+    assert (second / "tracks.txt").stat().st_mtime_ns > made[1]
+    assert json.loads((second / "run.json").read_text())["status"] == "complete"
+    with pytest.raises(BadInput, match="was run with tracker 'peopleboy'"):
+        run_suite("tiny", RunOptions(seed=0, out=tmp_path, tracker="thesis"))
+
+
+def test_an_unknown_suite_or_data_set_is_refused() -> None:
+    with pytest.raises(BadInput, match="did you mean 'dataset1'"):
+        load_suite("datset1")
+    for command in (["datasets", "dataset9"], ["run", "dataset1", "--seed", "1"]):
+        assert isinstance(CliRunner().invoke(cli, command).exception, BadInput)
+
+
+def test_a_suite_file_with_a_mistake_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "odd.yaml").write_text(
+        "name: odd\ndescription: x\nruns: [{scenario: crossing_2, seed: [0]}]\n"
+    )
+    monkeypatch.setattr(suites, "SUITES", tmp_path)
+    with pytest.raises(BadInput, match=r"suites/odd\.yaml: .*did you mean 'seeds'"):
+        load_suite("odd")

@@ -1,0 +1,162 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bad_input import BadInput
+from scenarios.files.load import load_scenario
+from scenarios.scores.following_metrics import FollowingRun, FollowingTask, score_following
+from scenarios.scores.score import following_task
+
+STEP_S = 0.5
+
+
+def score(distance, *, bearing=0.0, tracked=None, contact=None, heading=0.7, task=None, **more):
+    """A robot at (1, 2) with a person at these distances and bearings from its nose."""
+    distance = np.array(distance, float)
+    frames = len(distance)
+    angle = heading + np.broadcast_to(bearing, frames)
+    person = np.stack([1.0 + distance * np.cos(angle), 2.0 + distance * np.sin(angle)], axis=1)
+    run = FollowingRun(
+        time_s=10.0 + STEP_S * np.arange(frames),
+        robot=np.tile([1.0, 2.0, heading], (frames, 1)),
+        person=person,
+        is_tracked=np.array([True] * frames if tracked is None else tracked),
+        is_contact=np.array([False] * frames if contact is None else contact),
+        **more,
+    )
+    return score_following(run, task)
+
+
+def test_a_run_without_fault_scores_full():
+    task = FollowingTask(keep_m=3.0)
+    result = score([3.0] * 8, task=task)
+    assert result.found
+    assert result.time_to_find_s == 0.0
+    assert (result.followed, result.in_band, result.facing, result.in_band_and_facing) == (1.0,) * 4
+    assert result.rms_distance_error_m == pytest.approx(0.0, abs=1e-9)
+    assert (result.collisions, result.times_lost, result.longest_lost_s) == (0, 0, 0.0)
+
+
+def test_nothing_before_the_encounter_counts_but_the_nearest_distance():
+    result = score([1.0, 9.0, 3.0, 3.0], tracked=[False, False, True, True])
+    assert result.time_to_find_s == 2 * STEP_S
+    assert (result.followed, result.in_band) == (1.0, 1.0)
+    assert result.min_distance_m == pytest.approx(1.0)
+
+
+def test_distance_errors_are_mean_and_root_mean_square():
+    result = score([2.0, 4.0, 3.0, 6.0], task=FollowingTask(keep_m=3.0))
+    assert result.mean_distance_error_m == pytest.approx(5.0 / 4.0)
+    assert result.rms_distance_error_m == pytest.approx(math.sqrt(11.0 / 4.0))
+
+
+def test_band_and_facing_are_shares_of_frames():
+    task = FollowingTask(band_m=(1.2, 3.5), facing_rad=0.2)
+    result = score([1.0, 2.0, 3.0, 4.0], bearing=[0.1, -0.1, 0.3, 6.4], task=task)
+    assert result.in_band == 0.5
+    assert result.facing == 0.75  # 6.4 is 0.12 past a full turn
+    assert result.in_band_and_facing == 0.25
+
+
+def test_the_heading_in_which_everything_happens_does_not_matter():
+    one, other = (score([2.0, 3.0], bearing=3.1, heading=h) for h in (0.0, 3.0))
+    assert (one.facing, one.in_band) == (other.facing, other.in_band)
+
+
+def test_contacts_are_counted_when_they_begin():
+    assert score([3.0] * 7, contact=[True, True, False, True, False, False, True]).collisions == 3
+
+
+def test_lost_periods_are_counted_from_their_length_on():
+    tracked = [True, False, True, False, False, False, True, False]
+    result = score([3.0] * 8, tracked=tracked, task=FollowingTask(lost_s=1.0))
+    assert result.times_lost == 1
+    assert result.longest_lost_s == 3 * STEP_S
+    assert result.followed == 3 / 8
+
+
+def test_whoever_is_never_tracked_was_not_found():
+    result = score([3.0] * 4, tracked=[False] * 4)
+    assert not result.found
+    assert math.isnan(result.time_to_find_s)
+    assert math.isnan(result.followed)
+    assert result.times_lost == 0
+    assert len(result.rows()) == 20
+
+
+def test_frames_without_the_person_do_not_count():
+    result = score([3.0, math.nan, math.nan, 3.0], tracked=[True, False, False, True])
+    assert result.followed == 1.0
+    assert result.in_band == 1.0
+
+
+@given(st.lists(st.floats(0.1, 9.0), min_size=1, max_size=20), st.data())
+def test_every_share_is_within_its_bounds_and_both_is_no_more_than_each(distances, data):
+    tracked = data.draw(st.lists(st.booleans(), min_size=len(distances), max_size=len(distances)))
+    result = score(distances, tracked=tracked, bearing=data.draw(st.floats(-4.0, 4.0)))
+    if result.found:
+        assert 0.0 <= result.in_band_and_facing <= min(result.in_band, result.facing) <= 1.0
+        assert 0.0 < result.followed <= 1.0
+        assert result.mean_distance_error_m <= result.rms_distance_error_m + 1e-9
+        assert result.longest_lost_s <= STEP_S * (len(distances) - 1) + 1e-9
+
+
+def test_a_person_who_is_away_is_not_lost_meanwhile():
+    away = [3.0, 3.0] + [math.nan] * 9 + [3.0]
+    result = score(away, tracked=[True] + [False] * 10 + [True])
+    assert result.longest_lost_s == STEP_S
+
+
+def test_arrays_of_different_lengths_and_standing_time_are_refused():
+    good = {
+        "time_s": np.arange(3.0),
+        "robot": np.zeros((3, 3)),
+        "person": np.ones((3, 2)),
+        "is_tracked": np.ones(3, bool),
+        "is_contact": np.zeros(3, bool),
+    }
+    with pytest.raises(BadInput, match="shapes"):
+        FollowingRun(**{**good, "person": np.ones((2, 2))})
+    with pytest.raises(BadInput, match="rise"):
+        FollowingRun(**{**good, "time_s": np.zeros(3)})
+
+
+def test_a_person_lost_or_exchanged_in_the_last_seconds_was_not_followed_to_the_end():
+    tracked = [True] * 20
+    assert score([3.0] * 20, tracked=tracked).followed_to_end
+    assert not score([3.0] * 20, tracked=[True] * 13 + [False] * 7).followed_to_end
+    assert score([3.0] * 20, tracked=[False] * 13 + [True] * 7).followed_to_end
+    assert not score([3.0] * 20, is_wrong=np.arange(20) == 16).followed_to_end
+    assert score([3.0] * 20, is_wrong=np.arange(20) == 3).wrong_person_s == STEP_S
+
+
+def test_new_numbers_of_the_track_and_intrusions_are_counted():
+    result = score([3.0] * 6, track=np.array([0, 4, 4, 0, 4, 7]), gap_m=np.array([2.0, 1, 0.4, 1, 0.4, 2]))
+    assert result.identity_changes == 1
+    assert (result.intimate_intrusions, result.personal_intrusions) == (2, 1)
+
+
+def test_a_detour_to_the_person_halves_the_efficiency_and_a_steady_run_has_no_jerk():
+    frames = 9
+    time_s, x = STEP_S * np.arange(frames), 0.1 * np.arange(frames)
+    robot = np.stack([x, np.where(np.arange(frames) % 2, 0.1 * math.sqrt(3.0), 0.0), 0.0 * x], axis=1)
+    person = np.stack([x + 9.0, 0.0 * x], axis=1)
+    person[-1, 0] = x[-1] + 3.0
+    seen = np.ones(frames, bool)
+    run = FollowingRun(time_s=time_s, robot=robot, person=person, is_tracked=seen, is_contact=~seen)
+    assert score_following(run).path_efficiency == pytest.approx(0.5)
+    assert score_following(run).jerk_m_s3 == pytest.approx(0.0, abs=1e-9)
+    assert score_following(run).mean_heading_error_rad < 0.05
+
+
+def test_the_distance_to_keep_is_the_one_that_shows_the_person_as_tall_as_asked() -> None:
+    config = load_scenario("single_follow").world(0)
+    task = following_task(config, keep_height=0.5)
+    camera, person = config.robot.thermal.camera, config.people[0]
+    away = task.keep_m - camera.position_m[0]
+    feet, head = camera.project(np.array([[0.0, 1.2, away], [0.0, 1.2 - person.height_m, away]]))
+    assert feet[1] - head[1] == pytest.approx(0.5 * camera.height)
+    assert task.band_m == pytest.approx((task.keep_m - 1.2, task.keep_m + 1.2))

@@ -1,0 +1,53 @@
+"""What is said of a run in a sentence."""
+
+import dataclasses
+import math
+from pathlib import Path
+
+import pytest
+
+from scenarios.scores.corridor_metrics import CorridorScore
+from scenarios.scores.headline import headline
+from scenarios.scores.score import RunScores
+from tracker.evaluation.evaluate import Scores, evaluate
+from tracker.evaluation.mot_files import read_tracks, read_truth
+
+CORRIDOR = CorridorScore(
+    lateral_rms_m=0.05,
+    lateral_max_m=0.1,
+    heading_error_rad=0.0,
+    contacts=0,
+    mean_speed_m_s=0.5,
+    way_m=12.0,
+    legs=1,
+)
+
+
+def scores_of(folder: Path, found: int, false: int = 0) -> Scores:
+    truth, tracks = folder / "gt.txt", folder / "tracks.txt"
+    truth.write_text("".join(f"{frame},1,10,10,20,60,1,1,1.0\n" for frame in range(1, 201)))
+    right = [f"{frame},4,10,10,20,60,1,-1,-1,-1\n" for frame in range(1, found + 1)]
+    wrong = [f"1,{9 + number},200,10,20,60,1,-1,-1,-1\n" for number in range(false)]
+    tracks.write_text("".join(right + wrong))
+    return evaluate(read_truth(truth), read_tracks(tracks), frames=200)
+
+
+@pytest.mark.parametrize(
+    ("found", "false", "clues"),
+    [
+        (200, 0, ["100 % of 200 cases", "100 % of the boxes given", "no identity switch, no false track."]),
+        (199, 1, ["99 % of 200 cases", "99 % of the boxes", "1 false track."]),
+        (1, 2, ["1 % of 200 cases", "2 false tracks."]),
+        (0, 0, ["0 % of 200 cases, no box given"]),
+    ],
+)
+def test_all_means_all_and_none_means_none(found: int, false: int, clues: list[str], tmp_path: Path) -> None:
+    text = headline(RunScores(scores_of(tmp_path, found, false), None))
+    assert [clue for clue in clues if clue not in text] == []
+
+
+def test_a_corridor_without_a_straight_leg_says_nothing_of_its_middle(tmp_path: Path) -> None:
+    people = scores_of(tmp_path, 200)
+    assert "0.05 m RMS off the middle; no contact" in headline(RunScores(people, None, CORRIDOR))
+    bent = dataclasses.replace(CORRIDOR, lateral_rms_m=math.nan, contacts=2)
+    assert "0.50 m/s; 2 contacts" in headline(RunScores(people, None, bent))

@@ -1,0 +1,233 @@
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import t as student
+
+from bad_input import BadInput
+from scenarios.cli import main
+from scenarios.files.load import load_scenario
+from scenarios.files.suite import SuiteRun
+from scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS, choose
+from scenarios.studies.reproduce.experiments.experiment import Experiment, Line, Samples
+from scenarios.studies.reproduce.experiments.tracking import Tracking
+from scenarios.studies.reproduce.measuring.tracker_settings import BASES, Setting, changed
+from scenarios.studies.reproduce.measuring.units import RECORDS, TrackUnit, restored
+from scenarios.studies.reproduce.measuring.workload import Plan, full_plan
+from scenarios.studies.reproduce.reproduce import Means, reproduce
+from scenarios.studies.reproduce.showing.against_source import Outcome, judge, paired_t_test
+from scenarios.studies.reproduce.showing.source import Claim, source_tables
+from scenarios.studies.reproduce.showing.source_page import About, write_page
+from sim.random_streams import stream
+from tracker.evaluation.metrics.paper_metrics import PaperMetrics
+
+FIGURES = ("4.8", "4.9a", "4.9b", "5.4", "5.5a", "5.5b", "5.6", "6.4", "6.5", "6.6", "7.3")
+TABLES = ("3.1", "4.1", "5.1", "6.1", "6.2", "7.1", "7.2", "7.3", "7.4")
+PAPER = ("table-1", "table-2", "table-3", "figure-5")
+ALL = {
+    *(f"figure-{number}" for number in FIGURES),
+    *(f"table-{number}" for number in TABLES),
+    *(f"paper-{number}" for number in PAPER),
+    "section-5.3",
+}
+
+
+def made_up(experiment: Experiment) -> Samples:
+    """Invent figures for every line that an experiment has in the source or in its trials."""
+    rng = np.random.default_rng(0)
+    if isinstance(experiment, Tracking):
+        return {t.line: {m: rng.uniform(50, 90, 3) for m in experiment.metrics} for t in experiment.trials}
+    values = source_tables()[experiment.id].values
+    return {Line(v.group, "default"): {name: rng.uniform(50, 90, 3) for name in v.figures} for v in values}
+
+
+def test_every_table_and_figure_with_numbers_is_there_and_has_its_source() -> None:
+    assert set(EXPERIMENTS) == set(source_tables()) == ALL
+
+
+def test_numbers_stand_for_all_that_have_them() -> None:
+    assert [one.id for one in choose(["4.9", "7.3"])] == [
+        "figure-4.9a",
+        "figure-4.9b",
+        "table-7.3",
+        "figure-7.3",
+    ]
+    assert [one.id for one in choose(["paper"])] == [f"paper-{number}" for number in PAPER]
+    assert [one.id for one in choose(["paper-table-2", "figure-4.9b"])] == ["figure-4.9b", "paper-table-2"]
+    assert [one.id for one in choose([])] == list(EXPERIMENTS)
+
+
+def test_an_unknown_number_is_refused_with_all_that_there_are() -> None:
+    with pytest.raises(BadInput, match=r"nothing is called '9\.9'; choose from table-3\.1, "):
+        choose(["9.9"])
+
+
+@pytest.mark.parametrize("number", sorted(ALL))
+def test_figures_and_claims_of_the_source_meet_lines_and_columns_of_ours(number: str) -> None:
+    samples, table = made_up(EXPERIMENTS[number]), source_tables()[number]
+    columns = {name for figures in samples.values() for name in figures}
+    groups = {line.group for line in samples}
+    for value in table.values:
+        assert value.group in groups
+        assert set(value.figures) <= columns
+    for claim in table.claims:
+        assert set(claim.groups) <= groups
+        assert claim.metric in columns
+        assert list(judge(claim, samples))
+
+
+def test_the_papers_three_tables_agree_on_its_defaults() -> None:
+    tables = [source_tables()[f"paper-table-{n}"] for n in (1, 2, 3)]
+    defaults = ["1000", "90 %", "30 %"]
+    rows = [next(v for v in t.values if v.group == g) for t, g in zip(tables, defaults, strict=True)]
+    assert rows[0].figures == rows[1].figures == rows[2].figures
+    assert len(rows[0].figures) == 8
+
+
+def test_every_setting_of_every_experiment_makes_a_tracker() -> None:
+    trials = [trial for one in EXPERIMENTS.values() if isinstance(one, Tracking) for trial in one.trials]
+    for key, setting in {trial.setting.key: trial.setting for trial in trials}.items():
+        assert setting.make(stream(0, key)) is not None
+
+
+def test_a_change_reaches_its_place_and_nothing_else() -> None:
+    config = Setting("peopleboy", (("person.count", 300),)).config()
+    assert config.person.count == 300
+    assert changed(config, "person.count", BASES["peopleboy"].person.count) == BASES["peopleboy"]
+
+
+def test_a_setting_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(BadInput, match="FilterConfig has no 'counts'; it has: count, "):
+        Setting("thesis-thermal", (("person.counts", 300),)).config()
+
+
+def test_the_paired_t_test_is_the_textbooks() -> None:
+    one, other = np.array([72.1, 70.4, 71.9, 73.0, 71.2]), np.array([70.0, 70.1, 70.3, 71.9, 70.8])
+    away = one - other
+    t = away.mean() / (away.std(ddof=1) / np.sqrt(5))
+    assert paired_t_test(one, other) == pytest.approx(2 * student.sf(abs(t), 4))
+    assert paired_t_test(one, one) == 1.0
+    assert paired_t_test(one, one + 1.0) == 0.0
+    assert np.isnan(paired_t_test(one[:1], other[:1]))
+
+
+A, B = Line("a", "default"), Line("b", "default")
+
+
+@pytest.mark.parametrize(
+    ("expect", "tested", "first", "second", "outcome"),
+    [
+        ("more", False, [71.0, 70.0], [60.0, 69.5], Outcome.HOLDS),
+        ("more", True, [71.0, 70.0], [60.0, 69.5], Outcome.UNCLEAR),
+        ("more", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], Outcome.HOLDS),
+        ("less", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], Outcome.FAILS),
+        ("alike", False, [71.0, 70.0], [69.5, 70.0], Outcome.HOLDS),
+        ("alike", False, [75.0, 75.0], [69.5, 70.0], Outcome.FAILS),
+        ("no less", False, [75.0, 75.0], [69.5, 70.0], Outcome.HOLDS),
+        ("no less", False, [68.0, 70.0], [70.0, 70.5], Outcome.HOLDS),
+        ("no less", False, [66.0, 67.0], [69.5, 70.0], Outcome.FAILS),
+        ("alike", True, [75.0, 60.0], [55.0, 70.0], Outcome.UNCLEAR),
+        ("differs", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], Outcome.HOLDS),
+        ("more", False, [1.0, 1.0], [0.0, 0.0], Outcome.BLIND),
+        ("more", False, [np.nan, 1.0], [0.0, 0.0], Outcome.UNKNOWN),
+    ],
+)
+def test_claims_are_judged_by_difference_and_significance(
+    expect: str, tested: bool, first: list[float], second: list[float], outcome: Outcome
+) -> None:
+    claim = Claim(says="x", metric="AA", groups=("a", "b"), expect=expect, tested=tested)  # type: ignore[arg-type]
+    samples = {A: {"AA": np.array(first)}, B: {"AA": np.array(second)}}
+    assert [verdict.outcome for verdict in judge(claim, samples)] == [outcome]
+
+
+class Addresses(HTMLParser):
+    """Collects what a page would fetch, and the names that it can be jumped to."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.fetched: list[str] = []
+        self.ids: set[str] = set()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        for name, value in attrs:
+            if name == "id":
+                self.ids.add(str(value))
+            elif name in ("src", "srcset", "poster", "data") or (name == "href" and tag != "a"):
+                self.fetched.append(str(value))
+
+
+def read(page: Path) -> tuple[str, Addresses]:
+    text, addresses = page.read_text(encoding="utf-8"), Addresses()
+    addresses.feed(text)
+    return text, addresses
+
+
+def test_the_page_holds_everything_and_fetches_nothing(tmp_path: Path) -> None:
+    results = [(experiment, made_up(experiment)) for experiment in EXPERIMENTS.values()]
+    about = About(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
+    write_page(tmp_path / "index.html", results, about)
+    text, addresses = read(tmp_path / "index.html")
+    assert addresses.ids >= ALL
+    assert len(addresses.fetched) == sum(one.chart != "none" for one in EXPERIMENTS.values())
+    assert all(address.startswith("data:image/svg+xml;base64,") for address in addresses.fetched)
+    assert not re.search(r"https?://|@import|url\(|<script", text)
+    assert "Quick run." in text
+    for words in ("94.61", "89.38 ± 2.48", "2709", "72.20", "Athlon XP 2 GHz"):
+        assert words in text
+
+
+def toy_runs() -> Iterator[tuple[str, tuple[SuiteRun, ...]]]:
+    pair = SuiteRun(load_scenario("crossing_pair").lasting(1.5), 0)
+    single = SuiteRun(load_scenario("single_stationary").lasting(1.5), 0)
+    for number, play in enumerate((single, single, pair, pair), 1):
+        yield f"dataset{number}", (play,)
+
+
+def test_a_little_of_everything_becomes_a_page_and_is_done_once(tmp_path: Path) -> None:
+    plan = Plan(cache=tmp_path / "films", suites=dict(toy_runs()), repeats=2, is_quick=True, timing_steps=2)
+    chosen = choose(["3.1", "4.1", "4.8", "5.5", "figure-7.3", "paper-table-3"])
+    seen: list[str] = []
+
+    def report(_finished: int, _total: int, last: str) -> None:
+        seen.append(last)
+
+    page = reproduce(chosen, plan, Means(out=tmp_path, jobs=1), report)
+    assert read(page)[1].ids >= {one.id for one in chosen}
+    done = [key for key in seen if key]
+    assert len(done) == len(set(done)) > 30
+    seen.clear()
+    assert reproduce(chosen, plan, Means(out=tmp_path, jobs=1), report) == page
+    assert seen == []
+
+
+def test_a_unit_gives_the_same_result_again_and_its_sums_come_back(tmp_path: Path) -> None:
+    play = SuiteRun(load_scenario("crossing_pair").lasting(1.0), 0)
+    unit = TrackUnit(play, tmp_path, Setting("peopleboy"), 1)
+    one, other = unit.run(), unit.run()
+    assert {k: v for k, v in one.items() if k != "cpu_s"} == {k: v for k, v in other.items() if k != "cpu_s"}
+    restored_paper = restored(PaperMetrics, one["ignore"]["paper"])
+    assert restored_paper.areas.targets == one["ignore"]["counts"]["targets"] > 0
+    assert set(RECORDS) == set(one["absent"])
+
+
+def test_the_full_plan_has_all_data_sets_and_ten_repeats(tmp_path: Path) -> None:
+    plan = full_plan(tmp_path)
+    frames = {name: sum(p.scenario.duration_s for p in plays) * 15 for name, plays in plan.suites.items()}
+    assert plan.repeats == 10
+    assert frames == pytest.approx(
+        {"dataset1": 1268, "dataset2": 14573, "dataset3": 4369, "dataset4": 2400}, rel=0.05
+    )
+
+
+def test_the_command_lists_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as leaving:
+        main(["reproduce", "--list", "4.9"])
+    assert leaving.value.code == 0
+    shown = capsys.readouterr().out
+    assert "figure-4.9a" in shown
+    assert "figure-4.8" not in shown

@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from scenarios.files.load import LIBRARY, load_scenario
+from tests.helpers.boxes import fighting_faces, first_hit, upright_boxes
+
+every_scenario = pytest.mark.parametrize("name", sorted(path.stem for path in LIBRARY.glob("*.yaml")))
+
+
+@every_scenario
+def test_no_two_visible_faces_in_a_place_lie_in_one_plane_and_overlap(name: str) -> None:
+    boxes = upright_boxes(load_scenario(name).place.fixtures)
+    owner = {box.name: box.name.split("#")[0] for box in boxes}
+    assert [pair for pair in fighting_faces(boxes) if owner[pair[0]] != owner[pair[1]]] == []
+
+
+@every_scenario
+def test_everything_that_the_robot_sees_from_its_start_is_a_surface(name: str) -> None:
+    scenario = load_scenario(name)
+    boxes = upright_boxes(scenario.place.fixtures)
+    rng = np.random.default_rng(1)
+    eye = np.array([*scenario.robot.at_m, 1.2])
+    assert all(first_hit(boxes, eye, direction) < 60.0 for direction in rng.normal(size=(40, 3)))
+
+
+@every_scenario
+def test_temperatures_are_those_of_rooms_and_of_warm_things(name: str) -> None:
+    fixtures = load_scenario(name).place.fixtures
+    looks = {f.name: f.part.look if f.part is not None else f.look for f in fixtures}
+    shell = [
+        look.temperature_c
+        for n, look in looks.items()
+        if look and (n in ("floor", "ceiling") or n.startswith("wall_"))
+    ]
+    assert all(18.0 <= temperature <= 26.0 for temperature in shell)
+    assert all(look is not None and 14.0 <= look.temperature_c <= 80.0 for look in looks.values())
+
+
+@every_scenario
+def test_every_fixture_has_a_name_of_its_own(name: str) -> None:
+    names = [fixture.name for fixture in load_scenario(name).place.fixtures]
+    assert len(set(names)) == len(names)

@@ -1,0 +1,70 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from bad_input import BadInput
+from sim.geometry.pinhole import Camera
+from sim.physics.bullet import Bullet, find_model
+from sim.rendering.render import render
+from sim.shapes.meshes import load_triangles
+from sim.shapes.shape_table import make_shape_table
+from sim.shapes.shapes import Shape, ShapeKind
+
+
+@pytest.mark.parametrize("ending", ["obj", "stl", "dae"])
+def test_every_format_gives_the_triangles_that_were_written(ending: str, tmp_path: Path) -> None:
+    file = tmp_path / f"box.{ending}"
+    trimesh.creation.box(extents=(1.0, 2.0, 3.0)).export(file)
+    triangles = load_triangles(file)
+    assert triangles.shape == (12, 3, 3)
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=-1) / 2.0
+    assert areas.sum() == pytest.approx(22.0)
+    # The divergence theorem: outward faces give the volume.
+    assert np.sum(a * np.cross(b, c)) / 6.0 == pytest.approx(6.0)
+    assert not triangles.flags.writeable
+
+
+@pytest.mark.parametrize("content", ["", "v 0 0 0\nv 1 0 0\n", "v 0 0 0\nv 1 0 0\nv nan 1 0\nf 1 2 3\n"])
+def test_a_mesh_without_proper_triangles_is_refused(content: str, tmp_path: Path) -> None:
+    file = tmp_path / "broken.obj"
+    file.write_text(content)
+    with pytest.raises(BadInput, match=r"broken\.obj"):
+        load_triangles(file)
+
+
+@pytest.mark.parametrize("text", ["", "<COLLADA>", "solid"])
+@pytest.mark.parametrize("ending", ["stl", "dae", "xyz"])
+def test_a_file_that_is_no_mesh_is_refused(text: str, ending: str, tmp_path: Path) -> None:
+    file = tmp_path / f"broken.{ending}"
+    file.write_text(text)
+    with pytest.raises(BadInput, match="broken"):
+        load_triangles(file)
+
+
+@pytest.mark.parametrize("model", ["duck.dae", "racecar/meshes/cone.dae", "racecar/meshes/chassis.dae"])
+def test_dae_files_have_the_size_that_tinyrenderer_gives_them(model: str) -> None:
+    mesh = find_model(model)
+    scale = 1.0 / float(np.abs(load_triangles(mesh)).max())
+    shape = Shape(kind=ShapeKind.MESH, size=(scale, scale, scale), mesh=mesh)
+    camera = Camera(position_m=(-4.0, 0.5, 1.5), pitch_rad=0.35)
+    with Bullet() as bullet:
+        bullet.add_part("mesh", [shape], solid=False)
+        table = make_shape_table(bullet.visual_shapes())
+        cast, drawn = (
+            render(
+                name,
+                bullet,
+                table,
+                camera,
+                camera.robot_from_camera,
+                bullet.part_poses(),
+                np.array([-1]),
+                bullet.hidden_parts(),
+            )
+            for name in ("raycast", "bullet")
+        )
+    assert np.mean(cast.part == 0) > 0.01
+    assert np.mean(cast.part != drawn.part) < 1e-4

@@ -1,0 +1,124 @@
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from bad_input import BadInput
+from tests.helpers.footage_calls import call, refusal
+from tests.helpers.footage_files import walker, write_folder
+from tracker.footage.picture_names import jumps, pictures_in
+from tracker.footage.pictures import open_footage
+
+
+def named(*stems):
+    return [Path(f"{stem}.png") for stem in stems]
+
+
+def test_a_picture_that_is_there_as_two_kinds_of_file_is_refused(tmp_path):
+    clip = write_folder(tmp_path / "clip", 3)
+    cv2.imwrite(str(clip / "frame2.jpg"), walker(1))
+    told = refusal(clip, "--out", tmp_path / "out")
+    assert told == f"{clip}: frame2 is there as .jpg and .png; keep one"
+
+
+def test_numbers_that_jump_are_told_but_tracked(tmp_path):
+    clip = write_folder(tmp_path / "clip", 6)
+    (clip / "frame4.png").unlink()
+    result = call(clip, "--out", tmp_path / "out")
+    assert result.exit_code == 0
+    assert "peopleboy: note: numbers of pictures jump from 3 to 5; frames are counted" in result.stderr
+
+
+def test_many_jumps_are_counted(tmp_path):
+    clip = write_folder(tmp_path / "clip", 30)
+    for gone in (3, 7, 12, 20, 25):
+        (clip / f"frame{gone}.png").unlink()
+    (note,) = open_footage(clip).notes
+    assert "jump from 2 to 4, 6 to 8, 11 to 13 and 2 times more; frames" in note
+
+
+@pytest.mark.parametrize(
+    "stems",
+    [
+        ("a0", "a5", "a10", "a15"),  # a step of their own
+        ("17001203", "17001270", "17001335", "17001403"),  # times
+        ("seq1_f1", "seq1_f2", "seq2_f7", "seq2_f8"),  # two numbers
+        ("anna", "ben", "cleo"),
+        ("frame1",),
+        (),
+    ],
+)
+def test_names_without_a_row_of_numbers_have_no_jumps(stems):
+    assert jumps(named(*stems)) == []
+
+
+@given(st.integers(0, 50), st.integers(1, 9), st.integers(5, 40), st.data())
+def test_what_is_taken_from_a_row_is_found(start, step, count, data):
+    gone = data.draw(st.integers(1, count - 2))
+    row = [start + step * index for index in range(count)]
+    left = named(*(f"cam2_{number:04d}_grey" for number in row if number != row[gone]))
+    assert jumps(left) == [(row[gone - 1], row[gone + 1])]
+
+
+def test_the_thermal_pictures_of_a_runs_folder_are_found_with_their_truth(tmp_path):
+    write_folder(tmp_path / "run" / "thermal", 3)
+    write_folder(tmp_path / "run" / "colour", 3, "jpg")
+    (tmp_path / "run" / "truth").mkdir()
+    (tmp_path / "run" / "truth" / "gt.txt").write_text("1,1,39.0,23.0,22.0,74.0,1,1,1.0\n")
+    Image.new("RGB", (400, 300)).save(tmp_path / "run" / "contact_sheet.png")
+    (tmp_path / "run" / "run.json").write_text("{}")
+    footage = open_footage(tmp_path / "run")
+    assert (footage.name, footage.expected) == ("run", 3)
+    assert next(iter(footage)).shape == (120, 160)
+    assert "HOTA" in call(tmp_path / "run", "--out", tmp_path / "out").stdout
+
+
+def test_the_contact_sheet_of_a_run_without_frames_is_no_footage(tmp_path):
+    call(write_folder(tmp_path / "clip", 3), "--out", tmp_path / "run")
+    assert "this run has no folder thermal" in refusal(tmp_path / "run", "--out", tmp_path / "out")
+
+
+def test_a_folder_without_pictures_names_one_inside_that_has_some(tmp_path):
+    write_folder(tmp_path / "run" / "thermal16", 12)
+    told = refusal(tmp_path / "run", "--out", tmp_path / "out")
+    assert "there are no pictures here, but thermal16/ has 12; give" in told
+
+
+def test_empty_and_damaged_pictures_are_named_once_with_advice(tmp_path):
+    clip = write_folder(tmp_path / "clip", 3)
+    broken = clip / "frame2.png"
+    for content, words in ((b"", "is empty; remove it"), (b"no picture", "is no PNG, or damaged; remove it")):
+        broken.write_bytes(content)
+        told = refusal(clip, "--out", tmp_path / "out")
+        assert told.startswith(f"{broken}: {words}")
+        assert told.count("frame2") == 1
+
+
+def test_grey_with_opacity_is_said_to_have_opacity(tmp_path):
+    clip = tmp_path / "clip"
+    clip.mkdir()
+    Image.fromarray(np.dstack([walker(0), np.full_like(walker(0), 255)])).save(clip / "0.png")
+    result = call(clip, "--out", tmp_path / "out")
+    assert "peopleboy: note: pictures have an opacity channel; it is left out" in result.stderr
+    assert "fourth" not in result.stderr
+
+
+def test_a_folder_that_vanishes_is_refused(tmp_path):
+    with pytest.raises(BadInput, match="cannot be read: No such file"):
+        pictures_in(tmp_path / "gone")
+
+
+@pytest.mark.parametrize("what", ["footage", "--colour", "--truth"])
+def test_a_run_that_holds_what_is_to_be_read_is_not_replaced(tmp_path, what):
+    run, apart = tmp_path / "run", write_folder(tmp_path / "clip", 3)
+    clip = write_folder(run / "thermal", 3)
+    (run / "run.json").write_text("{}")
+    (clip / "groundtruth.txt").write_text("39,23,22,74\n" * 3)
+    more = {"--colour": (apart, "--colour", clip), "--truth": (apart, "--truth", clip / "groundtruth.txt")}
+    told = refusal(*more.get(what, (clip,)), "--out", run, "--overwrite")
+    assert told.startswith(f"{run}: would replace {clip}")
+    assert len(list(clip.iterdir())) == 4

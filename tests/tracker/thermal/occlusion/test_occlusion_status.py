@@ -1,0 +1,99 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.helpers.drawn_people import blank
+from tracker.frame import Frame
+from tracker.thermal.contour.coverage import covered_by
+from tracker.thermal.contour.likelihood import ContourModel
+from tracker.thermal.filter.particles import equally_weighted
+from tracker.thermal.interaction import regions_of
+from tracker.thermal.occlusion.occlusion_status import judge
+from tracker.thermal.occlusion.visibility import Scene
+from tracker.thermal.particle_filter import Belief, view_frame
+from tracker.thermal.tracked_person import SIZE, Person
+from tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
+from tracker.track import Status
+
+
+def person(number, x, h):
+    state = np.array([x, 120 + 0.36 * h, 0.38 * h, h, 0, 0, 0, 0, 0])
+    cloud = equally_weighted(np.repeat(state[None], 50, axis=0).astype(np.float32))
+    belief = Belief(cloud, cloud, state, 0.9, 1.0)
+    return Person(number, 0.0, belief, state, np.array([30.0, 0.0]), 190.0, state[SIZE], seen_frames=30)
+
+
+def judged(config, behind, *front):
+    view = view_frame(
+        Frame(thermal=blank(), time_s=1.0), 1 / 15, ContourModel.build((240, 320), config.contour), config
+    )
+    states = [one.belief.estimate for one in front]
+    scene = Scene(
+        front=front,
+        others=regions_of(states, config),
+        strength=np.zeros(len(front)),
+        image=covered_by(view.image, states, config.contour) if front else view.image,
+    )
+    return judge(behind, behind.belief, scene, view, config, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("config", [PEOPLEBOY, THESIS_OCCLUSION])
+def test_who_is_alone_is_tracked_and_who_overlaps_is_partly_hidden(config):
+    assert judged(config, person(1, 160, 30)).status is Status.TRACKED
+    beside = judged(config, person(1, 160, 30), person(2, 183, 40))
+    assert beside.status is Status.PARTLY_OCCLUDED
+    assert beside.occluder == 2
+
+
+@pytest.mark.parametrize("config", [PEOPLEBOY, THESIS_OCCLUSION])
+def test_whose_head_is_covered_is_hidden_by_the_one_in_front(config):
+    hidden = judged(config, person(1, 160, 20), person(2, 160, 70))
+    assert hidden.status is Status.TOTALLY_OCCLUDED
+    assert hidden.occluder == 2
+    assert hidden.hidden_frames == 1
+    assert hidden.hidden_s == pytest.approx(1 / 15)
+
+
+def test_in_the_thesis_a_hidden_person_is_where_its_occluder_is():
+    front = person(2, 165, 70)
+    assert judged(THESIS_OCCLUSION, person(1, 160, 20), front).shown is front.shown
+
+
+def test_in_ours_a_hidden_person_walks_on_with_the_velocity_that_it_had():
+    hidden = judged(PEOPLEBOY, person(1, 160, 20), person(2, 165, 70))
+    assert hidden.shown[5] == 30.0
+    assert hidden.belief.particles.state[:, 5].mean() == pytest.approx(30.0, abs=10)
+    later = judged(PEOPLEBOY, hidden, person(2, 165, 70))
+    assert later.is_hidden
+    assert later.hidden_frames == 2
+
+
+def test_in_ours_a_hidden_person_keeps_its_height_and_its_feet_where_they_were():
+    hidden = judged(PEOPLEBOY, person(1, 160, 20), person(2, 165, 70))
+    shrunk = replace(hidden, belief=person(1, 160, 14).belief)
+    later = judged(PEOPLEBOY, shrunk, person(2, 165, 70))
+    assert later.shown[3] == 20
+    assert later.shown[1] + 2.05 * 20 == pytest.approx(190.0)
+
+
+def test_a_hidden_person_is_behind_those_who_cover_it_and_behind_nobody_where_it_would_be_seen():
+    covered = judged(PEOPLEBOY, judged(PEOPLEBOY, person(1, 160, 20), person(2, 160, 70)), person(2, 160, 70))
+    assert covered.is_behind
+    in_the_open = judged(PEOPLEBOY, replace(covered, shown=person(1, 60, 20).shown))
+    assert in_the_open.is_hidden
+    assert not in_the_open.is_behind
+
+
+def test_looks_are_not_learnt_while_somebody_is_in_front():
+    alone = judged(PEOPLEBOY, person(1, 160, 30))
+    beside = judged(PEOPLEBOY, person(1, 160, 30), person(2, 183, 40))
+    assert alone.looks is not None
+    assert beside.looks is None
+
+
+def test_who_is_lost_in_mid_image_is_hidden_by_something_unknown():
+    lost = replace(person(1, 160, 30), missing=PEOPLEBOY.occlusion.lost_frames - 1)
+    gone = judged(PEOPLEBOY, replace(lost, belief=replace(lost.belief, confidence=0.0)))
+    assert gone.status is Status.TOTALLY_OCCLUDED
+    assert gone.occluder is None

@@ -1,0 +1,182 @@
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from tests.helpers.drawn_people import blank, draw_person
+from tracker.frame import Frame
+from tracker.thermal import joint_update, people_tracker
+from tracker.thermal.config import InteractionConfig
+from tracker.thermal.particle_filter import weigh
+from tracker.thermal.people_tracker import PeopleTracker
+from tracker.thermal.variants import PEOPLEBOY
+from tracker.track import Status
+from tracker.trackers import TRACKERS, make_tracker
+
+APART = replace(PEOPLEBOY, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
+
+
+def frame(i, *people):
+    image = blank()
+    for x, h in people:
+        draw_person(image, x, 120 + 0.36 * h, 0.38 * h, h)
+    return Frame(thermal=image, time_s=i / 15)
+
+
+def confirmed(tracks):
+    return [track for track in tracks if track.status is Status.TRACKED]
+
+
+THREE = ((60, 25), (150, 32), (250, 28))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_detector_finds_three_people_one_after_the_other(seed):
+    tracker = PeopleTracker(APART, np.random.default_rng(seed))
+    counts, tracks = [], ()
+    for i in range(60):
+        tracks = tracker.update(frame(i, *THREE))
+        counts.append(len(confirmed(tracks)))
+    assert all(later - earlier <= 1 for earlier, later in pairwise(counts))
+    assert counts[-1] == 3
+    assert sorted(track.ellipse.x for track in confirmed(tracks)) == pytest.approx([60, 150, 250], abs=5)
+
+
+def test_who_is_no_longer_seen_is_given_up_and_the_others_stay():
+    tracker = PeopleTracker(APART, np.random.default_rng(0))
+    for i in range(60):
+        tracks = tracker.update(frame(i, *THREE))
+    gone = min(confirmed(tracks), key=lambda track: track.ellipse.x).id
+    for i in range(60, 90):
+        tracks = tracker.update(frame(i, *THREE[1:]))
+    left = {track.id for track in confirmed(tracks)}
+    assert gone not in left
+    assert len(left) == 2
+
+
+def test_with_one_person_allowed_there_is_never_a_second_track():
+    config = replace(APART, interaction=replace(APART.interaction, max_persons=1))
+    tracker = PeopleTracker(config, np.random.default_rng(0))
+    assert all(len(tracker.update(frame(i, *THREE))) <= 1 for i in range(40))
+
+
+def test_equal_seeds_give_equal_tracks():
+    def run():
+        tracker = PeopleTracker(APART, np.random.default_rng(5))
+        return [tracker.update(frame(i, *THREE)) for i in range(25)]
+
+    assert run() == run()
+
+
+def test_the_image_is_measured_once_for_each_person_and_once_for_the_detector(monkeypatch):
+    calls = []
+    for module in (people_tracker, joint_update):
+        monkeypatch.setattr(module, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
+    tracker = PeopleTracker(APART, np.random.default_rng(0))
+    for i in range(60):
+        calls.clear()
+        before = len(tracker.particles.keys() - {0})
+        tracker.update(frame(i, *THREE))
+        assert calls == [1000] * (before + 1)
+
+
+def test_shared_samples_are_divided_evenly():
+    config = replace(APART, interaction=replace(APART.interaction, total_count=900))
+    tracker = PeopleTracker(config, np.random.default_rng(0))
+    for i in range(60):
+        tracker.update(frame(i, *THREE))
+    assert [len(cloud) for key, cloud in tracker.particles.items() if key] == [300] * 3
+
+
+BLUE, RED = (30, 60, 200), (200, 40, 40)
+
+
+def dressed(i, *people):
+    """Draw people from back to front, with torsos of their own colour and warmth."""
+    thermal, colour = blank(), np.full((240, 320, 3), 90, dtype=np.uint8)
+    for x, h, rgb, grey in people:
+        mask = blank()
+        draw_person(mask, x, 120 + 0.36 * h, 0.38 * h, h)
+        is_person = mask > 100
+        thermal[is_person] = mask[is_person]
+        rows = np.arange(240)[:, None]
+        is_torso = is_person & (rows > 120 - 0.6 * h) & (rows < 120 + 1.2 * h)
+        thermal[is_torso] = grey
+        # The colour camera sees the middle 1/1.2 of the thermal image.
+        v, u = np.nonzero(is_torso)
+        at = np.rint(1.2 * np.stack([v, u]) - 0.1 * np.array([[240], [320]])).astype(int)
+        inside = (at >= 0).all(axis=0) & (at[0] < 240) & (at[1] < 320)
+        for down in (0, 1):
+            for right in (0, 1):
+                row, column = np.minimum(at[0] + down, 239), np.minimum(at[1] + right, 319)
+                colour[row[inside], column[inside]] = rgb
+    return Frame(thermal=thermal, colour=colour, time_s=i / 15)
+
+
+def passing(i):
+    """One stands in front; another walks past behind and is wholly hidden on the way."""
+    walker = (60 + 2.2 * max(0, i - 30), 18, RED, 150)
+    return dressed(i, walker, (160, 50, BLUE, 110))
+
+
+def identity_at(tracks, x):
+    near = [track for track in tracks if abs(track.ellipse.x - x) < 12 and track.ellipse.h < 30]
+    return near[0].id if near else None
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_person_keeps_its_identity_through_a_total_occlusion(seed):
+    tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(seed))
+    tracks = [tracker.update(passing(i)) for i in range(115)]
+    before, after = identity_at(tracks[45], 60 + 2.2 * 15), identity_at(tracks[-1], 60 + 2.2 * 84)
+    assert before is not None
+    assert after == before
+    hidden = [t for frame in tracks for t in frame if t.status is Status.TOTALLY_OCCLUDED]
+    front = next(track.id for track in tracks[45] if track.ellipse.h > 35)
+    assert {t.id for t in hidden} == {before}
+    assert {t.occluder for t in hidden} <= {front, None}
+
+
+def stopping(i, stops_s):
+    """As `passing`, but the walker stays behind the one in front for a while."""
+    walked = min(i, 45) + max(0, i - 45 - round(15 * stops_s))
+    return dressed(i, (61 + 2.2 * walked, 18, RED, 150), (160, 50, BLUE, 110))
+
+
+def test_who_stops_behind_somebody_large_is_not_claimed_for_long_and_yet_known_again():
+    tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(0))
+    tracks = [tracker.update(stopping(i, stops_s=3)) for i in range(125)]
+    walker = identity_at(tracks[30], 61 + 2.2 * 30)
+    assert identity_at(tracks[42], 61 + 2.2 * 42) == walker
+    assert {identity_at(frame, 160) for frame in tracks[60:90]} == {None}
+    assert identity_at(tracks[-1], 61 + 2.2 * 79) == walker
+
+
+@pytest.mark.parametrize(("seconds", "is_known"), [(4, True), (12, False)])
+def test_who_was_lost_is_remembered_for_ten_seconds(seconds, is_known):
+    tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(1))
+    gone = 40 + round(15 * seconds)
+    for i in range(40):
+        before = tracker.update(dressed(i, (150, 30, RED, 140)))
+    for i in range(40, gone):
+        tracker.update(dressed(i))
+    for i in range(gone, gone + 30):
+        after = tracker.update(dressed(i, (150, 30, RED, 140)))
+    assert (confirmed(before)[0].id == confirmed(after)[0].id) is is_known
+
+
+@pytest.mark.parametrize("name", TRACKERS)
+def test_every_tracker_gives_finite_tracks_with_ids_of_their_own(name):
+    tracker = make_tracker(name, np.random.default_rng(3))
+    for i in range(30, 90, 2):
+        tracks = tracker.update(passing(i))
+        assert len({track.id for track in tracks}) == len(tracks)
+        assert np.isfinite([track.box for track in tracks]).all()
+        assert all(track.box[2] >= 0 and track.box[3] >= 0 for track in tracks)
+
+
+def test_without_a_colour_camera_people_are_told_apart_by_their_warmth():
+    tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(0))
+    tracks = [tracker.update(replace(passing(i), colour=None)) for i in range(115)]
+    assert identity_at(tracks[45], 60 + 2.2 * 15) == identity_at(tracks[-1], 60 + 2.2 * 84) is not None

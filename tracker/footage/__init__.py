@@ -1,0 +1,1 @@
+"""Footage that others recorded: pictures, their grey, their temperatures, their truth."""

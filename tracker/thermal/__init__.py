@@ -1,0 +1,1 @@
+"""The contour tracker: one particle filter for each person in the thermal image."""

@@ -1,0 +1,66 @@
+"""From places in the thermal image to places in the colour image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from tracker.thermal.appearance.colour_config import ColourConfig
+from tracker.thermal.filter.particles import Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Alignment:
+    """Equation 6.1 in pixels, for images of given sizes.
+
+    Attributes:
+        matrix: (2, 4) float32 that maps thermal u, v, h, 1 [px] to colour x, y [px]; h is the semi-height of
+            the person who is looked at.
+    """
+
+    matrix: Floats
+
+    @classmethod
+    def build(
+        cls, thermal_shape: tuple[int, int], colour_shape: tuple[int, int], config: ColourConfig
+    ) -> Alignment:
+        """Turn shares into pixels; pixel (u, v) has its centre at the shares (u + 1/2) / W, (v + 1/2) / H."""
+        p1, p2, p3, p4, p5, p6 = config.affine
+        to_share = np.diag([1 / thermal_shape[1], 1 / thermal_shape[0], 1 / thermal_shape[1], 1.0])
+        to_share[:2, 3] = 0.5 * np.diag(to_share)[:2]
+        to_pixel = np.diag([colour_shape[1], colour_shape[0]])
+        shares = np.array([[p2, p3, config.parallax, p1], [p5, p6, 0.0, p4]])
+        matrix = to_pixel @ shares @ to_share - np.array([[0, 0, 0, 0.5]])
+        return cls(matrix.astype(np.float32))
+
+    def apply(self, rectangles: Floats, height: Floats) -> Floats:
+        """Map rectangles of the thermal image to upright ones of the colour image.
+
+        A sheared map makes parallelograms; their place is that of their centre, and their size that of their
+        middle lines.
+
+        Args:
+            rectangles: (N, P, 4) left, top, right, bottom [px].
+            height: (N,) semi-height h [px] of the people they belong to.
+        """
+        mapped: Floats = _apply(self.matrix, rectangles, height)
+        return mapped
+
+
+@njit(cache=True, nogil=True)
+def _apply(matrix: Floats, rectangles: Floats, height: Floats) -> Floats:
+    half = np.float32(0.5)
+    result = np.empty_like(rectangles)
+    for i in range(rectangles.shape[0]):
+        shift_x = matrix[0, 2] * height[i] + matrix[0, 3]
+        shift_y = matrix[1, 2] * height[i] + matrix[1, 3]
+        for p in range(rectangles.shape[1]):
+            left, top, right, bottom = rectangles[i, p]
+            u, v = half * (left + right), half * (top + bottom)
+            x = matrix[0, 0] * u + matrix[0, 1] * v + shift_x
+            y = matrix[1, 0] * u + matrix[1, 1] * v + shift_y
+            wide, tall = half * matrix[0, 0] * (right - left), half * matrix[1, 1] * (bottom - top)
+            result[i, p] = x - wide, y - tall, x + wide, y + tall
+    return result

@@ -1,0 +1,280 @@
+"""Every constant of the tracker, under its name; the variants are values of these records.
+
+Pixels are meant for an image of 240 rows and are scaled by image height / 240.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from bad_input import BadInput
+from tracker.thermal.appearance.colour_config import ColourConfig
+from tracker.thermal.check_config import check_not_negative, check_positive, check_share, refuse_unless
+
+REFERENCE_HEIGHT_PX = 240
+"""Image height for which the sources give their constants."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContourConfig:
+    """Where a contour is looked at, and how a difference of grey counts.
+
+    The thesis says that inner and outer pixels along the ellipses are compared; how far from the contour, at
+    how many points, and how wide the head is, it leaves open: `reach_px`, `points`, `head_aspect` and the
+    angles are readings.
+    """
+
+    head_divisor: float = 4.4  # body semi-height / head semi-height
+    head_aspect: float = 0.75  # head semi-width / head semi-height
+    points: int = 8  # pairs of inner and outer points a section
+    neck_deg: float = 60.0  # opening of the head ellipse at the neck
+    head_top_deg: float = 90.0  # arc of the head's top section
+    shoulder_deg: float = 60.0  # arc of a shoulder, from the top of the body down
+    side_end_deg: float = 180.0  # where the sides end: 180 is the bottom of the body
+    reach_px: float = 2.0  # distance of the points from the contour, whatever its size
+    body_reach: tuple[float, ...] = (0.0,)  # plus this share of the body's semi-width; the points take turns
+    head_reach: tuple[float, ...] = (0.0,)  # plus this share of the head's semi-width
+    inner_depth: float = 1.0  # distance of the inner points as a share of that of the outer ones
+    far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 is none
+    saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
+    # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
+    cold_response: float = 1.0
+    cold_feet_response: float = 1.0  # the same for feet colder than the floor
+    # alpha_1..7 of the sections: head left, top, right, shoulders, sides.
+    weights: tuple[float, ...] = (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16)
+    feet_weight: float = 0.0  # weight of an eighth section, the line under the feet
+    feet_line: float = 2.05  # its distance below the body's centre, in body semi-heights
+    feet_span: float = 0.6  # how far it reaches to both sides, in body semi-heights
+    feet_gain: float = 3.0  # factor on its response, up to 1: feet fill only a third of the line
+    unseen_response: float = 0.0  # response of a point outside the image
+    hottest_grey: int = 256  # grey from which a surface is too hot for a person and counts as cold
+    hot_margin_px: int = 0  # so do the pixels around it, whose grey is a blend
+
+    def __post_init__(self) -> None:
+        check_positive(self, "head_divisor", "head_aspect", "points", "feet_line")
+        check_not_negative(self, "saturation_grey", "reach_px", "inner_depth", "far_head_reach")
+        if len(self.weights) != 7:
+            raise BadInput(f"ContourConfig: weights must be 7 numbers, got {len(self.weights)}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimitsConfig:
+    """What proportions and places a sample may have (thesis, table in section 4.4)."""
+
+    ratio_wh: tuple[float, float] = (0.1, 0.9)
+    ratio_dw: tuple[float, float] = (-1.5, 1.5)
+    y: tuple[float, float] = (0.2, 0.8)  # [image heights]
+    h: tuple[float, float] = (0.02, 0.5)  # [image heights]; the sources name no largest
+    horizon: float = 0.5  # row of the horizon [image heights]; the middle for a level camera
+    # [body semi-heights]: where people who stand on the floor are.
+    y_below_horizon: tuple[float, float] = (-math.inf, math.inf)
+    outside_weight: float = 1e-6  # factor on the weight of a sample outside: "a very low chance"
+
+    def __post_init__(self) -> None:
+        for name in ("ratio_wh", "ratio_dw", "y", "h"):
+            low, high = getattr(self, name)
+            if not (math.isfinite(low) and math.isfinite(high) and low < high):
+                raise BadInput(f"LimitsConfig: {name} must be low < high, got {low}..{high}")
+        check_share(self, "outside_weight")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LikelihoodConfig:
+    """How the section differences become a weight and a probability."""
+
+    model: str = "thesis"  # "thesis": equations 4.3 and 4.4; "paper": equations 3 and 4
+    slope: float = 0.125  # kappa
+    threshold: float = 22.0  # theta, in the unit of the section differences
+    section_threshold: float = 10.0  # t_h of the paper: a section below it loses its weight
+    weakest_share: float = 0.0  # share of the weakest of the seven sections in the fitness
+
+    def __post_init__(self) -> None:
+        if self.model not in ("thesis", "paper"):
+            raise BadInput(f"LikelihoodConfig: model must be thesis or paper, got {self.model!r}")
+        check_positive(self, "slope")
+        check_share(self, "weakest_share")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotionConfig:
+    """Amplitudes of the random walk, B of equation 4.7, and what is known of the camera's own motion."""
+
+    noise_x: float = 30.0  # [px/s]
+    noise_y: float = 30.0
+    noise_w: float = 22.0
+    noise_h: float = 22.0
+    noise_d: float = 60.0
+    noise_by_height: float = (
+        0.0  # semi-height [px] at which these hold, others in proportion; 0: the same for all
+    )
+    # Spread of vx, vy, vw, vh [px/s] of samples drawn anew; None: the amplitudes above.
+    fresh_speed: tuple[float, float, float, float] | None = None
+    place_memory: float = 1.0  # share of (vx, vy) that lasts to the next step
+    size_memory: float = 1.0  # the same for (vw, vh)
+    uses_odometry: bool = False
+    view_angle_deg: float = 44.0  # vertical field of view, from which a turn becomes a shift in pixels
+
+    def __post_init__(self) -> None:
+        check_not_negative(self, "noise_x", "noise_y", "noise_w", "noise_h", "noise_d", "noise_by_height")
+        check_share(self, "place_memory", "size_memory")
+        refuse_unless(0 < self.view_angle_deg < 180, self, "view_angle_deg", "between 0 and 180")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilterConfig:
+    """One particle filter: its size, where new samples come from, and which samples make the estimate."""
+
+    count: int = 1000  # N
+    fresh_share: float = 0.2  # share drawn anew from the prior in every step
+    resized_share: float = 0.0  # share tried at another size in every step
+    limits: LimitsConfig = field(default_factory=LimitsConfig)
+    log_uniform_h: bool = False  # prior of h: uniform, or uniform in log h
+    sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0: the probability, or the paper's fitness
+    estimate_share: float = 1.0  # share of the samples, the best ones, that makes the estimate
+    estimate_reach: float = math.inf  # only those within so many semi-axes of the best
+    floor: float = -math.inf  # least fitness for the weight: what a hidden person would have anywhere
+
+    def __post_init__(self) -> None:
+        check_positive(self, "count", "estimate_share", "estimate_reach")
+        check_share(self, "fresh_share", "resized_share", "estimate_share")
+        check_not_negative(self, "sharpness")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LifeConfig:
+    """When a person is born, and when given up."""
+
+    birth_confidence: float = 0.5
+    birth_frames: int = 1  # frames in a row that must be above
+    death_confidence: float = 0.5
+    doubt_frames: int = 1  # frames in a row below it that make a person tentative again
+    death_frames: int = 1  # frames in a row below it after which the person is given up
+    uncertainty_px2: float = 400.0  # largest spread of a person's particles
+
+    def __post_init__(self) -> None:
+        check_share(self, "birth_confidence", "death_confidence")
+        check_positive(self, "birth_frames", "doubt_frames", "death_frames", "uncertainty_px2")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoxConfig:
+    """How a contour becomes a box (thesis: 2 w by 3.5 h; paper: 2 w by 3 h)."""
+
+    width_per_w: float = 2.0
+    height_per_h: float = 3.5
+    hair_per_h: float = 0.0  # cold hair above the head's ellipse
+
+    def __post_init__(self) -> None:
+        check_positive(self, "width_per_w", "height_per_h")
+        check_not_negative(self, "hair_per_h")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SmoothingConfig:
+    """Time constants of the low pass over a person's estimates; 0 is none."""
+
+    place_s: float = 0.0  # x, y
+    size_s: float = 0.0  # w, h, d
+
+    def __post_init__(self) -> None:
+        check_not_negative(self, "place_s", "size_s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LooksConfig:
+    """By how much the looks of one person differ from frame to frame: head, torso, legs.
+
+    Colours and greys are means over the part, 0..1; colours after the light has been divided out.
+    """
+
+    colour_spread: tuple[float, float, float] = (0.06, 0.02, 0.035)
+    grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)
+    brightness: float = 80.0  # mean of the colour image [grey] to which all are scaled
+    darkest: float = 12.0  # mean below which colours are noise
+    needs_colour: bool = False  # whether nobody is recognised by the thermal pattern alone
+
+    def __post_init__(self) -> None:
+        for spread in (*self.colour_spread, *self.grey_spread, self.brightness):
+            refuse_unless(spread > 0, self, "colour_spread", "positive")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InteractionConfig:
+    """How filters keep off each other's people, and how many samples they share."""
+
+    detector_penalty: float = 0.01  # psi_D, factor on a detector's sample that overlaps a person
+    detector_overlap: float = 0.0  # share of the sample's region above which it counts as overlapping
+    penalty: float = 2.0  # rho, towards other people
+    occluded_penalty: float = 2.0  # rho_o, towards who is in front
+    max_persons: int = 100  # with so many people, the detector rests
+    total_count: int = 0  # samples that all people share evenly; 0 gives each filter its own N
+
+    def __post_init__(self) -> None:
+        check_share(self, "detector_penalty", "detector_overlap")
+        check_not_negative(self, "penalty", "occluded_penalty", "total_count")
+        check_positive(self, "max_persons")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OcclusionConfig:
+    """What happens when people hide each other, and who is remembered.
+
+    The defaults are section 7.3 of the thesis; what follows `forget_s` goes beyond it.
+    """
+
+    is_handled: bool = False  # whether it matters who is in front
+    # How that is told: "foot" by whose feet are lower, "looks" by looks as well, "contour" by contours too.
+    order: str = "foot"
+    head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
+    kept_frames: int = 8  # frames for which a hidden person's samples are kept
+    forget_s: float = 10.0  # time after which a hidden person is forgotten
+    removes_front: bool = False  # points of the contour on people in front are left out of the evidence
+    covered_response: float = 0.4  # what such a point counts
+    growth: float = 1.0  # by which the people in front are enlarged for that
+    keeps_velocity: bool = False  # hidden people walk on; otherwise they are where their occluder is
+    hidden_memory: float = 0.97  # share of a hidden person's velocity that lasts to the next step
+    hidden_noise: float = 1.0  # share of the motion noise along the floor while hidden
+    hidden_stiffness: float = 0.1  # the same for all other directions and the size
+    # Spread of the logarithm of an overlapped person's height around that when seen whole; 0: as it may be.
+    size_spread: float = 0.0
+    seen_size_spread: float = 0.0  # the same for a person who is seen whole
+    size_s: float = 0.5  # time constant of that height
+    hidden_w: float = 0.0  # semi-width of a hidden person, who may turn, in semi-heights; 0: as last seen
+    colour_gate: float = 40.0  # largest squared distance of colours of who comes back to sight
+    size_gate: float = 0.25  # largest change of the logarithm of its height
+    remembers_lost: bool = False  # who is lost in any other way is remembered as well
+    lost_frames: int = 3  # frames without evidence after which somebody counts as hidden by something unknown
+    searched_frames: int = 45  # frames for which a hidden person's samples look for it in the open
+    # How long a hidden person is shown: hidden by nobody known; on its way out of the image; behind somebody,
+    # if its samples are farther apart than this share of its semi-width. Others are until they are forgotten.
+    shown_s: float = 10.0
+    shown_leaving_s: float = 10.0
+    shown_behind_s: float = 10.0
+    sure_spread: float = 0.35
+
+    def __post_init__(self) -> None:
+        refuse_unless(self.order in ("foot", "looks", "contour"), self, "order", "foot, looks or contour")
+        check_share(self, "head_covered", "hidden_memory", "hidden_stiffness")
+        check_not_negative(self, "kept_frames", "forget_s", "hidden_noise", "hidden_w")
+        check_not_negative(self, "size_spread", "seen_size_spread")
+        check_not_negative(self, "shown_s", "shown_leaving_s", "shown_behind_s", "sure_spread")
+        check_positive(self, "growth", "size_s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackerConfig:
+    """A whole tracker."""
+
+    contour: ContourConfig = field(default_factory=ContourConfig)
+    likelihood: LikelihoodConfig = field(default_factory=LikelihoodConfig)
+    motion: MotionConfig = field(default_factory=MotionConfig)
+    detector: FilterConfig = field(default_factory=FilterConfig)
+    person: FilterConfig = field(default_factory=FilterConfig)
+    life: LifeConfig = field(default_factory=LifeConfig)
+    box: BoxConfig = field(default_factory=BoxConfig)
+    smoothing: SmoothingConfig = field(default_factory=SmoothingConfig)
+    interaction: InteractionConfig = field(default_factory=InteractionConfig)
+    colour: ColourConfig | None = None  # None: thermal alone
+    looks: LooksConfig | None = None  # None: colours as they are
+    occlusion: OcclusionConfig = field(default_factory=OcclusionConfig)

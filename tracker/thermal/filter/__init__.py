@@ -1,0 +1,1 @@
+"""Particles: motion, prior, resampling."""

@@ -1,0 +1,224 @@
+"""One particle filter: predict, weigh, estimate, resample."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracker.frame import Frame
+from tracker.thermal.appearance.colour_view import ColourView
+from tracker.thermal.appearance.part_appearance import LooksView
+from tracker.thermal.config import REFERENCE_HEIGHT_PX, FilterConfig, MotionConfig, TrackerConfig
+from tracker.thermal.contour.likelihood import ContourModel, fitness, is_within, probability, sample_weights
+from tracker.thermal.filter.motion import Columns, predict, turned
+from tracker.thermal.filter.particles import (
+    FOOT,
+    Floats,
+    H,
+    Particles,
+    W,
+    X,
+    Y,
+    core_rows,
+    mean_state,
+    normalised,
+    resample,
+    select,
+    uncertainty_px2,
+)
+from tracker.thermal.filter.prior import draw_prior
+
+RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """One frame as the filters see it.
+
+    Attributes:
+        image: (H, W) prepared grey image.
+        model: the contour laid out for its size.
+        dt_s: time since the last frame [s].
+        turn_rad: how the camera turned since then, left positive [rad]; 0 if unknown.
+        focal_px: focal length [px].
+        advance_m: how far the camera moved forward since then [m]; 0 if unknown.
+        colour: the colour image; None without one.
+        looks: colours and thermal pattern together; None if they are not compared.
+        covered: what a point of the contour counts where the image says that somebody is in front; None
+            where it says nothing of the kind.
+    """
+
+    image: NDArray[np.uint8]
+    model: ContourModel
+    dt_s: float
+    turn_rad: float
+    focal_px: float
+    colour: ColourView | None = None
+    looks: LooksView | None = None
+    covered: float | None = None
+    advance_m: float = 0.0
+
+    @property
+    def size(self) -> float:
+        """Image height / 240."""
+        return int(self.image.shape[0]) / REFERENCE_HEIGHT_PX
+
+    def after_turn(self, x: Columns) -> Columns:
+        """Tell where columns x [px] of the last frame lie in this one but for people's own motion."""
+        return turned(x, self.turn_rad, self.focal_px, (self.image.shape[1] - 1) / 2)
+
+
+def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig) -> View:
+    """Prepare a frame for all filters."""
+    motion = config.motion
+    turn = frame.turn_rad if motion.uses_odometry and frame.turn_rad is not None else 0.0
+    focal = frame.height_px / 2 / math.tan(math.radians(motion.view_angle_deg) / 2)
+    advance = frame.advance_m if motion.uses_odometry and frame.advance_m is not None else 0.0
+    image = model.prepare(frame.thermal)
+    colour = None
+    if config.colour is not None and frame.colour is not None:
+        colour = ColourView.build(frame.colour, frame.thermal.shape, config.colour)
+    looks = None if config.looks is None else LooksView.build(image, colour, config.looks)
+    return View(image, model, dt_s, turn, focal, colour, looks, advance_m=advance)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Belief:
+    """What a filter believes after one frame.
+
+    Attributes:
+        particles: the weighted samples, before resampling.
+        core: those of them that make the estimate.
+        estimate: (9,) state, the core's mean.
+        confidence: 0..1, the core's mean probability.
+        uncertainty_px2: the core's spread over x and y [px^2].
+    """
+
+    particles: Particles
+    core: Particles
+    estimate: NDArray[np.float64]
+    confidence: float
+    uncertainty_px2: float
+
+
+def weigh(
+    state: Floats,
+    view: View,
+    filter_config: FilterConfig,
+    config: TrackerConfig,
+    factor: Floats | None = None,
+    likeness: Floats | None = None,
+) -> Belief:
+    """Weigh samples (N, 9) by the image and estimate the person from them.
+
+    Args:
+        state: (N, 9) samples.
+        view: the image.
+        filter_config: of this filter.
+        config: of the tracker.
+        factor: (N,) on the weights, for keeping off other people; None for 1.
+        likeness: (N,) likelihood of the looks; None for 1.
+
+    Source: thesis, algorithm 3 (update), equations 4.2 and 4.6; 5.1 and 5.2 with the factor, 6.17 with the
+    likeness.
+    """
+    differences = view.model.differences(view.image, state, view.covered)
+    fit = fitness(differences, view.model.weights, config.likelihood)
+    chance = probability(fit, config.likelihood)
+    inside = is_within(state, view.image.shape[0], filter_config.limits)
+    if likeness is not None and filter_config.sharpness == 0:
+        factor = likeness if factor is None else likeness * factor
+    counted = _floored(fit, likeness, filter_config)
+    weight = sample_weights(counted, chance, inside, config.likelihood.model, filter_config)
+    if factor is not None:
+        weight = normalised(weight * factor)
+    particles = Particles(state, weight)
+    rows = core_rows(particles, filter_config.estimate_share, filter_config.estimate_reach)
+    core = select(particles, rows)
+    return Belief(
+        particles=particles,
+        core=core,
+        estimate=mean_state(core),
+        # A sample outside the limits is no person, however well it fits.
+        confidence=float(core.weight @ np.where(inside, chance, np.float32(0))[rows]),
+        uncertainty_px2=uncertainty_px2(core),
+    )
+
+
+def _floored(fit: Floats, likeness: Floats | None, config: FilterConfig) -> Floats:
+    """Give the fitness (N,) of contour and looks together, but not less than the floor.
+
+    The floor stands for a person hidden by something unknown, of whom neither would be seen.
+    """
+    if config.sharpness > 0 and likeness is not None:
+        logarithm: Floats = np.log(np.maximum(likeness, np.float32(1e-30)))
+        fit = fit + logarithm / np.float32(config.sharpness)
+    floored: Floats = np.maximum(fit, np.float32(config.floor))
+    return floored
+
+
+def step(
+    particles: Particles,
+    view: View,
+    filter_config: FilterConfig,
+    config: TrackerConfig,
+    rng: np.random.Generator,
+) -> Belief:
+    """Carry a filter from the last frame to this one.
+
+    The weighted samples of the last frame are resampled first instead of last, which is the same cycle, cut
+    at another place: what a caller holds between two frames are the weighted samples, before any is lost.
+
+    Source: thesis, algorithm 3.
+    """
+    return weigh(advance(particles, view, filter_config, config, rng), view, filter_config, config)
+
+
+def advance(
+    particles: Particles,
+    view: View,
+    filter_config: FilterConfig,
+    config: TrackerConfig,
+    rng: np.random.Generator,
+    motion: MotionConfig | None = None,
+) -> Floats:
+    """Draw the samples (N, 9) of this frame from those of the last one, some of them from the prior."""
+    fresh = round(filter_config.fresh_share * filter_config.count)
+    kept = resample(particles, filter_config.count - fresh, rng)
+    moved = predict(kept, view.dt_s, view.size, config.motion if motion is None else motion, rng)
+    moved[:, X] = view.after_turn(moved[:, X])
+    if filter_config.resized_share > 0:
+        _resize(moved, filter_config.resized_share, config.contour.head_divisor, rng)
+    if fresh == 0:
+        return moved
+    return np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)])
+
+
+def _resize(state: Floats, share: float, head_divisor: float, rng: np.random.Generator) -> None:
+    """Make a share of the samples (N, 9) larger or smaller, in place.
+
+    Every other one keeps the top of its head where it is, the others keep their feet: a torso that was taken
+    for a whole person is found out that way.
+    """
+    tried = state[:: round(1 / share)]
+    factor = np.exp(RESIZING * rng.standard_normal(len(tried), dtype=np.float32))
+    kept = np.where(np.arange(len(tried)) % 2 == 0, -(1 + 2 / head_divisor), FOOT).astype(np.float32)
+    tried[:, Y] -= kept * (factor - 1) * tried[:, H]
+    tried[:, W : H + 1] *= factor[:, None]
+
+
+def begin(view: View, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator) -> Belief:
+    """Start a filter on samples from the prior."""
+    return weigh(
+        draw_fresh(filter_config.count, view, filter_config, config, rng), view, filter_config, config
+    )
+
+
+def draw_fresh(
+    count: int, view: View, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator
+) -> Floats:
+    """Draw samples (count, 9) from the prior for this image."""
+    return draw_prior(count, view.image.shape, config.motion, filter_config, rng)

@@ -1,0 +1,214 @@
+"""People in view: a sequential detector finds them one by one, and each keeps a filter of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from bad_input import BadInput
+from tracker.frame import Frame
+from tracker.thermal.config import TrackerConfig
+from tracker.thermal.contour.ellipse import box_of
+from tracker.thermal.contour.likelihood import ContourModel
+from tracker.thermal.filter.particles import Particles, W, ellipse_of
+from tracker.thermal.filter.prior import draw_around
+from tracker.thermal.interaction import detector_factor, least_overlaps, regions_of
+from tracker.thermal.joint_update import follow
+from tracker.thermal.life import is_born
+from tracker.thermal.occlusion.depth_order import ORDERS, Order
+from tracker.thermal.occlusion.occlusion_status import foot_of, learn
+from tracker.thermal.particle_filter import Belief, View, advance, draw_fresh, view_frame, weigh
+from tracker.thermal.reidentification import recognised, remembered
+from tracker.thermal.tracked_person import SIZE, Person
+from tracker.track import Status, Track
+
+FIRST_STEP_S = 1 / 15
+DETECTOR_KEY = 0
+
+
+class PeopleTracker:
+    """Finds people one after the other, keeps each while it is seen, and remembers the hidden.
+
+    Source: thesis, chapters 5 and 7.
+    """
+
+    def __init__(self, config: TrackerConfig, rng: np.random.Generator, order: Order | None = None) -> None:
+        self._config = config
+        self._rng = rng
+        self._order = ORDERS[config.occlusion.order] if order is None else order
+        self._model: ContourModel | None = None
+        self._last_s: float | None = None
+        self._detector: Belief | None = None
+        self._hits = 0
+        self._persons: tuple[Person, ...] = ()
+        self._memories: tuple[Person, ...] = ()
+        self._born = 0
+        self._introduced: tuple[float, float, float, float] | None = None
+
+    def introduce(self, box: tuple[float, float, float, float]) -> None:
+        """Tell that a person is at this box [px] in the next frame, as trackers of single objects are told.
+
+        The person's filter starts there, and the detector keeps off it.
+        """
+        self._introduced = box
+
+    @property
+    def particles(self) -> Mapping[int, Particles]:
+        """The samples by track id; key 0 is the detector's cloud."""
+        clouds = {person.id: person.belief.particles for person in self._persons}
+        return clouds if self._detector is None else {DETECTOR_KEY: self._detector.particles, **clouds}
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame and tell who is seen.
+
+        Raises:
+            BadInput: time that does not go forward.
+        """
+        view = view_frame(frame, self._time_step(frame.time_s), self._model_for(frame), self._config)
+        self._last_s = frame.time_s
+        self._memories = tuple(
+            person
+            for memory in self._memories
+            if (person := remembered(memory, view, self._persons, self._config)).hidden_s
+            <= self._config.occlusion.forget_s
+        )
+        persons = follow(self._persons, view, self._config, self._order, self._rng)
+        self._part(persons)
+        if self._introduced is not None:
+            self._meet(self._introduced, view, frame.time_s)
+            self._introduced = None
+        newcomer = self._search(view, frame.time_s)
+        tracks = [
+            self._track(person, frame.time_s)
+            for person in (*self._persons, *self._memories)
+            if not person.is_hidden or self._is_shown(person, view)
+        ]
+        return (*tracks, *newcomer)
+
+    def _time_step(self, time_s: float) -> float:
+        if self._last_s is None:
+            return FIRST_STEP_S
+        if time_s <= self._last_s:
+            raise BadInput(f"time_s must go forward, got {time_s} after {self._last_s}")
+        return time_s - self._last_s
+
+    def _model_for(self, frame: Frame) -> ContourModel:
+        shape = (frame.height_px, frame.width_px)
+        if self._model is None or self._model.shape != shape:
+            self._model = ContourModel.build(shape, self._config.contour)
+        return self._model
+
+    def _part(self, persons: tuple[Person, ...]) -> None:
+        """Divide people into those who are kept, those who are only remembered, and those who are gone."""
+        kept, memories = [], []
+        for person in persons:
+            if self._is_kept(person):
+                kept.append(person)
+            elif self._is_remembered(person):
+                memories.append(replace(person, status=Status.TOTALLY_OCCLUDED, is_behind=False))
+        self._persons = tuple(kept)
+        self._memories = (*self._memories, *memories)
+
+    def _is_kept(self, person: Person) -> bool:
+        handling = self._config.occlusion
+        # Without confidence no sample is within the limits, and the estimate may be no ellipse at all.
+        if not person.is_hidden:
+            return person.missing < self._config.life.death_frames and person.belief.confidence > 0
+        if handling.keeps_velocity:
+            return person.missing < handling.searched_frames
+        return person.hidden_frames <= handling.kept_frames
+
+    def _is_remembered(self, person: Person) -> bool:
+        return person.is_hidden or (self._config.occlusion.remembers_lost and person.is_settled)
+
+    def _search(self, view: View, time_s: float) -> tuple[Track, ...]:
+        """Carry the detector on; a person is born when it has settled on one for long enough."""
+        config = self._config
+        if sum(not person.is_hidden for person in self._persons) >= config.interaction.max_persons:
+            self._detector = None
+            return ()
+        self._detector = self._detected(view)
+        self._hits = self._hits + 1 if is_born(self._detector, view, config.life) else 0
+        if self._hits == 0:
+            return ()
+        found = self._newborn(self._detector, view, time_s)
+        if self._hits < config.life.birth_frames:
+            return (self._track(replace(found, status=Status.TENTATIVE), time_s),)
+        self._hits, self._detector = 0, None
+        lost = (*self._memories, *(person for person in self._persons if person.is_hidden))
+        known = recognised(found, lost, view, config)
+        if known is None:
+            self._born = found.id
+        else:
+            self._memories = tuple(person for person in self._memories if person is not known)
+            self._persons = tuple(person for person in self._persons if person is not known)
+            found = replace(
+                found,
+                id=known.id,
+                born_s=known.born_s,
+                looks=known.looks or found.looks,
+                colour=known.colour or found.colour,
+            )
+        self._persons = tuple(sorted((*self._persons, found), key=lambda person: person.id))
+        return ()
+
+    def _meet(self, box: tuple[float, float, float, float], view: View, time_s: float) -> None:
+        """Start a filter on samples around a person who is pointed out."""
+        state = draw_around(box, self._config, self._rng)
+        found = self._newborn(weigh(state, view, self._config.person, self._config), view, time_s)
+        self._born = found.id
+        self._persons = (*self._persons, found)
+
+    def _newborn(self, belief: Belief, view: View, time_s: float) -> Person:
+        person = Person(
+            id=self._born + 1,
+            born_s=time_s,
+            belief=belief,
+            shown=belief.estimate,
+            velocity=np.zeros(2),
+            foot=foot_of(belief.estimate),
+            size=belief.estimate[SIZE],
+        )
+        return learn(person, belief.estimate, view, self._config)
+
+    def _detected(self, view: View) -> Belief:
+        """Weigh the detector's samples, kept off the people that are tracked."""
+        config, rng = self._config, self._rng
+        if self._detector is None:
+            state = draw_fresh(config.detector.count, view, config.detector, config, rng)
+        else:
+            state = advance(self._detector.particles, view, config.detector, config, rng)
+        seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
+        factor = detector_factor(least_overlaps(state, regions_of(seen, config), config), config.interaction)
+        return weigh(state, view, config.detector, config, factor)
+
+    def _is_shown(self, person: Person, view: View) -> bool:
+        """Tell whether a hidden person is shown: as long as it is fairly certain where it is."""
+        handling = self._config.occlusion
+        left, top, width, height = regions_of([person.shown], self._config)[0]
+        rows, columns = view.image.shape
+        if left > columns or left + width < 0:
+            return False
+        if person.is_behind:
+            is_sure = person.belief.uncertainty_px2 < (handling.sure_spread * float(person.shown[W])) ** 2
+            return person.hidden_s <= (handling.forget_s if is_sure else handling.shown_behind_s)
+        walks_out = (left < 0 and person.velocity[0] < 0) or (
+            left + width > columns and person.velocity[0] > 0
+        )
+        is_whole = top + height < rows
+        return person.hidden_s <= (handling.shown_leaving_s if walks_out and is_whole else handling.shown_s)
+
+    def _track(self, person: Person, time_s: float) -> Track:
+        ellipse = ellipse_of(person.shown)
+        return Track(
+            id=person.id,
+            ellipse=ellipse,
+            box=box_of(ellipse, self._config.box, self._config.contour.head_divisor),
+            confidence=person.belief.confidence,
+            status=person.status,
+            age_s=time_s - person.born_s,
+            uncertainty_px2=person.belief.uncertainty_px2,
+            occluder=person.occluder,
+        )

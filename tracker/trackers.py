@@ -1,0 +1,56 @@
+"""The trackers by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+import numpy as np
+
+from bad_input import BadInput
+from tracker.frame import Frame
+from tracker.thermal.config import TrackerConfig
+from tracker.thermal.filter.particles import Particles
+from tracker.thermal.occlusion.learned_order import shipped_order
+from tracker.thermal.people_tracker import PeopleTracker
+from tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
+from tracker.track import Track
+
+
+class Tracker(Protocol):
+    """Whatever turns frames into tracks."""
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame and tell who is seen."""
+        ...
+
+    @property
+    def particles(self) -> Mapping[int, Particles]:
+        """The samples by track id; key 0 is the detector's cloud."""
+        ...
+
+
+TRACKERS: Mapping[str, TrackerConfig] = {
+    "peopleboy": PEOPLEBOY,
+    "learned": PEOPLEBOY,
+    "footage": FOOTAGE,
+    "thesis": THESIS_OCCLUSION,
+    "thermal": THESIS,
+    "colour": THESIS_COLOUR,
+    "paper": PAPER,
+}
+"""Each tracker's settings by name; the first is the default. `learned` also has a learned order in depth."""
+
+DEFAULT_TRACKER = "peopleboy"
+FOOTAGE_TRACKER = "footage"
+
+
+def make_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
+    """Make the tracker of that name.
+
+    Raises:
+        BadInput: an unknown name.
+    """
+    if name not in TRACKERS:
+        raise BadInput(f"unknown tracker {name!r}; there are: {', '.join(TRACKERS)}")
+    return PeopleTracker(TRACKERS[name], rng, shipped_order() if name == "learned" else None)
