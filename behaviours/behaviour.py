@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from behaviours.command import Command
-from behaviours.percept import Sight
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.percept import Sight
 
 
 class Behaviour(Protocol):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

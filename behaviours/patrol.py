@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from behaviours.behaviour import Behaviour
-from behaviours.command import Command
-from behaviours.following.follow_person import FollowConfig, FollowPerson
-from behaviours.percept import SeenPerson, Sight
+from peopleboy.behaviours.behaviour import Behaviour
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson
+from peopleboy.behaviours.percept import SeenPerson, Sight
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

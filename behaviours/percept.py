@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 Ranges = NDArray[np.float64]
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from bad_input import BadInput
-from behaviours.behaviour import Behaviour
-from behaviours.command import Command
-from behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
-from behaviours.following.follow_person import FollowConfig, FollowPerson
-from behaviours.patrol import Patrol
-from behaviours.safety.guard import Guarded
-from behaviours.safety.limits import SafetyConfig
-from behaviours.scripted import Scripted, Stand
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.behaviour import Behaviour
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
+from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson
+from peopleboy.behaviours.patrol import Patrol
+from peopleboy.behaviours.safety.guard import Guarded
+from peopleboy.behaviours.safety.limits import SafetyConfig
+from peopleboy.behaviours.scripted import Scripted, Stand
 
 
 def make_behaviour(

@@ -6,9 +6,9 @@ import bisect
 import math
 from collections.abc import Sequence
 
-from bad_input import BadInput
-from behaviours.command import STOP, Command
-from behaviours.percept import Sight
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.percept import Sight
 
 
 class Scripted:

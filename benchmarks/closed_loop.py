@@ -8,12 +8,12 @@ import time
 from pathlib import Path
 from statistics import median
 
-from scenarios.files.load import load_scenario
-from scenarios.loop.loop import Tick, closed_loop
-from scenarios.running.run import RunOptions, run
-from sim.random_streams import stream
-from sim.world import World
-from tracker.trackers import make_tracker
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import Tick, closed_loop
+from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.world import World
+from peopleboy.tracker.trackers import make_tracker
 
 RATE_HZ = 15
 

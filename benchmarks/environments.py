@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 from multiprocessing import get_context
 
 from benchmarks.memory import resident_mb
-from scenarios.environments.environment import PHYSICS_HZ, PeopleBoyEnv
-from scenarios.files.load import load_scenario
-from sim.physics.opengl import projection_matrix, view_matrix
-from sim.shapes.bounds import FAR_M, NEAR_M
-from sim.world import World
+from peopleboy.scenarios.environments.environment import PHYSICS_HZ, PeopleBoyEnv
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.sim.physics.opengl import projection_matrix, view_matrix
+from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
+from peopleboy.sim.world import World
 
 SCENARIO = "single_follow"
 ACTION = (0.0, 0.13)

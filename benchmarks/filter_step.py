@@ -8,10 +8,10 @@ from statistics import median
 
 import numpy as np
 
-from tracker.frame import Frame
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.particle_filter import begin, step, view_frame
-from tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.particle_filter import begin, step, view_frame
+from peopleboy.tracker.thermal.variants import PEOPLEBOY
 
 SHAPE = (240, 320)
 

@@ -17,10 +17,10 @@ import yaml
 from rich.console import Console
 from rich.table import Table
 
-from scenarios.files.load import load_scenario
-from scenarios.footage.track_footage import TrackOptions, track_footage
-from scenarios.running.run import RunOptions, run
-from tracker.evaluation.evaluate import Scores, combine
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.footage.track_footage import TrackOptions, track_footage
+from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.tracker.evaluation.evaluate import Scores, combine
 
 SCENES: Final = (
     "crossing_2",

@@ -19,9 +19,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.whole_tracker import STEP_S, shoot
-from sim.random_streams import stream
-from tracker.frame import Frame
-from tracker.trackers import DEFAULT_TRACKER, make_tracker
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 SCENARIO = "hall_visits"
 SAMPLES = 20

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.config import WorldConfig
-from sim.people.person_config import PersonConfig
-from sim.people.walking.walk import Waypoint
-from sim.places.rooms import build_place, straight_corridor
-from sim.world import World
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.world import World
 
 # (x, y) [m] of the people in front of the robot, who walk on at the same pace.
 STARTS_M = ((3.0, 0.4), (4.2, -0.5), (5.5, 0.5), (7.5, -0.2))

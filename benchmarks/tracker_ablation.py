@@ -13,18 +13,18 @@ from typing import Any
 import click
 import numpy as np
 
-from scenarios.files.load import load_scenario
-from scenarios.loop.loop import closed_loop, make_frame
-from sim.random_streams import stream
-from sim.world import World
-from tracker.evaluation.evaluate import Scores, combine, evaluate
-from tracker.evaluation.sequence import Tracks, Truth
-from tracker.frame import Frame
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.people_tracker import PeopleTracker
-from tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_OCCLUSION
-from tracker.track import Status, Track
-from tracker.trackers import make_tracker
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import closed_loop, make_frame
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.world import World
+from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_OCCLUSION
+from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.trackers import make_tracker
 
 ONE = ("single_stationary", "single_follow")
 SEVERAL = ("crossing_3", "hidden_1s", "hidden_2s", "pass_behind_pillar", "three_depths", "turn_while_hidden")

@@ -11,22 +11,22 @@ from statistics import mean, median
 import numpy as np
 
 from benchmarks.peers.detectors import Hog
-from scenarios.files.load import load_scenario
-from scenarios.loop.loop import make_frame
-from sim.random_streams import stream
-from sim.world import World
-from tracker.frame import Frame
-from tracker.thermal.appearance.colour_model import ColourModel, likelihood
-from tracker.thermal.contour.coverage import covered_by, seen_shares
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.filter.motion import predict
-from tracker.thermal.filter.particles import mean_state, resample
-from tracker.thermal.interaction import overlap_shares, person_factor, regions_of
-from tracker.thermal.particle_filter import View, view_frame, weigh
-from tracker.thermal.people_tracker import DETECTOR_KEY
-from tracker.thermal.variants import PEOPLEBOY
-from tracker.track import Status
-from tracker.trackers import DEFAULT_TRACKER, Tracker, make_tracker
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.world import World
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood
+from peopleboy.tracker.thermal.contour.coverage import covered_by, seen_shares
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.filter.motion import predict
+from peopleboy.tracker.thermal.filter.particles import mean_state, resample
+from peopleboy.tracker.thermal.interaction import overlap_shares, person_factor, regions_of
+from peopleboy.tracker.thermal.particle_filter import View, view_frame, weigh
+from peopleboy.tracker.thermal.people_tracker import DETECTOR_KEY
+from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.track import Status
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, Tracker, make_tracker
 
 SCENARIO = "crossing_4"  # they hide each other, partly and wholly
 MOST = 4

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from examples.show import Controller, play, print_figures
-from scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 
 Observation = dict[str, NDArray[Any]]
 Person = tuple[float, float] | None  # column [half image widths] and height [image heights]

@@ -25,10 +25,10 @@ from stable_baselines3.common.env_util import make_vec_env
 
 from examples.follower_view import FollowerView
 from examples.show import Controller, Figures, play, print_figures
-from scenarios.environments.environment import PeopleBoyEnv
-from scenarios.environments.written_controller import WrittenController
-from scenarios.files.load import load_scenario
-from scenarios.running.compare_controllers import bootstrap
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.written_controller import WrittenController
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.compare_controllers import bootstrap
 
 FIRST_SEED = 1000  # of the worlds in which they are compared
 

@@ -8,17 +8,17 @@ from typing import Any
 
 import click
 
-from bad_input import BadInput
-from scenarios.commands.browse import list_command, schema, show
-from scenarios.commands.evaluate import evaluate
-from scenarios.commands.export import export
-from scenarios.commands.many import compare, sweep
-from scenarios.commands.render import render
-from scenarios.commands.report import report
-from scenarios.commands.run import run
-from scenarios.commands.study import datasets, reproduce, train_occlusion
-from scenarios.commands.track import track
-from scenarios.commands.view import view
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.browse import list_command, schema, show
+from peopleboy.scenarios.commands.evaluate import evaluate
+from peopleboy.scenarios.commands.export import export
+from peopleboy.scenarios.commands.many import compare, sweep
+from peopleboy.scenarios.commands.render import render
+from peopleboy.scenarios.commands.report import report
+from peopleboy.scenarios.commands.run import run
+from peopleboy.scenarios.commands.study import datasets, reproduce, train_occlusion
+from peopleboy.scenarios.commands.track import track
+from peopleboy.scenarios.commands.view import view
 
 BAD_INPUT = 2
 COMMANDS = (

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from bad_input import BadInput
-from sim.geometry.pinhole import Camera
-from sim.people.person_config import PersonConfig
-from sim.places.place import Place
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.places.place import Place
 
 # The colour camera sits 6 cm to the left of the thermal one and sees an angle narrower by 1.2 (T eq. 6.1).
 COLOUR_BASELINE_M = 0.06

@@ -8,26 +8,26 @@ from types import TracebackType
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from sim.cameras.colour import colour_image, expose
-from sim.cameras.surfaces import make_look_table
-from sim.cameras.thermal import detect, encode_8bit, make_detector, surface_image
-from sim.config import WorldConfig
-from sim.geometry.pinhole import Camera, Matrix
-from sim.observation import Observation, Senses
-from sim.people.crowd import Crowd
-from sim.physics.bullet import Bullet
-from sim.places.place import Place
-from sim.random_streams import stream
-from sim.rendering.render import BLIND, View, render
-from sim.robot.peoplebot import NAME as ROBOT
-from sim.robot.peoplebot import PeopleBot
-from sim.robot.robot_materials import robot_look
-from sim.shapes.materials import Look
-from sim.shapes.shape_table import make_shape_table
-from sim.truth.image_free_truth import Scene, bystanders
-from sim.truth.truth import BORDER, Truth
-from sim.truth.truth_maker import TruthMaker
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.cameras.colour import colour_image, expose
+from peopleboy.sim.cameras.surfaces import make_look_table
+from peopleboy.sim.cameras.thermal import detect, encode_8bit, make_detector, surface_image
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.observation import Observation, Senses
+from peopleboy.sim.people.crowd import Crowd
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.places.place import Place
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.rendering.render import BLIND, View, render
+from peopleboy.sim.robot.peoplebot import NAME as ROBOT
+from peopleboy.sim.robot.peoplebot import PeopleBot
+from peopleboy.sim.robot.robot_materials import robot_look
+from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.shape_table import make_shape_table
+from peopleboy.sim.truth.image_free_truth import Scene, bystanders
+from peopleboy.sim.truth.truth import BORDER, Truth
+from peopleboy.sim.truth.truth_maker import TruthMaker
 
 _MOST_PEOPLE = 64  # a view's cover has a bit for each
 

@@ -7,14 +7,21 @@ from typing import Protocol
 
 import numpy as np
 
-from bad_input import BadInput
-from tracker.frame import Frame
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.filter.particles import Particles
-from tracker.thermal.occlusion.learned_order import shipped_order
-from tracker.thermal.people_tracker import PeopleTracker
-from tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
-from tracker.track import Track
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.thermal.variants import (
+    FOOTAGE,
+    PAPER,
+    PEOPLEBOY,
+    THESIS,
+    THESIS_COLOUR,
+    THESIS_OCCLUSION,
+)
+from peopleboy.tracker.track import Track
 
 
 class Tracker(Protocol):

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from behaviours.corridor.corridor_pose import Corridor
-from behaviours.corridor.wall_echoes import BeamConfig, side_walls, wall_distances
-from behaviours.percept import Sight
+from peopleboy.behaviours.corridor.corridor_pose import Corridor
+from peopleboy.behaviours.corridor.wall_echoes import BeamConfig, side_walls, wall_distances
+from peopleboy.behaviours.percept import Sight
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.corridor.corridor_pose import Corridor, Unknown
-from behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
+from peopleboy.behaviours.sonar.echo_points import Points
 
 Image = NDArray[np.uint8]
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from behaviours.corridor.corridor_pose import Corridor, Unknown
-from behaviours.corridor.wall_echoes import BeamConfig, wall_distances
-from behaviours.percept import Sight
-from behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
+from peopleboy.behaviours.corridor.wall_echoes import BeamConfig, wall_distances
+from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.sonar.echo_points import Points
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

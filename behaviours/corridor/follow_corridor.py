@@ -8,15 +8,26 @@ from typing import Literal
 
 import numpy as np
 
-from behaviours.command import STOP, Command
-from behaviours.corridor.corridor_end import EndConfig, open_room, wall_ahead
-from behaviours.corridor.corridor_from_image import CameraView, ImageCorridorConfig, corridor_from_image
-from behaviours.corridor.corridor_from_sonar import SonarCorridorConfig, corridor_from_sonar
-from behaviours.corridor.corridor_lane import Lane, LaneConfig, beside, best_lane, in_corridor, middle_lane
-from behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
-from behaviours.corridor.wall_echoes import side_walls, without_walls
-from behaviours.percept import Sight
-from behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.corridor.corridor_end import EndConfig, open_room, wall_ahead
+from peopleboy.behaviours.corridor.corridor_from_image import (
+    CameraView,
+    ImageCorridorConfig,
+    corridor_from_image,
+)
+from peopleboy.behaviours.corridor.corridor_from_sonar import SonarCorridorConfig, corridor_from_sonar
+from peopleboy.behaviours.corridor.corridor_lane import (
+    Lane,
+    LaneConfig,
+    beside,
+    best_lane,
+    in_corridor,
+    middle_lane,
+)
+from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
+from peopleboy.behaviours.corridor.wall_echoes import side_walls, without_walls
+from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
 
 Sense = Literal["sonar", "image"]
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.corridor.corridor_pose import Corridor
-from behaviours.percept import Ranges, Sight
-from behaviours.sonar.echo_points import Points
-from behaviours.sonar.sonar_ring import mounts
+from peopleboy.behaviours.corridor.corridor_pose import Corridor
+from peopleboy.behaviours.percept import Ranges, Sight
+from peopleboy.behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.sonar.sonar_ring import mounts
 
 Flags = NDArray[np.bool_]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from behaviours.command import STOP, Command
-from behaviours.following.avoid import WIDELY, AvoidConfig, swerve
-from behaviours.following.last_seen import (
+from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.following.avoid import WIDELY, AvoidConfig, swerve
+from peopleboy.behaviours.following.last_seen import (
     LastPlace,
     PlaceConfig,
     carry_place,
@@ -15,9 +15,9 @@ from behaviours.following.last_seen import (
     on_the_way,
     place_of,
 )
-from behaviours.following.occluder import HiddenConfig, hider, keep_behind
-from behaviours.following.reidentification import IdentityConfig, company, recognise
-from behaviours.following.target import (
+from peopleboy.behaviours.following.occluder import HiddenConfig, hider, keep_behind
+from peopleboy.behaviours.following.reidentification import IdentityConfig, company, recognise
+from peopleboy.behaviours.following.target import (
     Target,
     TargetConfig,
     carry_on,
@@ -25,9 +25,9 @@ from behaviours.following.target import (
     forget_drift,
     look_again,
 )
-from behaviours.percept import SeenPerson, Sight
-from behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
-from behaviours.sonar.echo_points import echoes
+from peopleboy.behaviours.percept import SeenPerson, Sight
+from peopleboy.behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from peopleboy.behaviours.sonar.echo_points import echoes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

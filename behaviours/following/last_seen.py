@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from behaviours.following.target import Target
-from behaviours.percept import Sight
-from behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.following.target import Target
+from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.sonar.echo_points import Points
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from behaviours.following.target import Target, TargetConfig, bearing
-from behaviours.percept import SeenPerson
+from peopleboy.behaviours.following.target import Target, TargetConfig, bearing
+from peopleboy.behaviours.percept import SeenPerson
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from behaviours.following.target import Target, TargetConfig, bearing
-from behaviours.percept import SeenPerson
+from peopleboy.behaviours.following.target import Target, TargetConfig, bearing
+from peopleboy.behaviours.percept import SeenPerson
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

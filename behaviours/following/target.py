@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from behaviours.percept import SeenPerson
+from peopleboy.behaviours.percept import SeenPerson
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

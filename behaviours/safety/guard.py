@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import replace
 
-from behaviours.behaviour import Behaviour
-from behaviours.command import EMERGENCY_STOP, Command
-from behaviours.percept import Sight
-from behaviours.safety.limits import SafetyConfig, limit
-from behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
-from behaviours.sonar.echo_points import BESIDE_RAD, Points, fill_drop_outs
-from behaviours.sonar.sonar_failure import Deafness
+from peopleboy.behaviours.behaviour import Behaviour
+from peopleboy.behaviours.command import EMERGENCY_STOP, Command
+from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.safety.limits import SafetyConfig, limit
+from peopleboy.behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, Points, fill_drop_outs
+from peopleboy.behaviours.sonar.sonar_failure import Deafness
 
 # As long as something takes from one beam through the gap to the next; people have moved on by then.
 PASSING = MemoryConfig(keep_s=2.0, within_m=1.1)

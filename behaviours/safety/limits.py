@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from behaviours.command import STOP, Command
-from behaviours.percept import Sight
-from behaviours.sonar.echo_points import BESIDE_RAD, Points, echoes
+from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, Points, echoes
 
 NOTHING_REMEMBERED: Points = np.zeros((0, 2))
 NOTHING_REMEMBERED.setflags(write=False)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from behaviours.percept import Ranges, Sight
-from behaviours.sonar.echo_points import Points, echoes
+from peopleboy.behaviours.percept import Ranges, Sight
+from peopleboy.behaviours.sonar.echo_points import Points, echoes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

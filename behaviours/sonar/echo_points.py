@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.percept import Sight
+from peopleboy.behaviours.percept import Sight
 
 Points = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from behaviours.percept import Sight
+from peopleboy.behaviours.percept import Sight
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

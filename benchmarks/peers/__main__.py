@@ -10,7 +10,7 @@ import click
 from rich.console import Console
 from rich.progress import track
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 try:
     import trackers as _trackers  # noqa: F401
@@ -20,8 +20,8 @@ except ImportError as error:
 from benchmarks.peers.compete import Result, compete_on_film
 from benchmarks.peers.contestants import contestants
 from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results
-from scenarios.files.schema_errors import hint
-from scenarios.files.suite import load_suite
+from peopleboy.scenarios.files.schema_errors import hint
+from peopleboy.scenarios.files.suite import load_suite
 
 _QUICK = "crossing_2,crossing_3,same_uniform,pass_behind_pillar,hidden_0_5s,hidden_2s,hidden_5s,crowd_8"
 _USUAL = (

@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 
 import benchmarks.peers
-import tracker
 from benchmarks.peers.contestants import PEERS, RATE_HZ, make_contestant
-from scenarios.files.load import load_scenario
-from scenarios.running.frame_cache import Film, film, frames_of
-from tracker.evaluation.evaluate import Scores, evaluate
-from tracker.evaluation.mot_files import read_tracks, write_tracks
-from tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
-from tracker.evaluation.sequence import Tracks, Truth
+from peopleboy import tracker
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
+from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.mot_files import read_tracks, write_tracks
+from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,4 +1,4 @@
-"""All who compete, by name: peers, and the trackers of `tracker.trackers`."""
+"""All who compete, by name: peers, and the trackers of `peopleboy.tracker.trackers`."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import supervision as sv
 from trackers import ByteTrackTracker, SORTTracker
 
 from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
-from sim.random_streams import stream
-from tracker.evaluation.sequence import Truth
-from tracker.frame import Frame
-from tracker.track import Status
-from tracker.trackers import TRACKERS, make_tracker
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.track import Status
+from peopleboy.tracker.trackers import TRACKERS, make_tracker
 
 RATE_HZ = 15.0
 # The package counts in frames at 30 Hz: five seconds. Of 1, 2, 5 and 10 s it is best for the oracle's IDF1,
@@ -53,7 +53,7 @@ class DetectAndAssociate:
 
 
 class Ours:
-    """A tracker of `tracker.trackers`."""
+    """A tracker of `peopleboy.tracker.trackers`."""
 
     def __init__(self, name: str, seed: int) -> None:
         self._tracker = make_tracker(name, stream(seed, "tracker"))

@@ -12,9 +12,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.evaluation.sequence import Truth
-from tracker.frame import Frame
-from tracker.thermal.appearance.colour_config import ROBOT_AFFINE
+from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.appearance.colour_config import ROBOT_AFFINE
 
 Boxes = NDArray[np.float64]
 TORSO_PER_HEIGHT = 0.27  # width of a truth box over its height, mean of the library

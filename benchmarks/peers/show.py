@@ -12,8 +12,8 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.peers.compete import Result
-from tracker.evaluation.evaluate import combine
-from tracker.evaluation.occlusion_scores import LengthRow, by_length
+from peopleboy.tracker.evaluation.evaluate import combine
+from peopleboy.tracker.evaluation.occlusion_scores import LengthRow, by_length
 
 Results = Mapping[str, Sequence[Result]]  # by contestant
 _SPOT = 4.0

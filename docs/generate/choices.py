@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import get_args
 
 from docs.generate.markdown import sentence, table
-from scenarios.files.build_place import make_floor_plan
-from scenarios.files.schema import (
+from peopleboy.scenarios.files.build_place import make_floor_plan
+from peopleboy.scenarios.files.schema import (
     CorridorSpec,
     FaultSpec,
     LCorridorSpec,
@@ -17,9 +17,9 @@ from scenarios.files.schema import (
     TCorridorSpec,
     WaypointSpec,
 )
-from sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Garment
-from sim.places.things import KINDS, Kind
-from sim.shapes.materials import Rgb
+from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Garment
+from peopleboy.sim.places.things import KINDS, Kind
+from peopleboy.sim.shapes.materials import Rgb
 
 BEHAVIOURS = {
     "stand": "the robot stands",

@@ -8,7 +8,7 @@ import re
 import click
 
 from docs.generate.markdown import table
-from scenarios.cli import cli
+from peopleboy.scenarios.cli import cli
 
 
 def commands() -> str:

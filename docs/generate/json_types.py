@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from docs.generate.markdown import words
-from sim.people.body.clothes import COLOURS
+from peopleboy.sim.people.body.clothes import COLOURS
 
 Schema = dict[str, Any]
 

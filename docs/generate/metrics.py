@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from docs.generate.markdown import table
-from tracker.evaluation.table import FIGURES
+from peopleboy.tracker.evaluation.table import FIGURES
 
 
 def metrics(group: str) -> str:

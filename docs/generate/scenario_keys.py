@@ -9,8 +9,8 @@ from typing import Any
 from docs.generate.json_types import default_text, models_in, title, type_text
 from docs.generate.markdown import sentence, table
 from docs.generate.plain_keys import PLAIN_KEYS
-from scenarios.files import schema
-from scenarios.files.schema import ScenarioSpec
+from peopleboy.scenarios.files import schema
+from peopleboy.scenarios.files.schema import ScenarioSpec
 
 UNITS = {
     "_deg_s": "deg/s",

@@ -9,9 +9,9 @@ from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from docs.generate.markdown import table
-from tracker.thermal import config as source
-from tracker.thermal.config import FilterConfig, LimitsConfig, TrackerConfig
-from tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS_OCCLUSION
+from peopleboy.tracker.thermal import config as source
+from peopleboy.tracker.thermal.config import FilterConfig, LimitsConfig, TrackerConfig
+from peopleboy.tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS_OCCLUSION
 
 COLUMNS: Mapping[str, TrackerConfig] = {
     "thesis": THESIS_OCCLUSION,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from docs.generate.markdown import table
-from tracker.trackers import TRACKERS
+from peopleboy.tracker.trackers import TRACKERS
 
 ABOUT: Mapping[str, tuple[str, str]] = {
     "peopleboy": (

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import click
 
-from scenarios.commands.options import SEED
+from peopleboy.scenarios.commands.options import SEED
 
 
 @click.command("list")
 def list_command() -> None:
     """List the scenarios of the library, and the suites."""
-    from scenarios.files.load import library
-    from scenarios.files.suite import load_suite, suite_names
+    from peopleboy.scenarios.files.load import library
+    from peopleboy.scenarios.files.suite import load_suite, suite_names
 
     for name, description in library().items():
         click.echo(f"{name:20} {description}")
@@ -29,8 +29,8 @@ def list_command() -> None:
 )
 def show(scenario: str, seed: int | None, out: Path | None) -> None:
     """Draw the plan of a scenario, with paths and times."""
-    from scenarios.drawing.plan import draw_plan
-    from scenarios.files.load import load_scenario
+    from peopleboy.scenarios.drawing.plan import draw_plan
+    from peopleboy.scenarios.files.load import load_scenario
 
     loaded = load_scenario(scenario)
     path = out if out is not None else Path(f"{loaded.name}-plan.png")
@@ -43,6 +43,6 @@ def schema() -> None:
     """Print the JSON schema of scenario files, for editors."""
     import json
 
-    from scenarios.files.schema import json_schema
+    from peopleboy.scenarios.files.schema import json_schema
 
     click.echo(json.dumps(json_schema(), indent=2))

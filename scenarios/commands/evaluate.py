@@ -7,8 +7,8 @@ from pathlib import Path
 
 import click
 
-from bad_input import BadInput
-from scenarios.scores.show_scores import print_scores, print_spread
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.scores.show_scores import print_scores, print_spread
 
 
 @click.command()
@@ -34,7 +34,7 @@ def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None, min_
     A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs give mean and
     standard deviation over them, beside the figure of all their frames.
     """
-    from scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs, runs_in
+    from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs, runs_in
 
     if bool(runs) == (truth is not None or tracks is not None):
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import click
 
-from scenarios.commands.options import tracker_option
-from scenarios.scores.show_scores import print_spread
+from peopleboy.scenarios.commands.options import tracker_option
+from peopleboy.scenarios.scores.show_scores import print_spread
 
 
 @click.command()
@@ -30,8 +30,8 @@ from scenarios.scores.show_scores import print_spread
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
 def sweep(scenario: str, seeds: int, out: Path, tracker: str, jobs: int, overwrite: bool) -> None:
     """Run a scenario with many seeds, without recordings, and score them together."""
-    from scenarios.running.sweep import run_seeds
-    from scenarios.scores.evaluate_runs import evaluate_runs
+    from peopleboy.scenarios.running.sweep import run_seeds
+    from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 
     folders = run_seeds(scenario, range(seeds), out, tracker, jobs, overwrite=overwrite)
     print_spread(evaluate_runs(folders))
@@ -67,9 +67,9 @@ def sweep(scenario: str, seeds: int, out: Path, tracker: str, jobs: int, overwri
 )
 def compare(controllers: str, scenarios: Sequence[str], seeds: int, out: Path, jobs: int) -> None:
     """Let controllers drive through the same scenes, and print how they did, with confidence intervals."""
-    from scenarios.files.load import load_scenario
-    from scenarios.running.compare_controllers import compare, parse_controller
-    from scenarios.running.show_comparison import show_comparison
+    from peopleboy.scenarios.files.load import load_scenario
+    from peopleboy.scenarios.running.compare_controllers import compare, parse_controller
+    from peopleboy.scenarios.running.show_comparison import show_comparison
 
     chosen = [parse_controller(text) for text in controllers.split(",")]
     names = [load_scenario(scenario).name for scenario in scenarios]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from scenarios.commands.options import TRACKERS
+from peopleboy.scenarios.commands.options import TRACKERS
 
 FAILED = 1
 
@@ -42,8 +42,8 @@ def render(
     """
     import os
 
-    from scenarios.export.dataset.make_dataset import render_set
-    from scenarios.files.load import load_scenario
+    from peopleboy.scenarios.export.dataset.make_dataset import render_set
+    from peopleboy.scenarios.files.load import load_scenario
 
     names = [load_scenario(scenario).name for scenario in scenarios]
     folder = out if out is not None else Path("sets") / "-".join(names)

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bad_input import BadInput
-from scenarios.commands.options import SEED, tracker_option
-from scenarios.scores.show_scores import print_corridor, print_following, print_scores, print_spread
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.options import SEED, tracker_option
+from peopleboy.scenarios.scores.show_scores import print_corridor, print_following, print_scores, print_spread
 
 if TYPE_CHECKING:
-    from scenarios.files.scenario import Scenario
-    from scenarios.running.run import RunOptions
+    from peopleboy.scenarios.files.scenario import Scenario
+    from peopleboy.scenarios.running.run import RunOptions
 
 
 @click.command()
@@ -50,11 +50,11 @@ def run(
     SCENARIO is a name from `peopleboy list` or the path of a YAML file; or a suite, such as dataset1, whose
     runs have seeds of their own and leave no recordings. A suite that was killed goes on where it was.
     """
-    from scenarios.files.load import load_scenario
-    from scenarios.files.suite import suite_names
-    from scenarios.recording.viewer import live_viewer
-    from scenarios.running.run import RunOptions
-    from tracker.trackers import DEFAULT_TRACKER
+    from peopleboy.scenarios.files.load import load_scenario
+    from peopleboy.scenarios.files.suite import suite_names
+    from peopleboy.scenarios.recording.viewer import live_viewer
+    from peopleboy.scenarios.running.run import RunOptions
+    from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
     is_suite = scenario in suite_names()
     if is_suite and seed is not None:
@@ -86,8 +86,8 @@ def run(
 
 
 def _run_one(scenario: Scenario, options: RunOptions) -> None:
-    from scenarios.running.progress import run_with_progress
-    from scenarios.scores.headline import headline
+    from peopleboy.scenarios.running.progress import run_with_progress
+    from peopleboy.scenarios.scores.headline import headline
 
     scores = run_with_progress(scenario, options)
     print_scores(scores.people)
@@ -102,8 +102,8 @@ def _run_one(scenario: Scenario, options: RunOptions) -> None:
 
 
 def _run_suite(name: str, options: RunOptions) -> None:
-    from scenarios.running.run_suite import run_suite
-    from scenarios.scores.evaluate_runs import evaluate_runs
+    from peopleboy.scenarios.running.run_suite import run_suite
+    from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 
     folders = run_suite(name, options)
     print_spread(evaluate_runs(folders))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 
 @click.command()
@@ -24,8 +24,8 @@ def datasets(suites: Sequence[str], films: Path) -> None:
 
     SUITES are any of dataset1 to dataset4; without a name, all of them.
     """
-    from scenarios.scores.suite_table import THESIS
-    from scenarios.studies.reproduce.showing.show_contents import print_contents
+    from peopleboy.scenarios.scores.suite_table import THESIS
+    from peopleboy.scenarios.studies.reproduce.showing.show_contents import print_contents
 
     for name in suites:
         if name not in THESIS:
@@ -57,7 +57,7 @@ def train_occlusion(
 
     One set of scenarios is learned from, another one is for testing. Needs scikit-learn: .[train].
     """
-    from scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
+    from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
 
     folder = out if out is not None else Path("runs") / f"occlusion-{tracker}"
     click.echo(give_lesson(folder, tracker, seeds, triplets=triplets, again=again, ship=ship))
@@ -95,7 +95,7 @@ def reproduce(
     ID is one of `--list`, or its number: 4.9 stands for figures 4.9a and 4.9b. A killed call goes on where it
     was when it is given again.
     """
-    from scenarios.studies.reproduce.show import list_experiments, reproduce_with_progress
+    from peopleboy.scenarios.studies.reproduce.show import list_experiments, reproduce_with_progress
 
     if lists:
         list_experiments(names)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 if TYPE_CHECKING:
-    from scenarios.footage.track_footage import Tracked, TrackOptions
+    from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
 
 _TRACKERS = "footage, peopleboy, learned, thesis, colour, thermal, paper"
 
@@ -75,8 +75,8 @@ def track(
     from rich.console import Console
     from rich.progress import Progress
 
-    from scenarios.footage.track_footage import TrackOptions, track_footage
-    from tracker.footage.grey import Radiometry, parse_scale
+    from peopleboy.scenarios.footage.track_footage import TrackOptions, track_footage
+    from peopleboy.tracker.footage.grey import Radiometry, parse_scale
 
     options = TrackOptions(
         footage=footage,
@@ -118,8 +118,8 @@ def _parse_start(text: str) -> tuple[float, float, float, float] | str:
 
 
 def _tell(tracked: Tracked, options: TrackOptions) -> None:
-    from scenarios.footage.outcome import outcome_lines
-    from scenarios.scores.show_scores import print_scores
+    from peopleboy.scenarios.footage.outcome import outcome_lines
+    from peopleboy.scenarios.scores.show_scores import print_scores
 
     for note in tracked.notes:
         click.echo(f"peopleboy: note: {note}", err=True)

@@ -12,7 +12,7 @@ import click
 @click.option("--web", is_flag=True, help="Serve it to a browser on this machine, until Ctrl-C.")
 def view(folder: Path, web: bool) -> None:
     """Open the recording of a run in the rerun viewer."""
-    from scenarios.recording.viewer import is_whole, open_viewer, recording_in, serve
+    from peopleboy.scenarios.recording.viewer import is_whole, open_viewer, recording_in, serve
 
     recording = recording_in(folder)
     if not is_whole(recording):

@@ -11,18 +11,27 @@ from typing import Final
 from PIL import Image, ImageDraw, ImageFont
 from PIL.PngImagePlugin import PngInfo
 
-from bad_input import BadInput
-from scenarios.drawing.key_moments import KeyMoments, Moment
-from scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
-from scenarios.drawing.palette import Rgb
-from scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, STRONG, WEAK, cut, draw_head, font
-from scenarios.drawing.wording import counted
-from scenarios.loop.loop import Tick
-from scenarios.loop.run_events import LogLine
-from scenarios.run_folder.out_folder import writing_to
-from sim.config import RobotConfig
-from sim.geometry.alignment import affine_between
-from tracker.thermal.config import ContourConfig
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.key_moments import KeyMoments, Moment
+from peopleboy.scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
+from peopleboy.scenarios.drawing.palette import Rgb
+from peopleboy.scenarios.drawing.sheet_head import (
+    HEAD_PX,
+    MARGIN_PX,
+    PAGE,
+    STRONG,
+    WEAK,
+    cut,
+    draw_head,
+    font,
+)
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.sim.config import RobotConfig
+from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.wording import counted
 
 WIDTH_PX: Final = 1600
 COLUMNS: Final = 4

@@ -10,11 +10,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.drawing.wording import describe
-from scenarios.loop.loop import Tick
-from scenarios.loop.run_events import LogLine
-from sim.truth.truth import PersonTruth
-from tracker.track import Status, Track
+from peopleboy.scenarios.drawing.event_wording import describe
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.track import Status, Track
 
 # What a moment may be about, the most telling first, and how many of each kind are kept.
 _KINDS = {

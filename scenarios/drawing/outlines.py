@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from sim.geometry.poses import pose_matrices
-from sim.places.extent import fixture_extent, shape_extent
-from sim.places.place import Fixture
-from sim.shapes.shapes import Shape, ShapeKind
+from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.places.extent import fixture_extent, shape_extent
+from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 Polygon = NDArray[np.float64]  # (N, 2) [m] corners, world frame
 

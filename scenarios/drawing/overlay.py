@@ -14,11 +14,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
-from sim.geometry.pinhole import Matrix
-from tracker.thermal.config import ContourConfig
-from tracker.thermal.contour.ellipse import outline
-from tracker.track import Status, Track
+from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.tracker.thermal.contour.ellipse import outline
+from peopleboy.tracker.track import Status, Track
 
 Picture = NDArray[np.uint8]  # (H, W, 3) RGB
 Box = tuple[float, float, float, float]

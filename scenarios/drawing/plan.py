@@ -10,16 +10,23 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
-from bad_input import BadInput
-from scenarios.drawing.labels import Labels
-from scenarios.drawing.plan_legend import draw_legend
-from scenarios.drawing.plan_people import draw_person
-from scenarios.drawing.plan_place import SPAN_C, WARMTH, draw_floor, draw_things, draw_walls, label_things
-from scenarios.drawing.plan_robot import draw_robot
-from scenarios.drawing.plan_sheet import INK, PAPER, lay_out, sections
-from scenarios.files.scenario import Scenario
-from scenarios.run_folder.out_folder import writing_to
-from sim.config import WorldConfig
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.scenarios.drawing.plan_legend import draw_legend
+from peopleboy.scenarios.drawing.plan_people import draw_person
+from peopleboy.scenarios.drawing.plan_place import (
+    SPAN_C,
+    WARMTH,
+    draw_floor,
+    draw_things,
+    draw_walls,
+    label_things,
+)
+from peopleboy.scenarios.drawing.plan_robot import draw_robot
+from peopleboy.scenarios.drawing.plan_sheet import INK, PAPER, lay_out, sections
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.sim.config import WorldConfig
 
 _PEOPLE = ("#1f6fb4", "#2f7d32", "#7b3fa0", "#a8327a", "#00798c", "#5d4a1f")
 _WIDTH_IN, _HEAD_IN, _FOOT_IN, _SIDE_IN, _DPI = 11.0, 0.85, 1.3, 0.25, 130

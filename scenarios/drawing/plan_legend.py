@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from scenarios.drawing.plan_sheet import INK
+from peopleboy.scenarios.drawing.plan_sheet import INK
 
 _PERSON, _ROBOT = "#1f6fb4", "#c0392b"
 _TIMES: Final = "Times are those of people whom nobody is in the way of; those who make way are later."

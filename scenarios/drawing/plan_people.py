@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-from scenarios.drawing.labels import Labels
-from sim.people.person import PersonConfig
-from sim.people.walking.walk import ALONE, Walker
+from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.sim.people.person import PersonConfig
+from peopleboy.sim.people.walking.walk import ALONE, Walker
 
 _STEP_S = 0.05
 _MARK_EVERY_S = 5.0

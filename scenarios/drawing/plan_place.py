@@ -7,12 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.patches import Polygon, Rectangle
 
-from scenarios.drawing.labels import Box as Taken
-from scenarios.drawing.labels import Labels
-from scenarios.drawing.outlines import outlines
-from sim.places.extent import fixture_extent
-from sim.places.floor_plan import FloorPlan
-from sim.places.place import Fixture, Place
+from peopleboy.scenarios.drawing.labels import Box as Taken
+from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.scenarios.drawing.outlines import outlines
+from peopleboy.sim.places.extent import fixture_extent
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.place import Fixture, Place
 
 WARMTH = LinearSegmentedColormap.from_list(
     "warmth",

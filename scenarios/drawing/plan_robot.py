@@ -9,12 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon
 from numpy.typing import NDArray
 
-from scenarios.drawing.labels import Labels
-from scenarios.files.check import ROBOT_M
-from scenarios.files.scenario import Scenario
-from scenarios.files.schema import CommandSpec
-from sim.config import RobotConfig
-from sim.places.place import Place
+from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.scenarios.files.check import ROBOT_M
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.files.schema import CommandSpec
+from peopleboy.sim.config import RobotConfig
+from peopleboy.sim.places.place import Place
 
 _COLOUR = "#c0392b"
 _COUNTED_M = (3.0, 10.0)

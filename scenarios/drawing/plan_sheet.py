@@ -7,7 +7,7 @@ import math
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from scenarios.drawing.labels import Box
+from peopleboy.scenarios.drawing.labels import Box
 
 PAPER, INK = "#fbfaf7", "#2b2d30"
 MARGIN_M = 0.4

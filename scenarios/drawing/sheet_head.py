@@ -9,7 +9,7 @@ from typing import Final
 import matplotlib
 from PIL import Image, ImageDraw, ImageFont
 
-from scenarios.drawing.palette import TRUTH, Rgb, track_colour
+from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, track_colour
 
 HEAD_PX: Final = 76
 MARGIN_PX: Final = 24

@@ -13,8 +13,8 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from scenarios.environments.observations import (
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.environments.observations import (
     KINDS,
     Arrays,
     feel,
@@ -23,24 +23,24 @@ from scenarios.environments.observations import (
     see_tracks,
     see_truth,
 )
-from scenarios.environments.randomise import check_options, vary
-from scenarios.environments.rewards import TASKS, TERMS, reward_terms
-from scenarios.environments.scene_picture import ScenePicture
-from scenarios.environments.situation import Episode
-from scenarios.files.load import load_scenario
-from scenarios.files.scenario import Scenario
-from scenarios.loop.loop import make_frame
-from scenarios.scores.score import following_task
-from sim.config import RobotConfig, WorldConfig
-from sim.geometry.pinhole import Camera
-from sim.observation import Observation, Senses
-from sim.random_streams import stream
-from sim.rendering.render import BLIND
-from sim.robot.peoplebot import Planar
-from sim.truth.image_free_truth import Scene
-from sim.world import World
-from tracker.track import Track
-from tracker.trackers import DEFAULT_TRACKER, Tracker, make_tracker
+from peopleboy.scenarios.environments.randomise import check_options, vary
+from peopleboy.scenarios.environments.rewards import TASKS, TERMS, reward_terms
+from peopleboy.scenarios.environments.scene_picture import ScenePicture
+from peopleboy.scenarios.environments.situation import Episode
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.scores.score import following_task
+from peopleboy.sim.config import RobotConfig, WorldConfig
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.observation import Observation, Senses
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.rendering.render import BLIND
+from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.truth.image_free_truth import Scene
+from peopleboy.sim.world import World
+from peopleboy.tracker.track import Track
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, Tracker, make_tracker
 
 # A quarter of the rate of a run. The robot's ways differ by millimetres, and a step takes half the time.
 PHYSICS_HZ: Final = 60
@@ -62,7 +62,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     `Episode.metrics`), `events` (what is new, and with whom), and `seed`.
 
     `reset(seed=3)` plays the world of `peopleboy run --seed 3`; `reset()` goes on to a seed drawn from it.
-    `reset(options=...)` varies that one episode, see `scenarios.environments.randomise.LIMITS`.
+    `reset(options=...)` varies that one episode, see `peopleboy.scenarios.environments.randomise.LIMITS`.
 
     Args:
         scenario: name in the library or path of a YAML file.
@@ -163,7 +163,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._is_over = terminated or truncated
         return observation, math.fsum(terms.values()), terminated, truncated, self._info(terms)
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """Draw thermal image, colour image and plan side by side, (360, 1440, 3).
 
         Raises:

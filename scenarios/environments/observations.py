@@ -10,11 +10,11 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from sim.config import RobotConfig
-from sim.observation import Observation, Senses
-from sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
-from sim.truth.image_free_truth import Bystander, Scene
-from tracker.track import Status, Track
+from peopleboy.sim.config import RobotConfig
+from peopleboy.sim.observation import Observation, Senses
+from peopleboy.sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
+from peopleboy.sim.truth.image_free_truth import Bystander, Scene
+from peopleboy.tracker.track import Status, Track
 
 Arrays = dict[str, NDArray[Any]]
 Row = tuple[float, ...]
@@ -37,7 +37,7 @@ _FARTHEST_M: Final = 1e4
 _FASTEST: Final = 10.0
 
 
-def observation_space(kind: str, robot: RobotConfig) -> spaces.Dict:
+def observation_space(kind: str, robot: RobotConfig) -> spaces.Space[Arrays]:
     """Give the space of one of `KINDS`.
 
     `sonar` is (16,) [m], counted from the left to the front and round; `odometry` is (6,): x, y [m] from the
@@ -58,7 +58,7 @@ def observation_space(kind: str, robot: RobotConfig) -> spaces.Dict:
     else:
         lowest, highest = (np.tile(np.array(row, np.float32), MOST_TRACKS) for row in (_LOWEST, _HIGHEST))
         found["tracks"] = spaces.Box(lowest, highest, dtype=np.float32)
-    return spaces.Dict(found)
+    return spaces.Dict(found)  # type: ignore[return-value]  # typed there as if samples were spaces
 
 
 def feel(senses: Senses, start: Planar) -> Arrays:

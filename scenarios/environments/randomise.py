@@ -9,12 +9,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from bad_input import BadInput
-from scenarios.files.schema_errors import hint
-from sim.config import RobotConfig, WorldConfig
-from sim.people.body.clothes import random_clothes
-from sim.places.place import Fixture, Place
-from sim.shapes.materials import Look
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.schema_errors import hint
+from peopleboy.sim.config import RobotConfig, WorldConfig
+from peopleboy.sim.people.body.clothes import random_clothes
+from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.shapes.materials import Look
 
 LIMITS: Final[Mapping[str, tuple[float, float]]] = {
     "warmer_k": (-30.0, 30.0),

@@ -26,7 +26,7 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
-from scenarios.environments.situation import Situation
+from peopleboy.scenarios.environments.situation import Situation
 
 TASKS: Final = ("follow", "corridor", "patrol")
 TERMS: Final = ("keep", "face", "progress", "centre", "space", "change", "collision", "lost")

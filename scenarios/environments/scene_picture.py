@@ -11,16 +11,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from scenarios.drawing.labels import Labels
-from scenarios.drawing.overlay import Picture, draw_tracks, show_thermal
-from scenarios.drawing.palette import ROBOT, Rgb, person_colour
-from scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
-from sim.observation import Observation
-from sim.places.floor_plan import FloorPlan
-from sim.places.place import Place
-from sim.robot.peoplebot import RADIUS_M, Planar
-from sim.truth.image_free_truth import Bystander, Scene
-from tracker.track import Track
+from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.scenarios.drawing.overlay import Picture, draw_tracks, show_thermal
+from peopleboy.scenarios.drawing.palette import ROBOT, Rgb, person_colour
+from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
+from peopleboy.sim.observation import Observation
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.place import Place
+from peopleboy.sim.robot.peoplebot import RADIUS_M, Planar
+from peopleboy.sim.truth.image_free_truth import Bystander, Scene
+from peopleboy.tracker.track import Track
 
 WIDTH_PX, HEIGHT_PX = 480, 360  # of each of the three panels
 _PX_PER_M = 40.0  # of the plan, which shows 12 x 9 m around the robot

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from scenarios.environments.observations import SEEN_SHARE
-from sim.places.floor_plan import FloorPlan
-from sim.robot.peoplebot import RADIUS_M
-from sim.truth.image_free_truth import Bystander, Scene
+from peopleboy.scenarios.environments.observations import SEEN_SHARE
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.robot.peoplebot import RADIUS_M
+from peopleboy.sim.truth.image_free_truth import Bystander, Scene
 
 LOST_S: Final = 10.0
 FACING_RAD: Final = math.radians(10.0)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.behaviour import Behaviour
-from behaviours.percept import SeenPerson, Sight
-from scenarios.environments.observations import COLUMNS, Arrays
-from sim.config import DriveConfig
-from sim.robot.sonar import SONAR_ANGLE_RAD
+from peopleboy.behaviours.behaviour import Behaviour
+from peopleboy.behaviours.percept import SeenPerson, Sight
+from peopleboy.scenarios.environments.observations import COLUMNS, Arrays
+from peopleboy.sim.config import DriveConfig
+from peopleboy.sim.robot.sonar import SONAR_ANGLE_RAD
 
 _DT_S = 1.0 / 15.0
 

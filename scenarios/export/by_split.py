@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bad_input import BadInput
-from scenarios.export.dataset.splits import SPLITS, read_split
-from scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.export.dataset.splits import SPLITS, read_split
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 
 
 def by_split(runs: Sequence[FinishedRun]) -> dict[str | None, list[FinishedRun]]:

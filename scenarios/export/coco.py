@@ -24,15 +24,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.export.by_split import by_split
-from scenarios.export.replay import Play
-from scenarios.export.run_lengths import encode_lengths, run_lengths
-from scenarios.loop.loop import Tick
-from scenarios.run_folder.finished_run import FinishedRun
-from scenarios.run_folder.image_files import make_image_folders, write_images
-from sim.geometry.pinhole import Camera, Matrix
-from sim.people.body.joints import JOINT_NAMES
-from sim.truth.truth import Box, PersonTruth
+from peopleboy.scenarios.export.by_split import by_split
+from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.export.run_lengths import encode_lengths, run_lengths
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.image_files import make_image_folders, write_images
+from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.people.body.joints import JOINT_NAMES
+from peopleboy.sim.truth.truth import Box, PersonTruth
 
 CORNER_PX = 0.5
 

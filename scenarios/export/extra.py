@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 
 def need(package: str, form: str) -> Any:

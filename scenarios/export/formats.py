@@ -6,16 +6,16 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from scenarios.export.by_split import by_split
-from scenarios.export.coco import write_coco
-from scenarios.export.mot import write_mot
-from scenarios.export.replay import Play
-from scenarios.export.ros_bag import write_mcap
-from scenarios.export.video import write_mp4
-from scenarios.export.viper import write_viper
-from scenarios.run_folder.finished_run import FinishedRun
-from scenarios.run_folder.folder import versions
-from scenarios.run_folder.whole_folder import whole_folder
+from peopleboy.scenarios.export.by_split import by_split
+from peopleboy.scenarios.export.coco import write_coco
+from peopleboy.scenarios.export.mot import write_mot
+from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.export.ros_bag import write_mcap
+from peopleboy.scenarios.export.video import write_mp4
+from peopleboy.scenarios.export.viper import write_viper
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 
 Writer = Callable[[Sequence[FinishedRun], Path, Play], None]
 

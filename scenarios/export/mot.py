@@ -17,11 +17,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from bad_input import BadInput
-from scenarios.export.by_split import by_split
-from scenarios.export.replay import Play
-from scenarios.run_folder.finished_run import FinishedRun
-from scenarios.run_folder.image_files import write_png
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.export.by_split import by_split
+from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.image_files import write_png
 
 BENCHMARK, EVERYTHING = "peopleboy", "all"
 

@@ -8,9 +8,9 @@ from contextlib import ExitStack, contextmanager
 from rich.console import Console
 from rich.progress import Progress
 
-from scenarios.export.replay import Play, replay
-from scenarios.loop.loop import Tick
-from scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.export.replay import Play, replay
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 
 
 @contextmanager

@@ -11,14 +11,14 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from behaviours.command import Command
-from scenarios.loop.faults import FaultySensors
-from scenarios.loop.loop import Tick
-from scenarios.run_folder.finished_run import FinishedRun
-from scenarios.run_folder.folder import versions
-from scenarios.run_folder.tables import Row, truth_rows
-from sim.world import World
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.command import Command
+from peopleboy.scenarios.loop.faults import FaultySensors
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.tables import Row, truth_rows
+from peopleboy.sim.world import World
 
 Play = Callable[[FinishedRun], Iterator[Tick]]
 

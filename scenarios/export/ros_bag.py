@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from scenarios.export.extra import need
-from scenarios.export.replay import Play
-from scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.export.extra import need
+from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 
 # Of the bag's metadata: Iron's. Later distributions read it too, and Humble, which fails at version 9.
 _VERSION: Final = 8
@@ -28,7 +28,7 @@ def write_mcap(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
 def _write_bag(run: FinishedRun, folder: Path, play: Play) -> None:
     from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
-    from scenarios.export.ros_messages import Messenger, message_types, nanoseconds
+    from peopleboy.scenarios.export.ros_messages import Messenger, message_types, nanoseconds
 
     types = message_types()
     messenger = Messenger(run.robot, types)

@@ -16,13 +16,13 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 from scipy.spatial.transform import Rotation
 
-from scenarios.drawing.overlay import encode_jpeg
-from scenarios.loop.loop import Tick
-from sim.config import RobotConfig
-from sim.geometry.pinhole import Camera
-from sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
-from sim.truth.truth import Box
-from tracker.track import Status
+from peopleboy.scenarios.drawing.overlay import encode_jpeg
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.sim.config import RobotConfig
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
+from peopleboy.sim.truth.truth import Box
+from peopleboy.tracker.track import Status
 
 Message = tuple[str, str, Any]  # topic, type, content
 

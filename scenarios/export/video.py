@@ -10,14 +10,14 @@ from typing import Final
 import cv2
 import numpy as np
 
-from scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
-from scenarios.drawing.palette import TRUTH, Rgb
-from scenarios.export.extra import need
-from scenarios.export.replay import Play
-from scenarios.loop.loop import Tick
-from scenarios.run_folder.finished_run import FinishedRun
-from sim.config import RobotConfig
-from sim.geometry.alignment import affine_between
+from peopleboy.scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
+from peopleboy.scenarios.drawing.palette import TRUTH, Rgb
+from peopleboy.scenarios.export.extra import need
+from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.sim.config import RobotConfig
+from peopleboy.sim.geometry.alignment import affine_between
 
 HEIGHT_PX: Final = 480
 BAR_PX: Final = 32

@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
 
-from scenarios.export.replay import Play
-from scenarios.run_folder.finished_run import FinishedRun
-from sim.truth.truth import Box
-from tracker.evaluation.mot_files import read_tracks, read_truth
+from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.sim.truth.truth import Box
+from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 
 VIPER, DATA = "http://lamp.cfar.umd.edu/viper#", "http://lamp.cfar.umd.edu/viperdata#"
 

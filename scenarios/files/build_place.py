@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from bad_input import BadInput
-from scenarios.files.place_things import make_things, resolve_colour
-from scenarios.files.schema import (
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.place_things import make_things, resolve_colour
+from peopleboy.scenarios.files.schema import (
     Colour,
     CorridorSpec,
     DoorSpec,
@@ -16,11 +16,11 @@ from scenarios.files.schema import (
     RoomSpec,
     ScenarioSpec,
 )
-from scenarios.files.schema_errors import hint
-from sim.places.floor_plan import Door, FloorPlan, check_doors
-from sim.places.place import Place
-from sim.places.rooms import Surfaces, build_place, l_corridor, straight_corridor, t_corridor
-from sim.shapes.materials import Look
+from peopleboy.scenarios.files.schema_errors import hint
+from peopleboy.sim.places.floor_plan import Door, FloorPlan, check_doors
+from peopleboy.sim.places.place import Place
+from peopleboy.sim.places.rooms import Surfaces, build_place, l_corridor, straight_corridor, t_corridor
+from peopleboy.sim.shapes.materials import Look
 
 
 def make_floor_plan(spec: PlaceSpec) -> FloorPlan:

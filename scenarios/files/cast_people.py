@@ -8,13 +8,13 @@ from dataclasses import asdict
 
 import numpy as np
 
-from scenarios.files.schema import ClothesSpec, GroupSpec, PersonSpec, WaypointSpec
-from sim.people.body.clothes import Clothes, random_clothes
-from sim.people.body.postures import Posture
-from sim.people.person import PersonConfig
-from sim.people.walking.path import abreast
-from sim.people.walking.walk import Waypoint
-from sim.random_streams import stream
+from peopleboy.scenarios.files.schema import ClothesSpec, GroupSpec, PersonSpec, WaypointSpec
+from peopleboy.sim.people.body.clothes import Clothes, random_clothes
+from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.person import PersonConfig
+from peopleboy.sim.people.walking.path import abreast
+from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.random_streams import stream
 
 # Stature of adults [m]: mean and standard deviation (NCD-RisC 2016, young adults of central Europe, rounded).
 _STATURE_M = {"female": (1.66, 0.06), "male": (1.79, 0.07)}

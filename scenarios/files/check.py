@@ -9,14 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from scenarios.files.place_things import describe_floor, name_things
-from scenarios.files.schema import PersonSpec, RobotSpec, ScenarioSpec, WaypointSpec
-from scenarios.files.schema_errors import hint
-from sim.places.floor_plan import FloorPlan
-from sim.places.place import Place
-from sim.places.rectangle import Rectangle
-from sim.places.things import KINDS
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.place_things import describe_floor, name_things
+from peopleboy.scenarios.files.schema import PersonSpec, RobotSpec, ScenarioSpec, WaypointSpec
+from peopleboy.scenarios.files.schema_errors import hint
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.place import Place
+from peopleboy.sim.places.rectangle import Rectangle
+from peopleboy.sim.places.things import KINDS
 
 BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
 ROBOT_M = 0.27  # radius of the circle around the robot

@@ -11,9 +11,9 @@ from typing import Final
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from bad_input import BadInput
-from behaviours.command import STOP, Command
-from behaviours.percept import Sight
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.percept import Sight
 
 KEPT: Final = "drive.parquet"
 """Where a run keeps the drive that its robot repeated."""

@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from scenarios.files.schema import CameraSpec, RobotSpec, ThermalSpec
-from sim.config import RobotConfig
-from sim.geometry.pinhole import Camera
+from peopleboy.scenarios.files.schema import CameraSpec, RobotSpec, ThermalSpec
+from peopleboy.sim.config import RobotConfig
+from peopleboy.sim.geometry.pinhole import Camera
 
 _IN_DEGREES = {"vertical_fov_deg": "vertical_fov_rad", "pitch_deg": "pitch_rad", "yaw_deg": "yaw_rad"}
 _RENAMED = {"width_px": "width", "height_px": "height", "mount_m": "position_m"}

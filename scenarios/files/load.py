@@ -7,11 +7,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from bad_input import BadInput
-from scenarios.files.read_yaml import read_yaml
-from scenarios.files.scenario import Scenario, make_scenario
-from scenarios.files.schema import ScenarioSpec
-from scenarios.files.schema_errors import explain, hint
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.scenarios.files.scenario import Scenario, make_scenario
+from peopleboy.scenarios.files.schema import ScenarioSpec
+from peopleboy.scenarios.files.schema_errors import explain, hint
 
 LIBRARY = Path(__file__).parents[1] / "library"
 SUITES = Path(__file__).parents[1] / "suites"

@@ -8,9 +8,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from xml.etree import ElementTree
 
-from bad_input import BadInput
-from scenarios.files.schema import ScenarioSpec
-from sim.places.extent import find_urdf
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.schema import ScenarioSpec
+from peopleboy.sim.places.extent import find_urdf
 
 # Where PyBullet looks for what a URDF names, from the URDF's own folder.
 _PLACES = (".", "..", "../..")

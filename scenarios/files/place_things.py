@@ -9,15 +9,15 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from bad_input import BadInput
-from scenarios.files.schema import Colour, ScenarioSpec, ThingSpec
-from scenarios.files.schema_errors import hint
-from sim.people.body.clothes import COLOURS
-from sim.places.extent import Extent, find_urdf, fixture_extent, urdf_extent
-from sim.places.floor_plan import FloorPlan, Wall
-from sim.places.place import Fixture
-from sim.places.things import KINDS, Thing, build_thing
-from sim.shapes.materials import Pattern, PatternKind, Rgb
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.schema import Colour, ScenarioSpec, ThingSpec
+from peopleboy.scenarios.files.schema_errors import hint
+from peopleboy.sim.people.body.clothes import COLOURS
+from peopleboy.sim.places.extent import Extent, find_urdf, fixture_extent, urdf_extent
+from peopleboy.sim.places.floor_plan import FloorPlan, Wall
+from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.places.things import KINDS, Thing, build_thing
+from peopleboy.sim.shapes.materials import Pattern, PatternKind, Rgb
 
 _GAP_M = 0.01  # between a wall and what stands against it
 _SINK_M = 0.005  # furniture from a file reaches so far into what it stands on

@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 _LARGEST_BYTES = 1_000_000
 

@@ -8,25 +8,25 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from bad_input import BadInput
-from behaviours.behaviour import Behaviour
-from behaviours.command import Command
-from behaviours.corridor.corridor_from_image import CameraView
-from behaviours.corridor.follow_corridor import CorridorConfig
-from behaviours.following.follow_person import FollowConfig
-from behaviours.registry import make_behaviour
-from scenarios.files.build_place import make_floor_plan, make_place
-from scenarios.files.cast_people import cast, make_config, members
-from scenarios.files.check import Ground, check_scenario, make_ground
-from scenarios.files.drives import KEPT, Repeat, pack_drive, read_drive
-from scenarios.files.equip_robot import equip_robot
-from scenarios.files.outfits import tell_apart
-from scenarios.files.own_files import read_own_files
-from scenarios.files.schema import DrawnSpec, PersonSpec, RobotSpec, ScenarioSpec
-from sim.config import WorldConfig
-from sim.places.floor_plan import FloorPlan
-from sim.places.place import Place
-from sim.random_streams import stream
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.behaviour import Behaviour
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.corridor.corridor_from_image import CameraView
+from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig
+from peopleboy.behaviours.following.follow_person import FollowConfig
+from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.scenarios.files.build_place import make_floor_plan, make_place
+from peopleboy.scenarios.files.cast_people import cast, make_config, members
+from peopleboy.scenarios.files.check import Ground, check_scenario, make_ground
+from peopleboy.scenarios.files.drives import KEPT, Repeat, pack_drive, read_drive
+from peopleboy.scenarios.files.equip_robot import equip_robot
+from peopleboy.scenarios.files.outfits import tell_apart
+from peopleboy.scenarios.files.own_files import read_own_files
+from peopleboy.scenarios.files.schema import DrawnSpec, PersonSpec, RobotSpec, ScenarioSpec
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.place import Place
+from peopleboy.sim.random_streams import stream
 
 RENDERERS = ("raycast", "bullet")
 

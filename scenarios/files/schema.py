@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
-from sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS
-from sim.places.things import KINDS
+from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS
+from peopleboy.sim.places.things import KINDS
 
 Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0)]
 Point = Annotated[tuple[Coordinate, Coordinate], Field(strict=False)]

@@ -9,13 +9,13 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError
 
-from bad_input import BadInput
-from scenarios.files.drives import read_drive
-from scenarios.files.load import SUITES, load_scenario
-from scenarios.files.read_yaml import read_yaml
-from scenarios.files.scenario import Scenario
-from scenarios.files.schema import Key, Strict
-from scenarios.files.schema_errors import explain, hint
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.drives import read_drive
+from peopleboy.scenarios.files.load import SUITES, load_scenario
+from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.files.schema import Key, Strict
+from peopleboy.scenarios.files.schema_errors import explain, hint
 
 DRIVES = SUITES / "drives"
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from scenarios.drawing.wording import counted
-from scenarios.footage.track_footage import Tracked, TrackOptions
-from tracker.trackers import TRACKERS
+from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
+from peopleboy.tracker.trackers import TRACKERS
+from peopleboy.wording import counted
 
 
 def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:

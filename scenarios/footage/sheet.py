@@ -12,12 +12,20 @@ import cv2
 import numpy as np
 from PIL import Image
 
-from bad_input import BadInput
-from scenarios.drawing.overlay import Box, Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
-from scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, draw_head
-from tracker.footage.grey import Grey
-from tracker.thermal.config import ContourConfig
-from tracker.track import Track
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.overlay import (
+    Box,
+    Picture,
+    Plate,
+    draw_tracks,
+    draw_truth,
+    enlarge,
+    show_thermal,
+)
+from peopleboy.scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, draw_head
+from peopleboy.tracker.footage.grey import Grey
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.tracker.track import Track
 
 FILM_PX: Final = 480
 TILE_PX: Final = 400

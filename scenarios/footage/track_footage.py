@@ -16,26 +16,26 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from scenarios.drawing.overlay import Picture
-from scenarios.drawing.wording import counted
-from scenarios.footage.sheet import FILM_PX, TILE_PX, Annotated, Film, Sheet, draw_frame
-from scenarios.run_folder.folder import versions
-from scenarios.run_folder.out_folder import check_named
-from scenarios.run_folder.tables import TRACKS, Row, track_row, write_table
-from scenarios.run_folder.whole_folder import whole_folder
-from sim.random_streams import stream
-from tracker.evaluation.evaluate import Scores, evaluate
-from tracker.evaluation.mot_files import read_tracks, track_line, write_truth
-from tracker.evaluation.table import to_json
-from tracker.footage.grey import LEAST_SIDE_PX, Grey, Radiometry, grey_maker
-from tracker.footage.pictures import Footage, open_footage
-from tracker.footage.plausible import check_plausible
-from tracker.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
-from tracker.frame import Frame
-from tracker.thermal.people_tracker import PeopleTracker
-from tracker.track import Status, Track
-from tracker.trackers import FOOTAGE_TRACKER, TRACKERS, make_tracker
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.overlay import Picture
+from peopleboy.scenarios.footage.sheet import FILM_PX, TILE_PX, Annotated, Film, Sheet, draw_frame
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.out_folder import check_named
+from peopleboy.scenarios.run_folder.tables import TRACKS, Row, track_row, write_table
+from peopleboy.scenarios.run_folder.whole_folder import whole_folder
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.mot_files import read_tracks, track_line, write_truth
+from peopleboy.tracker.evaluation.table import to_json
+from peopleboy.tracker.footage.grey import LEAST_SIDE_PX, Grey, Radiometry, grey_maker
+from peopleboy.tracker.footage.pictures import Footage, open_footage
+from peopleboy.tracker.footage.plausible import check_plausible
+from peopleboy.tracker.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.trackers import FOOTAGE_TRACKER, TRACKERS, make_tracker
+from peopleboy.wording import counted
 
 COLOUR_TRACKER: Final = "colour"
 """It differs from `thermal` by what colours add alone."""

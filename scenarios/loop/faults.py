@@ -8,15 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from scenarios.files.schema import FaultSpec
-from scenarios.loop.loop import Stage
-from sim.observation import Observation
-from sim.robot.peoplebot import Planar
-from sim.truth.truth import Truth
-from tracker.frame import Frame
-from tracker.thermal.filter.particles import Particles
-from tracker.track import Track
-from tracker.trackers import Tracker
+from peopleboy.scenarios.files.schema import FaultSpec
+from peopleboy.scenarios.loop.loop import Stage
+from peopleboy.sim.observation import Observation
+from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.truth.truth import Truth
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.track import Track
+from peopleboy.tracker.trackers import Tracker
 
 JUMP_EVERY_S = 1.0
 JUMP = Planar(x=0.7, y=-0.4, heading=math.radians(50.0))

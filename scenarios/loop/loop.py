@@ -9,18 +9,18 @@ from typing import Protocol
 
 import numpy as np
 
-from bad_input import BadInput
-from behaviours.behaviour import Behaviour
-from behaviours.command import Command
-from behaviours.percept import SeenPerson, Sight
-from sim.observation import Observation
-from sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
-from sim.robot.sonar import SONAR_ANGLE_RAD
-from sim.truth.truth import Truth
-from tracker.frame import Frame
-from tracker.thermal.filter.particles import Particles
-from tracker.track import Status, Track
-from tracker.trackers import Tracker
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.behaviour import Behaviour
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.percept import SeenPerson, Sight
+from peopleboy.sim.observation import Observation
+from peopleboy.sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
+from peopleboy.sim.robot.sonar import SONAR_ANGLE_RAD
+from peopleboy.sim.truth.truth import Truth
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.trackers import Tracker
 
 # Ways between two images beyond what the drive can do in a quarter of a second are jumps of the odometry.
 FARTHEST_TURN_RAD = math.radians(40.0)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from bad_input import BadInput
-from sim.random_streams import stream
-from sim.truth.truth import PersonTruth, Truth
-from tracker.frame import Frame
-from tracker.thermal.filter.particles import Particles
-from tracker.track import Ellipse, Status, Track
-from tracker.trackers import TRACKERS, Tracker, make_tracker
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.truth.truth import PersonTruth, Truth
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.track import Ellipse, Status, Track
+from peopleboy.tracker.trackers import TRACKERS, Tracker, make_tracker
 
 TRUTH = "truth"
 SEEN = 0.3  # share of a silhouette above which a person counts as seen

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from scenarios.loop.loop import Tick
-from scenarios.loop.track_events import TrackEvents
-from sim.truth.events import EventLog
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.track_events import TrackEvents
+from peopleboy.sim.truth.events import EventLog
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,7 +17,7 @@ class LogLine:
     Attributes:
         frame: 1, 2, ...
         time_s: [s] since the start.
-        kind: what happened; those of `sim.truth.events.Event` and `TrackEvent`, and "mode".
+        kind: what happened; those of `peopleboy.sim.truth.events.Event` and `TrackEvent`, and "mode".
         who: a person, "robot", or "track 3".
         other: who or what else takes part: an occluder, what is touched, or the new mode.
         why: of a change of mode and of a lost track, the reason; of a re-identified one, since when.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from tracker.track import Status, Track
+from peopleboy.tracker.track import Status, Track
 
 OUT_SHARE = 0.3  # of a box's width outside the image, from which who is lost there has left it
 PAUSE_S = 1.0  # an occlusion that goes on after less is the same one

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.drawing.palette import TRUTH, Rgb, track_colour
-from scenarios.recording.marks import Colours, Floats, colours_of
-from sim.truth.truth import Box, PersonTruth
-from tracker.track import Track
+from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, track_colour
+from peopleboy.scenarios.recording.marks import Colours, Floats, colours_of
+from peopleboy.sim.truth.truth import Box, PersonTruth
+from peopleboy.tracker.track import Track
 
 LEAST_SHARE = 0.02  # of a silhouette, from which being hidden is worth an arrow
 _CHEST, _HEAD = 0.3, 0.08  # where arrows on images start and end, in box heights below the top

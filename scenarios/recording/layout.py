@@ -7,9 +7,9 @@ import math
 import rerun as rr
 import rerun.blueprint as rrb
 
-from scenarios.recording.entities import COLOUR, EVENTS, LAYERS, THERMAL, TRAILS
-from sim.config import WorldConfig
-from sim.geometry.pinhole import Camera
+from peopleboy.scenarios.recording.entities import COLOUR, EVENTS, LAYERS, THERMAL, TRAILS
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.pinhole import Camera
 
 
 def lay_out(config: WorldConfig) -> rrb.Blueprint:

@@ -11,15 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.drawing.overlay import map_box
-from scenarios.drawing.palette import ROBOT, TRUTH, Rgb, person_colour, track_colour
-from scenarios.loop.loop import Tick
-from sim.geometry.pinhole import Matrix
-from sim.truth.truth import PersonTruth
-from tracker.thermal.config import ContourConfig
-from tracker.thermal.contour.ellipse import outline
-from tracker.thermal.filter.particles import Particles
-from tracker.track import Status, Track
+from peopleboy.scenarios.drawing.overlay import map_box
+from peopleboy.scenarios.drawing.palette import ROBOT, TRUTH, Rgb, person_colour, track_colour
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.tracker.thermal.contour.ellipse import outline
+from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.track import Status, Track
 
 PARTICLES_A_FILTER = 50
 PARTICLES_AT_MOST = 100

@@ -12,26 +12,26 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from scenarios.drawing.overlay import encode_jpeg
-from scenarios.drawing.wording import describe_fully
-from scenarios.loop.loop import Tick
-from scenarios.loop.run_events import LogLine
-from scenarios.recording import marks
-from scenarios.recording.arrows import Arrows, believed_arrows, true_arrows, world_arrows
-from scenarios.recording.capsule_people import NOBODY, body_capsules
-from scenarios.recording.entities import COLOUR, EVENTS, OCCLUSIONS, THERMAL, TRAILS, person_path
-from scenarios.recording.layout import lay_out
-from scenarios.recording.packing import pack
-from scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
-from scenarios.recording.rows import Rows
-from scenarios.recording.sections import section_marks
-from scenarios.recording.still import Still
-from sim.config import WorldConfig
-from sim.geometry.alignment import affine_between
-from sim.geometry.pinhole import Matrix
-from sim.robot.peoplebot import Planar
-from tracker.thermal.config import ContourConfig, TrackerConfig
-from tracker.thermal.contour.section_evidence import evidence_of
+from peopleboy.scenarios.drawing.event_wording import describe_fully
+from peopleboy.scenarios.drawing.overlay import encode_jpeg
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.recording import marks
+from peopleboy.scenarios.recording.arrows import Arrows, believed_arrows, true_arrows, world_arrows
+from peopleboy.scenarios.recording.capsule_people import NOBODY, body_capsules
+from peopleboy.scenarios.recording.entities import COLOUR, EVENTS, OCCLUSIONS, THERMAL, TRAILS, person_path
+from peopleboy.scenarios.recording.layout import lay_out
+from peopleboy.scenarios.recording.packing import pack
+from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
+from peopleboy.scenarios.recording.rows import Rows
+from peopleboy.scenarios.recording.sections import section_marks
+from peopleboy.scenarios.recording.still import Still
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.tracker.thermal.config import ContourConfig, TrackerConfig
+from peopleboy.tracker.thermal.contour.section_evidence import evidence_of
 
 APPLICATION = "peopleboy"
 

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.drawing.palette import Rgb, track_colour
-from scenarios.recording.marks import Lines, lines_of
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.contour.contour import FEET, SECTIONS
-from tracker.thermal.contour.ellipse import section_lines
-from tracker.thermal.contour.section_evidence import Evidence
-from tracker.track import Track
+from peopleboy.scenarios.drawing.palette import Rgb, track_colour
+from peopleboy.scenarios.recording.marks import Lines, lines_of
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS
+from peopleboy.tracker.thermal.contour.ellipse import section_lines
+from peopleboy.tracker.thermal.contour.section_evidence import Evidence
+from peopleboy.tracker.track import Track
 
 # ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for one; in thresholds.
 _STEPS = (0.0, 1.0, 2.0)

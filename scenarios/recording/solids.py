@@ -10,11 +10,11 @@ from xml.etree import ElementTree
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from scenarios.drawing.palette import Rgb
-from sim.places.extent import fixture_extent, shape_extent
-from sim.places.place import Fixture
-from sim.shapes.materials import Look
-from sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
+from peopleboy.scenarios.drawing.palette import Rgb
+from peopleboy.sim.places.extent import fixture_extent, shape_extent
+from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

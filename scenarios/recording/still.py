@@ -9,8 +9,8 @@ import numpy as np
 import rerun as rr
 from rerun.components import FillMode
 
-from scenarios.drawing.palette import person_colour, track_colour
-from scenarios.recording.entities import (
+from peopleboy.scenarios.drawing.palette import person_colour, track_colour
+from peopleboy.scenarios.recording.entities import (
     COLOUR,
     LAYERS,
     OCCLUSIONS,
@@ -19,11 +19,11 @@ from scenarios.recording.entities import (
     TRAILS,
     person_path,
 )
-from scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
-from sim.config import WorldConfig
-from sim.geometry.pinhole import Camera
-from sim.robot.peoplebot import URDF
-from sim.shapes.shapes import ShapeKind
+from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.robot.peoplebot import URDF
+from peopleboy.sim.shapes.shapes import ShapeKind
 
 _ROBOT_CURVES = {
     "curves/motion/speed": (("speed [m/s]", "speed asked for"), ((86, 180, 233), (52, 108, 140))),

@@ -13,8 +13,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from urllib.parse import quote
 
-from bad_input import BadInput
-from scenarios.scores.evaluate_runs import runs_in
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.scores.evaluate_runs import runs_in
 
 LOOPBACK = "127.0.0.1"
 NO_SCREEN = "no screen here: --web serves it to a browser"

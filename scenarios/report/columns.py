@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from bad_input import BadInput
-from scenarios.report.findings.finished_run import FinishedRun, read_finished
-from scenarios.report.findings.sentences import some
-from scenarios.report.findings.summary import Outcome, headline, headline_of_many, look_into
-from scenarios.scores.evaluate_runs import evaluate_runs, runs_in
-from tracker.evaluation.evaluate import Scores
-from tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.report.findings.finished_run import FinishedRun, read_finished
+from peopleboy.scenarios.report.findings.summary import Outcome, headline, headline_of_many, look_into
+from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs, runs_in
+from peopleboy.tracker.evaluation.evaluate import Scores
+from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
+from peopleboy.wording import counted
 
 MOST_BESIDE = 4  # columns that a table can hold on paper
 
@@ -95,7 +95,7 @@ def lacking(columns: Sequence[Column]) -> list[str]:
     for column in columns:
         faults = [outcome.run.fault for outcome in column.outcomes if outcome.run.fault]
         if faults:
-            more = f" (and {some(len(faults) - 1, 'run')} more)" if len(faults) > 1 else ""
+            more = f" (and {counted(len(faults) - 1, 'run')} more)" if len(faults) > 1 else ""
             lines.append(
                 f"{faults[0]}{more}; so no plan is drawn and no image rendered again; "
                 "run the scenario again for them"

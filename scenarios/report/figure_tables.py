@@ -10,13 +10,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from bad_input import BadInput
-from scenarios.report.columns import Column
-from scenarios.report.findings.finished_run import FinishedRun
-from scenarios.running.compare_controllers import bootstrap
-from scenarios.scores.corridor_metrics import CorridorScore
-from scenarios.scores.following_metrics import FollowingScore, Row
-from tracker.evaluation.table import FIGURES, Figure
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.report.columns import Column
+from peopleboy.scenarios.report.findings.finished_run import FinishedRun
+from peopleboy.scenarios.running.compare_controllers import bootstrap
+from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
+from peopleboy.tracker.evaluation.table import FIGURES, Figure
 
 _FEWEST_PAIRS = 3  # runs of the same scenario and seed, for an interval of their differences
 

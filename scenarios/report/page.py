@@ -13,17 +13,17 @@ from typing import Any
 import jinja2
 from PIL import Image
 
-from bad_input import BadInput
-from scenarios.drawing.contact_sheet import read_tiles
-from scenarios.drawing.overlay import encode_jpeg
-from scenarios.drawing.palette import TRACK_COLOURS
-from scenarios.report.charts.charts import Chart, chart, track_edges
-from scenarios.report.charts.thermal_stills import Shown, show_frames
-from scenarios.report.charts.timelines import timelines
-from scenarios.report.charts.trajectories import draw_trajectories
-from scenarios.report.columns import Column, are_same_scene, lacking, read_columns
-from scenarios.report.figure_tables import all_lines, drive_lines, number, plain_lines
-from scenarios.report.findings.errors import (
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.contact_sheet import read_tiles
+from peopleboy.scenarios.drawing.overlay import encode_jpeg
+from peopleboy.scenarios.drawing.palette import TRACK_COLOURS
+from peopleboy.scenarios.report.charts.charts import Chart, chart, track_edges
+from peopleboy.scenarios.report.charts.thermal_stills import Shown, show_frames
+from peopleboy.scenarios.report.charts.timelines import timelines
+from peopleboy.scenarios.report.charts.trajectories import draw_trajectories
+from peopleboy.scenarios.report.columns import Column, are_same_scene, lacking, read_columns
+from peopleboy.scenarios.report.figure_tables import all_lines, drive_lines, number, plain_lines
+from peopleboy.scenarios.report.findings.errors import (
     DISTANCES_M,
     VISIBLE,
     curve,
@@ -32,11 +32,11 @@ from scenarios.report.findings.errors import (
     offset,
     visible,
 )
-from scenarios.report.findings.sentences import listed, seconds, spoken
-from scenarios.report.findings.summary import Outcome, headline
-from scenarios.report.findings.worst_moments import BadMoment, common_frames, worst_moments
-from scenarios.report.page_file import check_place, write_page
-from tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
+from peopleboy.scenarios.report.findings.sentences import listed, seconds, spoken
+from peopleboy.scenarios.report.findings.summary import Outcome, headline
+from peopleboy.scenarios.report.findings.worst_moments import BadMoment, common_frames, worst_moments
+from peopleboy.scenarios.report.page_file import check_place, write_page
+from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
 
 HERE = Path(__file__).parent
 _JPEG_QUALITY = 80

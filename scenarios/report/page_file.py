@@ -6,7 +6,7 @@ import re
 from contextlib import suppress
 from pathlib import Path
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 _ENDINGS = (".html", ".htm")
 _REPORT = re.compile(rb"<title>[^<]*: PeopleBoy report</title>")

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario
-from scenarios.files.scenario import Scenario
-from scenarios.run_folder.run_files import RunFiles, read_about, read_files, read_run
-from scenarios.run_folder.tables import Row, track_of
-from sim.config import RobotConfig, WorldConfig
-from tracker.track import Track
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.run_folder.run_files import RunFiles, read_about, read_files, read_run
+from peopleboy.scenarios.run_folder.tables import Row, track_of
+from peopleboy.sim.config import RobotConfig, WorldConfig
+from peopleboy.tracker.track import Track
 
 _FILES = (
     "scenario.yaml", "truth/gt.txt", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",

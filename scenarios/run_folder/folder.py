@@ -12,10 +12,10 @@ from typing import Any, TextIO
 
 import yaml
 
-from scenarios.loop.loop import Tick
-from scenarios.run_folder.image_files import make_image_folders, write_images
-from scenarios.run_folder.out_folder import check_out, writing_to
-from scenarios.run_folder.tables import (
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.image_files import make_image_folders, write_images
+from peopleboy.scenarios.run_folder.out_folder import check_out, writing_to
+from peopleboy.scenarios.run_folder.tables import (
     ROBOT,
     TRACKS,
     TRUTH,
@@ -25,8 +25,8 @@ from scenarios.run_folder.tables import (
     truth_rows,
     write_table,
 )
-from tracker.evaluation.mot_files import track_line, truth_line
-from tracker.track import Status
+from peopleboy.tracker.evaluation.mot_files import track_line, truth_line
+from peopleboy.tracker.track import Status
 
 _VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet", "scipy")
 

@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from sim.cameras.thermal import encode_16bit
-from sim.observation import Observation
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.cameras.thermal import encode_16bit
+from peopleboy.sim.observation import Observation
 
 Image = NDArray[np.uint8] | NDArray[np.uint16]
 

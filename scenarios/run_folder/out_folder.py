@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 
 def check_out(path: Path, kind: str, *, overwrite: bool) -> None:

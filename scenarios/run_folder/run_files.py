@@ -16,13 +16,13 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from bad_input import BadInput
-from scenarios.files.schema_errors import explain
-from scenarios.run_folder.tables import MAY_BE_EMPTY, ROBOT, TRACKS, TRUTH
-from scenarios.scores.suite_table import is_in_image
-from tracker.evaluation.mot_files import read_tracks, read_truth
-from tracker.evaluation.sequence import Rows, Tracks, Truth
-from tracker.track import Status
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.schema_errors import explain
+from peopleboy.scenarios.run_folder.tables import MAY_BE_EMPTY, ROBOT, TRACKS, TRUTH
+from peopleboy.scenarios.scores.suite_table import is_in_image
+from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
+from peopleboy.tracker.evaluation.sequence import Rows, Tracks, Truth
+from peopleboy.tracker.track import Status
 
 _AGAIN = "run the scenario again"
 _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")

@@ -9,9 +9,9 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from scenarios.loop.loop import Tick
-from sim.truth.truth import PersonTruth
-from tracker.track import Ellipse, Status, Track
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.track import Ellipse, Status, Track
 
 Row = dict[str, Any]
 

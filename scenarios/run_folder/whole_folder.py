@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from scenarios.run_folder.out_folder import check_out, writing_to
-from scenarios.run_folder.termination import left_by_sigterm
+from peopleboy.scenarios.run_folder.out_folder import check_out, writing_to
+from peopleboy.scenarios.run_folder.termination import left_by_sigterm
 
 
 @contextmanager

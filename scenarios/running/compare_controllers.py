@@ -14,12 +14,12 @@ import numpy as np
 from rich.console import Console
 from rich.progress import track
 
-from bad_input import BadInput
-from behaviours.registry import make_behaviour
-from scenarios.files.load import load_scenario
-from scenarios.loop.oracle_tracker import check_eyes
-from scenarios.running.run import RunOptions, run
-from tracker.trackers import DEFAULT_TRACKER
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.oracle_tracker import check_eyes
+from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 GROUPS = ("following", "corridor")  # of metrics.json: how the robot drove
 DRAWS = 2000

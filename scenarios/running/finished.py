@@ -6,11 +6,11 @@ import json
 
 import yaml
 
-from bad_input import BadInput
-from scenarios.files.own_files import are_kept
-from scenarios.files.scenario import Scenario
-from scenarios.run_folder.folder import versions
-from scenarios.running.run import RunOptions
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.own_files import are_kept
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.running.run import RunOptions
 
 
 def is_finished(scenario: Scenario, options: RunOptions) -> bool:

@@ -17,19 +17,19 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-import sim
-from bad_input import BadInput
-from scenarios.files.scenario import Scenario
-from scenarios.loop.loop import closed_loop, make_frame
-from scenarios.run_folder.folder import gt_lines, versions
-from scenarios.run_folder.out_folder import writing_to
-from scenarios.run_folder.tables import TRUTH, truth_rows
-from sim.world import World
-from tracker.evaluation.mot_files import read_truth
-from tracker.evaluation.sequence import Truth
-from tracker.frame import Frame
-from tracker.thermal.filter.particles import Particles
-from tracker.track import Track
+from peopleboy import sim
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.loop import closed_loop, make_frame
+from peopleboy.scenarios.run_folder.folder import gt_lines, versions
+from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
+from peopleboy.sim.world import World
+from peopleboy.tracker.evaluation.mot_files import read_truth
+from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.track import Track
 
 _GROUP = 16  # frames that are read or written at once
 _FRAMES = pa.schema(
@@ -68,7 +68,7 @@ class Film:
         return read_truth(self.folder / "gt.txt")
 
     def people(self) -> pa.Table:
-        """Read the whole truth: one row per frame and person (`scenarios.run_folder.tables.TRUTH`)."""
+        """Read the whole truth: one row per frame and person (`run_folder.tables.TRUTH`)."""
         return pq.read_table(self.folder / "truth.parquet")
 
 

@@ -7,10 +7,10 @@ from contextlib import ExitStack
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from scenarios.files.scenario import Scenario
-from scenarios.loop.loop import Tick
-from scenarios.running.run import RunOptions, run
-from scenarios.scores.score import RunScores
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.scores.score import RunScores
 
 
 def run_with_progress(scenario: Scenario, options: RunOptions) -> RunScores:

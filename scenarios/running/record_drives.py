@@ -1,4 +1,4 @@
-"""Record the drives of a suite: `python -m scenarios.running.record_drives dataset2`.
+"""Record the drives of a suite: `python -m peopleboy.scenarios.running.record_drives dataset2`.
 
 A robot that follows people goes where its tracker sees them. For the frames of a data set to be the same for
 every tracker, the default one drives it once, and the commands are kept.
@@ -9,13 +9,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from behaviours.command import Command
-from scenarios.files.drives import write_drive
-from scenarios.files.suite import SuiteRun, drive_path, load_suite, runs_of
-from scenarios.loop.loop import closed_loop
-from sim.random_streams import stream
-from sim.world import World
-from tracker.trackers import DEFAULT_TRACKER, make_tracker
+from peopleboy.behaviours.command import Command
+from peopleboy.scenarios.files.drives import write_drive
+from peopleboy.scenarios.files.suite import SuiteRun, drive_path, load_suite, runs_of
+from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.world import World
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 
 def record(run: SuiteRun) -> Iterator[Command]:

@@ -7,18 +7,18 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from bad_input import BadInput
-from scenarios.files.own_files import keep_own_files
-from scenarios.files.scenario import Scenario
-from scenarios.loop.faults import FaultySensors, FaultyTracker
-from scenarios.loop.loop import Tick, closed_loop
-from scenarios.loop.oracle_tracker import check_eyes, make_eyes
-from scenarios.recording.recorder import Recorder
-from scenarios.run_folder.folder import RunFolder, claim_folder, versions
-from scenarios.running.watchers import Watchers
-from scenarios.scores.score import RunScores, following_task, score_run
-from sim.world import World
-from tracker.trackers import TRACKERS
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.own_files import keep_own_files
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
+from peopleboy.scenarios.loop.loop import Tick, closed_loop
+from peopleboy.scenarios.loop.oracle_tracker import check_eyes, make_eyes
+from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
+from peopleboy.scenarios.running.watchers import Watchers
+from peopleboy.scenarios.scores.score import RunScores, following_task, score_run
+from peopleboy.sim.world import World
+from peopleboy.tracker.trackers import TRACKERS
 
 FOLLOWERS = ("follow_person", "patrol")
 

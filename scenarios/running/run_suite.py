@@ -9,11 +9,11 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from scenarios.files.suite import SuiteRun, load_suite, runs_of
-from scenarios.loop.loop import Tick
-from scenarios.running.finished import is_finished
-from scenarios.running.frame_cache import Film, film
-from scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.running.finished import is_finished
+from peopleboy.scenarios.running.frame_cache import Film, film
+from peopleboy.scenarios.running.run import RunOptions, run
 
 _RATE_HZ = 15
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from rich.console import Console
 from rich.table import Table
 
-from scenarios.running.compare_controllers import Controller, Figures, Interval, intervals
+from peopleboy.scenarios.running.compare_controllers import Controller, Figures, Interval, intervals
 
 _SHARES = {
     "found", "followed", "in_band", "facing", "in_band_and_facing", "followed_to_end", "path_efficiency"

@@ -12,10 +12,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import track
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario
-from scenarios.running.finished import is_finished
-from scenarios.running.run import RunOptions, run
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.finished import is_finished
+from peopleboy.scenarios.running.run import RunOptions, run
 
 
 @dataclass(frozen=True, slots=True)

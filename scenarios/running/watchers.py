@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from scenarios.drawing.contact_sheet import ContactSheet
-from scenarios.loop.loop import Tick
-from scenarios.loop.run_events import LogLine, RunEvents
-from scenarios.recording.recorder import Recorder
-from scenarios.scores.corridor_score import CorridorLog
-from scenarios.scores.score import FollowingLog
-from sim.config import WorldConfig
+from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
+from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.scores.corridor_score import CorridorLog
+from peopleboy.scenarios.scores.score import FollowingLog
+from peopleboy.sim.config import WorldConfig
 
 
 class Watchers:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bad_input import BadInput
-from scenarios.scores.following_metrics import Flags, Floats, Row
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.scores.following_metrics import Flags, Floats, Row
 
 
 @dataclass(frozen=True, slots=True)

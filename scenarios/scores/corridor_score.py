@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenarios.loop.loop import Tick
-from scenarios.scores.corridor_metrics import CorridorScore, Leg, score_corridor
-from sim.places.floor_plan import FloorPlan
-from sim.places.rectangle import Rectangle
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.scores.corridor_metrics import CorridorScore, Leg, score_corridor
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.rectangle import Rectangle
 
 
 class CorridorLog:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from bad_input import BadInput
-from scenarios.run_folder.run_files import check_end, check_whole, read_run
-from tracker.evaluation.evaluate import Scores, evaluate
-from tracker.evaluation.mot_files import read_tracks
-from tracker.evaluation.sequence import Tracks
-from tracker.evaluation.uncounted import MIN_VISIBLE
-from tracker.footage.truth_files import GivenTruth, find_truth, load_truth
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.run_folder.run_files import check_end, check_whole, read_run
+from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.mot_files import read_tracks
+from peopleboy.tracker.evaluation.sequence import Tracks
+from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
+from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
 
 
 def evaluate_files(

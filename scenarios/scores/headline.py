@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from scenarios.scores.corridor_metrics import CorridorScore
-from scenarios.scores.following_metrics import FollowingScore
-from scenarios.scores.score import RunScores
-from tracker.evaluation.evaluate import Scores
+from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.following_metrics import FollowingScore
+from peopleboy.scenarios.scores.score import RunScores
+from peopleboy.tracker.evaluation.evaluate import Scores
 
 
 def headline(scores: RunScores) -> str:

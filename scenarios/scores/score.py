@@ -9,17 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.loop.loop import Tick
-from scenarios.scores.corridor_metrics import CorridorScore
-from scenarios.scores.following_metrics import FollowingRun, FollowingScore, FollowingTask, score_following
-from sim.config import WorldConfig
-from sim.robot.peoplebot import outline_gap
-from sim.truth.truth import PersonTruth
-from tracker.evaluation.boxes import iou
-from tracker.evaluation.evaluate import Scores, evaluate
-from tracker.evaluation.mot_files import read_tracks, read_truth
-from tracker.evaluation.table import to_json
-from tracker.track import Status, Track
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.following_metrics import (
+    FollowingRun,
+    FollowingScore,
+    FollowingTask,
+    score_following,
+)
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.robot.peoplebot import outline_gap
+from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.evaluation.boxes import iou
+from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
+from peopleboy.tracker.evaluation.table import to_json
+from peopleboy.tracker.track import Status, Track
 
 BAND_M = 1.2
 

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.table import Table
 
-from scenarios.scores.corridor_metrics import CorridorScore
-from scenarios.scores.following_metrics import FollowingScore, Row
-from tracker.evaluation.evaluate import Scores, combine
-from tracker.evaluation.table import rows, spread
+from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
+from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.evaluation.table import rows, spread
 
 
 def print_scores(scores: Scores) -> None:

@@ -60,7 +60,7 @@ def count(people: pa.Table, frames: int, rate_hz: float) -> Content:
     """Count one run.
 
     Args:
-        people: its truth, as `scenarios.run_folder.tables.TRUTH`.
+        people: its truth, as `peopleboy.scenarios.run_folder.tables.TRUTH`.
         frames: how many it has.
         rate_hz: frames a second.
     """

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Camera
 
 Image = NDArray[np.float32]
 

@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.geometry.pinhole import Camera, Matrix
-from sim.shapes.materials import Look, PatternKind
+from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.shapes.materials import Look, PatternKind
 
 # Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
 _OFFSET = 0.137

@@ -13,12 +13,18 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.cameras.blur import optics_blur, rotation_blur
-from sim.cameras.noise import gaussian
-from sim.cameras.surfaces import LookTable, part_from_pixel, pattern_value, smooth_variation, surface_point
-from sim.config import ThermalConfig
-from sim.geometry.pinhole import Matrix
-from sim.rendering.render import View
+from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
+from peopleboy.sim.cameras.noise import gaussian
+from peopleboy.sim.cameras.surfaces import (
+    LookTable,
+    part_from_pixel,
+    pattern_value,
+    smooth_variation,
+    surface_point,
+)
+from peopleboy.sim.config import ThermalConfig
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.rendering.render import View
 
 _LOWEST_C, _HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
 

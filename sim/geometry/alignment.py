@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from bad_input import BadInput
-from sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
 
 
 def affine_between(thermal: Camera, colour: Camera, depth_m: float) -> Matrix:

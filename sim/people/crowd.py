@@ -7,16 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.poses import quaternions
-from sim.people.person import Person
-from sim.people.person_config import PersonConfig
-from sim.people.walking.social_force import PlanarState
-from sim.physics.bullet import Bullet
-from sim.places.place import Place
-from sim.random_streams import stream
-from sim.robot.peoplebot import RADIUS_M, PeopleBot
-from sim.shapes.materials import Look
-from sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
+from peopleboy.sim.geometry.poses import quaternions
+from peopleboy.sim.people.person import Person
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.walking.social_force import PlanarState
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.places.place import Place
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.robot.peoplebot import RADIUS_M, PeopleBot
+from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
 
 # What robots bump into and sonars hear: an upright capsule, which no camera sees.
 _SOLID = "solid"

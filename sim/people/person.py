@@ -8,9 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.people.body.anthropometry import BodySize, measure
-from sim.people.body.body_shapes import ARM_PARTS as _LIMBS
-from sim.people.body.body_shapes import (
+from peopleboy.sim.people.body.anthropometry import BodySize, measure
+from peopleboy.sim.people.body.body_shapes import ARM_PARTS as _LIMBS
+from peopleboy.sim.people.body.body_shapes import (
     BAG_PART,
     BODY_PARTS,
     TORSO_PARTS,
@@ -20,17 +20,17 @@ from sim.people.body.body_shapes import (
     build_body,
     sole_points,
 )
-from sim.people.body.clothes import dress
-from sim.people.body.gait import Gait, lowest_sole
-from sim.people.body.joints import joint_points
-from sim.people.body.postures import Posture, pelvis_shift, posture_rotations
-from sim.people.body.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
-from sim.people.person_config import Arms, PersonConfig
-from sim.people.timetable import timetable
-from sim.people.walking.social_force import PlanarState
-from sim.people.walking.walk import RISE_S, Surroundings, Walker, Waypoint
-from sim.shapes.materials import Look
-from sim.shapes.shapes import Part
+from peopleboy.sim.people.body.clothes import dress
+from peopleboy.sim.people.body.gait import Gait, lowest_sole
+from peopleboy.sim.people.body.joints import joint_points
+from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations
+from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
+from peopleboy.sim.people.person_config import Arms, PersonConfig
+from peopleboy.sim.people.timetable import timetable
+from peopleboy.sim.people.walking.social_force import PlanarState
+from peopleboy.sim.people.walking.walk import RISE_S, Surroundings, Walker, Waypoint
+from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.shapes import Part
 
 Array = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal, get_args
 
-from bad_input import BadInput
-from sim.people.body.anthropometry import Build, Sex
-from sim.people.body.clothes import Clothes
-from sim.people.body.postures import Posture
-from sim.people.walking.walk import Waypoint
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.people.body.anthropometry import Build, Sex
+from peopleboy.sim.people.body.clothes import Clothes
+from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.walking.walk import Waypoint
 
 Arms = Literal["swinging", "crossed", "raised"]
 

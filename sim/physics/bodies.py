@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from sim.shapes.shapes import Quaternion, Vector
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.shapes.shapes import Quaternion, Vector
 
 Place = tuple[Vector, Quaternion]
 

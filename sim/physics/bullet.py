@@ -12,17 +12,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bad_input import BadInput
-from sim.geometry.pinhole import Camera, Matrix
-from sim.geometry.poses import pose_matrices
-from sim.physics.bodies import Bodies, Body, PartKey, Place
-from sim.physics.bullet_shapes import shape_arguments, visual_shape
-from sim.physics.opengl import metric_depth, projection_matrix, view_matrix
-from sim.physics.quiet import quiet
-from sim.physics.solid_boxes import SolidBoxes
-from sim.shapes.bounds import FAR_M, NEAR_M
-from sim.shapes.shape_table import VisualShape
-from sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.physics.bodies import Bodies, Body, PartKey, Place
+from peopleboy.sim.physics.bullet_shapes import shape_arguments, visual_shape
+from peopleboy.sim.physics.opengl import metric_depth, projection_matrix, view_matrix
+from peopleboy.sim.physics.quiet import quiet
+from peopleboy.sim.physics.solid_boxes import SolidBoxes
+from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
+from peopleboy.sim.shapes.shape_table import VisualShape
+from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 try:
     with quiet():

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from sim.geometry.poses import pose_matrices
-from sim.shapes.shape_table import VisualShape
-from sim.shapes.shapes import Shape, ShapeKind
+from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.shapes.shape_table import VisualShape
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 # PyBullet's GEOM_ numbers.
 _GEOMETRY = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.pinhole import Camera, Matrix, invert_pose
+from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose
 
 # OpenGL's camera looks along -z with y up, the optical frame along z with y down.
 _EYE_FROM_OPTICAL = np.diag([1.0, -1.0, -1.0, 1.0])

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.shapes.shapes import Vector
+from peopleboy.sim.shapes.shapes import Vector
 
 Array = NDArray[np.float64]
 Link = tuple[int, int]

@@ -12,12 +12,12 @@ import pybullet_data
 import trimesh
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from sim.geometry.poses import pose_matrices
-from sim.physics.bullet import Bullet
-from sim.places.place import Fixture
-from sim.shapes.shape_table import VisualShape
-from sim.shapes.shapes import Shape, ShapeKind
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.shapes.shape_table import VisualShape
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 Extent = NDArray[np.float64]  # (2, 3) [m]: lowest and highest x, y, z
 

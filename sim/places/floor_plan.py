@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-from bad_input import BadInput
-from sim.places.rectangle import CLOSE_M, Rectangle, lengthened, subtract
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.places.rectangle import CLOSE_M, Rectangle, lengthened, subtract
 
 WALL_M = 0.1  # thickness of every wall
 

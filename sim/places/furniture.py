@@ -5,9 +5,9 @@ Builders as in `warm_things`: size [m], temperature [degC] and colour of the mai
 
 from __future__ import annotations
 
-from sim.places.pieces import SINK_M, STEEL, WHITE, Piece, ball, standing_box, tube
-from sim.shapes.materials import Rgb
-from sim.shapes.shapes import Vector
+from peopleboy.sim.places.pieces import SINK_M, STEEL, WHITE, Piece, ball, standing_box, tube
+from peopleboy.sim.shapes.materials import Rgb
+from peopleboy.sim.shapes.shapes import Vector
 
 # Middle of each ball of leaves, in radii sideways and as a share of the height, and its share of the radius.
 _LEAVES = ((0.0, 0.0, 1.0, 1.0), (0.7, 0.4, 0.6, 0.9), (-0.6, 0.6, 0.5, 0.8), (0.0, -0.8, 0.55, 0.9))

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from sim.shapes.materials import Pattern, Rgb
-from sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
+from peopleboy.sim.shapes.materials import Pattern, Rgb
+from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 # Feet reach this far into the floor and backs into the wall, so that no two faces lie in one plane.
 SINK_M = 0.01

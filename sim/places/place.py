@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.shapes.materials import Look
-from sim.shapes.shapes import UPRIGHT, Part, Quaternion, Vector
+from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Quaternion, Vector
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

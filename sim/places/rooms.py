@@ -9,12 +9,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.places.extent import fixture_extent
-from sim.places.floor_plan import Door, FloorPlan, Wall, check_doors
-from sim.places.place import Fixture, Place
-from sim.places.rectangle import Rectangle
-from sim.shapes.materials import Look, Pattern, PatternKind
-from sim.shapes.shapes import Part, Shape, ShapeKind
+from peopleboy.sim.places.extent import fixture_extent
+from peopleboy.sim.places.floor_plan import Door, FloorPlan, Wall, check_doors
+from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.places.rectangle import Rectangle
+from peopleboy.sim.shapes.materials import Look, Pattern, PatternKind
+from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
 # Blocks that meet run this far into each other, so that no two faces lie in one plane.
 SINK_M = 0.05

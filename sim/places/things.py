@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from sim.places import furniture, warm_things
-from sim.places.pieces import WHITE, WOOD, Piece
-from sim.places.place import Fixture
-from sim.shapes.materials import Look, Pattern, Rgb
-from sim.shapes.shapes import Part, Vector
+from peopleboy.sim.places import furniture, warm_things
+from peopleboy.sim.places.pieces import WHITE, WOOD, Piece
+from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.shapes.materials import Look, Pattern, Rgb
+from peopleboy.sim.shapes.shapes import Part, Vector
 
 _SHADE = 0.45  # brightness of a pattern's second colour, as a share of the first
 

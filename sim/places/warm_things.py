@@ -6,9 +6,20 @@ Source of the list: T fig. 4.1. Every builder takes depth, width, height [m] and
 
 from __future__ import annotations
 
-from sim.places.pieces import ALONG_Y, BLACK, SINK_M, STEEL, WHITE, Piece, ball, box, standing_box, tube
-from sim.shapes.materials import Rgb
-from sim.shapes.shapes import Vector
+from peopleboy.sim.places.pieces import (
+    ALONG_Y,
+    BLACK,
+    SINK_M,
+    STEEL,
+    WHITE,
+    Piece,
+    ball,
+    box,
+    standing_box,
+    tube,
+)
+from peopleboy.sim.shapes.materials import Rgb
+from peopleboy.sim.shapes.shapes import Vector
 
 _MOST_RIBS = 14  # with the panel they fit into one body of 16 shapes
 

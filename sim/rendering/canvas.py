@@ -19,8 +19,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.geometry.vectors import Point, dot
-from sim.shapes.bounds import FAR_M, NEAR_M, Bounds
+from peopleboy.sim.geometry.vectors import Point, dot
+from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M, Bounds
 
 Array = NDArray[np.float64]
 Form = tuple[float, float, float, float, float, float]

@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.geometry.vectors import Point, cross, dot, minus
-from sim.rendering.canvas import Lens
+from peopleboy.sim.geometry.vectors import Point, cross, dot, minus
+from peopleboy.sim.rendering.canvas import Lens
 
 Array = NDArray[np.float64]
 Depth = NDArray[np.float32]

@@ -12,8 +12,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.geometry.vectors import Point, compose, cross, dot, map_point, minus, plus, scaled
-from sim.rendering.canvas import (
+from peopleboy.sim.geometry.vectors import Point, compose, cross, dot, map_point, minus, plus, scaled
+from peopleboy.sim.rendering.canvas import (
     Canvas,
     Lens,
     Rectangle,
@@ -23,9 +23,9 @@ from sim.rendering.canvas import (
     set_edge,
     set_shading,
 )
-from sim.shapes.bounds import FAR_M, NEAR_M, Bounds, box_bounds, shape_bounds
-from sim.shapes.shape_table import ShapeTable
-from sim.shapes.shapes import ShapeKind
+from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M, Bounds, box_bounds, shape_bounds
+from peopleboy.sim.shapes.shape_table import ShapeTable
+from peopleboy.sim.shapes.shapes import ShapeKind
 
 Array = NDArray[np.float64]
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from sim.geometry.pinhole import Camera, Matrix, invert_pose
-from sim.physics.bullet import Bullet
-from sim.rendering.canvas import Lens, make_canvas, shade
-from sim.rendering.depth_normals import normals_from_depth
-from sim.rendering.raycast import draw
-from sim.shapes.shape_table import ShapeTable
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.rendering.canvas import Lens, make_canvas, shade
+from peopleboy.sim.rendering.depth_normals import normals_from_depth
+from peopleboy.sim.rendering.raycast import draw
+from peopleboy.sim.shapes.shape_table import ShapeTable
 
 NOBODY = -1
 BLIND = "none"  # in place of a renderer's name: a world without images

@@ -8,12 +8,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.geometry.pinhole import Camera, Matrix, invert_pose
-from sim.geometry.vectors import compose
-from sim.rendering.canvas import Lens, make_canvas
-from sim.rendering.raycast import draw
-from sim.shapes.bounds import EMPTY, Bounds, shape_bounds, unite
-from sim.shapes.shape_table import ShapeTable
+from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose
+from peopleboy.sim.geometry.vectors import compose
+from peopleboy.sim.rendering.canvas import Lens, make_canvas
+from peopleboy.sim.rendering.raycast import draw
+from peopleboy.sim.shapes.bounds import EMPTY, Bounds, shape_bounds, unite
+from peopleboy.sim.shapes.shape_table import ShapeTable
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from sim.config import DriveConfig, RobotConfig
-from sim.geometry.pinhole import Matrix
-from sim.physics.bullet import Bullet
-from sim.random_streams import stream
-from sim.robot.sonar import SonarRing
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.config import DriveConfig, RobotConfig
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.robot.sonar import SonarRing
 
 NAME = "robot"
 URDF = Path(__file__).with_name("peoplebot.urdf")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Look
 
 _BODY = Look(temperature_c=26.0, emissivity=0.9, variation_k=0.8, variation_m=0.4, rgb=(0.45, 0.04, 0.05))
 _WHEEL = Look(temperature_c=22.0, rgb=(0.04, 0.04, 0.045))

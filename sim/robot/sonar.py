@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.config import SonarConfig
-from sim.geometry.pinhole import Matrix, transform
-from sim.physics.bullet import Bullet
+from peopleboy.sim.config import SonarConfig
+from peopleboy.sim.geometry.pinhole import Matrix, transform
+from peopleboy.sim.physics.bullet import Bullet
 
 # x, y [m] and angle [deg] of each sonar of the lower rings: ARIA's parameter file peoplebot-sh.p, SonarUnit
 # 0..15 (its 16..31, up on the deck, are left out).

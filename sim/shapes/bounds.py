@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.geometry.vectors import Point, map_point
-from sim.shapes.shapes import ShapeKind
+from peopleboy.sim.geometry.vectors import Point, map_point
+from peopleboy.sim.shapes.shapes import ShapeKind
 
 # The planes between which renderers draw [m].
 NEAR_M = 0.05

@@ -11,7 +11,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 
 @cache

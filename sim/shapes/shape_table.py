@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.pinhole import Matrix, transform
-from sim.shapes.meshes import load_triangles
-from sim.shapes.shapes import ShapeKind, Vector
+from peopleboy.sim.geometry.pinhole import Matrix, transform
+from peopleboy.sim.shapes.meshes import load_triangles
+from peopleboy.sim.shapes.shapes import ShapeKind, Vector
 
 # How many surfaces a shape has, each a piece of a plane or of a quadric: a mesh has one a triangle.
 _SURFACES = {

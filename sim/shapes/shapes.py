@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
 
-from sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Look
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]

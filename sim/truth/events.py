@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sim.truth.truth import PersonTruth, Truth
+from peopleboy.sim.truth.truth import PersonTruth, Truth
 
 # Somebody enters the view when more than this share of the whole silhouette is seen, and leaves it when less
 # than the second lies inside the image, hidden or not.

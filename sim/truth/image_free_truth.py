@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
-from sim.people.person import Person
-from sim.physics.bullet import Bullet
-from sim.robot.peoplebot import NAME, Planar
-from sim.truth.truth import Box
+from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
+from peopleboy.sim.people.person import Person
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.robot.peoplebot import NAME, Planar
+from peopleboy.sim.truth.truth import Box
 
 # Heights at which a person's middle is looked for, in shares of the stature.
 _LOOKED_AT = np.array([0.1, 0.3, 0.5, 0.7, 0.9])

@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from sim.geometry.pinhole import Camera, Matrix
-from sim.robot.peoplebot import Planar
+from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.robot.peoplebot import Planar
 
 Box = tuple[float, float, float, float]
 

@@ -9,16 +9,25 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
-from sim.people.crowd import Crowd
-from sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
-from sim.physics.bodies import PartKey
-from sim.rendering.render import View
-from sim.rendering.silhouette import silhouette_area, silhouette_bounds
-from sim.robot.peoplebot import Planar
-from sim.shapes.materials import Look
-from sim.shapes.shape_table import ShapeTable
-from sim.truth.truth import BORDER, Box, Cover, PersonTruth, Truth, box_from_bounds, count_cover, is_counted
+from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
+from peopleboy.sim.people.crowd import Crowd
+from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
+from peopleboy.sim.physics.bodies import PartKey
+from peopleboy.sim.rendering.render import View
+from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bounds
+from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.shape_table import ShapeTable
+from peopleboy.sim.truth.truth import (
+    BORDER,
+    Box,
+    Cover,
+    PersonTruth,
+    Truth,
+    box_from_bounds,
+    count_cover,
+    is_counted,
+)
 
 _Scene = tuple[ShapeTable, Matrix, Camera, Matrix]
 _Bounds = tuple[float, float, float, float]

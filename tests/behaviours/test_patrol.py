@@ -1,5 +1,5 @@
-from behaviours.command import Command
-from behaviours.patrol import Patrol, PatrolConfig
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.patrol import Patrol, PatrolConfig
 from tests.helpers.percepts import person, sight
 from tests.helpers.toy_world import STEP_S
 

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from behaviours.command import STOP, Command
-from behaviours.registry import make_behaviour
-from behaviours.scripted import Scripted
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.scripted import Scripted
 from tests.helpers.percepts import free
 from tests.helpers.toy_world import FRONT, HALF_WIDTH, Toy, drive, wall
 

@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.memory import MemoryCurve, memory_curve
 from benchmarks.whole_tracker import CrowdTime, WholeTracker
-from tracker.frame import Frame
+from peopleboy.tracker.frame import Frame
 
 
 def test_growth_of_memory_is_the_slope_once_all_is_warm() -> None:

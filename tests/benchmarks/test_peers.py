@@ -7,8 +7,8 @@ import pytest
 
 from benchmarks.peers.compete import compete_on_film
 from benchmarks.peers.detectors import Blobs, Oracle, _from_colour
-from tracker.evaluation.sequence import Truth
-from tracker.frame import Frame
+from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.frame import Frame
 
 
 def frame(thermal: np.ndarray) -> Frame:

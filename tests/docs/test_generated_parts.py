@@ -9,13 +9,13 @@ from docs.generate import choices, plain_keys, scenario_keys, trackers
 from docs.generate.offline import loads
 from docs.generate.parts import PARTS, PLACE, fill_in
 from docs.generate.settings import COLUMNS, settings_of
-from scenarios.cli import cli
-from scenarios.files import schema
-from scenarios.files.schema import FaultSpec, RobotSpec, WaypointSpec, json_schema
+from peopleboy.scenarios.cli import cli
+from peopleboy.scenarios.files import schema
+from peopleboy.scenarios.files.schema import FaultSpec, RobotSpec, WaypointSpec, json_schema
+from peopleboy.tracker.evaluation.table import FIGURES
+from peopleboy.tracker.thermal import config
+from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers.pages import DOCS
-from tracker.evaluation.table import FIGURES
-from tracker.thermal import config
-from tracker.trackers import TRACKERS
 
 SPECS = [
     kind

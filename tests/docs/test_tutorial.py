@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from scenarios.cli import main
+from peopleboy.scenarios.cli import main
 from tests.helpers.pages import DOCS, Block, blocks
 
 PAGES = sorted([*DOCS.glob("tutorial/*.md"), *DOCS.glob("tasks/*.md")])

@@ -6,7 +6,7 @@ from click.testing import CliRunner
 
 from examples import price_of_perception
 from examples.follower_view import SIZE, FollowerView
-from scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 
 SCENE = """
 name: tiny

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim.places.extent import fixture_extent
-from sim.places.place import Fixture
-from sim.shapes.shapes import ShapeKind
+from peopleboy.sim.places.extent import fixture_extent
+from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.shapes.shapes import ShapeKind
 
 _CLOSE_M = 2e-4
 

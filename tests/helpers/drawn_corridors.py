@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.corridor.corridor_from_image import CameraView
-from behaviours.percept import Sight
+from peopleboy.behaviours.corridor.corridor_from_image import CameraView
+from peopleboy.behaviours.percept import Sight
 from tests.helpers.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 CAMERA = CameraView(focal_px=356.0, position_m=(0.14, 0.06, 1.2))

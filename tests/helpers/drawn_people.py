@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.frame import Frame
+from peopleboy.tracker.frame import Frame
 
 BACKGROUND, WARM, RADIATOR = 10, 160, 255
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import yaml
 
-from scenarios.cli import main
+from peopleboy.scenarios.cli import main
 
 CAMERA = {"width_px": 160, "height_px": 120}
 SCENE: dict[str, Any] = {

@@ -8,8 +8,8 @@ from typing import Any
 
 from click.testing import CliRunner, Result
 
-from bad_input import BadInput
-from scenarios.commands.track import track
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.track import track
 
 
 def call(*arguments: Any) -> Result:
@@ -26,5 +26,5 @@ def refusal(*arguments: Any) -> str:
 
 def call_afresh(*arguments: Any) -> subprocess.CompletedProcess[str]:
     """Call it in a process of its own, which shows what libraries write past Python."""
-    command = [sys.executable, "-m", "scenarios", "track", *map(str, arguments)]
+    command = [sys.executable, "-m", "peopleboy", "track", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, check=False)

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 
-from behaviours.percept import SeenPerson, Sight
+from peopleboy.behaviours.percept import SeenPerson, Sight
 from tests.helpers.toy_world import SONAR_ANGLE
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from sim.shapes.shapes import Shape, ShapeKind
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 
 def depth_inside(shape: Shape, points: np.ndarray) -> np.ndarray:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from hypothesis import strategies as st
 
-from tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 
 Line = tuple[int, int, float, float, float, float]  # frame, id, left, top, width, height
 

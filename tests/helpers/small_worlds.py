@@ -3,14 +3,14 @@
 import math
 from functools import cache
 
-from sim.config import ColourConfig, RobotConfig, SonarConfig, ThermalConfig, WorldConfig
-from sim.geometry.pinhole import Camera
-from sim.people.person_config import PersonConfig
-from sim.people.walking.walk import Waypoint
-from sim.places.place import Fixture, Place
-from sim.places.rooms import build_place, straight_corridor
-from sim.shapes.materials import Look
-from sim.shapes.shapes import Part, Shape, ShapeKind
+from peopleboy.sim.config import ColourConfig, RobotConfig, SonarConfig, ThermalConfig, WorldConfig
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
 SMALL = Camera(width=160, height=120)
 EXACT_SONAR = SonarConfig(noise_m=0.0, drop_out=0.0)

@@ -8,19 +8,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.command import Command
-from scenarios.loop.loop import Tick
-from scenarios.loop.run_events import LogLine
-from sim.config import WorldConfig
-from sim.geometry.pinhole import Camera
-from sim.observation import Observation
-from sim.people.person_config import PersonConfig
-from sim.people.walking.walk import Waypoint
-from sim.places.rooms import build_place, straight_corridor
-from sim.robot.peoplebot import Planar
-from sim.truth.truth import PersonTruth, Truth
-from tracker.thermal.filter.particles import Particles
-from tracker.track import Ellipse, Status, Track
+from peopleboy.behaviours.command import Command
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.observation import Observation
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.truth.truth import PersonTruth, Truth
+from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.track import Ellipse, Status, Track
 
 CAMERA = Camera()
 ELLIPSE = Ellipse(x=160.0, y=120.0, w=20.0, h=50.0, d=3.0, vx=0.0, vy=0.0, vw=0.0, vh=0.0)

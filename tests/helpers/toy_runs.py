@@ -7,14 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from scenarios.drawing.contact_sheet import ContactSheet
-from scenarios.loop.loop import Tick
-from scenarios.loop.run_events import RunEvents
-from scenarios.run_folder.folder import RunFolder
-from scenarios.scores.score import score_run
-from sim.truth.truth import PersonTruth
+from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.run_events import RunEvents
+from peopleboy.scenarios.run_folder.folder import RunFolder
+from peopleboy.scenarios.scores.score import score_run
+from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.track import Track
 from tests.helpers import synthetic_ticks as made
-from tracker.track import Track
 
 ANNA, BEN, NOWHERE = (60.0, 50.0, 40.0, 170.0), (220.0, 50.0, 40.0, 170.0), (140.0, 20.0, 20.0, 60.0)
 FRAMES = 90

@@ -10,8 +10,8 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-from scenarios.studies.reproduce.measuring.store import Result, Store
-from scenarios.studies.reproduce.measuring.workers import run_units
+from peopleboy.scenarios.studies.reproduce.measuring.store import Result, Store
+from peopleboy.scenarios.studies.reproduce.measuring.workers import run_units
 
 
 @dataclass(frozen=True, slots=True)

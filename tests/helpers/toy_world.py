@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.behaviour import Behaviour
-from behaviours.command import STOP, Command
-from behaviours.percept import SeenPerson, Sight
+from peopleboy.behaviours.behaviour import Behaviour
+from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.percept import SeenPerson, Sight
 
 Array = NDArray[np.float64]
 STEP_S = 1.0 / 15.0

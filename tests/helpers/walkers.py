@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sim.people.person import Person, PersonConfig, PlanarState, Waypoint
+from peopleboy.sim.people.person import Person, PersonConfig, PlanarState, Waypoint
 
 NO_WALLS = np.empty((0, 4))
 

@@ -9,16 +9,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import sim.world
-from bad_input import BadInput
-from sim.config import RobotConfig, WorldConfig
-from sim.geometry.pinhole import Camera
-from sim.people.person_config import PersonConfig
-from sim.people.walking.walk import Waypoint
-from sim.physics import bullet
-from sim.places.place import Fixture
-from sim.shapes.materials import Look
-from sim.world import World, light_level
+import peopleboy.sim.world as world_module
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.config import RobotConfig, WorldConfig
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.physics import bullet
+from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.world import World, light_level
 from tests.helpers.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
 
 QUIET = replace(NO_NOISE, camera=SMALL)
@@ -40,12 +40,12 @@ def no_world_is_left_open() -> Iterator[None]:
 
 
 def test_a_world_of_one_temperature_gives_one_value(monkeypatch: pytest.MonkeyPatch) -> None:
-    make = sim.world.make_look_table
+    make = world_module.make_look_table
 
     def at_one_temperature(looks: list[Look], rng: np.random.Generator) -> object:
         return make([replace(k, temperature_c=29.0, variation_k=0.0, contrast_k=0.0) for k in looks], rng)
 
-    monkeypatch.setattr(sim.world, "make_look_table", at_one_temperature)
+    monkeypatch.setattr(world_module, "make_look_table", at_one_temperature)
     place = replace(hall(), surroundings_c=29.0)
     with World(config(*WALKERS, place=place, robot=robot(thermal=QUIET))) as world:
         for _ in range(5):

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from bad_input import BadInput
-from tracker.frame import Frame
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import Frame
 
 GREY = np.zeros((240, 320), dtype=np.uint8)
 

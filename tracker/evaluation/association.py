@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from tracker.evaluation.boxes import Floats, iou
-from tracker.evaluation.sequence import Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.boxes import Floats, iou
+from peopleboy.tracker.evaluation.sequence import Ints, Tracks, Truth
 
 GATE = 0.5  # a pair must overlap by more than this (thesis, section 3.4)
 

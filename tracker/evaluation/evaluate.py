@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bad_input import BadInput
-from tracker.evaluation.association import associate, pair_up
-from tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
-from tracker.evaluation.metrics.paper_metrics import PaperMetrics, measure_paper
-from tracker.evaluation.metrics.sums import Sums
-from tracker.evaluation.metrics.thesis_metrics import ThesisMetrics, measure_thesis
-from tracker.evaluation.sequence import Tracks, Truth
-from tracker.evaluation.uncounted import MIN_VISIBLE, Rule, settle_uncounted
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.association import associate, pair_up
+from peopleboy.tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
+from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics, measure_paper
+from peopleboy.tracker.evaluation.metrics.sums import Sums
+from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics, measure_thesis
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE, Rule, settle_uncounted
 
 
 @dataclass(frozen=True, slots=True)

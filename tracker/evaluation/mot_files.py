@@ -12,9 +12,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from bad_input import BadInput
-from tracker.evaluation.boxes import Floats
-from tracker.evaluation.sequence import Rows, Tracks, Truth, find_fault
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.boxes import Floats
+from peopleboy.tracker.evaluation.sequence import Rows, Tracks, Truth, find_fault
 
 TRUTH_COLUMNS = "frame, id, left, top, width, height, counted, class, visible fraction"
 TRACKS_COLUMNS = "frame, id, left, top, width, height, confidence, x, y, z"

@@ -15,8 +15,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.evaluation.association import associate, pair_up
-from tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.association import associate, pair_up
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

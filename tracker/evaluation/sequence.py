@@ -7,8 +7,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bad_input import BadInput
-from tracker.evaluation.boxes import Floats
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.boxes import Floats
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 from statistics import fmean, stdev
 
-from tracker.evaluation.evaluate import Scores
+from peopleboy.tracker.evaluation.evaluate import Scores
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,9 +17,9 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from bad_input import BadInput
-from tracker.evaluation.association import GATE, associate, pair_up
-from tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.association import GATE, associate, pair_up
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 
 Rule = Literal["ignore", "absent"]
 MIN_VISIBLE = 0.0  # a target counts if more than this fraction of the person is visible

@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from tracker.footage.pictures import Raw
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.pictures import Raw
 
 Grey = NDArray[np.uint8]
 

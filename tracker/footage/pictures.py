@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
-from bad_input import BadInput
-from scenarios.drawing.wording import counted
-from tracker.footage.picture_names import SUFFIXES, jumps, pictures_in
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.picture_names import SUFFIXES, jumps, pictures_in
+from peopleboy.wording import counted
 
 Raw = NDArray[Any]  # (H, W) uint8, uint16 or float32, or (H, W, 3) uint8 RGB
 

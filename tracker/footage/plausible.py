@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from tracker.footage.grey import CENTIKELVIN, Radiometry
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.grey import CENTIKELVIN, Radiometry
 
 PLAUSIBLE_C: Final = (-100.0, 200.0)
 """Half of a picture is within: cameras see no sky colder, and nobody stands where half of it is hotter."""

@@ -10,10 +10,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from tracker.evaluation.mot_files import read_truth
-from tracker.evaluation.sequence import Truth
-from tracker.footage.pictures import INNER
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.mot_files import read_truth
+from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.footage.pictures import INNER
 
 KEPT_SINGLE: Final = Path("truth") / "groundtruth.txt"
 """Where a run of ours keeps truth of a single person, as it was given: the format says that it is one."""

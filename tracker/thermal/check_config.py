@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 
 def check_positive(config: object, *names: str) -> None:

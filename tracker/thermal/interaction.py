@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from tracker.thermal.config import BoxConfig, InteractionConfig, TrackerConfig
-from tracker.thermal.filter.particles import Floats, H, W, X, Y
+from peopleboy.tracker.thermal.config import BoxConfig, InteractionConfig, TrackerConfig
+from peopleboy.tracker.thermal.filter.particles import Floats, H, W, X, Y
 
 Regions = Floats
 """(M, 4) left, top, width, height [px] of people."""

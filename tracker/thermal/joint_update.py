@@ -7,17 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracker.thermal.appearance.colour_model import likelihood, squared_distances
-from tracker.thermal.config import FilterConfig, MotionConfig, TrackerConfig
-from tracker.thermal.contour.coverage import covered_by
-from tracker.thermal.contour.likelihood import fitness
-from tracker.thermal.filter.particles import STATE_SIZE, Floats, H
-from tracker.thermal.interaction import overlap_shares, person_factor, regions_of
-from tracker.thermal.occlusion.depth_order import Figure, Order, front_to_back
-from tracker.thermal.occlusion.occlusion_status import judge
-from tracker.thermal.occlusion.visibility import Scene, appearance, describe
-from tracker.thermal.particle_filter import View, advance, weigh
-from tracker.thermal.tracked_person import Person, moved_on
+from peopleboy.tracker.thermal.appearance.colour_model import likelihood, squared_distances
+from peopleboy.tracker.thermal.config import FilterConfig, MotionConfig, TrackerConfig
+from peopleboy.tracker.thermal.contour.coverage import covered_by
+from peopleboy.tracker.thermal.contour.likelihood import fitness
+from peopleboy.tracker.thermal.filter.particles import STATE_SIZE, Floats, H
+from peopleboy.tracker.thermal.interaction import overlap_shares, person_factor, regions_of
+from peopleboy.tracker.thermal.occlusion.depth_order import Figure, Order, front_to_back
+from peopleboy.tracker.thermal.occlusion.occlusion_status import judge
+from peopleboy.tracker.thermal.occlusion.visibility import Scene, appearance, describe
+from peopleboy.tracker.thermal.particle_filter import View, advance, weigh
+from peopleboy.tracker.thermal.tracked_person import Person, moved_on
 
 
 def follow(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tracker.thermal.config import LifeConfig
-from tracker.thermal.particle_filter import Belief, View
+from peopleboy.tracker.thermal.config import LifeConfig
+from peopleboy.tracker.thermal.particle_filter import Belief, View
 
 
 def is_born(belief: Belief, view: View, config: LifeConfig) -> bool:

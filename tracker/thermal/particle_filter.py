@@ -8,13 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.frame import Frame
-from tracker.thermal.appearance.colour_view import ColourView
-from tracker.thermal.appearance.part_appearance import LooksView
-from tracker.thermal.config import REFERENCE_HEIGHT_PX, FilterConfig, MotionConfig, TrackerConfig
-from tracker.thermal.contour.likelihood import ContourModel, fitness, is_within, probability, sample_weights
-from tracker.thermal.filter.motion import Columns, predict, turned
-from tracker.thermal.filter.particles import (
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.appearance.colour_view import ColourView
+from peopleboy.tracker.thermal.appearance.part_appearance import LooksView
+from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, FilterConfig, MotionConfig, TrackerConfig
+from peopleboy.tracker.thermal.contour.likelihood import (
+    ContourModel,
+    fitness,
+    is_within,
+    probability,
+    sample_weights,
+)
+from peopleboy.tracker.thermal.filter.motion import Columns, predict, turned
+from peopleboy.tracker.thermal.filter.particles import (
     FOOT,
     Floats,
     H,
@@ -29,7 +35,7 @@ from tracker.thermal.filter.particles import (
     select,
     uncertainty_px2,
 )
-from tracker.thermal.filter.prior import draw_prior
+from peopleboy.tracker.thermal.filter.prior import draw_prior
 
 RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
 

@@ -7,22 +7,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from bad_input import BadInput
-from tracker.frame import Frame
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.contour.ellipse import box_of
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.filter.particles import Particles, W, ellipse_of
-from tracker.thermal.filter.prior import draw_around
-from tracker.thermal.interaction import detector_factor, least_overlaps, regions_of
-from tracker.thermal.joint_update import follow
-from tracker.thermal.life import is_born
-from tracker.thermal.occlusion.depth_order import ORDERS, Order
-from tracker.thermal.occlusion.occlusion_status import foot_of, learn
-from tracker.thermal.particle_filter import Belief, View, advance, draw_fresh, view_frame, weigh
-from tracker.thermal.reidentification import recognised, remembered
-from tracker.thermal.tracked_person import SIZE, Person
-from tracker.track import Status, Track
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.contour.ellipse import box_of
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.filter.particles import Particles, W, ellipse_of
+from peopleboy.tracker.thermal.filter.prior import draw_around
+from peopleboy.tracker.thermal.interaction import detector_factor, least_overlaps, regions_of
+from peopleboy.tracker.thermal.joint_update import follow
+from peopleboy.tracker.thermal.life import is_born
+from peopleboy.tracker.thermal.occlusion.depth_order import ORDERS, Order
+from peopleboy.tracker.thermal.occlusion.occlusion_status import foot_of, learn
+from peopleboy.tracker.thermal.particle_filter import Belief, View, advance, draw_fresh, view_frame, weigh
+from peopleboy.tracker.thermal.reidentification import recognised, remembered
+from peopleboy.tracker.thermal.tracked_person import SIZE, Person
+from peopleboy.tracker.track import Status, Track
 
 FIRST_STEP_S = 1 / 15
 DETECTOR_KEY = 0

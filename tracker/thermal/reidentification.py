@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracker.thermal.appearance.colour_model import squared_distances
-from tracker.thermal.appearance.part_appearance import knows_colour
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.filter.particles import VW, VX, H, X, Y
-from tracker.thermal.particle_filter import View
-from tracker.thermal.tracked_person import Person, moved_on
+from peopleboy.tracker.thermal.appearance.colour_model import squared_distances
+from peopleboy.tracker.thermal.appearance.part_appearance import knows_colour
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.filter.particles import VW, VX, H, X, Y
+from peopleboy.tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.tracked_person import Person, moved_on
 
 PLACE_PX = 12.0  # [px] of 240 rows: spread of the place of a person who was just lost
 PLACE_PX_S = 40.0  # [px/s] by which it grows

@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.config import SmoothingConfig
-from tracker.thermal.filter.particles import STATE_SIZE, VX, D, H, W, X, Y
-from tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.config import SmoothingConfig
+from peopleboy.tracker.thermal.filter.particles import STATE_SIZE, VX, D, H, W, X, Y
+from peopleboy.tracker.thermal.particle_filter import View
 
 
 def smoothed(

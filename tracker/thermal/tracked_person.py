@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.appearance.colour_model import ColourModel
-from tracker.thermal.filter.particles import VX, D, H, W, X
-from tracker.thermal.particle_filter import Belief, View
-from tracker.track import Status
+from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
+from peopleboy.tracker.thermal.filter.particles import VX, D, H, W, X
+from peopleboy.tracker.thermal.particle_filter import Belief, View
+from peopleboy.tracker.track import Status
 
 SETTLED = 6  # frames
 SIZE = [W, H, D]  # columns of a state

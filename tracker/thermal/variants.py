@@ -5,8 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from tracker.thermal.appearance.colour_config import FAR_AFFINE, ROBOT_PARALLAX, SAME_VIEW, ColourConfig
-from tracker.thermal.config import (
+from peopleboy.tracker.thermal.appearance.colour_config import (
+    FAR_AFFINE,
+    ROBOT_PARALLAX,
+    SAME_VIEW,
+    ColourConfig,
+)
+from peopleboy.tracker.thermal.config import (
     BoxConfig,
     ContourConfig,
     FilterConfig,

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviours.scripted import Stand
-from scenarios.files.load import load_scenario
-from scenarios.loop.loop import Tick, closed_loop
-from sim.random_streams import stream
-from sim.world import World
-from tracker.track import Track
-from tracker.trackers import make_tracker
+from peopleboy.behaviours.scripted import Stand
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import Tick, closed_loop
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.world import World
+from peopleboy.tracker.track import Track
+from peopleboy.tracker.trackers import make_tracker
 
 CROSSING = ("crossing_2", 3)
 """Scenario and seed: nina, who is near, walks in front of olaf, who is far off."""

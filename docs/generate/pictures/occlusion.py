@@ -10,14 +10,14 @@ from matplotlib.patches import Patch
 from docs.generate.pictures.moments import CROSSING, History, state_of, ticks
 from docs.generate.pictures.paper import panels, plot, show, zoom
 from docs.generate.pictures.tracker import place_probes
-from scenarios.drawing.palette import track_colour
-from scenarios.loop.loop import Tick
-from tracker.thermal.contour.contour import COVERED, pixels_under
-from tracker.thermal.contour.coverage import covered_by
-from tracker.thermal.contour.ellipse import outline
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.variants import PEOPLEBOY
-from tracker.track import Status, Track
+from peopleboy.scenarios.drawing.palette import track_colour
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.tracker.thermal.contour.contour import COVERED, pixels_under
+from peopleboy.tracker.thermal.contour.coverage import covered_by
+from peopleboy.tracker.thermal.contour.ellipse import outline
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.track import Status, Track
 
 NEAR, FAR = 1, 2  # tracks of nina and olaf
 PARTLY = 51

@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.moments import ticks
 from docs.generate.pictures.paper import panels, show
-from scenarios.drawing.labels import Labels
-from scenarios.drawing.overlay import draw_tracks, enlarge, show_thermal
-from scenarios.drawing.palette import ROBOT, Rgb, person_colour
-from scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
-from scenarios.files.load import load_scenario
-from scenarios.files.scenario import Scenario
-from scenarios.loop.loop import Tick
-from sim.robot.peoplebot import RADIUS_M
-from sim.truth.truth import BORDER, PersonTruth, Truth
+from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.scenarios.drawing.overlay import draw_tracks, enlarge, show_thermal
+from peopleboy.scenarios.drawing.palette import ROBOT, Rgb, person_colour
+from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.sim.robot.peoplebot import RADIUS_M
+from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth
 
 PATH = Path(__file__).parents[2] / "overview.png"
 SCENARIO, SEED, FRAME = "crossing_4", 0, 41

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.moments import world_at
 from docs.generate.pictures.paper import panels, show, zoom
-from scenarios.drawing.palette import person_colour
+from peopleboy.scenarios.drawing.palette import person_colour
 
 SCENE = ("crossing_4", 0, 3.2)
 

@@ -9,9 +9,9 @@ from tempfile import TemporaryDirectory
 from PIL import Image
 
 from docs.generate.pictures.moments import CROSSING
-from scenarios.drawing.plan import draw_plan
-from scenarios.files.load import load_scenario
-from scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.drawing.plan import draw_plan
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.run import RunOptions, run
 
 WIDTH_PX = 1100
 TUTORIAL = Path(__file__).parents[2] / "tutorial" / "own-scenario.md"

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.moments import CROSSING, state_of, ticks
 from docs.generate.pictures.paper import panels, show, zoom
-from scenarios.loop.loop import Tick
-from tracker.thermal.contour.contour import Probes
-from tracker.thermal.contour.ellipse import outline
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.filter.particles import Particles
-from tracker.thermal.people_tracker import DETECTOR_KEY
-from tracker.thermal.variants import PEOPLEBOY
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.tracker.thermal.contour.contour import Probes
+from peopleboy.tracker.thermal.contour.ellipse import outline
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.thermal.people_tracker import DETECTOR_KEY
+from peopleboy.tracker.thermal.variants import PEOPLEBOY
 
 SHOWN = (1, 3, 4, 24)
 FRAME = 45

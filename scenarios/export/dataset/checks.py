@@ -14,10 +14,10 @@ import cv2
 import numpy as np
 import pyarrow.parquet as pq
 
-from scenarios.export.dataset.splits import SPLITS, split_file
-from scenarios.files.scenario import Scenario
-from scenarios.run_folder.image_files import IMAGES
-from scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.export.dataset.splits import SPLITS, split_file
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.run_folder.image_files import IMAGES
+from peopleboy.scenarios.running.run import RunOptions, run
 
 _ROUNDING = 1e-9
 _AGAIN_FRAMES = 3

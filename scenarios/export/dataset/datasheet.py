@@ -12,10 +12,10 @@ from typing import Any
 
 import jinja2
 
-from scenarios.export.dataset.checks import Check
-from scenarios.export.dataset.statistics import Bin, Statistics
-from scenarios.files.equip_robot import equip_robot
-from scenarios.files.scenario import Scenario
+from peopleboy.scenarios.export.dataset.checks import Check
+from peopleboy.scenarios.export.dataset.statistics import Bin, Statistics
+from peopleboy.scenarios.files.equip_robot import equip_robot
+from peopleboy.scenarios.files.scenario import Scenario
 
 _TEMPLATE = Path(__file__).parent / "datasheet.md.jinja"
 

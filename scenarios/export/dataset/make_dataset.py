@@ -8,16 +8,22 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from bad_input import BadInput
-from scenarios.export.dataset.checks import Check, check_set
-from scenarios.export.dataset.datasheet import write_datasheet
-from scenarios.export.dataset.splits import SPLITS, lacking_splits, split_file, split_lines, split_of
-from scenarios.export.dataset.statistics import Statistics, measure
-from scenarios.files.load import load_scenario
-from scenarios.run_folder.folder import versions
-from scenarios.run_folder.out_folder import check_named, writing_to
-from scenarios.running.run import RunOptions
-from scenarios.running.sweep import Job, run_jobs, unfinished
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.export.dataset.checks import Check, check_set
+from peopleboy.scenarios.export.dataset.datasheet import write_datasheet
+from peopleboy.scenarios.export.dataset.splits import (
+    SPLITS,
+    lacking_splits,
+    split_file,
+    split_lines,
+    split_of,
+)
+from peopleboy.scenarios.export.dataset.statistics import Statistics, measure
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.out_folder import check_named, writing_to
+from peopleboy.scenarios.running.run import RunOptions
+from peopleboy.scenarios.running.sweep import Job, run_jobs, unfinished
 
 ABOUT = "dataset.json"
 

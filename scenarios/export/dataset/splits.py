@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
 
 SPLITS = ("train", "val", "test")
 _TURNS = ("train", "train", "train", "train", "train", "val", "test")

@@ -14,7 +14,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from scenarios.scores.suite_table import add_up, count, is_in_image
+from peopleboy.scenarios.scores.suite_table import add_up, count, is_in_image
 
 VISIBLE_EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 DISTANCE_EDGES_M = (0.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, np.inf)
@@ -36,7 +36,7 @@ class Statistics:
 
     Attributes:
         runs: how many.
-        content: counted as for the thesis's table 3.1 (`scenarios.scores.suite_table.Content`).
+        content: counted as for the thesis's table 3.1 (`peopleboy.scenarios.scores.suite_table.Content`).
         visible: people whose silhouette reaches into the image, by visible fraction.
         distance: the same, by distance from the camera [m].
         height_px: 5, 25, 50, 75 and 95 percent of their boxes are no higher [px].

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.drawing.palette import TRACK_COLOURS, track_colour
-from scenarios.report.findings.errors import Curve
-from scenarios.report.findings.sentences import listed, seconds, spoken
-from scenarios.report.findings.spans import settle, spans
-from scenarios.report.findings.story import Hold, Sight, Story, present_tracks
-from scenarios.report.findings.summary import Outcome
+from peopleboy.scenarios.drawing.palette import TRACK_COLOURS, track_colour
+from peopleboy.scenarios.report.findings.errors import Curve
+from peopleboy.scenarios.report.findings.sentences import listed, seconds, spoken
+from peopleboy.scenarios.report.findings.spans import settle, spans
+from peopleboy.scenarios.report.findings.story import Hold, Sight, Story, present_tracks
+from peopleboy.scenarios.report.findings.summary import Outcome
 
 # Of text in a bar: the room that a letter takes, and that beside the text; and the least width of a timeline.
 _LETTER_PX, _BESIDE_PX = 8.0, 7.0

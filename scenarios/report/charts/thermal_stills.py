@@ -16,12 +16,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
-from scenarios.export.replay import replay
-from scenarios.report.findings.finished_run import FinishedRun
-from scenarios.run_folder.finished_run import open_run
-from scenarios.run_folder.tables import track_of
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
+from peopleboy.scenarios.export.replay import replay
+from peopleboy.scenarios.report.findings.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.finished_run import open_run
+from peopleboy.scenarios.run_folder.tables import track_of
 
 SCALE = 2
 _EMPTY_GREY = 40

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scenarios.report.charts.charts import (
+from peopleboy.scenarios.report.charts.charts import (
     Lane,
     Tick,
     hidden_words,
@@ -15,8 +15,8 @@ from scenarios.report.charts.charts import (
     track_lane,
     truth_lane,
 )
-from scenarios.report.columns import Column, are_same_scene
-from scenarios.report.findings.sentences import spoken
+from peopleboy.scenarios.report.columns import Column, are_same_scene
+from peopleboy.scenarios.report.findings.sentences import spoken
 
 
 @dataclass(frozen=True, slots=True)

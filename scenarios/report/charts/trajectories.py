@@ -11,14 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from scenarios.drawing.labels import Labels
-from scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
-from scenarios.drawing.plan_sheet import PAPER, lay_out, sections
-from scenarios.files.scenario import Scenario
-from scenarios.report.findings.sentences import spoken
-from scenarios.report.findings.spans import Floats
-from scenarios.report.findings.story import Story
-from scenarios.report.findings.summary import Outcome
+from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
+from peopleboy.scenarios.drawing.plan_sheet import PAPER, lay_out, sections
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.report.findings.sentences import spoken
+from peopleboy.scenarios.report.findings.spans import Floats
+from peopleboy.scenarios.report.findings.story import Story
+from peopleboy.scenarios.report.findings.summary import Outcome
 
 _WIDTH_IN = 4.3  # such that its letters are as large as the page's on a phone
 _COLOURS = (

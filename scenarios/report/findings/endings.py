@@ -6,9 +6,9 @@ from enum import Enum, auto
 
 import numpy as np
 
-from scenarios.report.findings.finished_run import FinishedRun
-from scenarios.report.findings.spans import Ints, settle
-from scenarios.report.findings.story import Sight, Story, steady_frames
+from peopleboy.scenarios.report.findings.finished_run import FinishedRun
+from peopleboy.scenarios.report.findings.spans import Ints, settle
+from peopleboy.scenarios.report.findings.story import Sight, Story, steady_frames
 
 
 class Ending(Enum):

@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from scenarios.report.findings.spans import Flags, Floats
-from scenarios.report.findings.story import Story
-from scenarios.report.findings.summary import Outcome
+from peopleboy.scenarios.report.findings.spans import Flags, Floats
+from peopleboy.scenarios.report.findings.story import Story
+from peopleboy.scenarios.report.findings.summary import Outcome
 
 DISTANCES_M = (3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0)
 VISIBLE = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)

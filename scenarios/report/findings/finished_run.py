@@ -10,13 +10,13 @@ from typing import Any
 
 import pyarrow as pa
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario
-from scenarios.files.read_yaml import read_yaml
-from scenarios.files.scenario import Scenario
-from scenarios.loop.run_events import LogLine
-from scenarios.run_folder.run_files import read_about, read_files
-from tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.run_folder.run_files import read_about, read_files
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 
 _BOX = ("left_px", "top_px", "width_px", "height_px")
 _PEOPLE = (
@@ -40,9 +40,9 @@ class FinishedRun:
         events: what events.jsonl says.
         truth: the people of the sequence.
         tracks: what the tracker claimed.
-        people: what a page needs of `scenarios.run_folder.tables.TRUTH`.
-        beliefs: of `scenarios.run_folder.tables.TRACKS`.
-        robot: of `scenarios.run_folder.tables.ROBOT`.
+        people: what a page needs of `peopleboy.scenarios.run_folder.tables.TRUTH`.
+        beliefs: of `peopleboy.scenarios.run_folder.tables.TRACKS`.
+        robot: of `peopleboy.scenarios.run_folder.tables.ROBOT`.
     """
 
     folder: Path

@@ -9,12 +9,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from scenarios.report.findings.endings import Ending, how_it_ended, steadily_due
-from scenarios.report.findings.finished_run import FinishedRun
-from scenarios.report.findings.sentences import seconds, spoken
-from scenarios.report.findings.spans import Flags, settle, spans
-from scenarios.report.findings.story import STEADY_S, Sight, Story, present_tracks, steady_frames
-from sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
+from peopleboy.scenarios.report.findings.endings import Ending, how_it_ended, steadily_due
+from peopleboy.scenarios.report.findings.finished_run import FinishedRun
+from peopleboy.scenarios.report.findings.sentences import seconds, spoken
+from peopleboy.scenarios.report.findings.spans import Flags, settle, spans
+from peopleboy.scenarios.report.findings.story import STEADY_S, Sight, Story, present_tracks, steady_frames
+from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 
 _BEFORE_S = 0.5  # what happened this long before a loss may be its cause
 _LONG_AWAY_S = 2.0

@@ -21,11 +21,6 @@ def times(count: int) -> str:
     return {1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
-def some(count: int, one: str, several: str = "") -> str:
-    """Count things: 1 person, 2 people."""
-    return f"{count} {one if count == 1 else several or one + 's'}"
-
-
 def seconds(time_s: float) -> str:
     """Write a time or a duration so that its unit stays on the line."""
     return f"{time_s:.1f}\u00a0s"

@@ -8,11 +8,17 @@ from enum import IntEnum
 
 import numpy as np
 
-from scenarios.report.findings.finished_run import FinishedRun
-from scenarios.report.findings.spans import Flags, Floats, Ints, between, settle
-from sim.truth.events import LEAVES_INSIDE, OCCLUSION_ENDS, OCCLUSION_STARTS, TOTAL_ENDS, TOTAL_STARTS
-from sim.truth.truth import BORDER
-from tracker.evaluation.association import associate, pair_up
+from peopleboy.scenarios.report.findings.finished_run import FinishedRun
+from peopleboy.scenarios.report.findings.spans import Flags, Floats, Ints, between, settle
+from peopleboy.sim.truth.events import (
+    LEAVES_INSIDE,
+    OCCLUSION_ENDS,
+    OCCLUSION_STARTS,
+    TOTAL_ENDS,
+    TOTAL_STARTS,
+)
+from peopleboy.sim.truth.truth import BORDER
+from peopleboy.tracker.evaluation.association import associate, pair_up
 
 STEADY_S = 0.3  # a number that lies on a person for less is fleeting
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scenarios.report.findings.endings import Ending, how_it_ended
-from scenarios.report.findings.finished_run import FinishedRun
-from scenarios.report.findings.identities import (
+from peopleboy.scenarios.report.findings.endings import Ending, how_it_ended
+from peopleboy.scenarios.report.findings.finished_run import FinishedRun
+from peopleboy.scenarios.report.findings.identities import (
     Change,
     Fleeting,
     Loss,
@@ -17,8 +17,9 @@ from scenarios.report.findings.identities import (
     find_losses,
     find_strays,
 )
-from scenarios.report.findings.sentences import listed, seconds, some, spoken, times
-from scenarios.report.findings.story import Story, tell_stories
+from peopleboy.scenarios.report.findings.sentences import listed, seconds, spoken, times
+from peopleboy.scenarios.report.findings.story import Story, tell_stories
+from peopleboy.wording import counted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -76,7 +77,7 @@ def headline(outcome: Outcome) -> str:
     if outcome.returned:
         parts.append(_returns(len(outcome.returned)))
     if outcome.strays:
-        parts.append(f"{some(len(outcome.strays), 'track')} on nobody")
+        parts.append(f"{counted(len(outcome.strays), 'track')} on nobody")
     if outcome.touched:
         first_s, _ = outcome.touched[0]
         names = listed(list(dict.fromkeys(spoken(who) for _, who in outcome.touched)))
@@ -93,11 +94,17 @@ def headline_of_many(outcomes: Sequence[Outcome]) -> str:
     lost, returned = sum(len(o.lost) for o in outcomes), sum(len(o.returned) for o in outcomes)
     where = sum(bool(o.lost) for o in outcomes)
     strays, touches = sum(len(o.strays) for o in outcomes), sum(len(o.touched) for o in outcomes)
-    identities = f"identity lost {times(lost)}, in {some(where, 'run')}" if lost else "no identity lost"
-    parts = [f"{some(len(outcomes), 'run')}: of {some(due, 'person', 'people')} {tracked} tracked to the end"]
+    identities = f"identity lost {times(lost)}, in {counted(where, 'run')}" if lost else "no identity lost"
+    parts = [
+        f"{counted(len(outcomes), 'run')}: of {counted(due, 'person', 'people')} {tracked} tracked to the end"
+    ]
     parts[0] += f", {hidden} hidden until the end" if hidden else ""
-    parts += [identities, *([_returns(returned)] if returned else []), f"{some(strays, 'track')} on nobody"]
-    parts += [f"{some(touches, 'contact')} of the robot"] if touches else []
+    parts += [
+        identities,
+        *([_returns(returned)] if returned else []),
+        f"{counted(strays, 'track')} on nobody",
+    ]
+    parts += [f"{counted(touches, 'contact')} of the robot"] if touches else []
     return "; ".join(parts) + "."
 
 

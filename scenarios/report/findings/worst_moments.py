@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.report.findings.sentences import seconds, spoken
-from scenarios.report.findings.spans import Flags, spans
-from scenarios.report.findings.story import Hold, Story
-from scenarios.report.findings.summary import Outcome
+from peopleboy.scenarios.report.findings.sentences import seconds, spoken
+from peopleboy.scenarios.report.findings.spans import Flags, spans
+from peopleboy.scenarios.report.findings.story import Hold, Story
+from peopleboy.scenarios.report.findings.summary import Outcome
 
 _WELL_VISIBLE = 0.3
 _APART_S = 1.0  # two moments of one person nearer than this are one

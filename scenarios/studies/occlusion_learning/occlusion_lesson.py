@@ -8,21 +8,21 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
-from bad_input import BadInput
-from scenarios.run_folder.out_folder import writing_to
-from scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, collect
-from scenarios.studies.occlusion_learning.pair_files import read_pairs, write_pairs
-from scenarios.studies.occlusion_learning.show_training import print_best, print_trials
-from scenarios.studies.occlusion_learning.train_occlusion import (
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, collect
+from peopleboy.scenarios.studies.occlusion_learning.pair_files import read_pairs, write_pairs
+from peopleboy.scenarios.studies.occlusion_learning.show_training import print_best, print_trials
+from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import (
     TRAINING,
     UNSEEN,
     check_examples,
     learn,
     run_trials,
 )
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.occlusion.learned_table import TABLES
-from tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.occlusion.learned_table import TABLES
+from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
 
 PUPILS: dict[str, TrackerConfig] = {"peopleboy": PEOPLEBOY, "thesis": THESIS_OCCLUSION}
 """The trackers that put people in order, by name."""

@@ -8,18 +8,18 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.files.load import load_scenario
-from scenarios.loop.loop import Tick, closed_loop
-from sim.random_streams import stream
-from sim.truth.truth import PersonTruth
-from sim.world import World
-from tracker.evaluation.boxes import iou
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.occlusion.depth_order import Figure, Order, lower_foot
-from tracker.thermal.occlusion.learned_order import features_of
-from tracker.thermal.occlusion.pair_features import FEATURES, Features, overlapping_pairs
-from tracker.thermal.particle_filter import View
-from tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import Tick, closed_loop
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.sim.world import World
+from peopleboy.tracker.evaluation.boxes import iou
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.occlusion.depth_order import Figure, Order, lower_foot
+from peopleboy.tracker.thermal.occlusion.learned_order import features_of
+from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES, Features, overlapping_pairs
+from peopleboy.tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 
 # A tracked person is the true one whose box it overlaps most, and by at least this (thesis, section 3.4).
 _LEAST_IOU = 0.5

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from bad_input import BadInput
-from scenarios.studies.occlusion_learning.occlusion_pairs import PairExample
-from tracker.thermal.occlusion.pair_features import FEATURES
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import PairExample
+from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
 
 _COLUMNS = ("scenario", "seed", "frame", "one", "other", *FEATURES, "is_front")
 

@@ -12,9 +12,9 @@ from rich.console import Console
 from rich.table import Table
 from scipy.stats import ttest_rel
 
-from scenarios.studies.occlusion_learning.train_occlusion import Trial
-from tracker.thermal.occlusion.learned_table import LearnedTable
-from tracker.thermal.occlusion.pair_features import FEATURES
+from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import Trial
+from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
+from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
 
 _TITLES = {
     "7.1": "Table 7.1: type of features [%]",

@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, mirrored
-from tracker.thermal.occlusion.boosting import train
-from tracker.thermal.occlusion.learned_order import LearnedOrder
-from tracker.thermal.occlusion.learned_table import LearnedTable
-from tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL, Features
-from tracker.thermal.occlusion.weak_classifiers import weighted_sums
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, mirrored
+from peopleboy.tracker.thermal.occlusion.boosting import train
+from peopleboy.tracker.thermal.occlusion.learned_order import LearnedOrder
+from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
+from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL, Features
+from peopleboy.tracker.thermal.occlusion.weak_classifiers import weighted_sums
 
 TRAINING = ("crossing_pair", "crossing_3", "pass_behind", "stop_and_talk", "group_abreast", "crowd_8_moving")
 UNSEEN = ("crossing_2", "crossing_2_moving", "crossing_4", "three_depths", "leader_swap", "same_uniform")

@@ -9,13 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from scenarios.run_folder.folder import versions
-from scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
-from scenarios.studies.reproduce.measuring.store import Store
-from scenarios.studies.reproduce.measuring.units import Unit
-from scenarios.studies.reproduce.measuring.workers import Report, run_units
-from scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan
-from scenarios.studies.reproduce.showing.source_page import About, write_page
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
+from peopleboy.scenarios.studies.reproduce.measuring.store import Store
+from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
+from peopleboy.scenarios.studies.reproduce.measuring.workers import Report, run_units
+from peopleboy.scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan
+from peopleboy.scenarios.studies.reproduce.showing.source_page import About, write_page
 
 PAGE = "index.html"
 RESULTS = "units.jsonl"

@@ -10,10 +10,10 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from scenarios.studies.reproduce.experiments.catalogue import choose
-from scenarios.studies.reproduce.measuring.workload import full_plan, quick_plan
-from scenarios.studies.reproduce.reproduce import Means, reproduce
-from scenarios.studies.reproduce.showing.source import source_tables
+from peopleboy.scenarios.studies.reproduce.experiments.catalogue import choose
+from peopleboy.scenarios.studies.reproduce.measuring.workload import full_plan, quick_plan
+from peopleboy.scenarios.studies.reproduce.reproduce import Means, reproduce
+from peopleboy.scenarios.studies.reproduce.showing.source import source_tables
 
 
 def list_experiments(names: Sequence[str]) -> None:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.people.body import anthropometry as table
-from sim.people.body.anthropometry import BodySize
-from sim.people.body.skeleton import (
+from peopleboy.sim.people.body import anthropometry as table
+from peopleboy.sim.people.body.anthropometry import BodySize
+from peopleboy.sim.people.body.skeleton import (
     ATLAS_HEIGHT,
     BONE_INDEX,
     LUMBAR_HEIGHT,
@@ -20,7 +20,7 @@ from sim.people.body.skeleton import (
     lateral,
     shoulder_half_breadth,
 )
-from sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
+from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
 
 SIDES = ("left", "right")
 ARM_PARTS = tuple(f"{side}_{part}" for side in SIDES for part in ("upper_arm", "forearm", "hand"))

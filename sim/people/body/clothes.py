@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from bad_input import BadInput
-from sim.people.body.body_shapes import BODY_PARTS, SIDES
-from sim.shapes.materials import Look, Pattern, PatternKind, Rgb
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.people.body.body_shapes import BODY_PARTS, SIDES
+from peopleboy.sim.shapes.materials import Look, Pattern, PatternKind, Rgb
 
 
 def _both(*parts: str) -> tuple[str, ...]:

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sim.people.body.body_shapes import SIDES, sole_points
-from sim.people.body.motion_capture import CLIP_LEG_M, fourier_basis, load_walking_clip
-from sim.people.body.postures import standing_rotations
-from sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral
+from peopleboy.sim.people.body.body_shapes import SIDES, sole_points
+from peopleboy.sim.people.body.motion_capture import CLIP_LEG_M, fourier_basis, load_walking_clip
+from peopleboy.sim.people.body.postures import standing_rotations
+from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral
 
 Array = NDArray[np.float64]
 

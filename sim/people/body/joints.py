@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.people.body import anthropometry as table
-from sim.people.body.anthropometry import BodySize
-from sim.people.body.skeleton import ATLAS_HEIGHT, BONE_INDEX, lateral
+from peopleboy.sim.people.body import anthropometry as table
+from peopleboy.sim.people.body.anthropometry import BodySize
+from peopleboy.sim.people.body.skeleton import ATLAS_HEIGHT, BONE_INDEX, lateral
 
 JOINT_NAMES = (
     "nose", "left_eye", "right_eye", "left_ear", "right_ear", "left_shoulder", "right_shoulder", "left_elbow",

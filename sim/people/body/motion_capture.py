@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sim.people.body.skeleton import BONE_INDEX, BONES
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES
 
 Array = NDArray[np.float64]
 

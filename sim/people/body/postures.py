@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from sim.people.body.skeleton import BONE_INDEX, BONES, mirror, point_along
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, mirror, point_along
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]

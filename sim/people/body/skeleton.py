@@ -8,8 +8,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.people.body import anthropometry as table
-from sim.people.body.anthropometry import BodySize
+from peopleboy.sim.people.body import anthropometry as table
+from peopleboy.sim.people.body.anthropometry import BodySize
 
 Array = NDArray[np.float64]
 

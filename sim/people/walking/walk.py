@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.people.body.postures import Posture
-from sim.people.walking.path import Piece, is_about_turn, route, turn_between
-from sim.people.walking.social_force import KEEP_RIGHT_RAD, PlanarState, social_force
+from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.walking.path import Piece, is_about_turn, route, turn_between
+from peopleboy.sim.people.walking.social_force import KEEP_RIGHT_RAD, PlanarState, social_force
 
 Array = NDArray[np.float64]
 

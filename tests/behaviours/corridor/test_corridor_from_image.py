@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from behaviours.corridor.corridor_from_image import corridor_from_image
-from behaviours.corridor.corridor_pose import Corridor, Unknown
+from peopleboy.behaviours.corridor.corridor_from_image import corridor_from_image
+from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
 from tests.helpers.drawn_corridors import CAMERA, drawn_corridor
 
 

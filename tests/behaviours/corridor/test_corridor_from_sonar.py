@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from behaviours.corridor.corridor_from_sonar import corridor_from_sonar
-from behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
-from behaviours.sonar.sonar_ring import mounts
+from peopleboy.behaviours.corridor.corridor_from_sonar import corridor_from_sonar
+from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
+from peopleboy.behaviours.sonar.sonar_ring import mounts
 from tests.helpers.drawn_corridors import sight_of, sonar_in_corridor
 from tests.helpers.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 

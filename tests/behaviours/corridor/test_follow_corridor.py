@@ -3,11 +3,11 @@ import math
 import numpy as np
 import pytest
 
-from behaviours.corridor.corridor_end import EndConfig, open_room, wall_ahead
-from behaviours.corridor.corridor_lane import LaneConfig, best_lane
-from behaviours.corridor.corridor_pose import Corridor
-from behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
-from behaviours.registry import make_behaviour
+from peopleboy.behaviours.corridor.corridor_end import EndConfig, open_room, wall_ahead
+from peopleboy.behaviours.corridor.corridor_lane import LaneConfig, best_lane
+from peopleboy.behaviours.corridor.corridor_pose import Corridor
+from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
+from peopleboy.behaviours.registry import make_behaviour
 from tests.helpers.drawn_corridors import CAMERA, drawn_corridor, sight_of, sonar_in_corridor
 from tests.helpers.toy_world import SONAR_ANGLE, Toy, drive, wall
 

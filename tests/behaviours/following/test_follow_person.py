@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from behaviours.command import EMERGENCY_STOP, STOP
-from behaviours.following.follow_person import FollowConfig, FollowPerson, FollowState, follow
-from behaviours.following.reidentification import recognise
-from behaviours.registry import make_behaviour
-from behaviours.safety.limits import SafetyConfig
-from scenarios.scores.following_metrics import FollowingRun, score_following
+from peopleboy.behaviours.command import EMERGENCY_STOP, STOP
+from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson, FollowState, follow
+from peopleboy.behaviours.following.reidentification import recognise
+from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.safety.limits import SafetyConfig
+from peopleboy.scenarios.scores.following_metrics import FollowingRun, score_following
 from tests.helpers.percepts import person, sight
 from tests.helpers.toy_world import STEP_S, Toy, drive, room, straight, wall
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from behaviours.following.last_seen import LastPlace, PlaceConfig, end_of_way
+from peopleboy.behaviours.following.last_seen import LastPlace, PlaceConfig, end_of_way
 
 AWAY = LastPlace(x_m=3.0, y_m=0.0)
 CONFIG = PlaceConfig()

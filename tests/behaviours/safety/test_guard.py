@@ -4,14 +4,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from behaviours.command import Command
-from behaviours.percept import Sight
-from behaviours.safety.guard import Guarded
-from behaviours.scripted import Scripted
-from scenarios.files.load import parse_scenario
-from sim.robot.peoplebot import WHEEL_DISTANCE_M, outline_gap
-from sim.robot.sonar import SONAR_ANGLE_RAD
-from sim.world import World
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.safety.guard import Guarded
+from peopleboy.behaviours.scripted import Scripted
+from peopleboy.scenarios.files.load import parse_scenario
+from peopleboy.sim.robot.peoplebot import WHEEL_DISTANCE_M, outline_gap
+from peopleboy.sim.robot.sonar import SONAR_ANGLE_RAD
+from peopleboy.sim.world import World
 
 LENGTH, WIDTH = 8.0, 6.0
 SCENE = {

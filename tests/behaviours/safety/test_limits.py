@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from behaviours.command import STOP, Command
-from behaviours.safety.limits import SafetyConfig, limit, safe_speed
-from behaviours.sonar.echo_points import echoes, fill_drop_outs
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.safety.limits import SafetyConfig, limit, safe_speed
+from peopleboy.behaviours.sonar.echo_points import echoes, fill_drop_outs
 from tests.helpers.percepts import free, sight_of
 from tests.helpers.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 

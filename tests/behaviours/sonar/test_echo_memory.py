@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from behaviours.registry import make_behaviour
-from behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
 from tests.helpers.percepts import free
 from tests.helpers.toy_world import Toy, room, straight
 

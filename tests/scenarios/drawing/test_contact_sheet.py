@@ -7,10 +7,10 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from bad_input import BadInput
-from scenarios.drawing.contact_sheet import COLUMNS, MOMENTS, WIDTH_PX, ContactSheet, read_tiles
-from scenarios.drawing.key_moments import KeyMoments
-from scenarios.drawing.palette import track_colour
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.contact_sheet import COLUMNS, MOMENTS, WIDTH_PX, ContactSheet, read_tiles
+from peopleboy.scenarios.drawing.key_moments import KeyMoments
+from peopleboy.scenarios.drawing.palette import track_colour
 from tests.helpers import synthetic_ticks as made
 
 

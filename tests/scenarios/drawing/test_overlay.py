@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from scenarios.drawing.overlay import (
+from peopleboy.scenarios.drawing.overlay import (
     PALETTES,
     Plate,
     draw_line,
@@ -19,11 +19,11 @@ from scenarios.drawing.overlay import (
     map_box,
     show_thermal,
 )
-from scenarios.drawing.palette import TRUTH, track_colour
+from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.tracker.thermal.contour.ellipse import outline
+from peopleboy.tracker.track import Status
 from tests.helpers import synthetic_ticks as made
-from tracker.thermal.config import ContourConfig
-from tracker.thermal.contour.ellipse import outline
-from tracker.track import Status
 
 GREY = np.full((480, 640, 3), 60, np.uint8)
 

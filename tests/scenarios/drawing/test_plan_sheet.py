@@ -10,10 +10,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from scenarios.drawing.labels import Labels
-from scenarios.drawing.plan import draw_plan
-from scenarios.drawing.plan_sheet import MARGIN_M, lay_out, sections
-from scenarios.files.load import load_scenario
+from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.scenarios.drawing.plan import draw_plan
+from peopleboy.scenarios.drawing.plan_sheet import MARGIN_M, lay_out, sections
+from peopleboy.scenarios.files.load import load_scenario
 
 
 @given(st.floats(2.0, 100.0), st.floats(2.0, 20.0))

@@ -1,8 +1,8 @@
 import numpy as np
 from PIL import Image, ImageDraw
 
-from scenarios.drawing.palette import TRUTH, track_colour
-from scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, STRONG, cut, draw_head, font
+from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
+from peopleboy.scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, STRONG, cut, draw_head, font
 from tests.helpers.footage_calls import call
 from tests.helpers.footage_files import box, write_folder
 

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from behaviours.command import Command
-from behaviours.percept import Sight
-from scenarios.environments.environment import PeopleBoyEnv
-from scenarios.environments.written_controller import WrittenController
-from scenarios.files.load import load_scenario
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.percept import Sight
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.written_controller import WrittenController
+from peopleboy.scenarios.files.load import load_scenario
 
 
 class Echo:

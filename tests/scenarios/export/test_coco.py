@@ -11,10 +11,10 @@ import pytest
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 
-from scenarios.export.coco import annotations_file
-from scenarios.export.replay import replay
-from scenarios.run_folder.finished_run import open_run
-from sim.geometry.pinhole import transform
+from peopleboy.scenarios.export.coco import annotations_file
+from peopleboy.scenarios.export.replay import replay
+from peopleboy.scenarios.run_folder.finished_run import open_run
+from peopleboy.sim.geometry.pinhole import transform
 
 # What pycocotools decodes into is older than numpy 2.
 pytestmark = pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.commands.export import FORMATS
-from scenarios.export import coco
-from scenarios.export.formats import WRITERS
-from scenarios.run_folder.whole_folder import whole_folder
+from peopleboy.scenarios.commands.export import FORMATS
+from peopleboy.scenarios.export import coco
+from peopleboy.scenarios.export.formats import WRITERS
+from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 from tests.helpers.exported import export, run_cli
 
 FORM = ("--format", "viper")

@@ -19,9 +19,9 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from scipy.spatial.transform import Rotation
 
-from scenarios.export.ros_messages import drift
-from scenarios.run_folder.finished_run import open_run
-from sim.robot.peoplebot import Planar
+from peopleboy.scenarios.export.ros_messages import drift
+from peopleboy.scenarios.run_folder.finished_run import open_run
+from peopleboy.sim.robot.peoplebot import Planar
 from tests.helpers.exported import export
 
 TOPICS = {

@@ -12,9 +12,9 @@ from trackers.eval import evaluate_mot_sequences
 from trackeval.datasets import MotChallenge2DBox
 from trackeval.metrics import CLEAR, HOTA, Identity
 
-from scenarios.scores.evaluate_runs import evaluate_files
+from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
+from peopleboy.tracker.evaluation.evaluate import Scores
 from tests.helpers.exported import SCENE, export, make_run, run_cli
-from tracker.evaluation.evaluate import Scores
 
 
 @pytest.fixture(scope="module")

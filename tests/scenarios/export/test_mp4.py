@@ -6,9 +6,9 @@ import av
 import numpy as np
 import pytest
 
-from scenarios.export.replay import replay
-from scenarios.export.video import BAR_PX, HEIGHT_PX, draw_film_frame
-from scenarios.run_folder.finished_run import open_run
+from peopleboy.scenarios.export.replay import replay
+from peopleboy.scenarios.export.video import BAR_PX, HEIGHT_PX, draw_film_frame
+from peopleboy.scenarios.run_folder.finished_run import open_run
 from tests.helpers.exported import export
 
 

@@ -10,12 +10,12 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from bad_input import BadInput
-from scenarios.export.replay import replay
-from scenarios.loop.loop import Tick
-from scenarios.run_folder.finished_run import open_run
-from scenarios.run_folder.tables import TRACKS, robot_row, track_rows, truth_rows
-from sim.cameras.thermal import encode_16bit
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.export.replay import replay
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.finished_run import open_run
+from peopleboy.scenarios.run_folder.tables import TRACKS, robot_row, track_rows, truth_rows
+from peopleboy.sim.cameras.thermal import encode_16bit
 
 
 def images(run: Path, tick: Tick) -> list[np.ndarray]:

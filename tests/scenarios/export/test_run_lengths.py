@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from pycocotools import mask as reference
 
-from scenarios.export.run_lengths import encode_lengths, run_lengths
+from peopleboy.scenarios.export.run_lengths import encode_lengths, run_lengths
 
 # What pycocotools decodes into is older than numpy 2.
 pytestmark = pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")

@@ -12,7 +12,7 @@ from pycocotools.coco import COCO
 from trackers.eval import evaluate_mot_sequences
 from trackeval.datasets import MotChallenge2DBox
 
-from scenarios.export.dataset.splits import SPLITS
+from peopleboy.scenarios.export.dataset.splits import SPLITS
 from tests.helpers.exported import SCENE, export, run_cli
 
 FRAMES = 6

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.export import viper
-from scenarios.export.coco import annotations_file
-from scenarios.loop.run_events import LogLine
-from scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
+from peopleboy.scenarios.export import viper
+from peopleboy.scenarios.export.coco import annotations_file
+from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
 
 PAGE = Path(__file__).parents[3] / "docs" / "truth.md"
 ROWS = [

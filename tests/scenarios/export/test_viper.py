@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenarios.export.viper import whole_pixels
+from peopleboy.scenarios.export.viper import whole_pixels
 from tests.helpers.exported import export
 
 V, D = "{http://lamp.cfar.umd.edu/viper#}", "{http://lamp.cfar.umd.edu/viperdata#}"

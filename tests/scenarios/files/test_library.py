@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import yaml
 
-from bad_input import BadInput
-from scenarios.drawing.plan import draw_plan
-from scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
-from scenarios.files.schema import RobotSpec, json_schema
-from sim.config import WorldConfig
-from sim.people.timetable import timetable
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.plan import draw_plan
+from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
+from peopleboy.scenarios.files.schema import RobotSpec, json_schema
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.people.timetable import timetable
 
 NAMES = sorted(path.stem for path in LIBRARY.glob("*.yaml"))
 every_scenario = pytest.mark.parametrize("name", NAMES)
@@ -95,7 +95,8 @@ def test_a_plan_is_drawn(name: str, tmp_path: Path) -> None:
 
 
 def test_worlds_are_the_same_in_a_fresh_process() -> None:
-    code = "from scenarios.files.load import load_scenario; print(load_scenario('dark_room').world(5).people)"
+    load = "from peopleboy.scenarios.files.load import load_scenario"
+    code = f"{load}; print(load_scenario('dark_room').world(5).people)"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert out.strip() == str(load_scenario("dark_room").world(5).people)
 

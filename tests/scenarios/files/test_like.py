@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from bad_input import BadInput
-from scenarios.files import load
-from scenarios.files.load import load_scenario
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files import load
+from peopleboy.scenarios.files.load import load_scenario
 
 WHOLE = """
 name: whole

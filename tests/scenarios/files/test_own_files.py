@@ -8,15 +8,15 @@ from typing import Any
 import pytest
 import yaml
 
-from bad_input import BadInput
-from behaviours.command import Command
-from scenarios.export.replay import replay
-from scenarios.files.load import load_scenario, parse_scenario
-from scenarios.files.scenario import Scenario
-from scenarios.run_folder.finished_run import open_run
-from scenarios.running.finished import is_finished
-from scenarios.running.frame_cache import film_key
-from scenarios.running.run import RunOptions, run
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.command import Command
+from peopleboy.scenarios.export.replay import replay
+from peopleboy.scenarios.files.load import load_scenario, parse_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.run_folder.finished_run import open_run
+from peopleboy.scenarios.running.finished import is_finished
+from peopleboy.scenarios.running.frame_cache import film_key
+from peopleboy.scenarios.running.run import RunOptions, run
 
 CAMERA = {"width_px": 80, "height_px": 60}
 SCENE: dict[str, Any] = {

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario
-from scenarios.files.read_yaml import read_yaml
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.read_yaml import read_yaml
 
 
 def refusal(folder: Path, text: str | bytes) -> str:
@@ -36,7 +36,10 @@ LAUGHS = "a: &a [x, x, x, x]\n" + "".join(
         ("name: a\nname: b\n", "line 2: key 'name' is given twice"),
         ("place: {kind: room, kind: corridor}\n", "line 1: key 'kind' is given twice"),
         ("name: !!python/object/apply:os.system ['true']\n", "line 1: tag 'tag:yaml.org,2002:python/object"),
-        ("!!python/object:sim.places.place.Place {}\n", "line 1: tag 'tag:yaml.org,2002:python/object"),
+        (
+            "!!python/object:sim.place.Place {}\n",
+            "line 1: tag 'tag:yaml.org,2002:python/object",
+        ),
         ("duration_s: !!int ''\n", "tag 'tag:yaml.org,2002:int' is not allowed; write the plain value"),
         ("duration_s: !own 3\n", "tag '!own' is not allowed"),
         ("duration_s: " + "9" * 5000 + "\n", "not YAML: "),

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario, parse_scenario
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 
 Data = dict[str, Any]
 Change = Callable[[Data], object]

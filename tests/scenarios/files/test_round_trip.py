@@ -9,9 +9,9 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenarios.files.load import parse_scenario
-from scenarios.files.read_yaml import read_yaml
-from sim.people.body.clothes import BOTTOMS, COLOURS, TOPS
+from peopleboy.scenarios.files.load import parse_scenario
+from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, TOPS
 
 NOWHERE = Path("/nowhere")
 

@@ -9,16 +9,16 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from bad_input import BadInput
-from scenarios.commands.evaluate import evaluate
-from scenarios.footage.track_footage import TrackOptions, track_footage
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.evaluate import evaluate
+from peopleboy.scenarios.footage.track_footage import TrackOptions, track_footage
+from peopleboy.tracker.evaluation.table import NEED_EVERYBODY
+from peopleboy.tracker.footage.grey import AutomaticGrey, Radiometry, parse_scale
+from peopleboy.tracker.footage.picture_names import natural_order
+from peopleboy.tracker.footage.pictures import open_footage
+from peopleboy.tracker.footage.truth_files import find_truth, load_truth
 from tests.helpers.footage_calls import call, refusal
 from tests.helpers.footage_files import SIZE, box, walker, write_counts, write_folder, write_video
-from tracker.evaluation.table import NEED_EVERYBODY
-from tracker.footage.grey import AutomaticGrey, Radiometry, parse_scale
-from tracker.footage.picture_names import natural_order
-from tracker.footage.pictures import open_footage
-from tracker.footage.truth_files import find_truth, load_truth
 
 REAL_CLIP = os.environ.get("PEOPLEBOY_REAL_CLIP", "")
 

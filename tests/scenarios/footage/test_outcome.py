@@ -2,12 +2,12 @@ import re
 
 import pytest
 
-from scenarios.footage.outcome import outcome_lines
-from scenarios.footage.track_footage import Tracked, TrackOptions
+from peopleboy.scenarios.footage.outcome import outcome_lines
+from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
+from peopleboy.tracker.footage.grey import Radiometry
+from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers.footage_calls import call
 from tests.helpers.footage_files import box, write_empty, write_folder
-from tracker.footage.grey import Radiometry
-from tracker.trackers import TRACKERS
 
 START = ",".join(str(edge) for edge in box(0))
 

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.grey import CENTIKELVIN, Radiometry
+from peopleboy.tracker.footage.plausible import check_plausible
 from tests.helpers.footage_calls import call, call_afresh, refusal
 from tests.helpers.footage_files import write_counts, write_folder
-from tracker.footage.grey import CENTIKELVIN, Radiometry
-from tracker.footage.plausible import check_plausible
 
 
 @pytest.mark.parametrize(

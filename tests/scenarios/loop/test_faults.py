@@ -4,11 +4,11 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario, parse_scenario
-from scenarios.files.schema import FaultSpec
-from scenarios.loop.faults import active
-from scenarios.running.run import RunOptions, run
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario, parse_scenario
+from peopleboy.scenarios.files.schema import FaultSpec
+from peopleboy.scenarios.loop.faults import active
+from peopleboy.scenarios.running.run import RunOptions, run
 
 FROM_S = 8.0
 SCENE = {

@@ -2,9 +2,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from scenarios.loop.track_events import TrackEvent, TrackEvents
+from peopleboy.scenarios.loop.track_events import TrackEvent, TrackEvents
+from peopleboy.tracker.track import Status, Track
 from tests.helpers import synthetic_ticks as made
-from tracker.track import Status, Track
 
 WIDTH = 320
 

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from scenarios.drawing.palette import track_colour
-from scenarios.recording.arrows import believed_arrows, true_arrows
-from scenarios.recording.sections import OUT_OF_VIEW, section_marks
+from peopleboy.scenarios.drawing.palette import track_colour
+from peopleboy.scenarios.recording.arrows import believed_arrows, true_arrows
+from peopleboy.scenarios.recording.sections import OUT_OF_VIEW, section_marks
+from peopleboy.tracker.thermal.contour.contour import SECTIONS
+from peopleboy.tracker.thermal.contour.section_evidence import Evidence
+from peopleboy.tracker.track import Status
+from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers import synthetic_ticks as made
-from tracker.thermal.contour.contour import SECTIONS
-from tracker.thermal.contour.section_evidence import Evidence
-from tracker.track import Status
-from tracker.trackers import TRACKERS
 
 PEOPLEBOY = TRACKERS["peopleboy"]
 BEHIND = replace(made.with_box((200.0, 60.0, 30.0, 120.0)), id=2, occluder=1, status=Status.PARTLY_OCCLUDED)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from scenarios.drawing.palette import track_colour
-from scenarios.recording.marks import (
+from peopleboy.scenarios.drawing.palette import track_colour
+from peopleboy.scenarios.recording.marks import (
     PARTICLES_A_FILTER,
     PARTICLES_AT_MOST,
     Trails,
@@ -16,9 +16,9 @@ from scenarios.recording.marks import (
     track_offset,
     truth_boxes,
 )
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.tracker.track import Status
 from tests.helpers import synthetic_ticks as made
-from tracker.thermal.config import ContourConfig
-from tracker.track import Status
 
 
 def test_boxes_of_tracks_say_the_id_and_what_is_unusual() -> None:

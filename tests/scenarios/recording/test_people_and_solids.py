@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial.transform import Rotation
 
-from scenarios.recording.capsule_people import body_capsules, turn_z_to
-from scenarios.recording.solids import fixture_solids, group_fixtures, urdf_solids
-from sim.places.extent import fixture_extent
-from sim.robot.peoplebot import URDF
-from sim.shapes.shapes import ShapeKind
+from peopleboy.scenarios.recording.capsule_people import body_capsules, turn_z_to
+from peopleboy.scenarios.recording.solids import fixture_solids, group_fixtures, urdf_solids
+from peopleboy.sim.places.extent import fixture_extent
+from peopleboy.sim.robot.peoplebot import URDF
+from peopleboy.sim.shapes.shapes import ShapeKind
 from tests.helpers import synthetic_ticks as made
 
 

@@ -12,18 +12,18 @@ import pyarrow as pa
 import pytest
 from rerun.chunk import RrdReader
 
-from scenarios.files.load import load_scenario
-from scenarios.loop.loop import Tick, closed_loop
-from scenarios.recording.packing import pack
-from scenarios.recording.recorder import Recorder
-from scenarios.recording.rounding import PIXEL_STEP
-from sim.config import WorldConfig
-from sim.geometry.alignment import affine_between
-from sim.random_streams import stream
-from sim.world import World
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import Tick, closed_loop
+from peopleboy.scenarios.recording.packing import pack
+from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.recording.rounding import PIXEL_STEP
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.world import World
+from peopleboy.tracker.thermal.contour.ellipse import section_lines
+from peopleboy.tracker.trackers import TRACKERS, make_tracker
 from tests.helpers import synthetic_ticks as made
-from tracker.thermal.contour.ellipse import section_lines
-from tracker.trackers import TRACKERS, make_tracker
 
 THERMAL, COLOUR = "/world/robot/thermal", "/world/robot/colour"
 FRAMES = 75
@@ -219,7 +219,7 @@ def test_a_recording_that_cannot_be_packed_stays_as_it_is(tmp_path: Path) -> Non
 _KILLED = """
 import os, signal, sys
 from pathlib import Path
-from scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.recording.recorder import Recorder
 from tests.helpers import synthetic_ticks as made
 
 recorder = Recorder(Path(sys.argv[1]), made.config(), title="killed")

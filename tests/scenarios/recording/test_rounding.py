@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
+from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
 
 
 @pytest.mark.parametrize("step", [METRE_STEP, PIXEL_STEP, TURN_STEP])

@@ -13,10 +13,17 @@ from urllib.request import urlopen
 
 import pytest
 
-from bad_input import BadInput
-from scenarios.cli import main
-from scenarios.recording.recorder import Recorder
-from scenarios.recording.viewer import NO_SCREEN, is_whole, live_viewer, open_viewer, recording_in, serve
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.cli import main
+from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.recording.viewer import (
+    NO_SCREEN,
+    is_whole,
+    live_viewer,
+    open_viewer,
+    recording_in,
+    serve,
+)
 from tests.helpers import synthetic_ticks as made
 
 LISTENING = "0A"  # in Linux's table of sockets
@@ -42,7 +49,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def page(run: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """`peopleboy view --web` in a process of its own, and the address that it prints."""
-    command = [sys.executable, "-m", "scenarios", "view", str(run), "--web"]
+    command = [sys.executable, "-m", "peopleboy", "view", str(run), "--web"]
     process = subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[3]
     )

@@ -13,22 +13,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario
-from scenarios.report.charts.charts import rgb, track_edges
-from scenarios.report.charts.thermal_stills import Origin, show_frames
-from scenarios.report.columns import are_same_scene, lacking, read_columns
-from scenarios.report.figure_tables import plain_lines
-from scenarios.report.findings.errors import DISTANCES_M, curve, distance, found_share
-from scenarios.report.findings.finished_run import read_finished
-from scenarios.report.findings.identities import count_fleeting, find_losses
-from scenarios.report.findings.spans import between, settle, spans
-from scenarios.report.findings.story import Hold, Sight
-from scenarios.report.findings.summary import Outcome, headline, headline_of_many, look_into
-from scenarios.report.findings.worst_moments import worst_moments
-from scenarios.running.run import RunOptions, run
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.report.charts.charts import rgb, track_edges
+from peopleboy.scenarios.report.charts.thermal_stills import Origin, show_frames
+from peopleboy.scenarios.report.columns import are_same_scene, lacking, read_columns
+from peopleboy.scenarios.report.figure_tables import plain_lines
+from peopleboy.scenarios.report.findings.errors import DISTANCES_M, curve, distance, found_share
+from peopleboy.scenarios.report.findings.finished_run import read_finished
+from peopleboy.scenarios.report.findings.identities import count_fleeting, find_losses
+from peopleboy.scenarios.report.findings.spans import between, settle, spans
+from peopleboy.scenarios.report.findings.story import Hold, Sight
+from peopleboy.scenarios.report.findings.summary import Outcome, headline, headline_of_many, look_into
+from peopleboy.scenarios.report.findings.worst_moments import worst_moments
+from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.tracker.evaluation.sequence import Tracks
 from tests.helpers import toy_runs as toy
-from tracker.evaluation.sequence import Tracks
 
 CODES = st.lists(st.integers(0, 3), max_size=60).map(lambda values: np.array(values, np.int64))
 

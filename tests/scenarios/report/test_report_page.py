@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from bad_input import BadInput
-from scenarios.cli import main
-from scenarios.files.load import load_scenario
-from scenarios.report.page import write_report
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.cli import main
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.report.page import write_report
 from tests.helpers import toy_runs as toy
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)

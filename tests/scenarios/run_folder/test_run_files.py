@@ -11,11 +11,11 @@ import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner
 
-from bad_input import BadInput
-from scenarios.commands.evaluate import evaluate
-from scenarios.commands.report import report
-from scenarios.run_folder.run_files import read_about, read_files
-from scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.evaluate import evaluate
+from peopleboy.scenarios.commands.report import report
+from peopleboy.scenarios.run_folder.run_files import read_about, read_files
+from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
 from tests.helpers.toy_runs import write_run
 
 Damage = Callable[[Path], object]

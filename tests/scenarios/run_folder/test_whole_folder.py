@@ -6,22 +6,22 @@ from pathlib import Path
 
 import pytest
 
-from bad_input import BadInput
-from scenarios.drawing.plan import draw_plan
-from scenarios.export.dataset.make_dataset import render_set
-from scenarios.files.load import load_scenario
-from scenarios.run_folder.folder import claim_folder
-from scenarios.run_folder.whole_folder import whole_folder
-from scenarios.running.frame_cache import film
-from scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
-from scenarios.studies.reproduce.measuring.store import Store
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.plan import draw_plan
+from peopleboy.scenarios.export.dataset.make_dataset import render_set
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.run_folder.folder import claim_folder
+from peopleboy.scenarios.run_folder.whole_folder import whole_folder
+from peopleboy.scenarios.running.frame_cache import film
+from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
+from peopleboy.scenarios.studies.reproduce.measuring.store import Store
 from tests.helpers.footage_calls import refusal
 from tests.helpers.footage_files import write_folder
 
 WAIT = """
 import sys, time
 from pathlib import Path
-from scenarios.run_folder.whole_folder import whole_folder
+from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 with whole_folder(Path(sys.argv[1]), {}, overwrite=True) as folder:
     (folder / "half").touch()
     print("begun", flush=True)

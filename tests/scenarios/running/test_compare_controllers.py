@@ -6,9 +6,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from scenarios.running.compare_controllers import Controller, bootstrap, compare, intervals, parse_controller
-from scenarios.running.show_comparison import show_comparison
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.running.compare_controllers import (
+    Controller,
+    bootstrap,
+    compare,
+    intervals,
+    parse_controller,
+)
+from peopleboy.scenarios.running.show_comparison import show_comparison
 
 NAN = math.nan
 

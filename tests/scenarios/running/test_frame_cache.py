@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bad_input import BadInput
-from behaviours.command import Command
-from scenarios.files.drives import read_drive, write_drive
-from scenarios.files.load import load_scenario
-from scenarios.loop.loop import make_frame
-from scenarios.running import frame_cache
-from scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
-from sim.world import World
-from tracker.frame import Frame
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.command import Command
+from peopleboy.scenarios.files.drives import read_drive, write_drive
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.running import frame_cache
+from peopleboy.scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
+from peopleboy.sim.world import World
+from peopleboy.tracker.frame import Frame
 
 SCENARIO = load_scenario("fast_turn").lasting(2.6)
 

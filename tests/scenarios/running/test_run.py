@@ -9,12 +9,12 @@ import pyarrow.parquet as pq
 import pytest
 import yaml
 
-from bad_input import BadInput
-from scenarios.cli import main
-from scenarios.files.load import load_scenario, parse_scenario
-from scenarios.running.run import RunOptions, run
-from scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
-from tracker.trackers import TRACKERS
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.cli import main
+from peopleboy.scenarios.files.load import load_scenario, parse_scenario
+from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
+from peopleboy.tracker.trackers import TRACKERS
 
 SCENE = {
     "name": "tiny",
@@ -100,7 +100,7 @@ def test_a_fresh_process_gives_the_same_bytes_and_another_seed_does_not(
             "--no-rrd",
         ]
         subprocess.run(
-            [sys.executable, "-m", "scenarios", *command], check=True, capture_output=True, cwd=tmp_path
+            [sys.executable, "-m", "peopleboy", *command], check=True, capture_output=True, cwd=tmp_path
         )
     first, same, other = digests(finished), digests(tmp_path / "same"), digests(tmp_path / "other")
     assert first == same
@@ -271,7 +271,7 @@ def test_an_earlier_run_is_replaced_only_when_asked_and_other_folders_never(
 
 
 def test_every_library_scenario_runs_a_little(tmp_path: Path) -> None:
-    from scenarios.files.load import library
+    from peopleboy.scenarios.files.load import library
 
     for name in library():
         loaded = load_scenario(name)

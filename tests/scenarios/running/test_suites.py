@@ -7,15 +7,15 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from bad_input import BadInput
-from scenarios.cli import cli
-from scenarios.files import suite as suites
-from scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, runs_of, suite_names
-from scenarios.running import run_suite as module
-from scenarios.running.run import RunOptions
-from scenarios.running.run_suite import run_suite
-from scenarios.scores.suite_table import THESIS, Content, add_up, count
-from scenarios.studies.reproduce.showing.show_contents import count_suite
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.cli import cli
+from peopleboy.scenarios.files import suite as suites
+from peopleboy.scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, runs_of, suite_names
+from peopleboy.scenarios.running import run_suite as module
+from peopleboy.scenarios.running.run import RunOptions
+from peopleboy.scenarios.running.run_suite import run_suite
+from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
+from peopleboy.scenarios.studies.reproduce.showing.show_contents import count_suite
 
 TINY = SuiteSpec(
     name="tiny",

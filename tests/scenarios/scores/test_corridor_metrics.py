@@ -4,13 +4,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario
-from scenarios.loop.loop import closed_loop
-from scenarios.scores.corridor_metrics import Leg, score_corridor
-from scenarios.scores.corridor_score import CorridorLog, centre_line
-from sim.places.rectangle import Rectangle
-from sim.world import World
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.scenarios.scores.corridor_metrics import Leg, score_corridor
+from peopleboy.scenarios.scores.corridor_score import CorridorLog, centre_line
+from peopleboy.sim.places.rectangle import Rectangle
+from peopleboy.sim.world import World
 
 LEG = Leg((0.0, 0.0), (20.0, 0.0), 3.0)
 

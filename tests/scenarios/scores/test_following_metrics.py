@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario
-from scenarios.scores.following_metrics import FollowingRun, FollowingTask, score_following
-from scenarios.scores.score import following_task
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.scores.following_metrics import FollowingRun, FollowingTask, score_following
+from peopleboy.scenarios.scores.score import following_task
 
 STEP_S = 0.5
 

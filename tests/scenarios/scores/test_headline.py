@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.scores.corridor_metrics import CorridorScore
-from scenarios.scores.headline import headline
-from scenarios.scores.score import RunScores
-from tracker.evaluation.evaluate import Scores, evaluate
-from tracker.evaluation.mot_files import read_tracks, read_truth
+from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.headline import headline
+from peopleboy.scenarios.scores.score import RunScores
+from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 
 CORRIDOR = CorridorScore(
     lateral_rms_m=0.05,

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.cameras.blur import optics_blur, rotation_blur
-from sim.geometry.pinhole import Camera
+from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
+from peopleboy.sim.geometry.pinhole import Camera
 
 CAMERA = Camera(width=64, height=16, vertical_fov_rad=0.25)
 

@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from sim.cameras.colour import colour_image, expose
-from sim.cameras.surfaces import make_look_table
-from sim.config import ColourConfig
-from sim.geometry.pinhole import Camera
-from sim.random_streams import stream
-from sim.rendering.render import View
-from sim.shapes.materials import Look, Pattern, PatternKind
+from peopleboy.sim.cameras.colour import colour_image, expose
+from peopleboy.sim.cameras.surfaces import make_look_table
+from peopleboy.sim.config import ColourConfig
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.rendering.render import View
+from peopleboy.sim.shapes.materials import Look, Pattern, PatternKind
 
 CONFIG = ColourConfig(camera=Camera(width=60, height=40))
 WHITE = (1.0, 1.0, 1.0)

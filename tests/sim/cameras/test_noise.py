@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sim.cameras.noise import gaussian
-from sim.random_streams import stream
+from peopleboy.sim.cameras.noise import gaussian
+from peopleboy.sim.random_streams import stream
 
 
 def test_noise_has_the_moments_and_quantiles_of_the_normal_distribution() -> None:

@@ -4,16 +4,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from sim.cameras.surfaces import (
+from peopleboy.sim.cameras.surfaces import (
     make_look_table,
     part_from_pixel,
     pattern_value,
     smooth_variation,
     surface_point,
 )
-from sim.geometry.pinhole import Camera
-from sim.random_streams import stream
-from sim.shapes.materials import Look, PatternKind
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.shapes.materials import Look, PatternKind
 
 PHASE = stream(0, "surface.variation").uniform(0.0, 1.0, (3, 3))
 

@@ -3,13 +3,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.cameras.surfaces import make_look_table
-from sim.cameras.thermal import band_radiance, detect, encode_8bit, encode_16bit, make_detector, surface_image
-from sim.config import ThermalConfig
-from sim.geometry.pinhole import Camera
-from sim.random_streams import stream
-from sim.rendering.render import View
-from sim.shapes.materials import Look
+from peopleboy.sim.cameras.surfaces import make_look_table
+from peopleboy.sim.cameras.thermal import (
+    band_radiance,
+    detect,
+    encode_8bit,
+    encode_16bit,
+    make_detector,
+    surface_image,
+)
+from peopleboy.sim.config import ThermalConfig
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.rendering.render import View
+from peopleboy.sim.shapes.materials import Look
 
 CONFIG = ThermalConfig(camera=Camera(width=40, height=30))
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from sim.config import COLOUR_BASELINE_M, RobotConfig
-from sim.geometry.alignment import affine_between
-from sim.geometry.pinhole import Camera, invert_pose, transform
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.config import COLOUR_BASELINE_M, RobotConfig
+from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
 
 ROBOT = RobotConfig()
 THERMAL, COLOUR = ROBOT.thermal.camera, ROBOT.colour.camera

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.config import COLOUR_ZOOM, ColourConfig, ThermalConfig
-from sim.geometry.pinhole import Camera, invert_pose, transform
+from peopleboy.sim.config import COLOUR_ZOOM, ColourConfig, ThermalConfig
+from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
 
 cameras = st.builds(
     Camera,

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from sim.geometry.poses import pose_matrices, quaternions
+from peopleboy.sim.geometry.poses import pose_matrices, quaternions
 
 
 @given(seed=st.integers(0, 2**32 - 1), half_turns=st.booleans())

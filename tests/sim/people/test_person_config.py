@@ -3,11 +3,20 @@ import math
 import numpy as np
 import pytest
 
-from bad_input import BadInput
-from sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Clothes, dress, random_clothes
-from sim.people.person import PersonConfig, Posture, Waypoint
-from sim.random_streams import stream
-from sim.shapes.materials import PatternKind
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.people.body.clothes import (
+    BOTTOMS,
+    COLOURS,
+    HAIR,
+    SHOES,
+    TOPS,
+    Clothes,
+    dress,
+    random_clothes,
+)
+from peopleboy.sim.people.person import PersonConfig, Posture, Waypoint
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.shapes.materials import PatternKind
 from tests.helpers.walkers import make_person, settle
 
 HERE = (Waypoint(at_m=(0.0, 0.0)),)

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bad_input import BadInput
-from sim.geometry.pinhole import Camera, invert_pose, transform
-from sim.geometry.poses import pose_matrices
-from sim.physics.bullet import Bullet
-from sim.shapes.shapes import Quaternion, Shape, ShapeKind
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
+from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
 
 CUBE = Shape(kind=ShapeKind.BOX, size=(1.0, 1.0, 1.0))
 TILTED: Quaternion = (0.1, 0.5, -0.1, math.sqrt(1.0 - 0.27))
@@ -46,8 +46,8 @@ def test_shapes_and_files_that_cannot_be_used_are_refused_in_one_line(tmp_path: 
 
 def test_nothing_reaches_the_terminal() -> None:
     program = """
-from sim.physics.bullet import Bullet
-from sim.shapes.shapes import Shape, ShapeKind
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 print("before")
 with Bullet() as bullet:
     bullet.add_urdf("husky", "husky/husky.urdf", position=(0, 0, 1), fixed=False)
@@ -61,7 +61,7 @@ print("after")
 
 
 def test_a_process_without_standard_output_can_use_it() -> None:
-    use = "from sim.physics.bullet import Bullet; Bullet().add_urdf('c', 'cube.urdf')"
+    use = "from peopleboy.sim.physics.bullet import Bullet; Bullet().add_urdf('c', 'cube.urdf')"
     program = f"import os; os.close(1); {use}"
     assert subprocess.run([sys.executable, "-c", program]).returncode == 0
 

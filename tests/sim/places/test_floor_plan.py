@@ -7,10 +7,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from sim.places.floor_plan import LOBBY_MARGIN_M, WALL_M, Door, FloorPlan, check_doors
-from sim.places.rectangle import Rectangle, subtract
-from sim.places.rooms import build_place, l_corridor, straight_corridor, t_corridor
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.places.floor_plan import LOBBY_MARGIN_M, WALL_M, Door, FloorPlan, check_doors
+from peopleboy.sim.places.rectangle import Rectangle, subtract
+from peopleboy.sim.places.rooms import build_place, l_corridor, straight_corridor, t_corridor
 from tests.helpers.boxes import fighting_faces, first_hit, world_boxes
 
 sizes = st.floats(3.0, 12.0).map(lambda size: round(size, 2))

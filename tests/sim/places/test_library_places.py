@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from scenarios.files.load import LIBRARY, load_scenario
+from peopleboy.scenarios.files.load import LIBRARY, load_scenario
 from tests.helpers.boxes import fighting_faces, first_hit, upright_boxes
 
 every_scenario = pytest.mark.parametrize("name", sorted(path.stem for path in LIBRARY.glob("*.yaml")))

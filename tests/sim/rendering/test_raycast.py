@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from sim.geometry.pinhole import Camera, invert_pose, transform
-from sim.geometry.poses import pose_matrices
-from sim.physics.bullet import Bullet
-from sim.rendering.render import View, cast
-from sim.shapes.shape_table import VisualShape, make_shape_table
-from sim.shapes.shapes import Shape, ShapeKind
+from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
+from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.rendering.render import View, cast
+from peopleboy.sim.shapes.shape_table import VisualShape, make_shape_table
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 Array = NDArray[np.float64]
 

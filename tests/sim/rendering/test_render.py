@@ -13,12 +13,12 @@ import pytest
 import trimesh
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from sim.geometry.pinhole import Camera
-from sim.physics.bullet import Bullet
-from sim.rendering.render import View, render
-from sim.shapes.shape_table import make_shape_table
-from sim.shapes.shapes import Quaternion, Shape, ShapeKind
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.rendering.render import View, render
+from peopleboy.sim.shapes.shape_table import make_shape_table
+from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
 
 ROOM = {
     "floor": ((0.0, 0.0, -0.05), (30.0, 6.0, 0.1)),

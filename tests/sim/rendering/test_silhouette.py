@@ -5,12 +5,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from sim.geometry.pinhole import Camera
-from sim.geometry.poses import pose_matrices
-from sim.rendering.render import cast
-from sim.rendering.silhouette import silhouette_area, silhouette_bounds
-from sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
-from sim.shapes.shapes import ShapeKind
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.rendering.render import cast
+from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bounds
+from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
+from peopleboy.sim.shapes.shapes import ShapeKind
 
 KINDS = [ShapeKind.SPHERE, ShapeKind.CAPSULE, ShapeKind.CYLINDER, ShapeKind.BOX]
 EVERYTHING = np.ones(1, np.bool_)

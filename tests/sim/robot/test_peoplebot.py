@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from sim.config import DriveConfig, RobotConfig, SonarConfig
-from sim.physics.bullet import Bullet
-from sim.robot.peoplebot import (
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.config import DriveConfig, RobotConfig, SonarConfig
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.robot.peoplebot import (
     NAME,
     URDF,
     WHEEL_DISTANCE_M,
@@ -22,7 +22,7 @@ from sim.robot.peoplebot import (
     limit_command,
     wheel_speeds,
 )
-from sim.shapes.shapes import Shape, ShapeKind
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 FLOOR = Shape(kind=ShapeKind.BOX, size=(40.0, 40.0, 0.1), position=(0.0, 0.0, -0.05))
 WALL = Shape(kind=ShapeKind.BOX, size=(0.2, 6.0, 2.5), position=(0.1, 0.0, 1.2))

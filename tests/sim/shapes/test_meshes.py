@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from bad_input import BadInput
-from sim.geometry.pinhole import Camera
-from sim.physics.bullet import Bullet, find_model
-from sim.rendering.render import render
-from sim.shapes.meshes import load_triangles
-from sim.shapes.shape_table import make_shape_table
-from sim.shapes.shapes import Shape, ShapeKind
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.physics.bullet import Bullet, find_model
+from peopleboy.sim.rendering.render import render
+from peopleboy.sim.shapes.meshes import load_triangles
+from peopleboy.sim.shapes.shape_table import make_shape_table
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 
 @pytest.mark.parametrize("ending", ["obj", "stl", "dae"])

@@ -3,8 +3,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from sim.truth.events import CONTACT_ENDS_S, Event, EventLog
-from sim.world import World
+from peopleboy.sim.truth.events import CONTACT_ENDS_S, Event, EventLog
+from peopleboy.sim.world import World
 from tests.helpers.small_worlds import box_thing, config, hall, person, pillar, robot
 
 

@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import pytest
 
-from bad_input import BadInput
-from scenarios.files.load import load_scenario
-from sim.world import World
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.sim.world import World
 
 
 def test_an_upright_body_is_about_where_the_exact_boxes_and_pixels_say() -> None:

@@ -6,11 +6,11 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.geometry.pinhole import Camera
-from sim.people.person import PART_CLASSES
-from sim.physics.bullet import Bullet
-from sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
-from sim.world import World
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.people.person import PART_CLASSES
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
+from peopleboy.sim.world import World
 from tests.helpers.small_worlds import SMALL, box_thing, config, hall, person, pillar, robot
 
 CAMERA = Camera()

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from peopleboy.tracker.evaluation.association import GATE, associate, pair_up
+from peopleboy.tracker.evaluation.boxes import iou
 from tests.helpers.random_sequences import sequences, tracks_of, truth_of
-from tracker.evaluation.association import GATE, associate, pair_up
-from tracker.evaluation.boxes import iou
 
 
 def best_sum(overlap: np.ndarray, gate: float) -> float:

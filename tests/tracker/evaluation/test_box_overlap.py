@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from trackeval.datasets._base_dataset import _BaseDataset
 
-from tracker.evaluation.boxes import area, intersection, iou
+from peopleboy.tracker.evaluation.boxes import area, intersection, iou
 
 
 def random_boxes(seed: int, count: int) -> np.ndarray:

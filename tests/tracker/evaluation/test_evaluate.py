@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.evaluate import combine, evaluate
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread, to_json
 from tests.helpers.random_sequences import sequences, tracks_of, truth_of
-from tracker.evaluation.evaluate import combine, evaluate
-from tracker.evaluation.sequence import Tracks, Truth
-from tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread, to_json
 
 PERSON, FAR = (0, 0, 20, 60), (100, 0, 8, 20)
 TRUTH = truth_of([(1, 1, *PERSON), (2, 1, *PERSON), (1, 2, *FAR)], [True, True, False])
@@ -172,7 +172,7 @@ def test_scores_hold_plain_numbers():
 
 def test_evaluation_needs_neither_simulator_nor_numba_nor_opencv():
     code = (
-        "import sys, tracker.evaluation.table, tracker.evaluation.mot_files;"
+        "import sys, peopleboy.tracker.evaluation.table, peopleboy.tracker.evaluation.mot_files;"
         "print(sorted({'pybullet', 'numba', 'cv2', 'trackeval'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -3,10 +3,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from numpy.testing import assert_allclose
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth, write_tracks, write_truth
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 from tests.helpers.random_sequences import sequences, tracks_of, truth_of
-from tracker.evaluation.mot_files import read_tracks, read_truth, write_tracks, write_truth
-from tracker.evaluation.sequence import Tracks, Truth
 
 GOOD_TRUTH = "1,1,10.00,20.00,30.00,80.00,1,1,0.5000\n"
 GOOD_TRACKS = "1,1,10.00,20.00,30.00,80.00,0.9000,-1,-1,-1\n"

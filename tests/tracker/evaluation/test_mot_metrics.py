@@ -8,10 +8,10 @@ from numpy.testing import assert_allclose
 from trackeval.datasets._base_dataset import _BaseDataset
 from trackeval.metrics import CLEAR, HOTA, Identity
 
+from peopleboy.tracker.evaluation.association import pair_up
+from peopleboy.tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 from tests.helpers.random_sequences import as_tracks, sequences, tracks_of, truth_of
-from tracker.evaluation.association import pair_up
-from tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
-from tracker.evaluation.sequence import Tracks, Truth
 
 REFERENCES = (HOTA(), CLEAR({"PRINT_CONFIG": False}), Identity({"PRINT_CONFIG": False}))
 

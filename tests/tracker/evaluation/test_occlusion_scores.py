@@ -8,8 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracker.evaluation.occlusion_scores import Occlusion, by_length, find_occlusions, score_occlusions
-from tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.occlusion_scores import (
+    Occlusion,
+    by_length,
+    find_occlusions,
+    score_occlusions,
+)
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 
 BOX = (100.0, 50.0, 30.0, 90.0)
 RATE_HZ = 10.0

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from peopleboy.tracker.evaluation.evaluate import evaluate
+from peopleboy.tracker.evaluation.sequence import Tracks
 from tests.helpers.random_sequences import as_tracks, sequences, tracks_of, truth_of
-from tracker.evaluation.evaluate import evaluate
-from tracker.evaluation.sequence import Tracks
 
 THESIS = ("cr", "cp", "ca", "ar", "ap", "aa")
 PAPER = ("oc", "dc", "ocr", "ocp", "oca", "oar", "bap", "adc")

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.association import associate, pair_up
+from peopleboy.tracker.evaluation.uncounted import ignore_uncounted, settle_uncounted
 from tests.helpers.random_sequences import sequences, tracks_of, truth_of
-from tracker.evaluation.association import associate, pair_up
-from tracker.evaluation.uncounted import ignore_uncounted, settle_uncounted
 
 NEAR, FAR = (1, 1, 0, 0, 40, 100), (1, 2, 200, 0, 20, 50)
 

@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.picture_names import jumps, pictures_in
+from peopleboy.tracker.footage.pictures import open_footage
 from tests.helpers.footage_calls import call, refusal
 from tests.helpers.footage_files import walker, write_folder
-from tracker.footage.picture_names import jumps, pictures_in
-from tracker.footage.pictures import open_footage
 
 
 def named(*stems):

@@ -3,12 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.thermal.variants import FOOTAGE
+from peopleboy.tracker.track import Status
+from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.drawn_people import blank, draw_person
-from tracker.frame import Frame
-from tracker.thermal.people_tracker import PeopleTracker
-from tracker.thermal.variants import FOOTAGE
-from tracker.track import Status
-from tracker.trackers import make_tracker
 
 GREY, RED, BLUE = (120, 120, 120), (200, 30, 30), (30, 30, 200)
 

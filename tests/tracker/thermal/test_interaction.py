@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from tracker.thermal.config import InteractionConfig, TrackerConfig
-from tracker.thermal.contour.ellipse import box_of
-from tracker.thermal.filter.particles import ellipse_of
-from tracker.thermal.interaction import detector_factor, overlap_shares, person_factor, regions_of
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.config import InteractionConfig, TrackerConfig
+from peopleboy.tracker.thermal.contour.ellipse import box_of
+from peopleboy.tracker.thermal.filter.particles import ellipse_of
+from peopleboy.tracker.thermal.interaction import detector_factor, overlap_shares, person_factor, regions_of
 
 CONFIG = TrackerConfig()
 

@@ -4,15 +4,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal import joint_update, people_tracker
+from peopleboy.tracker.thermal.config import InteractionConfig
+from peopleboy.tracker.thermal.particle_filter import weigh
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.track import Status
+from peopleboy.tracker.trackers import TRACKERS, make_tracker
 from tests.helpers.drawn_people import blank, draw_person
-from tracker.frame import Frame
-from tracker.thermal import joint_update, people_tracker
-from tracker.thermal.config import InteractionConfig
-from tracker.thermal.particle_filter import weigh
-from tracker.thermal.people_tracker import PeopleTracker
-from tracker.thermal.variants import PEOPLEBOY
-from tracker.track import Status
-from tracker.trackers import TRACKERS, make_tracker
 
 APART = replace(PEOPLEBOY, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
 

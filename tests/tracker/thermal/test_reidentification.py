@@ -3,16 +3,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.filter.particles import equally_weighted
+from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
+from peopleboy.tracker.thermal.reidentification import most_alike_and_nearest, recognised, remembered
+from peopleboy.tracker.thermal.tracked_person import SIZE, Person
+from peopleboy.tracker.thermal.variants import FOOTAGE, PEOPLEBOY, THESIS_OCCLUSION
+from peopleboy.tracker.track import Status
 from tests.helpers.drawn_people import blank
-from tracker.frame import Frame
-from tracker.thermal.appearance.colour_model import ColourModel
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.filter.particles import equally_weighted
-from tracker.thermal.particle_filter import Belief, view_frame
-from tracker.thermal.reidentification import most_alike_and_nearest, recognised, remembered
-from tracker.thermal.tracked_person import SIZE, Person
-from tracker.thermal.variants import FOOTAGE, PEOPLEBOY, THESIS_OCCLUSION
-from tracker.track import Status
 
 VIEW = view_frame(
     Frame(thermal=blank(), time_s=1.0),

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bad_input import BadInput
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
+from peopleboy.tracker.track import Status
+from peopleboy.tracker.trackers import TRACKERS, make_tracker
 from tests.helpers.drawn_people import RADIATOR, blank, draw_person, person_frame
-from tracker.frame import Frame
-from tracker.thermal.people_tracker import PeopleTracker
-from tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
-from tracker.track import Status
-from tracker.trackers import TRACKERS, make_tracker
 
 SEEDS = range(3)
 

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracker.thermal.filter.particles import equally_weighted
-from tracker.thermal.particle_filter import Belief
-from tracker.thermal.tracked_person import HEIGHT, PERSON_M, SIZE, Person, approached
+from peopleboy.tracker.thermal.filter.particles import equally_weighted
+from peopleboy.tracker.thermal.particle_filter import Belief
+from peopleboy.tracker.thermal.tracked_person import HEIGHT, PERSON_M, SIZE, Person, approached
 
 FOCAL_PX = 297.0
 HORIZON = 119.5

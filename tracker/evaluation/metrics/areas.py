@@ -5,10 +5,10 @@ from typing import Self
 
 import numpy as np
 
-from tracker.evaluation.association import Pairs
-from tracker.evaluation.boxes import Floats, area, cover, intersection
-from tracker.evaluation.metrics.sums import Sums, percent, sum_by
-from tracker.evaluation.sequence import Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.association import Pairs
+from peopleboy.tracker.evaluation.boxes import Floats, area, cover, intersection
+from peopleboy.tracker.evaluation.metrics.sums import Sums, percent, sum_by
+from peopleboy.tracker.evaluation.sequence import Ints, Tracks, Truth
 
 
 @dataclass(frozen=True, slots=True)

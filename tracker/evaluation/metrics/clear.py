@@ -6,10 +6,10 @@ from typing import Self
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from tracker.evaluation.association import GATE, Pairs
-from tracker.evaluation.boxes import Floats
-from tracker.evaluation.metrics.sums import Sums, percent
-from tracker.evaluation.sequence import Bools, Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.association import GATE, Pairs
+from peopleboy.tracker.evaluation.boxes import Floats
+from peopleboy.tracker.evaluation.metrics.sums import Sums, percent
+from peopleboy.tracker.evaluation.sequence import Bools, Ints, Tracks, Truth
 
 ROUNDING = float(np.finfo(np.float64).eps)
 KEPT = 1000.0  # a kept identity outweighs any overlap

@@ -6,10 +6,10 @@ from typing import Self
 
 import numpy as np
 
-from tracker.evaluation.association import Pairs, assign
-from tracker.evaluation.boxes import Floats, cover
-from tracker.evaluation.metrics.sums import Sums, sum_by
-from tracker.evaluation.sequence import Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.association import Pairs, assign
+from peopleboy.tracker.evaluation.boxes import Floats, cover
+from peopleboy.tracker.evaluation.metrics.sums import Sums, sum_by
+from peopleboy.tracker.evaluation.sequence import Ints, Tracks, Truth
 
 ALPHAS = np.arange(0.05, 0.99, 0.05)  # (19,) IoU that a match needs
 ROUNDING = float(np.finfo(np.float64).eps)

@@ -6,9 +6,9 @@ from typing import Self
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from tracker.evaluation.association import GATE, Pairs
-from tracker.evaluation.metrics.sums import Sums, percent
-from tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.association import GATE, Pairs
+from peopleboy.tracker.evaluation.metrics.sums import Sums, percent
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,12 +6,12 @@ except that a figure without a denominator is undefined (NaN), where TrackEval g
 
 from dataclasses import dataclass
 
-from tracker.evaluation.association import Pairs
-from tracker.evaluation.metrics.clear import Clear
-from tracker.evaluation.metrics.hota import Hota
-from tracker.evaluation.metrics.identity_metrics import Identity
-from tracker.evaluation.metrics.sums import Sums
-from tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.association import Pairs
+from peopleboy.tracker.evaluation.metrics.clear import Clear
+from peopleboy.tracker.evaluation.metrics.hota import Hota
+from peopleboy.tracker.evaluation.metrics.identity_metrics import Identity
+from peopleboy.tracker.evaluation.metrics.sums import Sums
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,10 +18,10 @@ from typing import Self
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from tracker.evaluation.association import Pairs, associate
-from tracker.evaluation.metrics.areas import AreaSums
-from tracker.evaluation.metrics.sums import Sums, percent, sum_by
-from tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.association import Pairs, associate
+from peopleboy.tracker.evaluation.metrics.areas import AreaSums
+from peopleboy.tracker.evaluation.metrics.sums import Sums, percent, sum_by
+from peopleboy.tracker.evaluation.sequence import Tracks, Truth
 
 
 @dataclass(frozen=True, slots=True)

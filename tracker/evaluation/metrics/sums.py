@@ -6,8 +6,8 @@ from typing import Self
 
 import numpy as np
 
-from tracker.evaluation.boxes import Floats
-from tracker.evaluation.sequence import Ints
+from peopleboy.tracker.evaluation.boxes import Floats
+from peopleboy.tracker.evaluation.sequence import Ints
 
 
 @dataclass(frozen=True, slots=True, eq=False)

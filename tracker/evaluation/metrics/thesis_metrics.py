@@ -8,10 +8,10 @@ denominator is undefined (NaN). Results above 100 % are capped, which one-to-one
 
 from dataclasses import dataclass
 
-from tracker.evaluation.association import Pairs
-from tracker.evaluation.metrics.areas import AreaSums
-from tracker.evaluation.metrics.sums import Sums, percent
-from tracker.evaluation.sequence import Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.association import Pairs
+from peopleboy.tracker.evaluation.metrics.areas import AreaSums
+from peopleboy.tracker.evaluation.metrics.sums import Sums, percent
+from peopleboy.tracker.evaluation.sequence import Ints, Tracks, Truth
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from bad_input import BadInput
-from tracker.thermal.check_config import check_not_negative, check_positive, check_share
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.check_config import check_not_negative, check_positive, check_share
 
 Affine = tuple[float, float, float, float, float, float]
 

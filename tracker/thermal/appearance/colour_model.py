@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from tracker.thermal.appearance.colour_config import ColourConfig
-from tracker.thermal.filter.particles import Floats
+from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
+from peopleboy.tracker.thermal.filter.particles import Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)

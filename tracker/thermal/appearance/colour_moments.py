@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from tracker.thermal.appearance.power_sums import Integers, RegionSums
-from tracker.thermal.filter.particles import Floats
+from peopleboy.tracker.thermal.appearance.power_sums import Integers, RegionSums
+from peopleboy.tracker.thermal.filter.particles import Floats
 
 WHITE = 255.0
 

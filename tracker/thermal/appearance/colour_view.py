@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.appearance.alignment import Alignment
-from tracker.thermal.appearance.colour_config import ColourConfig
-from tracker.thermal.appearance.colour_moments import normalised_moments
-from tracker.thermal.appearance.colour_space import channels_of
-from tracker.thermal.appearance.histograms import cumulative_histograms
-from tracker.thermal.appearance.power_sums import PowerSums
-from tracker.thermal.appearance.regions import Bounds, covered, part_rectangles, pixel_bounds
-from tracker.thermal.filter.particles import Floats, H
+from peopleboy.tracker.thermal.appearance.alignment import Alignment
+from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
+from peopleboy.tracker.thermal.appearance.colour_moments import normalised_moments
+from peopleboy.tracker.thermal.appearance.colour_space import channels_of
+from peopleboy.tracker.thermal.appearance.histograms import cumulative_histograms
+from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
+from peopleboy.tracker.thermal.appearance.regions import Bounds, covered, part_rectangles, pixel_bounds
+from peopleboy.tracker.thermal.filter.particles import Floats, H
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,8 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from tracker.thermal.appearance.regions import Bounds
-from tracker.thermal.filter.particles import Floats
+from peopleboy.tracker.thermal.appearance.regions import Bounds
+from peopleboy.tracker.thermal.filter.particles import Floats
 
 
 def cumulative_histograms(

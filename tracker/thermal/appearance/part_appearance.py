@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.appearance.alignment import Alignment
-from tracker.thermal.appearance.colour_config import SAME_VIEW, ColourConfig
-from tracker.thermal.appearance.colour_view import ColourView
-from tracker.thermal.appearance.power_sums import PowerSums
-from tracker.thermal.appearance.regions import PARTS, part_rectangles
-from tracker.thermal.config import LooksConfig
-from tracker.thermal.filter.particles import Floats
-from tracker.thermal.interaction import Regions
+from peopleboy.tracker.thermal.appearance.alignment import Alignment
+from peopleboy.tracker.thermal.appearance.colour_config import SAME_VIEW, ColourConfig
+from peopleboy.tracker.thermal.appearance.colour_view import ColourView
+from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
+from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangles
+from peopleboy.tracker.thermal.config import LooksConfig
+from peopleboy.tracker.thermal.filter.particles import Floats
+from peopleboy.tracker.thermal.interaction import Regions
 
 HIDDEN_PART = 0.3  # share of a part behind others from which its colour is not this person's
 

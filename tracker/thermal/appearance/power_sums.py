@@ -10,8 +10,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from tracker.thermal.appearance.regions import Bounds, covered
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.appearance.regions import Bounds, covered
 
 Integers = NDArray[np.int64]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from tracker.thermal.filter.particles import D, Floats, H, W, X, Y
+from peopleboy.tracker.thermal.filter.particles import D, Floats, H, W, X, Y
 
 Bounds = NDArray[np.int32]
 HEAD, TORSO, LEGS = range(3)

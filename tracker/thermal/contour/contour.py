@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from tracker.thermal.config import ContourConfig
-from tracker.thermal.filter.particles import D, Floats, H, W, X, Y
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.tracker.thermal.filter.particles import D, Floats, H, W, X, Y
 
 HEAD_LEFT, HEAD_TOP, HEAD_RIGHT, SHOULDER_LEFT, SHOULDER_RIGHT, SIDE_LEFT, SIDE_RIGHT, FEET = range(8)
 SECTIONS = 8

@@ -8,9 +8,16 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.config import ContourConfig
-from tracker.thermal.contour.contour import COVERED, FEET, HEAD_RIGHT, SECTIONS, Probes, pixels_under
-from tracker.thermal.filter.particles import FOOT, D, H, W, X, Y
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.tracker.thermal.contour.contour import (
+    COVERED,
+    FEET,
+    HEAD_RIGHT,
+    SECTIONS,
+    Probes,
+    pixels_under,
+)
+from peopleboy.tracker.thermal.filter.particles import FOOT, D, H, W, X, Y
 
 LEGS_WIDTH = 0.75  # half width of the legs, in body semi-widths
 _SUBPIXEL_BITS = 4

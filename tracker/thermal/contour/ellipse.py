@@ -7,8 +7,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.config import BoxConfig, ContourConfig
-from tracker.thermal.contour.contour import (
+from peopleboy.tracker.thermal.config import BoxConfig, ContourConfig
+from peopleboy.tracker.thermal.contour.contour import (
     FEET,
     HEAD_LEFT,
     HEAD_RIGHT,
@@ -19,7 +19,7 @@ from tracker.thermal.contour.contour import (
     head_points,
     section_angles,
 )
-from tracker.track import Ellipse
+from peopleboy.tracker.track import Ellipse
 
 Box = tuple[float, float, float, float]
 

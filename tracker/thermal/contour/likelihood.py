@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.config import (
+from peopleboy.tracker.thermal.config import (
     REFERENCE_HEIGHT_PX,
     ContourConfig,
     FilterConfig,
     LikelihoodConfig,
     LimitsConfig,
 )
-from tracker.thermal.contour.contour import (
+from peopleboy.tracker.thermal.contour.contour import (
     FEET,
     Probes,
     build_probes,
@@ -23,7 +23,7 @@ from tracker.thermal.contour.contour import (
     section_differences,
     section_weights,
 )
-from tracker.thermal.filter.particles import D, Floats, H, W, Y, normalised
+from peopleboy.tracker.thermal.filter.particles import D, Floats, H, W, Y, normalised
 
 
 @dataclass(frozen=True, slots=True, eq=False)

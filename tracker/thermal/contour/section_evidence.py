@@ -9,11 +9,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.config import ContourConfig, TrackerConfig
-from tracker.thermal.contour.contour import FEET, section_differences
-from tracker.thermal.contour.coverage import covered_by, seen_shares
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.track import Ellipse, Track
+from peopleboy.tracker.thermal.config import ContourConfig, TrackerConfig
+from peopleboy.tracker.thermal.contour.contour import FEET, section_differences
+from peopleboy.tracker.thermal.contour.coverage import covered_by, seen_shares
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.track import Ellipse, Track
 
 _NOTHING = 1e-6  # share of a section that counts as none
 

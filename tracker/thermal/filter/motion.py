@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from tracker.thermal.config import MotionConfig
-from tracker.thermal.filter.particles import VX, D, Floats, H
+from peopleboy.tracker.thermal.config import MotionConfig
+from peopleboy.tracker.thermal.filter.particles import VX, D, Floats, H
 
 Columns = NDArray[np.floating[Any]]
 

@@ -6,14 +6,14 @@ import math
 
 import numpy as np
 
-from tracker.thermal.config import (
+from peopleboy.tracker.thermal.config import (
     REFERENCE_HEIGHT_PX,
     FilterConfig,
     LimitsConfig,
     MotionConfig,
     TrackerConfig,
 )
-from tracker.thermal.filter.particles import STATE_SIZE, VH, VW, VX, VY, D, Floats, H, W, X, Y
+from peopleboy.tracker.thermal.filter.particles import STATE_SIZE, VH, VW, VX, VY, D, Floats, H, W, X, Y
 
 BOX_SPREAD = 0.05  # of a person within a box that is known, as a share of its sides
 

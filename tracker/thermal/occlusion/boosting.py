@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from bad_input import BadInput
-from tracker.thermal.occlusion.learned_table import LearnedTable, WeakClassifier
-from tracker.thermal.occlusion.pair_features import FEATURES, Features
-from tracker.thermal.occlusion.weak_classifiers import SortedSums, Stump, best_stump, weighted_sums
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable, WeakClassifier
+from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES, Features
+from peopleboy.tracker.thermal.occlusion.weak_classifiers import SortedSums, Stump, best_stump, weighted_sums
 
 try:
     from sklearn.base import BaseEstimator, ClassifierMixin

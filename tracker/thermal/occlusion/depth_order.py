@@ -10,9 +10,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.interaction import Regions
-from tracker.thermal.particle_filter import View
-from tracker.thermal.tracked_person import Person
+from peopleboy.tracker.thermal.interaction import Regions
+from peopleboy.tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.tracked_person import Person
 
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
 LOOKS = 12.0  # difference of squared distances of looks that counts 1

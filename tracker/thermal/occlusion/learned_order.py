@@ -9,17 +9,17 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.occlusion.depth_order import Figure
-from tracker.thermal.occlusion.learned_table import TABLES, LearnedTable
-from tracker.thermal.occlusion.pair_features import (
+from peopleboy.tracker.thermal.occlusion.depth_order import Figure
+from peopleboy.tracker.thermal.occlusion.learned_table import TABLES, LearnedTable
+from peopleboy.tracker.thermal.occlusion.pair_features import (
     FEATURES,
     Features,
     Pairs,
     overlapping_pairs,
     pair_features,
 )
-from tracker.thermal.occlusion.visibility import appearance
-from tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.occlusion.visibility import appearance
+from peopleboy.tracker.thermal.particle_filter import View
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,8 +9,8 @@ from typing import Annotated, Literal
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from bad_input import BadInput
-from tracker.thermal.occlusion.pair_features import FEATURES
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
 
 TABLES = Path(__file__).parent / "tables"
 """Where the tables that come with the trackers are: NAME.yaml for the tracker of that name."""

@@ -9,20 +9,20 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.appearance.colour_config import ColourConfig
-from tracker.thermal.appearance.colour_model import ColourModel
-from tracker.thermal.appearance.colour_view import ColourView
-from tracker.thermal.appearance.part_appearance import LooksView
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.contour.coverage import body_share, head_share, seen_shares
-from tracker.thermal.filter.particles import FOOT, VX, VY, D, Floats, H, W, X, Y, equally_weighted
-from tracker.thermal.interaction import overlap_shares, regions_of
-from tracker.thermal.life import is_kept
-from tracker.thermal.occlusion.visibility import CLEAR, Scene, look_at
-from tracker.thermal.particle_filter import Belief, View
-from tracker.thermal.smoothing import smoothed
-from tracker.thermal.tracked_person import SIZE, Person, approached, moved_on
-from tracker.track import Status
+from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
+from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
+from peopleboy.tracker.thermal.appearance.colour_view import ColourView
+from peopleboy.tracker.thermal.appearance.part_appearance import LooksView
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.contour.coverage import body_share, head_share, seen_shares
+from peopleboy.tracker.thermal.filter.particles import FOOT, VX, VY, D, Floats, H, W, X, Y, equally_weighted
+from peopleboy.tracker.thermal.interaction import overlap_shares, regions_of
+from peopleboy.tracker.thermal.life import is_kept
+from peopleboy.tracker.thermal.occlusion.visibility import CLEAR, Scene, look_at
+from peopleboy.tracker.thermal.particle_filter import Belief, View
+from peopleboy.tracker.thermal.smoothing import smoothed
+from peopleboy.tracker.thermal.tracked_person import SIZE, Person, approached, moved_on
+from peopleboy.tracker.track import Status
 
 VELOCITY_S = 0.4  # time constant of the velocity with which a hidden person walks on
 FOOT_S = 0.5

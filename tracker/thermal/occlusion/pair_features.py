@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.appearance.colour_model import ColourModel, squared_distances
-from tracker.thermal.appearance.regions import PARTS, part_rectangles
-from tracker.thermal.filter.particles import Floats, H, W, X, Y
-from tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, squared_distances
+from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangles
+from peopleboy.tracker.thermal.filter.particles import Floats, H, W, X, Y
+from peopleboy.tracker.thermal.particle_filter import View
 
 FEATURES = ("strength", "top", "bottom", "colour", "colour_o", "colour_no")
 """Table 7.3's names: of the filter, the contour, and the colours of all, the shared and the other area."""

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.thermal.appearance.colour_model import ColourModel, squared_distances
-from tracker.thermal.appearance.part_appearance import visible
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.contour.contour import SECTIONS
-from tracker.thermal.contour.coverage import body_share, head_share, seen_shares
-from tracker.thermal.contour.likelihood import probability
-from tracker.thermal.filter.particles import Floats, H
-from tracker.thermal.interaction import overlap_shares, regions_of
-from tracker.thermal.particle_filter import Belief, View
-from tracker.thermal.tracked_person import Person
+from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, squared_distances
+from peopleboy.tracker.thermal.appearance.part_appearance import visible
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.contour.contour import SECTIONS
+from peopleboy.tracker.thermal.contour.coverage import body_share, head_share, seen_shares
+from peopleboy.tracker.thermal.contour.likelihood import probability
+from peopleboy.tracker.thermal.filter.particles import Floats, H
+from peopleboy.tracker.thermal.interaction import overlap_shares, regions_of
+from peopleboy.tracker.thermal.particle_filter import Belief, View
+from peopleboy.tracker.thermal.tracked_person import Person
 
 CLEAR = 0.5  # share of head and body in view from which a hidden person may be seen again
 

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from tracker.thermal.occlusion.pair_features import Features
+from peopleboy.tracker.thermal.occlusion.pair_features import Features
 
 FRACTIONS = 20
 """N_f: the weights beside 1 are +-1/20, +-2/20, ... +-1."""

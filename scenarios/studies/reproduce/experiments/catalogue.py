@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from bad_input import BadInput
-from scenarios.studies.reproduce.experiments.contents import Contents
-from scenarios.studies.reproduce.experiments.delay import Delay
-from scenarios.studies.reproduce.experiments.experiment import Experiment, Line
-from scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
-from scenarios.studies.reproduce.experiments.timing import TIMINGS
-from scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, Tracking, Trial
-from scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting, Value
-from tracker.evaluation.uncounted import Rule
-from tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.studies.reproduce.experiments.contents import Contents
+from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line
+from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
+from peopleboy.scenarios.studies.reproduce.experiments.timing import TIMINGS
+from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, Tracking, Trial
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting, Value
+from peopleboy.tracker.evaluation.uncounted import Rule
+from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
 
 LITERAL, STRICT, OURS = "literal", "literal, strict", "default"
 """The source's tracker; the same, with candidates on uncounted people as false alarms; ours."""

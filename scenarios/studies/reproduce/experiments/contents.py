@@ -6,10 +6,10 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from scenarios.scores.suite_table import Content, add_up
-from scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
-from scenarios.studies.reproduce.measuring.units import FilmUnit, Unit
-from scenarios.studies.reproduce.measuring.workload import Plan
+from peopleboy.scenarios.scores.suite_table import Content, add_up
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
+from peopleboy.scenarios.studies.reproduce.measuring.units import FilmUnit, Unit
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 
 COLUMNS = {
     "frames_with_persons": "frames with persons",

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
-from scenarios.studies.reproduce.measuring.delay_units import DelayUnit
-from scenarios.studies.reproduce.measuring.tracker_settings import Setting
-from scenarios.studies.reproduce.measuring.units import FilmUnit, Unit
-from scenarios.studies.reproduce.measuring.workload import Plan
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
+from peopleboy.scenarios.studies.reproduce.measuring.delay_units import DelayUnit
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from peopleboy.scenarios.studies.reproduce.measuring.units import FilmUnit, Unit
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 
 RATE_HZ = 15
 COLUMNS = ("frames", "s", "found in 2 s [%]")

@@ -9,9 +9,9 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.studies.reproduce.measuring.store import Result
-from scenarios.studies.reproduce.measuring.units import Unit
-from scenarios.studies.reproduce.measuring.workload import Plan
+from peopleboy.scenarios.studies.reproduce.measuring.store import Result
+from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 
 Chart = Literal["bars", "lines", "none"]
 

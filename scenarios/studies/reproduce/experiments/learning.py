@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.studies.occlusion_learning.train_occlusion import TRAINING, UNSEEN
-from scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
-from scenarios.studies.reproduce.measuring.learn_units import LearnUnit, PairUnit, examples
-from scenarios.studies.reproduce.measuring.units import Unit
-from scenarios.studies.reproduce.measuring.workload import Plan
-from tracker.thermal.occlusion.pair_features import FEATURES
+from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import TRAINING, UNSEEN
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
+from peopleboy.scenarios.studies.reproduce.measuring.learn_units import LearnUnit, PairUnit, examples
+from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
+from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
 
 SHARE = "right [%]"
 TESTS = ("held out", "unseen scenarios")

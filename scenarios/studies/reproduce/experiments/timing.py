@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
-from scenarios.studies.reproduce.measuring.stopwatch import (
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
+from peopleboy.scenarios.studies.reproduce.measuring.stopwatch import (
     Milliseconds,
     time_colours,
     time_integrals,
     time_people,
     time_steps,
 )
-from scenarios.studies.reproduce.measuring.store import Result
-from scenarios.studies.reproduce.measuring.tracker_settings import Setting
-from scenarios.studies.reproduce.measuring.units import Unit
-from scenarios.studies.reproduce.measuring.workload import Plan
+from peopleboy.scenarios.studies.reproduce.measuring.store import Result
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 
 MS = "ms"
 

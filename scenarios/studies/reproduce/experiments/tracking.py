@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
-from scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting
-from scenarios.studies.reproduce.measuring.units import RECORDS, FilmUnit, TrackUnit, Unit, restored
-from scenarios.studies.reproduce.measuring.workload import Plan
-from tracker.evaluation.uncounted import Rule
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting
+from peopleboy.scenarios.studies.reproduce.measuring.units import RECORDS, FilmUnit, TrackUnit, Unit, restored
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
+from peopleboy.tracker.evaluation.uncounted import Rule
 
 THESIS = ("CR", "CP", "CA", "AR", "AP", "AA")
 PAPER = ("OC", "DC", "OCR", "OCP", "OCA", "OAR", "BAP", "ADC")

@@ -8,17 +8,17 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.files.suite import SuiteRun
-from scenarios.running.frame_cache import film, frames_of
-from scenarios.studies.reproduce.measuring.store import Result
-from scenarios.studies.reproduce.measuring.tracker_settings import Setting
-from scenarios.studies.reproduce.measuring.units import play_key
-from sim.random_streams import stream
-from tracker.evaluation.association import GATE
-from tracker.evaluation.boxes import iou
-from tracker.evaluation.sequence import Truth
-from tracker.track import Status
-from tracker.trackers import Tracker
+from peopleboy.scenarios.files.suite import SuiteRun
+from peopleboy.scenarios.running.frame_cache import film, frames_of
+from peopleboy.scenarios.studies.reproduce.measuring.store import Result
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from peopleboy.scenarios.studies.reproduce.measuring.units import play_key
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.evaluation.association import GATE
+from peopleboy.tracker.evaluation.boxes import iou
+from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.track import Status
+from peopleboy.tracker.trackers import Tracker
 
 PATIENCE = 30  # frames after which a tracker has not found the person
 EVERY = 15  # frames between two starts

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, collect, mirrored
-from scenarios.studies.occlusion_learning.train_occlusion import PAIRS, accuracy
-from scenarios.studies.reproduce.measuring.store import Result
-from scenarios.studies.reproduce.measuring.tracker_settings import Setting
-from sim.random_streams import stream
+from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, collect, mirrored
+from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import PAIRS, accuracy
+from peopleboy.scenarios.studies.reproduce.measuring.store import Result
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from peopleboy.sim.random_streams import stream
 
 TRAINING_SHARE = 0.6
 COLLECTS = Setting("peopleboy")
@@ -89,7 +89,7 @@ class LearnUnit:
         Source: thesis, section 7.4.
         """
         # Only here: what needs scikit-learn is not needed for anything else.
-        from tracker.thermal.occlusion.boosting import train
+        from peopleboy.tracker.thermal.occlusion.boosting import train
 
         order = stream(self.split, "reproduce.split").permutation(len(self.training))[:PAIRS]
         cut = round(TRAINING_SHARE * len(order))

@@ -11,18 +11,24 @@ from statistics import median
 import numpy as np
 from numpy.typing import NDArray
 
-from scenarios.studies.reproduce.measuring.tracker_settings import Setting
-from sim.random_streams import stream
-from tracker.frame import Frame
-from tracker.thermal.appearance.colour_config import ColourConfig
-from tracker.thermal.appearance.colour_model import ColourModel, likelihood
-from tracker.thermal.appearance.colour_view import ColourView
-from tracker.thermal.appearance.power_sums import PowerSums
-from tracker.thermal.config import TrackerConfig
-from tracker.thermal.contour.likelihood import ContourModel, fitness, is_within, probability, sample_weights
-from tracker.thermal.filter.motion import predict
-from tracker.thermal.filter.particles import Particles, mean_state, resample, uncertainty_px2
-from tracker.thermal.particle_filter import advance, begin, step, view_frame
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
+from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood
+from peopleboy.tracker.thermal.appearance.colour_view import ColourView
+from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.contour.likelihood import (
+    ContourModel,
+    fitness,
+    is_within,
+    probability,
+    sample_weights,
+)
+from peopleboy.tracker.thermal.filter.motion import predict
+from peopleboy.tracker.thermal.filter.particles import Particles, mean_state, resample, uncertainty_px2
+from peopleboy.tracker.thermal.particle_filter import advance, begin, step, view_frame
 
 SHAPE = (240, 320)
 COUNT = 1000

@@ -10,10 +10,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, Final
 
-import sim
-import tracker
-from scenarios.run_folder.folder import versions
-from scenarios.run_folder.out_folder import writing_to
+from peopleboy import sim, tracker
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.out_folder import writing_to
 
 Result = dict[str, Any]
 

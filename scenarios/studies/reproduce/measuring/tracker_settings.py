@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from bad_input import BadInput
-from tracker.thermal.config import InteractionConfig, OcclusionConfig, TrackerConfig
-from tracker.thermal.people_tracker import PeopleTracker
-from tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
-from tracker.trackers import Tracker
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.config import InteractionConfig, OcclusionConfig, TrackerConfig
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
+from peopleboy.tracker.trackers import Tracker
 
 Value = float | int | str | None
 Changes = tuple[tuple[str, Value], ...]

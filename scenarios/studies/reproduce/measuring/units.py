@@ -10,20 +10,20 @@ from typing import Any, Protocol, TypeVar, get_type_hints
 
 import numpy as np
 
-from scenarios.files.suite import SuiteRun
-from scenarios.running.frame_cache import Film, film, frames_of
-from scenarios.scores.suite_table import count
-from scenarios.studies.reproduce.measuring.store import Result
-from scenarios.studies.reproduce.measuring.tracker_settings import Setting
-from sim.random_streams import stream
-from tracker.evaluation.evaluate import Counts, evaluate
-from tracker.evaluation.metrics.paper_metrics import PaperMetrics
-from tracker.evaluation.metrics.sums import Sums
-from tracker.evaluation.metrics.thesis_metrics import ThesisMetrics
-from tracker.evaluation.sequence import Tracks
-from tracker.evaluation.uncounted import Rule
-from tracker.track import Status
-from tracker.trackers import Tracker
+from peopleboy.scenarios.files.suite import SuiteRun
+from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
+from peopleboy.scenarios.scores.suite_table import count
+from peopleboy.scenarios.studies.reproduce.measuring.store import Result
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
+from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
+from peopleboy.tracker.evaluation.metrics.sums import Sums
+from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics
+from peopleboy.tracker.evaluation.sequence import Tracks
+from peopleboy.tracker.evaluation.uncounted import Rule
+from peopleboy.tracker.track import Status
+from peopleboy.tracker.trackers import Tracker
 
 RULES: tuple[Rule, ...] = ("ignore", "absent")
 RECORDS: dict[str, type[Sums]] = {"counts": Counts, "thesis": ThesisMetrics, "paper": PaperMetrics}

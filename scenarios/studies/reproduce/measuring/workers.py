@@ -8,9 +8,9 @@ from contextlib import contextmanager
 import joblib
 from joblib.externals.loky.process_executor import BrokenProcessPool
 
-from bad_input import BadInput
-from scenarios.studies.reproduce.measuring.store import Result, Store
-from scenarios.studies.reproduce.measuring.units import Unit
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.studies.reproduce.measuring.store import Result, Store
+from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 
 ATTEMPTS = 5  # how often workers may die without a unit having been finished in between
 CONNECT_S = 30.0  # [s] to wait for the scheduler, and for its first worker

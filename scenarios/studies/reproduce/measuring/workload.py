@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from scenarios.files.suite import SuiteRun, load_suite, runs_of
+from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
 
 DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import ttest_rel
 
-from scenarios.studies.reproduce.experiments.experiment import Line, Samples
-from scenarios.studies.reproduce.showing.source import Claim
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Line, Samples
+from peopleboy.scenarios.studies.reproduce.showing.source import Claim
 
 SIGNIFICANT = 0.01
 ALIKE = 2.0  # [points] within which two figures are called alike, where the source has no test

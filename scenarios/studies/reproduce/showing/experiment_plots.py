@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
-from scenarios.studies.reproduce.showing.against_source import mean_and_spread
-from scenarios.studies.reproduce.showing.source import SOURCE, SourceTable
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
+from peopleboy.scenarios.studies.reproduce.showing.against_source import mean_and_spread
+from peopleboy.scenarios.studies.reproduce.showing.source import SOURCE, SourceTable
 
 COLOURS = {SOURCE: "#1a1a1a", "literal": "#d95f02", "literal, strict": "#f4a76a", "default": "#1f78b4"}
 Series = dict[str, dict[str, tuple[float, float | None]]]

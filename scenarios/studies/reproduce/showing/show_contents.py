@@ -10,8 +10,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from scenarios.running.run_suite import films_of
-from scenarios.scores.suite_table import THESIS, Content, add_up, count
+from peopleboy.scenarios.running.run_suite import films_of
+from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
 
 _RATE_HZ = 15.0
 

@@ -8,9 +8,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, RootModel, ValidationError, model_validator
 
-from bad_input import BadInput
-from scenarios.files.read_yaml import read_yaml
-from scenarios.files.schema import Strict
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.scenarios.files.schema import Strict
 
 PATH = Path(__file__).with_name("source_figures.yaml")
 SOURCE = "source"

@@ -10,17 +10,17 @@ from pathlib import Path
 
 import jinja2
 
-from scenarios.files.read_yaml import read_yaml
-from scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
-from scenarios.studies.reproduce.showing.against_source import (
+from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
+from peopleboy.scenarios.studies.reproduce.showing.against_source import (
     SIGNIFICANT,
     Outcome,
     Verdict,
     judge,
     mean_and_spread,
 )
-from scenarios.studies.reproduce.showing.experiment_plots import draw
-from scenarios.studies.reproduce.showing.source import Claim, SourceTable, source_tables
+from peopleboy.scenarios.studies.reproduce.showing.experiment_plots import draw
+from peopleboy.scenarios.studies.reproduce.showing.source import Claim, SourceTable, source_tables
 
 HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenarios.cli import main
-from scenarios.export.dataset.splits import SPLITS, lacking_splits, split_lines, split_of
-from tracker.evaluation.mot_files import read_truth
+from peopleboy.scenarios.cli import main
+from peopleboy.scenarios.export.dataset.splits import SPLITS, lacking_splits, split_lines, split_of
+from peopleboy.tracker.evaluation.mot_files import read_truth
 
 SCENE = """
 name: tiny

@@ -3,24 +3,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bad_input import BadInput
-from scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
-from scenarios.studies.occlusion_learning.occlusion_pairs import (
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
+from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import (
     Episodes,
     PairExample,
     mirrored,
     who_is_in_front,
 )
-from scenarios.studies.occlusion_learning.pair_files import read_pairs, write_pairs
-from scenarios.studies.occlusion_learning.train_occlusion import (
+from peopleboy.scenarios.studies.occlusion_learning.pair_files import read_pairs, write_pairs
+from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import (
     TRAINING,
     UNSEEN,
     learn,
     run_trials,
     share_right,
 )
+from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
 from tests.helpers.synthetic_ticks import person
-from tracker.thermal.occlusion.learned_table import LearnedTable
 
 
 def examples(count: int, seed: int) -> list[PairExample]:

@@ -6,19 +6,24 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.files.load import load_scenario
-from scenarios.files.suite import SuiteRun
-from scenarios.running.frame_cache import film
-from scenarios.studies.reproduce.experiments.delay import Delay
-from scenarios.studies.reproduce.experiments.experiment import Line
-from scenarios.studies.reproduce.measuring.delay_units import EVERY, PATIENCE, DelayUnit, plain_starts
-from scenarios.studies.reproduce.measuring.tracker_settings import Setting
-from scenarios.studies.reproduce.measuring.workload import Plan
-from tracker.evaluation.sequence import Truth
-from tracker.frame import Frame
-from tracker.thermal.filter.particles import Particles
-from tracker.track import Ellipse, Status, Track
-from tracker.trackers import Tracker
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.suite import SuiteRun
+from peopleboy.scenarios.running.frame_cache import film
+from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Line
+from peopleboy.scenarios.studies.reproduce.measuring.delay_units import (
+    EVERY,
+    PATIENCE,
+    DelayUnit,
+    plain_starts,
+)
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
+from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.track import Ellipse, Status, Track
+from peopleboy.tracker.trackers import Tracker
 
 PLAY = SuiteRun(load_scenario("single_stationary").lasting(9.0), 0)
 

@@ -9,22 +9,22 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from bad_input import BadInput
-from scenarios.cli import main
-from scenarios.files.load import load_scenario
-from scenarios.files.suite import SuiteRun
-from scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS, choose
-from scenarios.studies.reproduce.experiments.experiment import Experiment, Line, Samples
-from scenarios.studies.reproduce.experiments.tracking import Tracking
-from scenarios.studies.reproduce.measuring.tracker_settings import BASES, Setting, changed
-from scenarios.studies.reproduce.measuring.units import RECORDS, TrackUnit, restored
-from scenarios.studies.reproduce.measuring.workload import Plan, full_plan
-from scenarios.studies.reproduce.reproduce import Means, reproduce
-from scenarios.studies.reproduce.showing.against_source import Outcome, judge, paired_t_test
-from scenarios.studies.reproduce.showing.source import Claim, source_tables
-from scenarios.studies.reproduce.showing.source_page import About, write_page
-from sim.random_streams import stream
-from tracker.evaluation.metrics.paper_metrics import PaperMetrics
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.cli import main
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.suite import SuiteRun
+from peopleboy.scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS, choose
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line, Samples
+from peopleboy.scenarios.studies.reproduce.experiments.tracking import Tracking
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import BASES, Setting, changed
+from peopleboy.scenarios.studies.reproduce.measuring.units import RECORDS, TrackUnit, restored
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan, full_plan
+from peopleboy.scenarios.studies.reproduce.reproduce import Means, reproduce
+from peopleboy.scenarios.studies.reproduce.showing.against_source import Outcome, judge, paired_t_test
+from peopleboy.scenarios.studies.reproduce.showing.source import Claim, source_tables
+from peopleboy.scenarios.studies.reproduce.showing.source_page import About, write_page
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
 
 FIGURES = ("4.8", "4.9a", "4.9b", "5.4", "5.5a", "5.5b", "5.6", "6.4", "6.5", "6.6", "7.3")
 TABLES = ("3.1", "4.1", "5.1", "6.1", "6.2", "7.1", "7.2", "7.3", "7.4")

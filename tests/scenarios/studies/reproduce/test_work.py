@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from bad_input import BadInput
-from scenarios.studies.reproduce.measuring.store import Store
-from scenarios.studies.reproduce.measuring.workers import run_units
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.studies.reproduce.measuring.store import Store
+from peopleboy.scenarios.studies.reproduce.measuring.workers import run_units
 from tests.helpers import toy_units
 from tests.helpers.toy_units import ToyUnit, diary, no_report, toys
 
@@ -85,7 +85,7 @@ def test_a_mistake_in_the_work_is_not_tried_again(tmp_path: Path) -> None:
 
 def test_a_scheduler_that_does_not_answer_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("scenarios.studies.reproduce.measuring.workers.CONNECT_S", 0.3)
+    monkeypatch.setattr("peopleboy.scenarios.studies.reproduce.measuring.workers.CONNECT_S", 0.3)
     with pytest.raises(BadInput, match=r"--scheduler tcp://127\.0\.0\.1:9: cannot be reached"):
         run_units(toys(tmp_path), Store(tmp_path / "u.jsonl"), 1, "tcp://127.0.0.1:9", no_report)
 
@@ -96,7 +96,7 @@ def test_a_cluster_finishes_though_one_of_its_two_workers_is_killed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("scenarios.studies.reproduce.measuring.workers.CONNECT_S", 5.0)
+    monkeypatch.setattr("peopleboy.scenarios.studies.reproduce.measuring.workers.CONNECT_S", 5.0)
     address_file = tmp_path / "scheduler.json"
     here = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
     scheduler = start("dask_scheduler", *here, "--scheduler-file", str(address_file))

@@ -3,12 +3,12 @@ import itertools
 import numpy as np
 import pytest
 
-from sim.people.body import anthropometry as table
-from sim.people.body.anthropometry import MEAN_GIRTHS, measure
-from sim.people.body.clothes import Clothes
-from sim.people.body.joints import JOINT_NAMES
-from sim.people.body.skeleton import PARENTS, joint_offsets
-from sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Posture, Waypoint
+from peopleboy.sim.people.body import anthropometry as table
+from peopleboy.sim.people.body.anthropometry import MEAN_GIRTHS, measure
+from peopleboy.sim.people.body.clothes import Clothes
+from peopleboy.sim.people.body.joints import JOINT_NAMES
+from peopleboy.sim.people.body.skeleton import PARENTS, joint_offsets
+from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Posture, Waypoint
 from tests.helpers.person_shapes import person_depth, person_points
 from tests.helpers.walkers import make_person, settle, walk
 

@@ -3,10 +3,10 @@ import math
 import numpy as np
 import pytest
 
-from sim.people.body.body_shapes import sole_points
-from sim.people.body.motion_capture import fourier_basis, load_walking_clip
-from sim.people.body.skeleton import mirror
-from sim.people.person import Posture, Waypoint
+from peopleboy.sim.people.body.body_shapes import sole_points
+from peopleboy.sim.people.body.motion_capture import fourier_basis, load_walking_clip
+from peopleboy.sim.people.body.skeleton import mirror
+from peopleboy.sim.people.person import Posture, Waypoint
 from tests.helpers.walkers import make_person, settle, walk
 
 FOOT_PARTS = ("left_foot", "right_foot")

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.people.person import PlanarState, Posture, Waypoint, timetable
-from sim.people.walking.path import CORNER_CUT_M, abreast, route
-from sim.people.walking.walk import ACCELERATION_M_S2, TURN_RATE_RAD_S
+from peopleboy.sim.people.person import PlanarState, Posture, Waypoint, timetable
+from peopleboy.sim.people.walking.path import CORNER_CUT_M, abreast, route
+from peopleboy.sim.people.walking.walk import ACCELERATION_M_S2, TURN_RATE_RAD_S
 from tests.helpers.walkers import make_person, settle, walk, walk_together
 
 

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracker.thermal.appearance.colour_config import ColourConfig
-from tracker.thermal.appearance.colour_model import ColourModel, likelihood, squared_distances
+from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
+from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood, squared_distances
 
 CONFIG = ColourConfig()
 NAN = np.float32(np.nan)

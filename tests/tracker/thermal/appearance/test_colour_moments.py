@@ -4,10 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import kstat
 
-from bad_input import BadInput
-from tracker.thermal.appearance.colour_moments import normalised_moments
-from tracker.thermal.appearance.histograms import cumulative_histograms
-from tracker.thermal.appearance.power_sums import PowerSums
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.appearance.colour_moments import normalised_moments
+from peopleboy.tracker.thermal.appearance.histograms import cumulative_histograms
+from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
 
 HEIGHT, WIDTH = 24, 32
 PICTURE = np.random.default_rng(0).integers(0, 256, (HEIGHT, WIDTH, 3), dtype=np.uint8)

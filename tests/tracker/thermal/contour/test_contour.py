@@ -3,10 +3,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from bad_input import BadInput
-from tests.helpers.drawn_people import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
-from tracker.thermal.config import ContourConfig
-from tracker.thermal.contour.contour import (
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.tracker.thermal.contour.contour import (
     FEET,
     HEAD_LEFT,
     HEAD_RIGHT,
@@ -24,8 +23,9 @@ from tracker.thermal.contour.contour import (
     section_angles,
     section_weights,
 )
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.variants import PEOPLEBOY, THESIS
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS
+from tests.helpers.drawn_people import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
 
 LITERAL = ContourConfig()
 

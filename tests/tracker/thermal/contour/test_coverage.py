@@ -1,11 +1,18 @@
 import numpy as np
 import pytest
 
+from peopleboy.tracker.thermal.contour.contour import COVERED, SECTIONS
+from peopleboy.tracker.thermal.contour.coverage import (
+    body_share,
+    cover,
+    covered_by,
+    head_share,
+    seen_shares,
+    uncovered,
+)
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS
 from tests.helpers.drawn_people import blank, draw_person
-from tracker.thermal.contour.contour import COVERED, SECTIONS
-from tracker.thermal.contour.coverage import body_share, cover, covered_by, head_share, seen_shares, uncovered
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.variants import PEOPLEBOY, THESIS
 
 MODEL = ContourModel.build((240, 320), PEOPLEBOY.contour)
 

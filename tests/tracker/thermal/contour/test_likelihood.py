@@ -3,10 +3,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bad_input import BadInput
-from tracker.thermal.config import FilterConfig, LikelihoodConfig, LimitsConfig, MotionConfig
-from tracker.thermal.contour.likelihood import fitness, is_within, probability, sample_weights
-from tracker.thermal.filter.prior import draw_prior
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.config import FilterConfig, LikelihoodConfig, LimitsConfig, MotionConfig
+from peopleboy.tracker.thermal.contour.likelihood import fitness, is_within, probability, sample_weights
+from peopleboy.tracker.thermal.filter.prior import draw_prior
 
 THESIS = LikelihoodConfig()
 ALPHA = np.array([0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16, 0.0])

@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tracker.thermal.contour.contour import FEET, SECTIONS, SHOULDER_LEFT, SIDE_LEFT, SIDE_RIGHT
-from tracker.thermal.contour.ellipse import outline, section_lines
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.contour.section_evidence import evidence_of
-from tracker.track import Ellipse, Status, Track
-from tracker.trackers import TRACKERS
+from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS, SHOULDER_LEFT, SIDE_LEFT, SIDE_RIGHT
+from peopleboy.tracker.thermal.contour.ellipse import outline, section_lines
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.contour.section_evidence import evidence_of
+from peopleboy.tracker.track import Ellipse, Status, Track
+from peopleboy.tracker.trackers import TRACKERS
 
 PEOPLEBOY = TRACKERS["peopleboy"]
 AT_REST = {"vx": 0.0, "vy": 0.0, "vw": 0.0, "vh": 0.0}

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracker.thermal.occlusion.depth_order import (
+from peopleboy.tracker.thermal.occlusion.depth_order import (
     Figure,
     front_to_back,
     likelier_front,

@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from bad_input import BadInput
-from tracker.thermal.occlusion.boosting import train
-from tracker.thermal.occlusion.learned_order import LearnedOrder, shipped_order, sorted_by_lead
-from tracker.thermal.occlusion.learned_table import LearnedTable, WeakClassifier
-from tracker.thermal.occlusion.pair_features import FEATURES
-from tracker.thermal.occlusion.weak_classifiers import weighted_sums
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.occlusion.boosting import train
+from peopleboy.tracker.thermal.occlusion.learned_order import LearnedOrder, shipped_order, sorted_by_lead
+from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable, WeakClassifier
+from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
+from peopleboy.tracker.thermal.occlusion.weak_classifiers import weighted_sums
 
 WEAK = (
     WeakClassifier(weights={"top": 1.0}, threshold=0.5, parity=1, importance=2.0),

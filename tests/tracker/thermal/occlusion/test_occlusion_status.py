@@ -3,18 +3,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.contour.coverage import covered_by
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.filter.particles import equally_weighted
+from peopleboy.tracker.thermal.interaction import regions_of
+from peopleboy.tracker.thermal.occlusion.occlusion_status import judge
+from peopleboy.tracker.thermal.occlusion.visibility import Scene
+from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
+from peopleboy.tracker.thermal.tracked_person import SIZE, Person
+from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
+from peopleboy.tracker.track import Status
 from tests.helpers.drawn_people import blank
-from tracker.frame import Frame
-from tracker.thermal.contour.coverage import covered_by
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.filter.particles import equally_weighted
-from tracker.thermal.interaction import regions_of
-from tracker.thermal.occlusion.occlusion_status import judge
-from tracker.thermal.occlusion.visibility import Scene
-from tracker.thermal.particle_filter import Belief, view_frame
-from tracker.thermal.tracked_person import SIZE, Person
-from tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
-from tracker.track import Status
 
 
 def person(number, x, h):

@@ -6,14 +6,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracker.thermal.appearance.colour_config import ColourConfig
-from tracker.thermal.appearance.colour_model import ColourModel
-from tracker.thermal.appearance.colour_view import ColourView
-from tracker.thermal.config import ContourConfig
-from tracker.thermal.contour.likelihood import ContourModel
-from tracker.thermal.occlusion.learned_order import shipped_order
-from tracker.thermal.occlusion.pair_features import FEATURES, boxes, cut, overlapping_pairs, pair_features
-from tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
+from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
+from peopleboy.tracker.thermal.appearance.colour_view import ColourView
+from peopleboy.tracker.thermal.config import ContourConfig
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
+from peopleboy.tracker.thermal.occlusion.pair_features import (
+    FEATURES,
+    boxes,
+    cut,
+    overlapping_pairs,
+    pair_features,
+)
+from peopleboy.tracker.thermal.particle_filter import View
 
 
 def people(*rows: tuple[float, float, float, float]) -> np.ndarray:

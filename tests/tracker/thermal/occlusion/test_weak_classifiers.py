@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracker.thermal.occlusion.weak_classifiers import SortedSums, best_stump, weighted_sums
+from peopleboy.tracker.thermal.occlusion.weak_classifiers import SortedSums, best_stump, weighted_sums
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,8 @@
-"""Events and counts in words."""
+"""Events in words."""
 
 from __future__ import annotations
 
-from scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.loop.run_events import LogLine
 
 
 def describe(line: LogLine) -> str:
@@ -15,11 +15,6 @@ def describe(line: LogLine) -> str:
         return f"{line.who}: {line.kind} by {line.other}"
     what, _, turn = line.kind.rpartition(" ")
     return f"{line.who}: {what} {'with' if what == 'contact' else 'by'} {line.other} {turn}"
-
-
-def counted(count: int, noun: str) -> str:
-    """Say how many, such as "1 frame" or "2 frames"."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def describe_fully(line: LogLine) -> str:

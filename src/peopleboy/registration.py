@@ -1,15 +1,10 @@
-"""The environments by name: gymnasium finds them through the entry point `gymnasium.envs`.
-
-Gymnasium 1.0 and later load no entry points. There this module is named before the environment, or imported:
-`gymnasium.make("scenarios.environments.register:peopleboy/PersonFollowing-v0")`.
-"""
+"""The environments by name, for `gymnasium.make` after `import peopleboy`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Final
 
-# Not from gymnasium itself, which is half imported when it loads entry points.
 from gymnasium.envs.registration import register, registry
 
 ENVIRONMENTS: Final[Mapping[str, Mapping[str, str]]] = {
@@ -19,14 +14,11 @@ ENVIRONMENTS: Final[Mapping[str, Mapping[str, str]]] = {
 }
 """Each environment's scenario and task by its name."""
 
+_ENTRY: Final = "peopleboy.scenarios.environments.environment:PeopleBoyEnv"
+
 
 def register_environments() -> None:
-    """Tell gymnasium the environments that it does not know yet."""
+    """Tell gymnasium the environments that it does not know yet; making one imports what it needs."""
     for name, settings in ENVIRONMENTS.items():
         if name not in registry:
-            register(
-                name, entry_point="scenarios.environments.environment:PeopleBoyEnv", kwargs=dict(settings)
-            )
-
-
-register_environments()
+            register(name, entry_point=_ENTRY, kwargs=dict(settings))

@@ -1,5 +1,0 @@
-"""Lets `python -m scenarios` do what `peopleboy` does."""
-
-from scenarios.cli import main
-
-main()
