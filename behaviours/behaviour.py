@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from peopleboy.behaviours.command import Command
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 
 
 class Behaviour(Protocol):
@@ -32,6 +32,6 @@ class Behaviour(Protocol):
         """Whom it follows."""
         ...
 
-    def command(self, sight: Sight) -> Command:
+    def command(self, percept: Percept) -> Command:
         """Give the command for this sight; called once for every image, in order of time."""
         ...

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson
-from peopleboy.behaviours.percept import SeenPerson, Sight
+from peopleboy.behaviours.percept import Percept, SeenPerson
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,27 +76,27 @@ class Patrol:
         """Whom the robot follows; nobody on its round."""
         return None if self._follower is None else self._follower.following
 
-    def command(self, sight: Sight) -> Command:
+    def command(self, percept: Percept) -> Command:
         """Give the command of the part whose turn it is."""
-        step_s = 0.0 if self._time_s is None else max(sight.time_s - self._time_s, 0.0)
-        self._time_s = sight.time_s
-        self._away_rad = math.remainder(self._away_rad + sight.angular_rad_s * step_s, math.tau)
+        step_s = 0.0 if self._time_s is None else max(percept.time_s - self._time_s, 0.0)
+        self._time_s = percept.time_s
+        self._away_rad = math.remainder(self._away_rad + percept.angular_rad_s * step_s, math.tau)
         if self._follower is not None:
-            return self._go_after(self._follower, sight, step_s)
-        self._noticed_s = self._noticed_s + step_s if self._notices(sight) else 0.0
+            return self._go_after(self._follower, percept, step_s)
+        self._noticed_s = self._noticed_s + step_s if self._notices(percept) else 0.0
         if self._noticed_s >= self._config.notice_s:
             if self._returning_s is None:
                 self._away_rad = 0.0
             self._follower, self._returning_s = FollowPerson(self._follow_config), None
             self._followed_s = self._lost_s = 0.0
-            return self._go_after(self._follower, sight, step_s)
+            return self._go_after(self._follower, percept, step_s)
         if self._returning_s is not None:
-            return self._return(self._returning_s, sight, step_s)
-        return self._round.command(sight)
+            return self._return(self._returning_s, percept, step_s)
+        return self._round.command(percept)
 
-    def _notices(self, sight: Sight) -> bool:
+    def _notices(self, percept: Percept) -> bool:
         """Tell whether there is somebody whom the robot has not followed yet."""
-        return any(self._is_new(person) for person in sight.people)
+        return any(self._is_new(person) for person in percept.people)
 
     def _is_new(self, person: SeenPerson) -> bool:
         return (
@@ -107,10 +107,10 @@ class Patrol:
             and person.height >= self._config.notice_height
         )
 
-    def _go_after(self, follower: FollowPerson, sight: Sight, step_s: float) -> Command:
+    def _go_after(self, follower: FollowPerson, percept: Percept, step_s: float) -> Command:
         """Follow, until it has been long enough or the person is lost; then begin to return."""
-        people = tuple(person for person in sight.people if person.id not in self._known)
-        command = follower.command(replace(sight, people=people))
+        people = tuple(person for person in percept.people if person.id not in self._known)
+        command = follower.command(replace(percept, people=people))
         target = follower.state.target
         self._followed_s += step_s
         self._lost_s = 0.0 if follower.mode == "follow" else self._lost_s + step_s
@@ -121,14 +121,14 @@ class Patrol:
         if target is not None:
             self._known |= {target.id}
         self._follower, self._returning_s = None, 0.0
-        return self._return(0.0, sight, step_s)
+        return self._return(0.0, percept, step_s)
 
-    def _return(self, returning_s: float, sight: Sight, step_s: float) -> Command:
+    def _return(self, returning_s: float, percept: Percept, step_s: float) -> Command:
         """Turn back to the heading that the robot had on its round, and go on from there."""
         self._returning_s = returning_s + step_s
         if abs(self._away_rad) < self._config.return_rad or self._returning_s > self._config.return_s:
             self._returning_s = None
-            return self._round.command(sight)
+            return self._round.command(percept)
         limit = self._config.return_rad_s
         turn = min(max(-self._config.return_gain * self._away_rad, -limit), limit)
         return Command(linear_m_s=0.0, angular_rad_s=turn)

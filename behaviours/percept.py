@@ -42,7 +42,7 @@ class SeenPerson:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Sight:
+class Percept:
     """All that a behaviour is told at one control step.
 
     Attributes:

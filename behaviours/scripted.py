@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import STOP, Command
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 
 
 class Scripted:
@@ -29,9 +29,9 @@ class Scripted:
         if not (all(map(math.isfinite, self._from_s)) and all(a < b for a, b in pairs)):
             raise BadInput(f"script: times must be finite and rise, got {self._from_s}")
 
-    def command(self, sight: Sight) -> Command:
+    def command(self, percept: Percept) -> Command:
         """Give the last command whose time has come; before the first the robot stands."""
-        index = bisect.bisect_right(self._from_s, sight.time_s)
+        index = bisect.bisect_right(self._from_s, percept.time_s)
         return self._commands[index - 1] if index else STOP
 
 
@@ -42,6 +42,6 @@ class Stand:
     reason = ""
     following = None
 
-    def command(self, sight: Sight) -> Command:  # noqa: ARG002
+    def command(self, percept: Percept) -> Command:  # noqa: ARG002
         """Stop, whatever there is to see."""
         return STOP

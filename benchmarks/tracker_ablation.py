@@ -18,7 +18,7 @@ from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
@@ -76,7 +76,7 @@ STEPS: dict[str, tuple[str, ...]] = {
     "box proportions": ("box",),
     "some samples tried at another size": ("person.resized_share",),
     "smoothing": ("smoothing",),
-    "colours and thermal pattern, by part, without the light": ("colour", "looks"),
+    "colours and thermal pattern, by part, without the light": ("colour", "appearance"),
     "who is in front is no evidence for who is behind": (
         "occlusion.is_handled",
         "occlusion.order",
@@ -111,7 +111,7 @@ class Recorded:
     """One run: what the tracker saw, and what was true."""
 
     frames: tuple[Frame, ...]
-    truth: Truth
+    truth: TrueBoxes
 
 
 def differing(one: Any, other: Any, path: str = "") -> Iterator[str]:
@@ -176,7 +176,7 @@ def record(scenario: str, seed: int) -> Recorded:
             ]
     columns = zip(*rows, strict=True) if rows else ((),) * 5
     frame, identity, box, counted, visible = (list(column) for column in columns)
-    truth = Truth(
+    truth = TrueBoxes(
         frame=np.array(frame),
         id=np.array(identity),
         box=np.array(box).reshape(-1, 4),
@@ -192,7 +192,7 @@ def replay(run: Recorded, config: TrackerConfig, seed: int) -> Scores:
     found: list[tuple[int, Track]] = []
     for number, frame in enumerate(run.frames, start=1):
         found += [(number, track) for track in tracker.update(frame) if track.status is not Status.TENTATIVE]
-    tracks = Tracks(
+    tracks = TrackBoxes(
         frame=np.array([number for number, _ in found]),
         id=np.array([track.id for _, track in found]),
         box=np.array([track.box for _, track in found]).reshape(-1, 4),

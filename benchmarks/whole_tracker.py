@@ -22,7 +22,7 @@ from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.filter.motion import predict
 from peopleboy.tracker.thermal.filter.particles import mean_state, resample
 from peopleboy.tracker.thermal.interaction import overlap_shares, person_factor, regions_of
-from peopleboy.tracker.thermal.particle_filter import View, view_frame, weigh
+from peopleboy.tracker.thermal.particle_filter import FrameView, view_frame, weigh
 from peopleboy.tracker.thermal.people_tracker import DETECTOR_KEY
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status
@@ -135,7 +135,7 @@ def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
     return parts
 
 
-def _view_of(frame: Frame) -> View:
+def _view_of(frame: Frame) -> FrameView:
     model = _model_of(frame.thermal.shape[0], frame.thermal.shape[1])
     return view_frame(frame, STEP_S, model, PEOPLEBOY)
 
@@ -145,16 +145,16 @@ def _model_of(height_px: int, width_px: int) -> ContourModel:
     return ContourModel.build((height_px, width_px), PEOPLEBOY.contour)
 
 
-def _person_works(tracker: Tracker, number: int, view: View) -> dict[str, Callable[[], object]]:
+def _person_works(tracker: Tracker, number: int, view: FrameView) -> dict[str, Callable[[], object]]:
     config, rng = PEOPLEBOY, stream(0, "tracker")
     clouds = tracker.particles
     cloud, state = clouds[number], clouds[number].state
     estimate = mean_state(cloud)
     others = [mean_state(clouds[other]) for other in _people_in(tracker) if other != number]
-    looks, colour = view.looks, config.colour
-    assert looks is not None
+    appearance, colour = view.appearance, config.colour
+    assert appearance is not None
     assert colour is not None
-    known = ColourModel.begin(looks.describe(estimate.astype(np.float32)[None])[0], colour)
+    known = ColourModel.begin(appearance.describe(estimate.astype(np.float32)[None])[0], colour)
     strength = np.full(len(others), config.interaction.penalty)
 
     def occlusion() -> object:
@@ -167,7 +167,7 @@ def _person_works(tracker: Tracker, number: int, view: View) -> dict[str, Callab
         "motion": lambda: predict(state, STEP_S, view.size, config.motion, rng),
         "measure contour": lambda: view.model.differences(view.image, state),
         "weights, estimate": lambda: weigh(state, view, config.person, config),
-        "colour and looks": lambda: likelihood(looks.describe(state), known, colour),
+        "colour and looks": lambda: likelihood(appearance.describe(state), known, colour),
         "occlusion": occlusion,
     }
 

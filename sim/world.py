@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.colour import colour_image, expose
-from peopleboy.sim.cameras.surfaces import make_look_table
+from peopleboy.sim.cameras.surfaces import make_material_table
 from peopleboy.sim.cameras.thermal import detect, encode_8bit, make_detector, surface_image
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera, Matrix
@@ -22,10 +22,10 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.render import BLIND, View, render
 from peopleboy.sim.robot.peoplebot import NAME as ROBOT
 from peopleboy.sim.robot.peoplebot import PeopleBot
-from peopleboy.sim.robot.robot_materials import robot_look
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.robot.robot_materials import robot_material
+from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import make_shape_table
-from peopleboy.sim.truth.image_free_truth import Scene, bystanders
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth, bystanders
 from peopleboy.sim.truth.truth import BORDER, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 
@@ -33,7 +33,7 @@ _MOST_PEOPLE = 64  # a view's cover has a bit for each
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Sight:
+class _CameraView:
     """What one camera sees: its pose and the view from there."""
 
     world_from_camera: Matrix
@@ -106,9 +106,9 @@ class World:
             wheel_speeds_m_s=self._robot.wheel_speeds(),
         )
 
-    def scene(self) -> Scene:
+    def scene(self) -> ImageFreeTruth:
         """Tell what is true at this instant as far as no image is needed for it."""
-        return Scene(
+        return ImageFreeTruth(
             time_s=self.time_s,
             robot=self._robot.pose(),
             robot_velocity=self._robot.velocity(),
@@ -123,11 +123,11 @@ class World:
 
     def truth(self) -> Truth:
         """Tell all that is true at this instant."""
-        sight = self._look(self.config.robot.thermal.camera)
+        seen = self._see(self.config.robot.thermal.camera)
         return self._truth_maker.make(
             time_s=self.time_s,
-            view=sight.view,
-            world_from_camera=sight.world_from_camera,
+            view=seen.view,
+            world_from_camera=seen.world_from_camera,
             world_from_part=self._poses,
             robot=self._robot.pose(),
             robot_velocity=self._robot.velocity(),
@@ -158,24 +158,26 @@ class World:
 
     def _build(self) -> None:
         config, bullet = self.config, self._bullet
-        looks = _add_fixtures(bullet, config.place)
+        materials = _add_fixtures(bullet, config.place)
         self._crowd = Crowd(
             bullet, config.people, config.place, config.seed, is_visible=config.renderer != BLIND
         )
         self._robot = PeopleBot(bullet, config.robot, config.seed)
         if config.renderer != BLIND:
-            self._open_eyes(looks | self._crowd.looks)
+            self._open_eyes(materials | self._crowd.materials)
         self._settle()
 
-    def _open_eyes(self, looks: dict[str, Look]) -> None:
+    def _open_eyes(self, materials: dict[str, Material]) -> None:
         """Prepare for images: what is to be seen, and how each part looks, by body name."""
         config, bullet = self.config, self._bullet
         keys = bullet.parts()
-        part_looks = [robot_look(key.link_name) if key.name == ROBOT else looks[key.name] for key in keys]
+        part_materials = [
+            robot_material(key.link_name) if key.name == ROBOT else materials[key.name] for key in keys
+        ]
         self._table = make_shape_table(bullet.visual_shapes())
-        self._looks = make_look_table(part_looks, stream(config.seed, "surface.variation"))
+        self._materials = make_material_table(part_materials, stream(config.seed, "surface.variation"))
         self._truth_maker = TruthMaker(
-            keys, self._table, self._crowd, part_looks, config.robot.thermal.camera
+            keys, self._table, self._crowd, part_materials, config.robot.thermal.camera
         )
         self._detector = make_detector(config.robot.thermal, stream(config.seed, "thermal.detector"))
         self._thermal_noise = stream(config.seed, "thermal.noise")
@@ -188,9 +190,9 @@ class World:
             return
         self._poses = self._bullet.part_poses()
         self._hidden = self._bullet.hidden_parts()
-        self._seen: dict[Camera, _Sight] = {}
+        self._seen: dict[Camera, _CameraView] = {}
 
-    def _look(self, camera: Camera) -> _Sight:
+    def _see(self, camera: Camera) -> _CameraView:
         """Render one camera's view, once an instant.
 
         Raises:
@@ -200,7 +202,7 @@ class World:
             raise BadInput("renderer 'none': there are no images in this world; choose raycast or bullet")
         if camera not in self._seen:
             pose = self._robot.world_from_robot() @ camera.robot_from_camera
-            self._seen[camera] = _Sight(pose, self._render(camera, pose))
+            self._seen[camera] = _CameraView(pose, self._render(camera, pose))
         return self._seen[camera]
 
     def _render(self, camera: Camera, pose: Matrix) -> View:
@@ -211,18 +213,18 @@ class World:
 
     def _thermal_image(self) -> NDArray[np.float32]:
         config = self.config.robot.thermal
-        sight = self._look(config.camera)
+        seen = self._see(config.camera)
         apparent = surface_image(
-            sight.view, self._looks, config, sight.world_from_camera, self._poses,
+            seen.view, self._materials, config, seen.world_from_camera, self._poses,
             self.config.place.surroundings_c, self._robot.velocity()[1] * config.exposure_s,
         )  # fmt: skip
         return detect(apparent, self._detector, config, self._thermal_noise)
 
     def _colour_image(self) -> NDArray[np.uint8]:
         config = self.config.robot.colour
-        sight = self._look(config.camera)
+        seen = self._see(config.camera)
         linear = colour_image(
-            sight.view, self._looks, config, sight.world_from_camera, self._poses,
+            seen.view, self._materials, config, seen.world_from_camera, self._poses,
             light_level(self.config.place, self.time_s), self._robot.velocity()[1] * config.exposure_s,
         )  # fmt: skip
         return expose(linear, config, self._colour_noise)
@@ -244,9 +246,9 @@ def _check_names(config: WorldConfig) -> None:
         raise BadInput(f"{len(names)} people are too many: a world holds {_MOST_PEOPLE}")
 
 
-def _add_fixtures(bullet: Bullet, place: Place) -> dict[str, Look]:
+def _add_fixtures(bullet: Bullet, place: Place) -> dict[str, Material]:
     """Put everything that stands still into the physics world; returns the looks by body name."""
-    looks = {}
+    materials = {}
     for fixture in place.fixtures:
         position, orientation = fixture.position, fixture.orientation
         if fixture.part is not None:
@@ -257,12 +259,12 @@ def _add_fixtures(bullet: Bullet, place: Place) -> dict[str, Look]:
                 orientation=orientation,
                 solid=fixture.is_solid,
             )
-            looks[fixture.name] = fixture.part.look
-        elif fixture.urdf is not None and fixture.look is not None:
+            materials[fixture.name] = fixture.part.material
+        elif fixture.urdf is not None and fixture.material is not None:
             bullet.add_urdf(
                 fixture.name, fixture.urdf, position=position, orientation=orientation, scale=fixture.scale
             )
-            looks[fixture.name] = fixture.look
+            materials[fixture.name] = fixture.material
         else:
-            raise BadInput(f"fixture {fixture.name!r}: needs either a part, or a URDF with a look")
-    return looks
+            raise BadInput(f"fixture {fixture.name!r}: needs either a part, or a URDF with a material")
+    return materials

@@ -9,7 +9,7 @@ import numpy as np
 
 from peopleboy.behaviours.corridor.corridor_pose import Corridor
 from peopleboy.behaviours.corridor.wall_echoes import BeamConfig, side_walls, wall_distances
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,10 +35,10 @@ class EndConfig:
     sideways_rad: float = math.radians(20.0)
 
 
-def wall_ahead(sight: Sight, corridor: Corridor, config: EndConfig) -> float | None:
+def wall_ahead(percept: Percept, corridor: Corridor, config: EndConfig) -> float | None:
     """Give the distance [m] along the corridor to a wall across it; None if there is none near."""
-    distances, can_be = wall_distances(sight, np.array([-corridor.heading_rad]), config.beam)
-    to_sides, can_be_side = wall_distances(sight, side_walls(corridor)[:, 0], config.side_beam)
+    distances, can_be = wall_distances(percept, np.array([-corridor.heading_rad]), config.beam)
+    to_sides, can_be_side = wall_distances(percept, side_walls(corridor)[:, 0], config.side_beam)
     is_side = can_be_side & (np.abs(to_sides - side_walls(corridor)[:, 1:]) < config.agree_m)
     heard = distances[0][can_be[0] & ~is_side.any(axis=0)]
     if len(heard) < config.least_echoes:
@@ -48,17 +48,17 @@ def wall_ahead(sight: Sight, corridor: Corridor, config: EndConfig) -> float | N
     return middle if agreeing >= config.least_echoes and middle < config.farthest_m else None
 
 
-def open_room(sight: Sight, corridor: Corridor, config: EndConfig) -> tuple[float, float]:
+def open_room(percept: Percept, corridor: Corridor, config: EndConfig) -> tuple[float, float]:
     """Give how far [m] one can go behind where the left and the right wall should be; 0 for a closed side."""
     left, right = (
-        _room(sight, float(direction), float(distance), config)
+        _room(percept, float(direction), float(distance), config)
         for direction, distance in side_walls(corridor)
     )
     return left, right
 
 
-def _room(sight: Sight, direction_rad: float, wall_m: float, config: EndConfig) -> float:
-    off = np.abs(np.angle(np.exp(1j * (sight.sonar_angle_rad - direction_rad))))
-    ranges = sight.sonar_m[off < config.sideways_rad]
+def _room(percept: Percept, direction_rad: float, wall_m: float, config: EndConfig) -> float:
+    off = np.abs(np.angle(np.exp(1j * (percept.sonar_angle_rad - direction_rad))))
+    ranges = percept.sonar_m[off < config.sideways_rad]
     room = float(np.max(ranges, initial=0.0)) - wall_m
     return room if room > config.open_m else 0.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
 from peopleboy.behaviours.corridor.wall_echoes import BeamConfig, wall_distances
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 from peopleboy.behaviours.sonar.echo_points import Points
 
 
@@ -54,7 +54,7 @@ class _Walls:
 
 
 def corridor_from_sonar(
-    sight: Sight, expected: Corridor | None = None, config: SonarCorridorConfig | None = None
+    percept: Percept, expected: Corridor | None = None, config: SonarCorridorConfig | None = None
 ) -> Corridor | Unknown:
     """Find the centre line and heading from the side readings.
 
@@ -64,14 +64,14 @@ def corridor_from_sonar(
     With nothing expected, both walls must be heard; else one will do, and the width is kept.
 
     Args:
-        sight: with the sonars' ranges.
+        percept: with the sonars' ranges.
         expected: the place by dead reckoning; None where nothing is known.
         config: what counts as a wall.
     """
     config = SonarCorridorConfig() if config is None else config
     headings = _headings(expected, config)
-    left = _walls(sight, headings, 1, expected, config)
-    right = _walls(sight, headings, -1, expected, config)
+    left = _walls(percept, headings, 1, expected, config)
+    right = _walls(percept, headings, -1, expected, config)
     has_left, has_right = np.isfinite(left.distance_m), np.isfinite(right.distance_m)
     enough = has_left & has_right if expected is None else has_left | has_right
     if not enough.any():
@@ -98,11 +98,11 @@ def _headings(expected: Corridor | None, config: SonarCorridorConfig) -> Points:
 
 
 def _walls(
-    sight: Sight, headings: Points, side: int, expected: Corridor | None, config: SonarCorridorConfig
+    percept: Percept, headings: Points, side: int, expected: Corridor | None, config: SonarCorridorConfig
 ) -> _Walls:
     """Take each side's readings for a wall under every heading; side is +1 for the left, -1 for the right."""
     normals = side * math.pi / 2.0 - headings
-    distance, is_echo = wall_distances(sight, normals, config.beam)
+    distance, is_echo = wall_distances(percept, normals, config.beam)
     if expected is not None:
         wall_m = expected.width_m / 2.0 - side * expected.offset_m
         is_echo &= np.abs(distance - wall_m) < config.expected_m

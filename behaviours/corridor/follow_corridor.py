@@ -26,8 +26,8 @@ from peopleboy.behaviours.corridor.corridor_lane import (
 )
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
 from peopleboy.behaviours.corridor.wall_echoes import side_walls, without_walls
-from peopleboy.behaviours.percept import Sight
-from peopleboy.behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from peopleboy.behaviours.percept import Percept
+from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
 
 Sense = Literal["sonar", "image"]
 
@@ -83,7 +83,7 @@ class CorridorConfig:
     image: ImageCorridorConfig = field(default_factory=ImageCorridorConfig)
     end: EndConfig = field(default_factory=EndConfig)
     lane: LaneConfig = field(default_factory=LaneConfig)
-    memory: MemoryConfig = field(default_factory=lambda: MemoryConfig(keep_s=1.5, within_m=2.6))
+    memory: EchoMemoryConfig = field(default_factory=lambda: EchoMemoryConfig(keep_s=1.5, within_m=2.6))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,14 +139,14 @@ class FollowCorridor:
         """Why it is doing that."""
         return self.state.reason
 
-    def command(self, sight: Sight) -> Command:
+    def command(self, percept: Percept) -> Command:
         """Give the command for this sight."""
-        self.state, command = follow_corridor(self.state, sight, self._config)
+        self.state, command = follow_corridor(self.state, percept, self._config)
         return command
 
 
 def follow_corridor(
-    state: CorridorState, sight: Sight, config: CorridorConfig
+    state: CorridorState, percept: Percept, config: CorridorConfig
 ) -> tuple[CorridorState, Command]:
     """Take one step along the corridor.
 
@@ -155,70 +155,70 @@ def follow_corridor(
     Source: thesis, section 3.2, names corridor following from sonar readings and says no more; the rest is
     ours.
     """
-    step_s = sight.time_s - state.time_s
-    if not (sight.is_sound and step_s > 0.0):
+    step_s = percept.time_s - state.time_s
+    if not (percept.is_sound and step_s > 0.0):
         return replace(state, mode="blind", reason="no new input"), STOP
-    state = replace(_locate(state, sight, step_s, config), time_s=sight.time_s)
+    state = replace(_locate(state, percept, step_s, config), time_s=percept.time_s)
     corridor = state.corridor
     if corridor is None:
         turning = Command(linear_m_s=0.0, angular_rad_s=config.search_rad_s)
         return replace(state, mode="search"), turning
     if abs(corridor.heading_rad) > config.turn_only_rad:
         return replace(state, mode="turn"), _turn(corridor, config)
-    ahead_m = wall_ahead(sight, corridor, config.end)
-    state = replace(state, people=_remember_people(state, corridor, sight, ahead_m, config))
+    ahead_m = wall_ahead(percept, corridor, config.end)
+    state = replace(state, people=_remember_people(state, corridor, percept, ahead_m, config))
     if ahead_m is None:
         state = replace(state, open_frames=(0, 0), ended_s=None)
     else:
-        state = _look_aside(state, corridor, sight, ahead_m, config)
+        state = _look_aside(state, corridor, percept, ahead_m, config)
         if ahead_m < _turning_place(corridor, config):
-            return _end(state, corridor, sight, ahead_m, config)
+            return _end(state, corridor, percept, ahead_m, config)
     return _go_along(state, corridor, ahead_m, config)
 
 
-def _locate(state: CorridorState, sight: Sight, step_s: float, config: CorridorConfig) -> CorridorState:
+def _locate(state: CorridorState, percept: Percept, step_s: float, config: CorridorConfig) -> CorridorState:
     """Move the place by the wheels, and correct it by what is seen of the walls."""
-    expected = state.corridor if sight.time_s - state.seen_s <= config.lost_s else None
+    expected = state.corridor if percept.time_s - state.seen_s <= config.lost_s else None
     if expected is not None:
-        expected = drive_on(expected, sight.linear_m_s * step_s, sight.angular_rad_s * step_s)
+        expected = drive_on(expected, percept.linear_m_s * step_s, percept.angular_rad_s * step_s)
         if abs(expected.heading_rad) > config.turn_only_rad:  # turning: the walls are yet to come into view
-            return replace(state, corridor=expected, seen_s=sight.time_s)
+            return replace(state, corridor=expected, seen_s=percept.time_s)
     by_image: Corridor | Unknown = Unknown("")
     if config.sense == "image" and config.camera is not None:
-        by_image = corridor_from_image(sight.colour, config.camera, expected, config.image)
+        by_image = corridor_from_image(percept.colour, config.camera, expected, config.image)
     is_by_image = isinstance(by_image, Corridor)
-    seen = by_image if is_by_image else corridor_from_sonar(sight, expected, config.sonar)
+    seen = by_image if is_by_image else corridor_from_sonar(percept, expected, config.sonar)
     state = replace(
         state,
-        image_s=sight.time_s if is_by_image else state.image_s,
+        image_s=percept.time_s if is_by_image else state.image_s,
         image_fault=by_image.reason if isinstance(by_image, Unknown) else "",
     )
     if isinstance(seen, Unknown):
         return replace(state, corridor=expected, reason=seen.reason if expected is None else state.reason)
     place = seen if expected is None else blend(expected, seen, config.believe)
-    return replace(state, corridor=place, seen_s=sight.time_s)
+    return replace(state, corridor=place, seen_s=percept.time_s)
 
 
 def _remember_people(
-    state: CorridorState, corridor: Corridor, sight: Sight, ahead_m: float | None, config: CorridorConfig
+    state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float | None, config: CorridorConfig
 ) -> EchoMemory:
     """Keep the echoes that no wall explains."""
     walls = side_walls(corridor)
     if ahead_m is not None:
         walls = np.concatenate([walls, [(-corridor.heading_rad, ahead_m)]])
-    others = without_walls(sight, walls, config.wall_tolerance_m, config.sonar.beam)
+    others = without_walls(percept, walls, config.wall_tolerance_m, config.sonar.beam)
     # A range beyond reach lies outside of what is remembered.
-    heard = replace(sight, sonar_m=np.minimum(others, 2.0 * config.sonar.beam.reach_m))
+    heard = replace(percept, sonar_m=np.minimum(others, 2.0 * config.sonar.beam.reach_m))
     return remember(state.people, heard, config.memory)
 
 
 def _look_aside(
-    state: CorridorState, corridor: Corridor, sight: Sight, ahead_m: float, config: CorridorConfig
+    state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float, config: CorridorConfig
 ) -> CorridorState:
     """Count the images in which the sides are open, near the wall ahead."""
     if ahead_m > 0.8 * corridor.width_m:
         return state
-    room = open_room(sight, corridor, config.end)
+    room = open_room(percept, corridor, config.end)
     left, right = (count + (metres > 0.0) for count, metres in zip(state.open_frames, room, strict=True))
     return replace(state, open_frames=(left, right))
 
@@ -229,12 +229,12 @@ def _turning_place(corridor: Corridor, config: CorridorConfig) -> float:
 
 
 def _end(
-    state: CorridorState, corridor: Corridor, sight: Sight, ahead_m: float, config: CorridorConfig
+    state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float, config: CorridorConfig
 ) -> tuple[CorridorState, Command]:
     """Before a wall: turn to an open side, the roomier of two, or turn back."""
-    since_s = sight.time_s if state.ended_s is None else state.ended_s
+    since_s = percept.time_s if state.ended_s is None else state.ended_s
     is_open = [count >= config.sure_frames for count in state.open_frames]
-    room = open_room(sight, corridor, config.end)
+    room = open_room(percept, corridor, config.end)
     state = replace(state, ended_s=since_s, mode="turn")
     beyond = (
         ahead_m - corridor.width_m / 2.0
@@ -245,7 +245,7 @@ def _end(
         turned = replace(
             corridor, offset_m=side * beyond, heading_rad=corridor.heading_rad - side * math.pi / 2.0
         )
-    elif sight.time_s - since_s > config.dead_end_s:
+    elif percept.time_s - since_s > config.dead_end_s:
         reason = "dead end"
         turned = replace(corridor, offset_m=-corridor.offset_m, heading_rad=corridor.heading_rad - math.pi)
     else:

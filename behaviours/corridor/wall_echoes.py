@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.behaviours.corridor.corridor_pose import Corridor
-from peopleboy.behaviours.percept import Ranges, Sight
+from peopleboy.behaviours.percept import Percept, Ranges
 from peopleboy.behaviours.sonar.echo_points import Points
 from peopleboy.behaviours.sonar.sonar_ring import mounts
 
@@ -31,40 +31,40 @@ class BeamConfig:
     slant_rad: float = math.radians(68.0)
 
 
-def wall_distances(sight: Sight, normals_rad: Points, beam: BeamConfig) -> tuple[Points, Flags]:
+def wall_distances(percept: Percept, normals_rad: Points, beam: BeamConfig) -> tuple[Points, Flags]:
     """Turn each reading into a distance [m] from the robot's origin to the wall, and tell whether it can.
 
     A beam whose axis is off the wall's normal by a hears the wall at distance / cos(a - half cone), or at its
     distance where the cone holds the normal.
 
     Args:
-        sight: with the sonars' ranges.
+        percept: with the sonars' ranges.
         normals_rad: (K,) [rad] directions in the robot's frame in which a wall may lie.
         beam: the sonars' beams.
 
     Returns:
         (K, N) distances, and whether the beam can have heard that wall.
     """
-    off = np.abs(np.angle(np.exp(1j * (sight.sonar_angle_rad - normals_rad[:, None]))))
+    off = np.abs(np.angle(np.exp(1j * (percept.sonar_angle_rad - normals_rad[:, None]))))
     slant = np.maximum(off - beam.half_cone_rad, 0.0)
     facing = np.stack([np.cos(normals_rad), np.sin(normals_rad)])  # (2, K)
-    distance = sight.sonar_m * np.cos(slant) + (mounts(sight.sonar_angle_rad) @ facing).T
-    return distance, (slant < beam.slant_rad) & (sight.sonar_m < beam.reach_m)
+    distance = percept.sonar_m * np.cos(slant) + (mounts(percept.sonar_angle_rad) @ facing).T
+    return distance, (slant < beam.slant_rad) & (percept.sonar_m < beam.reach_m)
 
 
-def without_walls(sight: Sight, walls: Points, tolerance_m: float, beam: BeamConfig) -> Ranges:
+def without_walls(percept: Percept, walls: Points, tolerance_m: float, beam: BeamConfig) -> Ranges:
     """Leave only what is in the way: ranges that a wall explains become infinite: (N,) [m].
 
     Args:
-        sight: with the sonars' ranges.
+        percept: with the sonars' ranges.
         walls: (K, 2) direction [rad] in the robot's frame and distance [m] of each wall.
         tolerance_m: [m] an echo so little before a wall, or behind it, is the wall's.
         beam: the sonars' beams.
     """
-    distance, _ = wall_distances(sight, walls[:, 0], beam)
-    off = np.abs(np.angle(np.exp(1j * (sight.sonar_angle_rad - walls[:, :1]))))
+    distance, _ = wall_distances(percept, walls[:, 0], beam)
+    off = np.abs(np.angle(np.exp(1j * (percept.sonar_angle_rad - walls[:, :1]))))
     is_wall = (off < math.pi / 2.0) & (distance > walls[:, 1:] - tolerance_m)
-    left: Ranges = np.where(is_wall.any(axis=0) | (sight.sonar_m >= beam.reach_m), np.inf, sight.sonar_m)
+    left: Ranges = np.where(is_wall.any(axis=0) | (percept.sonar_m >= beam.reach_m), np.inf, percept.sonar_m)
     return left
 
 

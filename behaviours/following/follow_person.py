@@ -15,8 +15,8 @@ from peopleboy.behaviours.following.last_seen import (
     on_the_way,
     place_of,
 )
-from peopleboy.behaviours.following.occluder import HiddenConfig, hider, keep_behind
-from peopleboy.behaviours.following.reidentification import IdentityConfig, company, recognise
+from peopleboy.behaviours.following.occluder import OccluderConfig, hider, keep_behind
+from peopleboy.behaviours.following.reidentification import ReidentificationConfig, company, recognise
 from peopleboy.behaviours.following.target import (
     Target,
     TargetConfig,
@@ -25,8 +25,8 @@ from peopleboy.behaviours.following.target import (
     forget_drift,
     look_again,
 )
-from peopleboy.behaviours.percept import SeenPerson, Sight
-from peopleboy.behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from peopleboy.behaviours.percept import Percept, SeenPerson
+from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
 from peopleboy.behaviours.sonar.echo_points import echoes
 
 
@@ -98,12 +98,12 @@ class FollowConfig:
     give_up_s: float = 30.0
     leaving_rad: float = math.radians(19.0)
     target: TargetConfig = field(default_factory=TargetConfig)
-    identity: IdentityConfig = field(default_factory=IdentityConfig)
-    hidden: HiddenConfig = field(default_factory=HiddenConfig)
+    identity: ReidentificationConfig = field(default_factory=ReidentificationConfig)
+    hidden: OccluderConfig = field(default_factory=OccluderConfig)
     place: PlaceConfig = field(default_factory=PlaceConfig)
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
     avoid_alone: AvoidConfig = WIDELY
-    heard: MemoryConfig = field(default_factory=lambda: MemoryConfig(keep_s=4.0, within_m=1.7))
+    heard: EchoMemoryConfig = field(default_factory=lambda: EchoMemoryConfig(keep_s=4.0, within_m=1.7))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,13 +163,13 @@ class FollowPerson:
         target = self.state.target
         return None if target is None or self.state.mode != "follow" else target.id
 
-    def command(self, sight: Sight) -> Command:
+    def command(self, percept: Percept) -> Command:
         """Give the command for this sight."""
-        self.state, command = follow(self.state, sight, self._config)
+        self.state, command = follow(self.state, percept, self._config)
         return command
 
 
-def follow(state: FollowState, sight: Sight, config: FollowConfig) -> tuple[FollowState, Command]:
+def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[FollowState, Command]:
     """Take one step of searching, following, waiting or going to where the person was seen last.
 
     The robot drives after a person only while its track is younger than max_age_s, and stops on senseless
@@ -178,22 +178,22 @@ def follow(state: FollowState, sight: Sight, config: FollowConfig) -> tuple[Foll
     Source: thesis, section 3.2: search by rotating, approach, hold distance; the learnt walking speed,
     the drift, the wait and the way round corners are ours.
     """
-    step_s = sight.time_s - state.time_s
-    if not (sight.is_sound and step_s > 0.0):
+    step_s = percept.time_s - state.time_s
+    if not (percept.is_sound and step_s > 0.0):
         return replace(state, mode="blind", reason="senseless or old input"), STOP
-    heard = remember(state.heard, sight, config.heard)
-    state = replace(_update_target(state, sight, step_s, config), time_s=sight.time_s, heard=heard)
+    heard = remember(state.heard, percept, config.heard)
+    state = replace(_update_target(state, percept, step_s, config), time_s=percept.time_s, heard=heard)
     if state.target is None:
-        return _search(state, sight, step_s, config)
-    gap_s = sight.time_s - state.target.seen_s
+        return _search(state, percept, step_s, config)
+    gap_s = percept.time_s - state.target.seen_s
     if gap_s <= config.max_age_s:
-        return _go_after(state, state.target, sight, step_s, config)
-    why, patience_s = _patience(state, state.target, sight, config)
+        return _go_after(state, state.target, percept, step_s, config)
+    why, patience_s = _patience(state, state.target, percept, config)
     if gap_s <= patience_s:
         return _wait(state, state.target, why, config)
     if state.place is not None and (not state.has_left or state.searched_rad > math.tau):
-        return _recover(state, state.place, sight, step_s, config)
-    return _search(state, sight, step_s, config)
+        return _recover(state, state.place, percept, step_s, config)
+    return _search(state, percept, step_s, config)
 
 
 def distance_error(height: float, config: FollowConfig) -> float:
@@ -201,36 +201,36 @@ def distance_error(height: float, config: FollowConfig) -> float:
     return config.keep_height / height - 1.0
 
 
-def _update_target(state: FollowState, sight: Sight, step_s: float, config: FollowConfig) -> FollowState:
+def _update_target(state: FollowState, percept: Percept, step_s: float, config: FollowConfig) -> FollowState:
     """Predict where the followed person is, look for it, give it up when it stays away."""
     known = state.target if step_s <= config.wait_s else None
-    if known is not None and sight.time_s - known.seen_s > config.give_up_s:
+    if known is not None and percept.time_s - known.seen_s > config.give_up_s:
         known = None
     if known is None:
         state = replace(state, target=None, others=frozenset(), place=None)
     else:
-        known = carry_on(known, sight.angular_rad_s, step_s)
-        place = None if state.place is None else carry_place(state.place, sight, step_s)
+        known = carry_on(known, percept.angular_rad_s, step_s)
+        place = None if state.place is None else carry_place(state.place, percept, step_s)
         gone = forget_drift(known, step_s, config.target)
-        if config.max_age_s < sight.time_s - known.seen_s < config.patience_s:
-            gone = keep_behind(gone, sight.people, config.hidden, config.target)
+        if config.max_age_s < percept.time_s - known.seen_s < config.patience_s:
+            gone = keep_behind(gone, percept.people, config.hidden, config.target)
         state = replace(state, target=gone, place=place)
-    gap_s = 0.0 if known is None else sight.time_s - known.seen_s
-    person = recognise(sight.people, known, state.others, gap_s, config.identity, config.target)
+    gap_s = 0.0 if known is None else percept.time_s - known.seen_s
+    person = recognise(percept.people, known, state.others, gap_s, config.identity, config.target)
     if person is None:
         if known is None:
             return state
-        strangers = company(sight.people, known.id, state.others)
+        strangers = company(percept.people, known.id, state.others)
         return replace(state, others=strangers) if gap_s <= config.identity.place_s else state
     if known is None or gap_s > config.wait_s:
-        seen = first_sight(person, sight.time_s, config.target)
+        seen = first_sight(person, percept.time_s, config.target)
     else:
-        seen = look_again(known, person, sight.time_s, step_s, config.target)
-    return _seen_at(state, seen, person, sight, config)
+        seen = look_again(known, person, percept.time_s, step_s, config.target)
+    return _seen_at(state, seen, person, percept, config)
 
 
 def _seen_at(
-    state: FollowState, seen: Target, person: SeenPerson, sight: Sight, config: FollowConfig
+    state: FollowState, seen: Target, person: SeenPerson, percept: Percept, config: FollowConfig
 ) -> FollowState:
     """Remember what to do should this be the last sight of the person."""
     soon = seen.bearing_rad + seen.drift_rad_s * config.max_age_s
@@ -238,7 +238,7 @@ def _seen_at(
     return replace(
         state,
         target=seen,
-        others=company(sight.people, person.id, state.others),
+        others=company(percept.people, person.id, state.others),
         side=1 if later >= 0.0 else -1,
         has_left=max(abs(seen.bearing_rad), abs(soon)) > config.leaving_rad,
         place=place_of(seen, config.place),
@@ -246,26 +246,28 @@ def _seen_at(
     )
 
 
-def _patience(state: FollowState, target: Target, sight: Sight, config: FollowConfig) -> tuple[str, float]:
+def _patience(
+    state: FollowState, target: Target, percept: Percept, config: FollowConfig
+) -> tuple[str, float]:
     """Tell how the person was lost, and how long [s] to wait for it where the robot is."""
     if state.has_left:
         return f"track {target.id} left the image", config.wait_s
-    front = hider(sight.people, target, config.hidden, config.target)
+    front = hider(percept.people, target, config.hidden, config.target)
     if front is not None:
         return f"track {target.id} is hidden behind track {front.id}", config.patience_s
     return f"track {target.id} is out of sight", config.gone_s
 
 
 def _search(
-    state: FollowState, sight: Sight, step_s: float, config: FollowConfig
+    state: FollowState, percept: Percept, step_s: float, config: FollowConfig
 ) -> tuple[FollowState, Command]:
     """Rotate in place, to the side where the person was last seen; if that is blocked, to the other."""
-    is_stalled = state.mode == "search" and abs(sight.angular_rad_s) < 0.1 * config.search_rad_s
+    is_stalled = state.mode == "search" and abs(percept.angular_rad_s) < 0.1 * config.search_rad_s
     stalled_s = state.stalled_s + min(step_s, config.max_age_s) if is_stalled else 0.0
     if stalled_s > config.stalled_s:
         state, stalled_s = replace(state, side=-state.side), 0.0
     turn = state.side * config.search_rad_s
-    turned = state.searched_rad + abs(sight.angular_rad_s) * min(step_s, config.max_age_s)
+    turned = state.searched_rad + abs(percept.angular_rad_s) * min(step_s, config.max_age_s)
     if state.mode in ("follow", "wait", "blind"):
         state = replace(state, reason="nobody came back")
     state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s, searched_rad=turned)
@@ -279,14 +281,14 @@ def _wait(state: FollowState, target: Target, why: str, config: FollowConfig) ->
 
 
 def _recover(
-    state: FollowState, place: LastPlace, sight: Sight, step_s: float, config: FollowConfig
+    state: FollowState, place: LastPlace, percept: Percept, step_s: float, config: FollowConfig
 ) -> tuple[FollowState, Command]:
     """Drive to where the person was seen last; from there, search to the side where it went."""
-    place = on_the_way(place, sight, step_s)
-    end = end_of_way(place, echoes(sight), config.place)
+    place = on_the_way(place, percept, step_s)
+    end = end_of_way(place, echoes(percept), config.place)
     if end:
         state = replace(state, mode="recover", reason=end, place=None, searched_rad=0.0)
-        return _search(state, sight, step_s, config)
+        return _search(state, percept, step_s, config)
     aim = place.bearing_rad + swerve(place.bearing_rad, state.heard.points, config.avoid_alone)
     speed = min(config.recover_1_s * place.distance_m, config.max_linear_m_s)
     speed, turn = _facing_share(aim, config) * speed, config.facing_gain * aim
@@ -295,22 +297,22 @@ def _recover(
 
 
 def _go_after(
-    state: FollowState, target: Target, sight: Sight, step_s: float, config: FollowConfig
+    state: FollowState, target: Target, percept: Percept, step_s: float, config: FollowConfig
 ) -> tuple[FollowState, Command]:
     """Turn towards the person and close the distance."""
-    walking = _learn_walking(state.walking_m_s, target, sight, step_s, config)
+    walking = _learn_walking(state.walking_m_s, target, percept, step_s, config)
     speed = _speed(target, walking, config)
-    turn = _clip(_turn(target, speed, sight, config), config.max_turn_rad_s)
+    turn = _clip(_turn(target, speed, percept, config), config.max_turn_rad_s)
     why = f"track {target.id} is seen"
     state = replace(state, mode="follow", reason=why, walking_m_s=walking)
     return state, Command(linear_m_s=speed, angular_rad_s=turn)
 
 
-def _turn(target: Target, speed: float, sight: Sight, config: FollowConfig) -> float:
+def _turn(target: Target, speed: float, percept: Percept, config: FollowConfig) -> float:
     """Give the turn rate [rad/s] that faces the person, or past what stands beside the way there."""
     # A robot that stands need not avoid anything, and looks straight at the person.
     share = min(max(speed, 0.0) / config.swerve_from_m_s, 1.0)
-    aside = share * swerve(target.bearing_rad, echoes(sight), config.avoid)
+    aside = share * swerve(target.bearing_rad, echoes(percept), config.avoid)
     return _facing_turn(target, config) + config.facing_gain * aside
 
 
@@ -337,7 +339,7 @@ def _facing_share(bearing_rad: float, config: FollowConfig) -> float:
 
 
 def _learn_walking(
-    walking_m_s: float, target: Target, sight: Sight, step_s: float, config: FollowConfig
+    walking_m_s: float, target: Target, percept: Percept, step_s: float, config: FollowConfig
 ) -> float:
     """Integrate the distance error into the person's walking speed [m/s], 0 .. max_linear_m_s.
 
@@ -346,7 +348,7 @@ def _learn_walking(
     """
     error = distance_error(target.height, config)
     wanted = config.approach_gain * error + walking_m_s
-    is_held_up = wanted > sight.linear_m_s + 0.15 or wanted > config.max_linear_m_s
+    is_held_up = wanted > percept.linear_m_s + 0.15 or wanted > config.max_linear_m_s
     if error > 0.0 and is_held_up:
         return walking_m_s
     return min(max(walking_m_s + config.learn_gain * error * step_s, 0.0), config.max_linear_m_s)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from peopleboy.behaviours.following.target import Target
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 from peopleboy.behaviours.sonar.echo_points import Points
 
 
@@ -70,18 +70,18 @@ def place_of(target: Target, config: PlaceConfig) -> LastPlace:
     return LastPlace(x_m=far * math.cos(target.bearing_rad), y_m=far * math.sin(target.bearing_rad))
 
 
-def carry_place(place: LastPlace, sight: Sight, step_s: float) -> LastPlace:
+def carry_place(place: LastPlace, percept: Percept, step_s: float) -> LastPlace:
     """Express a place in the robot's frame after a step, by the wheels' speeds."""
-    turn, way = sight.angular_rad_s * step_s, sight.linear_m_s * step_s
+    turn, way = percept.angular_rad_s * step_s, percept.linear_m_s * step_s
     x = place.x_m - way * math.cos(turn / 2.0)
     y = place.y_m - way * math.sin(turn / 2.0)
     cosine, sine = math.cos(turn), math.sin(turn)
     return replace(place, x_m=cosine * x + sine * y, y_m=cosine * y - sine * x)
 
 
-def on_the_way(place: LastPlace, sight: Sight, step_s: float) -> LastPlace:
+def on_the_way(place: LastPlace, percept: Percept, step_s: float) -> LastPlace:
     """Count the time on the way, and that without getting on."""
-    stands = abs(sight.linear_m_s) < 0.03
+    stands = abs(percept.linear_m_s) < 0.03
     return replace(
         place,
         driven_s=place.driven_s + step_s,

@@ -11,7 +11,7 @@ from peopleboy.behaviours.percept import SeenPerson
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HiddenConfig:
+class OccluderConfig:
     """Who can hide whom.
 
     Attributes:
@@ -26,7 +26,7 @@ class HiddenConfig:
 
 
 def hider(
-    people: Iterable[SeenPerson], target: Target, config: HiddenConfig, view: TargetConfig
+    people: Iterable[SeenPerson], target: Target, config: OccluderConfig, view: TargetConfig
 ) -> SeenPerson | None:
     """Find who is nearer than the followed person and about where it should be; None if nobody is."""
     in_front = [
@@ -42,7 +42,7 @@ def hider(
 
 
 def keep_behind(
-    target: Target, people: Iterable[SeenPerson], config: HiddenConfig, view: TargetConfig
+    target: Target, people: Iterable[SeenPerson], config: OccluderConfig, view: TargetConfig
 ) -> Target:
     """Take the person along with whoever hides it: whoever steps out from behind another one is seen."""
     other = hider(people, target, config, view)

@@ -7,14 +7,14 @@ from dataclasses import replace
 
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import EMERGENCY_STOP, Command
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 from peopleboy.behaviours.safety.limits import SafetyConfig, limit
-from peopleboy.behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
 from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, Points, fill_drop_outs
-from peopleboy.behaviours.sonar.sonar_failure import Deafness
+from peopleboy.behaviours.sonar.sonar_failure import SonarFailure
 
 # As long as something takes from one beam through the gap to the next; people have moved on by then.
-PASSING = MemoryConfig(keep_s=2.0, within_m=1.1)
+PASSING = EchoMemoryConfig(keep_s=2.0, within_m=1.1)
 
 
 class Guarded:
@@ -34,7 +34,7 @@ class Guarded:
         self._recent: deque[Points] = deque(maxlen=readings)
         self._memory = EchoMemory()
         self._passing = EchoMemory()
-        self._deafness = Deafness()
+        self._deafness = SonarFailure()
         self._fault = ""
         self.is_limited = False
 
@@ -53,19 +53,19 @@ class Guarded:
         """Whom the behaviour follows; nobody while the robot is stopped."""
         return None if self._fault else self._behaviour.following
 
-    def command(self, sight: Sight) -> Command:
+    def command(self, percept: Percept) -> Command:
         """Give the behaviour's command, as far as it is safe."""
-        self._fault = self._blindness(sight)
+        self._fault = self._blindness(percept)
         if self._fault:
             self.is_limited = True
             return EMERGENCY_STOP
-        self._recent.append(sight.sonar_m)
-        steady = replace(sight, sonar_m=fill_drop_outs(list(self._recent)))
+        self._recent.append(percept.sonar_m)
+        steady = replace(percept, sonar_m=fill_drop_outs(list(self._recent)))
         if self._deafness.listen(steady):
             self._fault, self.is_limited = "the sonars hear nothing any more", True
             return EMERGENCY_STOP
         wanted = self._behaviour.command(steady)
-        self._memory = remember(self._memory, steady, MemoryConfig())
+        self._memory = remember(self._memory, steady, EchoMemoryConfig())
         self._passing = remember(self._passing, steady, PASSING, BESIDE_RAD)
         safe = limit(wanted, steady, self._limits(), self._memory.points, self._passing.points)
         self.is_limited = safe != wanted
@@ -78,9 +78,9 @@ class Guarded:
             return config
         return replace(config, max_linear_m_s=min(config.max_linear_m_s, config.unproven_m_s))
 
-    def _blindness(self, sight: Sight) -> str:
+    def _blindness(self, percept: Percept) -> str:
         """Tell why the images are of no use; empty if they are."""
-        if sight.fault:
-            return sight.fault
-        is_late = not sight.image_age_s <= self._config.latest_image_s
+        if percept.fault:
+            return percept.fault
+        is_late = not percept.image_age_s <= self._config.latest_image_s
         return f"no new image for {self._config.latest_image_s:g} s" if is_late else ""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.behaviours.command import STOP, Command
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, Points, echoes
 
 NOTHING_REMEMBERED: Points = np.zeros((0, 2))
@@ -70,7 +70,7 @@ class SafetyConfig:
 
 def limit(
     command: Command,
-    sight: Sight,
+    percept: Percept,
     config: SafetyConfig,
     remembered: Points = NOTHING_REMEMBERED,
     passing: Points = NOTHING_REMEMBERED,
@@ -82,16 +82,16 @@ def limit(
 
     Args:
         command: what a behaviour asks for.
-        sight: with the sonars' ranges.
+        percept: with the sonars' ranges.
         config: limits and outline.
         remembered: (N, 2) [m] further obstacles, robot frame, which limit turning: a corner of the hull
             swings through the gaps between the sonars' cones.
         passing: (M, 2) [m] obstacles of the last moment, robot frame, beside which the robot drives.
     """
-    if not sight.is_sound:
+    if not percept.is_sound:
         return STOP
-    points = echoes(sight)
-    beside = np.concatenate([echoes(sight, spread_rad=BESIDE_RAD), passing])
+    points = echoes(percept)
+    beside = np.concatenate([echoes(percept, spread_rad=BESIDE_RAD), passing])
     arc = _free_arc(command, beside[np.hypot(beside[:, 0], beside[:, 1]) < _NEAR_M], config)
     ahead, behind = _free_way(points, config)
     backwards, forwards = -safe_speed(min(behind, arc), config), safe_speed(min(ahead, arc), config)

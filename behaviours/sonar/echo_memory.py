@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from peopleboy.behaviours.percept import Ranges, Sight
+from peopleboy.behaviours.percept import Percept, Ranges
 from peopleboy.behaviours.sonar.echo_points import Points, echoes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MemoryConfig:
+class EchoMemoryConfig:
     """What is remembered.
 
     Attributes:
@@ -39,26 +39,28 @@ class EchoMemory:
     heard_s: Ranges = field(default_factory=lambda: np.zeros(0))
 
 
-def remember(memory: EchoMemory, sight: Sight, config: MemoryConfig, spread_rad: float = 0.0) -> EchoMemory:
+def remember(
+    memory: EchoMemory, percept: Percept, config: EchoMemoryConfig, spread_rad: float = 0.0
+) -> EchoMemory:
     """Move the echoes by the wheels' motion, forget the old and the far, take in the new.
 
     Senseless input leaves the memory as it is. Echoes are placed spread_rad [rad] off the beams' axes.
     """
-    if not sight.is_sound:
+    if not percept.is_sound:
         return memory
-    heard = echoes(sight, spread_rad)
-    points = np.concatenate([_moved(memory, sight), heard])
-    heard_s = np.concatenate([memory.heard_s, np.full(len(heard), sight.time_s)])
+    heard = echoes(percept, spread_rad)
+    points = np.concatenate([_moved(memory, percept), heard])
+    heard_s = np.concatenate([memory.heard_s, np.full(len(heard), percept.time_s)])
     is_kept = (np.hypot(points[:, 0], points[:, 1]) < config.within_m) & (
-        np.abs(sight.time_s - heard_s) < config.keep_s
+        np.abs(percept.time_s - heard_s) < config.keep_s
     )
-    return EchoMemory(time_s=sight.time_s, points=points[is_kept], heard_s=heard_s[is_kept])
+    return EchoMemory(time_s=percept.time_s, points=points[is_kept], heard_s=heard_s[is_kept])
 
 
-def _moved(memory: EchoMemory, sight: Sight) -> Points:
+def _moved(memory: EchoMemory, percept: Percept) -> Points:
     """Express the old echoes in the robot's new frame: (N, 2) [m]."""
-    step_s = 0.0 if math.isnan(memory.time_s) else sight.time_s - memory.time_s
-    turn, way = sight.angular_rad_s * step_s, sight.linear_m_s * step_s
+    step_s = 0.0 if math.isnan(memory.time_s) else percept.time_s - memory.time_s
+    turn, way = percept.angular_rad_s * step_s, percept.linear_m_s * step_s
     shift = way * np.array([math.cos(turn / 2.0), math.sin(turn / 2.0)])
     cosine, sine = math.cos(turn), math.sin(turn)
     old_from_new = np.array([[cosine, -sine], [sine, cosine]])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 
 Points = NDArray[np.float64]
 
@@ -18,18 +18,18 @@ RING_HALF_AXES_M = (0.21, 0.14)
 BESIDE_RAD = math.radians(7.5)  # half a beam's opening
 
 
-def echoes(sight: Sight, spread_rad: float = 0.0) -> Points:
+def echoes(percept: Percept, spread_rad: float = 0.0) -> Points:
     """Place each sonar's echo in its beam: (N, 2) [m], x forward, y left, origin between the wheels.
 
     A range that is no number, or negative, counts as an obstacle at the sonar itself.
 
     Args:
-        sight: with the sonars' ranges.
+        percept: with the sonars' ranges.
         spread_rad: [rad] how far off the beam's axis, towards the robot's side: BESIDE_RAD places a wall
             beside the way, whose echo comes from the edge of the beam.
     """
-    ranges = np.where(np.isfinite(sight.sonar_m), np.maximum(sight.sonar_m, 0.0), 0.0)
-    angle = sight.sonar_angle_rad + spread_rad * np.sign(np.round(np.sin(2.0 * sight.sonar_angle_rad), 6))
+    ranges = np.where(np.isfinite(percept.sonar_m), np.maximum(percept.sonar_m, 0.0), 0.0)
+    angle = percept.sonar_angle_rad + spread_rad * np.sign(np.round(np.sin(2.0 * percept.sonar_angle_rad), 6))
     axes = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     points: Points = axes * (np.array(RING_HALF_AXES_M) + ranges[:, None])
     points[:, 0] += RING_CENTRE_X_M

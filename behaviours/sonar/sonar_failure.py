@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DeafnessConfig:
+class SonarFailureConfig:
     """What cannot be.
 
     Attributes:
@@ -25,7 +25,7 @@ class DeafnessConfig:
     ahead: float = 0.3
 
 
-class Deafness:
+class SonarFailure:
     """Notices when every sonar falls silent at once.
 
     A ring that hears nothing reports one and the same range, its reach, for all sonars. In a large hall that
@@ -36,29 +36,29 @@ class Deafness:
             or in the middle of a hall; nobody can tell which.
     """
 
-    def __init__(self, config: DeafnessConfig | None = None) -> None:
-        self._config = DeafnessConfig() if config is None else config
+    def __init__(self, config: SonarFailureConfig | None = None) -> None:
+        self._config = SonarFailureConfig() if config is None else config
         self._nearest_m = np.inf
         self._is_deaf = False
         self.has_heard = False
 
-    def listen(self, sight: Sight) -> bool:
+    def listen(self, percept: Percept) -> bool:
         """Tell whether the sonars are deaf; once they are, they stay so until one of them hears something."""
-        ranges = sight.sonar_m
+        ranges = percept.sonar_m
         if len(ranges) < 2 or not np.all(ranges == ranges[0]):
             self._nearest_m, self._is_deaf = float(np.min(ranges, initial=np.inf)), False
             self.has_heard = True
             return False
         misses_echo = self._nearest_m < min(self._config.sure_m, float(ranges[0]))
-        self._is_deaf = self._is_deaf or misses_echo or self._is_person_near(sight)
+        self._is_deaf = self._is_deaf or misses_echo or self._is_person_near(percept)
         self._nearest_m = np.inf
         return self._is_deaf
 
-    def _is_person_near(self, sight: Sight) -> bool:
+    def _is_person_near(self, percept: Percept) -> bool:
         """Tell whether somebody stands so near in front that there must be an echo."""
         return any(
             person.is_visible
             and person.height >= self._config.sure_height
             and abs(person.x) < self._config.ahead
-            for person in sight.people
+            for person in percept.people
         )

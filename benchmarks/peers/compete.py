@@ -21,7 +21,7 @@ from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, write_tracks
 from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,7 +68,7 @@ def compete(name: str, scenario: str, seed: int, folder: Path) -> Result:
     )
 
 
-def occlusions_of(shot: Film, truth: Truth, tracks: Tracks) -> list[Occlusion]:
+def occlusions_of(shot: Film, truth: TrueBoxes, tracks: TrackBoxes) -> list[Occlusion]:
     """Score the identities at the total occlusions of a film."""
     people = shot.people().select(["frame", "id", "occluded_fraction"])
     columns = (people[name].to_pylist() for name in people.column_names)
@@ -92,8 +92,8 @@ def _run(name: str, shot: Film, said: Path) -> None:
     said.with_suffix(".json").write_text(json.dumps(about) + "\n", encoding="utf-8")
 
 
-def _tracks(rows: list[tuple[int, int, tuple[float, ...]]]) -> Tracks:
-    return Tracks(
+def _tracks(rows: list[tuple[int, int, tuple[float, ...]]]) -> TrackBoxes:
+    return TrackBoxes(
         frame=np.array([frame for frame, _, _ in rows], dtype=np.int64),
         id=np.array([identity for _, identity, _ in rows], dtype=np.int64),
         box=np.array([box for _, _, box in rows], dtype=np.float64).reshape(-1, 4),

@@ -11,7 +11,7 @@ from trackers import ByteTrackTracker, SORTTracker
 
 from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
 from peopleboy.sim.random_streams import stream
-from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
@@ -77,7 +77,7 @@ def _sort() -> Any:
     return SORTTracker(lost_track_buffer=_LOST_BUFFER, frame_rate=RATE_HZ, track_activation_threshold=_STRONG)
 
 
-PEERS: dict[str, Callable[[Truth], Contestant]] = {
+PEERS: dict[str, Callable[[TrueBoxes], Contestant]] = {
     "hog_colour+bytetrack": lambda _: DetectAndAssociate(Hog(uses_colour=True), _bytetrack()),
     "hog_colour+sort": lambda _: DetectAndAssociate(Hog(uses_colour=True), _sort()),
     "hog_thermal+bytetrack": lambda _: DetectAndAssociate(Hog(uses_colour=False), _bytetrack()),
@@ -94,7 +94,7 @@ def contestants() -> list[str]:
     return [*TRACKERS, *PEERS]
 
 
-def make_contestant(name: str, seed: int, truth: Truth) -> Contestant:
+def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:
     """Make a contestant for one run.
 
     Raises:

@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.appearance.colour_config import ROBOT_AFFINE
 
@@ -90,7 +90,7 @@ class Oracle:
 
     _VISIBLE = 0.3
 
-    def __init__(self, truth: Truth) -> None:
+    def __init__(self, truth: TrueBoxes) -> None:
         self._truth = truth.take(truth.visible > self._VISIBLE)
         self._frame = 0
 

@@ -112,6 +112,6 @@ def _area(box: Taken) -> float:
 
 
 def _temperature(fixture: Fixture) -> float:
-    look = fixture.part.look if fixture.part is not None else fixture.look
-    assert look is not None
-    return look.temperature_c
+    material = fixture.part.material if fixture.part is not None else fixture.material
+    assert material is not None
+    return material.temperature_c

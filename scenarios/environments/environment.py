@@ -37,7 +37,7 @@ from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.render import BLIND
 from peopleboy.sim.robot.peoplebot import Planar
-from peopleboy.sim.truth.image_free_truth import Scene
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, Tracker, make_tracker
@@ -58,7 +58,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     (150 deg/s, positive to the left); beyond is clipped. Observations are told in `observations`, the
     reward in `rewards`. An episode terminates when the robot touches anything, or, unless the task is
     "corridor", when the person to follow has been out of sight for 10 s; it is truncated when the
-    scenario's time is over. `info` holds `truth` (a `Scene`), `reward` (its terms), `metrics` (see
+    scenario's time is over. `info` holds `truth` (a `ImageFreeTruth`), `reward` (its terms), `metrics` (see
     `Episode.metrics`), `events` (what is new, and with whom), and `seed`.
 
     `reset(seed=3)` plays the world of `peopleboy run --seed 3`; `reset()` goes on to a seed drawn from it.
@@ -194,7 +194,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         before = self._start if self._start is None else self._senses.odometry
         has_images = world.config.renderer != BLIND
         self._senses: Senses = world.observe() if has_images else world.sense()
-        self._scene: Scene = world.scene()
+        self._scene: ImageFreeTruth = world.scene()
         if self._start is None:
             self._start = self._senses.odometry
         found = feel(self._senses, self._start)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.config import RobotConfig
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
-from peopleboy.sim.truth.image_free_truth import Bystander, Scene
+from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
 from peopleboy.tracker.track import Status, Track
 
 Arrays = dict[str, NDArray[Any]]
@@ -89,7 +89,7 @@ def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> Arrays:
     )
 
 
-def see_truth(scene: Scene, robot: RobotConfig) -> Arrays:
+def see_truth(scene: ImageFreeTruth, robot: RobotConfig) -> Arrays:
     """Give what a perfect tracker would say: everybody within the image, hidden or not."""
     return _table(
         _row(person.id, person.box, 1.0, person.visible_share >= SEEN_SHARE, robot)

@@ -14,7 +14,7 @@ from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.config import RobotConfig, WorldConfig
 from peopleboy.sim.people.body.clothes import random_clothes
 from peopleboy.sim.places.place import Fixture, Place
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 
 LIMITS: Final[Mapping[str, tuple[float, float]]] = {
     "warmer_k": (-30.0, 30.0),
@@ -105,10 +105,12 @@ def _warmer(place: Place, by_k: float) -> Place:
 
 def _warmer_fixture(fixture: Fixture, by_k: float) -> Fixture:
     if fixture.part is not None:
-        part = replace(fixture.part, look=_warmer_look(fixture.part.look, by_k))
+        part = replace(fixture.part, material=_warmer_material(fixture.part.material, by_k))
         return replace(fixture, part=part)
-    return replace(fixture, look=None if fixture.look is None else _warmer_look(fixture.look, by_k))
+    return replace(
+        fixture, material=None if fixture.material is None else _warmer_material(fixture.material, by_k)
+    )
 
 
-def _warmer_look(look: Look, by_k: float) -> Look:
-    return replace(look, temperature_c=look.temperature_c + by_k)
+def _warmer_material(material: Material, by_k: float) -> Material:
+    return replace(material, temperature_c=material.temperature_c + by_k)

@@ -19,7 +19,7 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.peoplebot import RADIUS_M, Planar
-from peopleboy.sim.truth.image_free_truth import Bystander, Scene
+from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
 from peopleboy.tracker.track import Track
 
 WIDTH_PX, HEIGHT_PX = 480, 360  # of each of the three panels
@@ -36,14 +36,14 @@ class ScenePicture:
         self._corner = np.array([place.bounds[0], place.bounds[3]])  # [m] of the plan's top-left pixel
         self._plan = _draw_place(plan, place)
 
-    def draw(self, observation: Observation, scene: Scene, tracks: Sequence[Track]) -> Picture:
+    def draw(self, observation: Observation, scene: ImageFreeTruth, tracks: Sequence[Track]) -> Picture:
         """Draw an instant: (360, 1440, 3)."""
         thermal = _fit(show_thermal(observation.thermal))
         scale = HEIGHT_PX / observation.thermal.shape[0]
         panels = (draw_tracks(thermal, tracks, scale), _fit(observation.colour), self._draw_plan(scene))
         return np.concatenate(panels, axis=1)
 
-    def _draw_plan(self, scene: Scene) -> Picture:
+    def _draw_plan(self, scene: ImageFreeTruth) -> Picture:
         """The plan with the robot in the middle, north up, and everybody who is present."""
         robot = scene.robot
         offset = np.array([WIDTH_PX, HEIGHT_PX]) / 2.0 - self._pixels((robot.x, robot.y))

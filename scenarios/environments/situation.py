@@ -9,7 +9,7 @@ from typing import Final
 from peopleboy.scenarios.environments.observations import SEEN_SHARE
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.robot.peoplebot import RADIUS_M
-from peopleboy.sim.truth.image_free_truth import Bystander, Scene
+from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
 
 LOST_S: Final = 10.0
 FACING_RAD: Final = math.radians(10.0)
@@ -59,7 +59,7 @@ class Episode:
         self._nearest_m = NOBODY_M
         self.events: tuple[tuple[str, str], ...] = ()
 
-    def judge(self, scene: Scene) -> Situation:
+    def judge(self, scene: ImageFreeTruth) -> Situation:
         """Look at the next instant."""
         target = find_target(scene)
         sees = target is not None and target.visible_share >= SEEN_SHARE
@@ -114,7 +114,7 @@ class Episode:
         if target is not None and sees:
             self._has_seen = target.name
 
-    def _compare(self, scene: Scene) -> tuple[tuple[str, str], ...]:
+    def _compare(self, scene: ImageFreeTruth) -> tuple[tuple[str, str], ...]:
         """Give what is new as pairs of what happened, and to or with whom."""
         seen = {person.name for person in scene.people if person.visible_share >= SEEN_SHARE}
         touched = set(scene.contacts)
@@ -124,7 +124,7 @@ class Episode:
         self._seen, self._touched = seen, touched
         return tuple(found)
 
-    def _count(self, situation: Situation, scene: Scene) -> None:
+    def _count(self, situation: Situation, scene: ImageFreeTruth) -> None:
         sums = self._sums
         sums["steps"] += 1.0
         sums["find"] += not self._has_seen
@@ -140,12 +140,12 @@ class Episode:
             sums["off_m"] += off
 
 
-def find_target(scene: Scene) -> Bystander | None:
+def find_target(scene: ImageFreeTruth) -> Bystander | None:
     """The person to follow: the first in the scenario's order who is present."""
     return min(scene.people, key=lambda person: person.id, default=None)
 
 
-def corridor_motion(plan: FloorPlan, scene: Scene) -> tuple[float, float]:
+def corridor_motion(plan: FloorPlan, scene: ImageFreeTruth) -> tuple[float, float]:
     """Speed [m/s] along the axis of the corridor's leg, and the offset from its middle in half widths.
 
     At a corner the leg is the one along which the robot rather looks.

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.behaviours.behaviour import Behaviour
-from peopleboy.behaviours.percept import SeenPerson, Sight
+from peopleboy.behaviours.percept import Percept, SeenPerson
 from peopleboy.scenarios.environments.observations import COLUMNS, Arrays
 from peopleboy.sim.config import DriveConfig
 from peopleboy.sim.robot.sonar import SONAR_ANGLE_RAD
@@ -34,7 +34,7 @@ class WrittenController:
         """Give the action (2,) for an observation with `tracks`; called once for every step."""
         rows = observation["tracks"].reshape(-1, len(COLUMNS)).tolist()
         speed, turn_rate = observation["odometry"][4:].tolist()
-        sight = Sight(
+        percept = Percept(
             time_s=self._time_s,
             people=tuple(_person(row) for row in rows if row[0] > 0),
             sonar_m=observation["sonar"].astype(np.float64),
@@ -44,7 +44,7 @@ class WrittenController:
             colour=observation.get("colour"),
         )
         self._time_s += _DT_S
-        command = self._behaviour.command(sight)
+        command = self._behaviour.command(percept)
         limits = self._limits
         shares = command.linear_m_s / limits.max_linear_m_s, command.angular_rad_s / limits.max_angular_rad_s
         return np.clip(np.array(shares, np.float32), -1.0, 1.0)

@@ -20,7 +20,7 @@ from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.places.floor_plan import Door, FloorPlan, check_doors
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rooms import Surfaces, build_place, l_corridor, straight_corridor, t_corridor
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 
 
 def make_floor_plan(spec: PlaceSpec) -> FloorPlan:
@@ -105,14 +105,14 @@ def _door(spec: DoorSpec) -> Door:
 
 def _surfaces(spec: PlaceSpec, plan: FloorPlan) -> Surfaces:
     usual, temperatures, colours = Surfaces(), spec.temperatures, spec.colours
-    walls = _look(usual.walls, temperatures.walls_c, colours.walls)
+    walls = _material(usual.walls, temperatures.walls_c, colours.walls)
     for name in temperatures.single_walls_c:
         check_wall(plan, "place.temperatures.single_walls_c", name)
     return Surfaces(
-        floor=_look(usual.floor, temperatures.floor_c, colours.floor),
-        ceiling=_look(usual.ceiling, temperatures.ceiling_c, colours.ceiling),
+        floor=_material(usual.floor, temperatures.floor_c, colours.floor),
+        ceiling=_material(usual.ceiling, temperatures.ceiling_c, colours.ceiling),
         walls=walls,
-        door=_look(usual.door, usual.door.temperature_c, colours.doors),
+        door=_material(usual.door, usual.door.temperature_c, colours.doors),
         named={
             name: replace(walls, temperature_c=temperature)
             for name, temperature in temperatures.single_walls_c.items()
@@ -120,7 +120,7 @@ def _surfaces(spec: PlaceSpec, plan: FloorPlan) -> Surfaces:
     )
 
 
-def _look(usual: Look, temperature_c: float, colour: Colour | None) -> Look:
+def _material(usual: Material, temperature_c: float, colour: Colour | None) -> Material:
     if colour is None:
         return replace(usual, temperature_c=temperature_c)
     rgb = resolve_colour(colour)

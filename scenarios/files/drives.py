@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import STOP, Command
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 
 KEPT: Final = "drive.parquet"
 """Where a run keeps the drive that its robot repeated."""
@@ -36,7 +36,7 @@ class Repeat:
     def __init__(self, drive: Sequence[Command]) -> None:
         self._left = iter(drive)
 
-    def command(self, sight: Sight) -> Command:  # noqa: ARG002
+    def command(self, percept: Percept) -> Command:  # noqa: ARG002
         """Give the next command."""
         return next(self._left, STOP)
 

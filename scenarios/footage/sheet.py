@@ -101,7 +101,7 @@ class Sheet:
         page.save(path, compress_level=3)
 
 
-class Film:
+class OverlayFilm:
     """Writes overlay.mp4 frame by frame, H.264, which every browser shows; use it as a context manager.
 
     Raises:
@@ -122,7 +122,7 @@ class Film:
         self._frame_of: Any = av.VideoFrame.from_ndarray
         self._is_new = True
 
-    def __enter__(self) -> Film:
+    def __enter__(self) -> OverlayFilm:
         return self
 
     def __exit__(

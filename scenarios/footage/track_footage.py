@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.overlay import Picture
-from peopleboy.scenarios.footage.sheet import FILM_PX, TILE_PX, Annotated, Film, Sheet, draw_frame
+from peopleboy.scenarios.footage.sheet import FILM_PX, TILE_PX, Annotated, OverlayFilm, Sheet, draw_frame
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import check_named
 from peopleboy.scenarios.run_folder.tables import TRACKS, Row, track_row, write_table
@@ -228,9 +228,9 @@ class _Log:
         self._sheet = Sheet(options.footage.resolve().name, has_truth=truth is not None)
         self._means = f"at {rate_hz:g} Hz, tracker {options.tracker}"
         self._stack = ExitStack()
-        self._film: Film | None = None
+        self._film: OverlayFilm | None = None
         if options.film:
-            self._film = self._stack.enter_context(Film(folder / "overlay.mp4", rate_hz))
+            self._film = self._stack.enter_context(OverlayFilm(folder / "overlay.mp4", rate_hz))
         self._results = self._stack.enter_context(
             (folder / "tracks.txt").open("w", encoding="utf-8", newline="\n")
         )

@@ -12,7 +12,7 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import Command
-from peopleboy.behaviours.percept import SeenPerson, Sight
+from peopleboy.behaviours.percept import Percept, SeenPerson
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
 from peopleboy.sim.robot.sonar import SONAR_ANGLE_RAD
@@ -82,7 +82,7 @@ class Eyes:
         self._newest: Observation | None = None
         self.tracks: tuple[Track, ...] = ()
 
-    def look(self, observation: Observation) -> Sight:
+    def look(self, observation: Observation) -> Percept:
         """Let the tracker see the images if they are new, and tell the behaviour.
 
         Images equal to the last ones to the bit are no new ones: the noise of a camera never repeats.
@@ -90,7 +90,7 @@ class Eyes:
         newest = self._newest
         if newest is not None and _is_same_image(newest, observation):
             age_s = observation.time_s - newest.time_s
-            return make_sight(observation, self.tracks, image_age_s=age_s)
+            return make_percept(observation, self.tracks, image_age_s=age_s)
         before = None if newest is None else newest.odometry
         self._newest = observation
         try:
@@ -99,8 +99,8 @@ class Eyes:
             raise
         except Exception as error:  # a robot among people outlives its tracker
             self.tracks = ()
-            return make_sight(observation, (), fault=f"the tracker failed: {type(error).__name__}: {error}")
-        return make_sight(observation, self.tracks)
+            return make_percept(observation, (), fault=f"the tracker failed: {type(error).__name__}: {error}")
+        return make_percept(observation, self.tracks)
 
 
 def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: int) -> Iterator[Tick]:
@@ -146,16 +146,16 @@ def make_frame(observation: Observation, before: Planar | None) -> Frame:
     )
 
 
-def make_sight(
+def make_percept(
     observation: Observation, tracks: tuple[Track, ...], *, image_age_s: float = 0.0, fault: str = ""
-) -> Sight:
+) -> Percept:
     """Give the behaviour what it steers by: confirmed tracks, sonar and the wheels' speed."""
     height, width = observation.thermal.shape
     people = tuple(
         see_person(track, width, height) for track in tracks if track.status is not Status.TENTATIVE
     )
     left, right = observation.wheel_speeds_m_s
-    return Sight(
+    return Percept(
         time_s=observation.time_s,
         people=people,
         sonar_m=observation.sonar_m,

@@ -16,7 +16,7 @@ TRUTH = "truth"
 SEEN = 0.3  # share of a silhouette above which a person counts as seen
 
 
-class TrueEyes:
+class OracleTracker:
     """Gives everybody's true box under the person's own number, as long as enough of it is to be seen.
 
     Who is hidden in the image goes on as a totally occluded track; who is out of the image has none.
@@ -64,7 +64,7 @@ def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
         BadInput: an unknown name.
     """
     check_eyes(name)
-    return TrueEyes(truth) if name == TRUTH else make_tracker(name, stream(seed, "tracker"))
+    return OracleTracker(truth) if name == TRUTH else make_tracker(name, stream(seed, "tracker"))
 
 
 def check_eyes(name: str) -> None:

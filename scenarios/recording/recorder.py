@@ -23,7 +23,7 @@ from peopleboy.scenarios.recording.entities import COLOUR, EVENTS, OCCLUSIONS, T
 from peopleboy.scenarios.recording.layout import lay_out
 from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
-from peopleboy.scenarios.recording.rows import Rows
+from peopleboy.scenarios.recording.rows import RowBuffer
 from peopleboy.scenarios.recording.sections import section_marks
 from peopleboy.scenarios.recording.still import Still
 from peopleboy.sim.config import WorldConfig
@@ -76,7 +76,7 @@ class Recorder:
         self._path = path
         self._trails = marks.Trails()
         self._tracks_named: set[int] = set()
-        self._rows = Rows()
+        self._rows = RowBuffer()
         self._stream = rr.RecordingStream(
             APPLICATION, recording_id=title.replace(", ", "-").replace(" ", "-")
         )

@@ -30,7 +30,7 @@ class Columns:
     columns: dict[str, Any]
 
 
-class Rows:
+class RowBuffer:
     """Collects rows of a few values each, which costs a tenth of handing on every row by itself."""
 
     def __init__(self) -> None:

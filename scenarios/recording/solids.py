@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from peopleboy.scenarios.drawing.palette import Rgb
 from peopleboy.sim.places.extent import fixture_extent, shape_extent
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 
@@ -48,8 +48,8 @@ def group_fixtures(fixtures: Iterable[Fixture]) -> dict[str, list[Fixture]]:
 def fixture_solids(fixture: Fixture) -> Iterator[Solid]:
     """Give a fixture's solids in the world frame; a URDF and a mesh become the boxes around them."""
     if fixture.part is None:
-        (low, high), look = fixture_extent(fixture), fixture.look
-        yield _box((low + high) / 2.0, high - low, _srgb(look))
+        (low, high), material = fixture_extent(fixture), fixture.material
+        yield _box((low + high) / 2.0, high - low, _srgb(material))
         return
     turn = Rotation.from_quat(fixture.orientation)
     for shape in fixture.part.shapes:
@@ -61,7 +61,7 @@ def fixture_solids(fixture: Fixture) -> Iterator[Solid]:
             size=size,
             position=_vector(turn.apply(position) + fixture.position),
             orientation=_quaternion(turn * Rotation.from_quat(shape.orientation)),
-            colour=_srgb(fixture.part.look),
+            colour=_srgb(fixture.part.material),
         )
 
 
@@ -124,9 +124,9 @@ def _box(centre: np.ndarray, size: np.ndarray, colour: Rgb) -> Solid:
     )
 
 
-def _srgb(look: Look | None) -> Rgb:
+def _srgb(material: Material | None) -> Rgb:
     """Encode a look's linear reflectance for the screen."""
-    red, green, blue = (0.5, 0.5, 0.5) if look is None else look.rgb
+    red, green, blue = (0.5, 0.5, 0.5) if material is None else material.rgb
     return _byte(red ** (1 / 2.2)), _byte(green ** (1 / 2.2)), _byte(blue ** (1 / 2.2))
 
 

@@ -21,7 +21,7 @@ from peopleboy.scenarios.files.schema_errors import explain
 from peopleboy.scenarios.run_folder.tables import MAY_BE_EMPTY, ROBOT, TRACKS, TRUTH
 from peopleboy.scenarios.scores.suite_table import is_in_image
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
-from peopleboy.tracker.evaluation.sequence import Rows, Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import Rows, TrackBoxes, TrueBoxes
 from peopleboy.tracker.track import Status
 
 _AGAIN = "run the scenario again"
@@ -54,8 +54,8 @@ class RunFiles:
         people, beliefs, robot: truth.parquet, tracks.parquet, robot.parquet.
     """
 
-    truth: Truth
-    tracks: Tracks
+    truth: TrueBoxes
+    tracks: TrackBoxes
     people: pa.Table
     beliefs: pa.Table
     robot: pa.Table
@@ -135,7 +135,7 @@ def read_files(
     return files
 
 
-def check_whole(folder: Path, truth: Truth, tracks: Tracks) -> None:
+def check_whole(folder: Path, truth: TrueBoxes, tracks: TrackBoxes) -> None:
     """Refuse a run whose text files have not the boxes of its tables, as far as it has tables.
 
     Args:

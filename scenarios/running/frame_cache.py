@@ -26,7 +26,7 @@ from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.mot_files import read_truth
-from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Track
@@ -63,7 +63,7 @@ class Film:
     thermal: tuple[int, int]
     colour: tuple[int, int, int]
 
-    def truth(self) -> Truth:
+    def truth(self) -> TrueBoxes:
         """Read who was there, as the evaluation wants it."""
         return read_truth(self.folder / "gt.txt")
 

@@ -9,7 +9,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.run_files import check_end, check_whole, read_run
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks
-from peopleboy.tracker.evaluation.sequence import Tracks
+from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
 from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
 
@@ -58,5 +58,5 @@ def _evaluate_run(folder: Path, min_visible: float) -> Scores:
     return _score(given, found, about["frames"], min_visible)
 
 
-def _score(given: GivenTruth, found: Tracks, frames: int | None, min_visible: float) -> Scores:
+def _score(given: GivenTruth, found: TrackBoxes, frames: int | None, min_visible: float) -> Scores:
     return evaluate(given.truth, found, frames=frames, min_visible=min_visible, is_single=given.is_single)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import rotation_blur
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.surfaces import LookTable, part_from_pixel, pattern_value, surface_point
+from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
 from peopleboy.sim.config import ColourConfig
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.render import View
@@ -59,7 +59,7 @@ _GAMMA = _gamma_table()
 
 def colour_image(
     view: View,
-    looks: LookTable,
+    materials: MaterialTable,
     config: ColourConfig,
     world_from_camera: Matrix,
     world_from_part: Matrix,
@@ -70,7 +70,7 @@ def colour_image(
 
     Args:
         view: what each pixel sees.
-        looks: of the P parts.
+        materials: of the P parts.
         config: camera and gain.
         world_from_camera: (4, 4).
         world_from_part: (P, 4, 4).
@@ -82,7 +82,8 @@ def colour_image(
     """
     matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
     image = _radiance_image(
-        view.part, view.depth, view.normal, matrices, looks.colour, looks.kind, looks.period, looks.phase,
+        view.part, view.depth, view.normal, matrices,
+        materials.colour, materials.kind, materials.period, materials.phase,
         _LIGHT, light_level * config.gain,
     )  # fmt: skip
     return rotation_blur(image, config.camera, turned_rad)

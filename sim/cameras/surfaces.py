@@ -15,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Camera, Matrix
-from peopleboy.sim.shapes.materials import Look, PatternKind
+from peopleboy.sim.shapes.materials import Material, PatternKind
 
 # Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
 _OFFSET = 0.137
@@ -27,7 +27,7 @@ _SPECKLE = int(PatternKind.SPECKLE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LookTable:
+class MaterialTable:
     """The looks of all P parts as arrays; row i belongs to part i.
 
     Attributes:
@@ -45,20 +45,23 @@ class LookTable:
     phase: NDArray[np.float64]
 
 
-def make_look_table(looks: Sequence[Look], rng: np.random.Generator) -> LookTable:
+def make_material_table(materials: Sequence[Material], rng: np.random.Generator) -> MaterialTable:
     """Put the looks of all parts into arrays; the generator draws each part's phase of variation."""
-    return LookTable(
+    return MaterialTable(
         thermal=np.array(
-            [(k.temperature_c, k.emissivity, k.variation_k, 1.0 / k.variation_m, k.contrast_k) for k in looks]
+            [
+                (k.temperature_c, k.emissivity, k.variation_k, 1.0 / k.variation_m, k.contrast_k)
+                for k in materials
+            ]
         ).reshape(-1, 5),
-        colour=np.array([(*k.rgb, *k.second_rgb, k.glow) for k in looks]).reshape(-1, 7),
-        kind=np.array([(k.thermal_pattern.kind, k.colour_pattern.kind) for k in looks], np.int64).reshape(
+        colour=np.array([(*k.rgb, *k.second_rgb, k.glow) for k in materials]).reshape(-1, 7),
+        kind=np.array([(k.thermal_pattern.kind, k.colour_pattern.kind) for k in materials], np.int64).reshape(
             -1, 2
         ),
-        period=np.array([(k.thermal_pattern.period_m, k.colour_pattern.period_m) for k in looks]).reshape(
+        period=np.array([(k.thermal_pattern.period_m, k.colour_pattern.period_m) for k in materials]).reshape(
             -1, 2
         ),
-        phase=rng.uniform(0.0, 1.0, (len(looks), 3)),
+        phase=rng.uniform(0.0, 1.0, (len(materials), 3)),
     )
 
 

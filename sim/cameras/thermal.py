@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.surfaces import (
-    LookTable,
+    MaterialTable,
     part_from_pixel,
     pattern_value,
     smooth_variation,
@@ -135,7 +135,7 @@ def make_detector(config: ThermalConfig, rng: np.random.Generator) -> Detector:
 
 def surface_image(
     view: View,
-    looks: LookTable,
+    materials: MaterialTable,
     config: ThermalConfig,
     world_from_camera: Matrix,
     world_from_part: Matrix,
@@ -149,7 +149,7 @@ def surface_image(
 
     Args:
         view: what each pixel sees.
-        looks: of the P parts.
+        materials: of the P parts.
         config: camera and optics.
         world_from_camera: (4, 4).
         world_from_part: (P, 4, 4).
@@ -161,7 +161,7 @@ def surface_image(
     """
     matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
     radiance = _radiance_image(
-        view.part, view.depth, matrices, looks.thermal, looks.kind, looks.period, looks.phase,
+        view.part, view.depth, matrices, materials.thermal, materials.kind, materials.period, materials.phase,
         _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
     )  # fmt: skip
     radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)

@@ -15,7 +15,7 @@ from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.robot.peoplebot import RADIUS_M, PeopleBot
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
 
 # What robots bump into and sonars hear: an upright capsule, which no camera sees.
@@ -38,7 +38,7 @@ class Crowd:
         self._is_visible = is_visible
         self._obstacles = place.obstacles
         self.people = tuple(Person(config, stream(seed, f"person.{config.name}")) for config in configs)
-        self.looks: dict[str, Look] = {}
+        self.materials: dict[str, Material] = {}
         self._is_shown = dict.fromkeys((person.name for person in self.people), True)
         self._solid: set[str] = set()
         self._before: dict[str, NDArray[np.float64]] = {}
@@ -77,12 +77,12 @@ class Crowd:
         for part in self._visible_parts(person):
             name = f"{person.name}/{part.name}"
             self._bullet.add_part(name, part.shapes, solid=False)
-            self.looks[name] = part.look
+            self.materials[name] = part.material
         radius, height = person.radius_m, person.config.height_m
         capsule = Shape(kind=ShapeKind.CAPSULE, size=(height - 2.0 * radius, radius, 0.0))
         self._bullet.add_part(f"{person.name}/{_SOLID}", [capsule], visible=False)
         self._bullet.set_hidden(f"{person.name}/{_SOLID}", True)
-        self.looks[f"{person.name}/{_SOLID}"] = person.parts[0].look
+        self.materials[f"{person.name}/{_SOLID}"] = person.parts[0].material
 
     def _set_shown(self, person: Person, is_shown: bool) -> None:
         self._is_shown[person.name] = is_shown

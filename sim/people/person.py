@@ -29,7 +29,7 @@ from peopleboy.sim.people.person_config import Arms, PersonConfig
 from peopleboy.sim.people.timetable import timetable
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.walk import RISE_S, Surroundings, Walker, Waypoint
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part
 
 Array = NDArray[np.float64]
@@ -47,7 +47,7 @@ _ARM_POSTURES: dict[Arms, Posture | None] = {
     "crossed": Posture.ARMS_CROSSED,
     "raised": Posture.ARMS_RAISED,
 }
-_BAG_LOOK = Look(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
+_BAG_LOOK = Material(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
 _BAG_HAND = "right"
 _BAG_SWING = 0.25
 _SWAY_RAD, _SWAY_HZ = 0.006, 0.23
@@ -72,8 +72,8 @@ class Person:
         self.present = config.enter_s <= 0.0
         self._size = measure(config.height_m, config.sex, config.build)
         geometry = _geometry(config, self._size)
-        looks = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
-        self.parts = tuple(Part(name=n, shapes=g.shapes, look=looks[n]) for n, g in geometry.items())
+        materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
+        self.parts = tuple(Part(name=n, shapes=g.shapes, material=materials[n]) for n, g in geometry.items())
         self._part_bone = bone_index(geometry)
         self._part_offset = np.array([g.offset_m for g in geometry.values()])
         self._joint_bone, self._joint_offset = joint_points(self._size)

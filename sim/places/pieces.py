@@ -23,7 +23,7 @@ ALONG_Y: Quaternion = (math.sin(math.pi / 4.0), 0.0, 0.0, math.cos(math.pi / 4.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Piece:
-    """Shapes of one look in the frame of their thing; see `Look` for what the rest means."""
+    """Shapes of one look in the frame of their thing; see `Material` for what the rest means."""
 
     name: str
     shapes: tuple[Shape, ...]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Quaternion, Vector
 
 
@@ -19,7 +19,7 @@ class Fixture:
         name: unique; what comes before a "/" names the thing that it is part of ("monitor_1/screen").
         part: shapes and look; None for a URDF.
         urdf: file known to PyBullet, such as "table/table.urdf"; None for parts.
-        look: of every surface of a URDF, its colours being the file's own; None for parts.
+        material: of every surface of a URDF, its colours being the file's own; None for parts.
         scale: of a URDF.
         position: [m] world frame.
         orientation: x, y, z, w quaternion, world from fixture.
@@ -29,7 +29,7 @@ class Fixture:
     name: str
     part: Part | None = None
     urdf: str | None = None
-    look: Look | None = None
+    material: Material | None = None
     scale: float = 1.0
     position: Vector = (0.0, 0.0, 0.0)
     orientation: Quaternion = UPRIGHT

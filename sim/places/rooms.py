@@ -13,7 +13,7 @@ from peopleboy.sim.places.extent import fixture_extent
 from peopleboy.sim.places.floor_plan import Door, FloorPlan, Wall, check_doors
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.places.rectangle import Rectangle
-from peopleboy.sim.shapes.materials import Look, Pattern, PatternKind
+from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
 # Blocks that meet run this far into each other, so that no two faces lie in one plane.
@@ -35,8 +35,8 @@ class Surfaces:
         named: looks of single walls, by the wall's name.
     """
 
-    floor: Look = field(
-        default_factory=lambda: Look(
+    floor: Material = field(
+        default_factory=lambda: Material(
             temperature_c=20.0,
             emissivity=0.95,
             variation_k=0.4,
@@ -46,8 +46,8 @@ class Surfaces:
             colour_pattern=Pattern(kind=PatternKind.CHECKS, period_m=1.0),
         )
     )
-    ceiling: Look = field(
-        default_factory=lambda: Look(
+    ceiling: Material = field(
+        default_factory=lambda: Material(
             temperature_c=22.8,
             emissivity=0.93,
             variation_k=0.3,
@@ -55,8 +55,8 @@ class Surfaces:
             rgb=(0.80, 0.80, 0.78),
         )
     )
-    walls: Look = field(
-        default_factory=lambda: Look(
+    walls: Material = field(
+        default_factory=lambda: Material(
             temperature_c=21.5,
             emissivity=0.93,
             variation_k=0.5,
@@ -64,12 +64,12 @@ class Surfaces:
             rgb=(0.72, 0.69, 0.60),
         )
     )
-    door: Look = field(
-        default_factory=lambda: Look(temperature_c=21.0, emissivity=0.92, rgb=(0.38, 0.22, 0.11))
+    door: Material = field(
+        default_factory=lambda: Material(temperature_c=21.0, emissivity=0.92, rgb=(0.38, 0.22, 0.11))
     )
-    named: Mapping[str, Look] = field(default_factory=dict)
+    named: Mapping[str, Material] = field(default_factory=dict)
 
-    def of_wall(self, wall: Wall) -> Look:
+    def of_wall(self, wall: Wall) -> Material:
         """The look of one wall."""
         return self.named.get(wall.name, self.walls)
 
@@ -131,8 +131,8 @@ def build_place(
         BadInput: a door does not fit.
     """
     check_doors(plan)
-    looks = Surfaces() if surfaces is None else surfaces
-    fixtures = (*_shell(plan, height_m, looks), *things)
+    materials = Surfaces() if surfaces is None else surfaces
+    fixtures = (*_shell(plan, height_m, materials), *things)
     names, boxes = obstacles(fixtures)
     bounds = plan.bounds()
     return Place(
@@ -163,21 +163,23 @@ def obstacles(fixtures: tuple[Fixture, ...]) -> tuple[tuple[str, ...], NDArray[n
     return tuple(name for name, _ in blocking), boxes
 
 
-def _shell(plan: FloorPlan, height_m: float, looks: Surfaces) -> tuple[Fixture, ...]:
+def _shell(plan: FloorPlan, height_m: float, materials: Surfaces) -> tuple[Fixture, ...]:
     outside = plan.bounds().grown(SINK_M)
     walls = tuple(
-        block_fixture(f"wall_{wall.name}/{number}", block, -SINK_M, height_m + SINK_M, looks.of_wall(wall))
+        block_fixture(
+            f"wall_{wall.name}/{number}", block, -SINK_M, height_m + SINK_M, materials.of_wall(wall)
+        )
         for number, (wall, block) in enumerate(plan.wall_pieces(), start=1)
     )
     return (
-        block_fixture("floor", outside, -2.0 * SINK_M, 0.0, looks.floor),
-        block_fixture("ceiling", outside, height_m, height_m + 2.0 * SINK_M, looks.ceiling),
+        block_fixture("floor", outside, -2.0 * SINK_M, 0.0, materials.floor),
+        block_fixture("ceiling", outside, height_m, height_m + 2.0 * SINK_M, materials.ceiling),
         *walls,
-        *(_door(plan, number, door, height_m, looks) for number, door in enumerate(plan.doors, start=1)),
+        *(_door(plan, number, door, height_m, materials) for number, door in enumerate(plan.doors, start=1)),
     )
 
 
-def _door(plan: FloorPlan, number: int, door: Door, height_m: float, looks: Surfaces) -> Fixture:
+def _door(plan: FloorPlan, number: int, door: Door, height_m: float, materials: Surfaces) -> Fixture:
     """The lintel over an open door, or the leaf of a closed one."""
     wall, opening = plan.wall(door.wall), plan.opening(door)
     nx, ny = (abs(part) for part in wall.side.value)
@@ -191,7 +193,7 @@ def _door(plan: FloorPlan, number: int, door: Door, height_m: float, looks: Surf
             opening.max_y - ny * inset + nx * reach,
         )
         top = height_m + SINK_M / 2.0
-        return block_fixture(f"door_{number}/lintel", lintel, door.height_m, top, looks.of_wall(wall))
+        return block_fixture(f"door_{number}/lintel", lintel, door.height_m, top, materials.of_wall(wall))
     inward = [-_LEAF_M * part for part in wall.side.value]
     leaf = Rectangle(
         opening.min_x + inward[0],
@@ -199,16 +201,16 @@ def _door(plan: FloorPlan, number: int, door: Door, height_m: float, looks: Surf
         opening.max_x + inward[0],
         opening.max_y + inward[1],
     )
-    return block_fixture(f"door_{number}/leaf", leaf, -SINK_M / 2.0, door.height_m, looks.door)
+    return block_fixture(f"door_{number}/leaf", leaf, -SINK_M / 2.0, door.height_m, materials.door)
 
 
-def block_fixture(name: str, block: Rectangle, bottom_m: float, top_m: float, look: Look) -> Fixture:
+def block_fixture(name: str, block: Rectangle, bottom_m: float, top_m: float, material: Material) -> Fixture:
     """An upright block on a rectangle of floor, from one height to another [m]."""
     x, y = block.centre
     size = (block.max_x - block.min_x, block.max_y - block.min_y, top_m - bottom_m)
     shape = Shape(kind=ShapeKind.BOX, size=size)
     return Fixture(
         name=name,
-        part=Part(name=name, shapes=(shape,), look=look),
+        part=Part(name=name, shapes=(shape,), material=material),
         position=(x, y, (bottom_m + top_m) / 2.0),
     )

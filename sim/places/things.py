@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from peopleboy.sim.places import furniture, warm_things
 from peopleboy.sim.places.pieces import WHITE, WOOD, Piece
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.shapes.materials import Look, Pattern, Rgb
+from peopleboy.sim.shapes.materials import Material, Pattern, Rgb
 from peopleboy.sim.shapes.shapes import Part, Vector
 
 _SHADE = 0.45  # brightness of a pattern's second colour, as a share of the first
@@ -77,12 +77,12 @@ def build_thing(thing: Thing) -> tuple[Fixture, ...]:
     turned = (0.0, 0.0, math.sin(thing.facing_rad / 2.0), math.cos(thing.facing_rad / 2.0))
     if thing.kind == "urdf":
         temperature = _given(thing.temperature_c, 21.0)
-        look = Look(temperature_c=temperature, emissivity=thing.emissivity)
+        material = Material(temperature_c=temperature, emissivity=thing.emissivity)
         return (
             Fixture(
                 name=thing.name,
                 urdf=thing.urdf,
-                look=look,
+                material=material,
                 scale=thing.scale,
                 position=position,
                 orientation=turned,
@@ -92,7 +92,7 @@ def build_thing(thing: Thing) -> tuple[Fixture, ...]:
     return tuple(
         Fixture(
             name=f"{thing.name}/{piece.name}" if len(pieces) > 1 else thing.name,
-            part=Part(name=piece.name, shapes=piece.shapes, look=_look(piece)),
+            part=Part(name=piece.name, shapes=piece.shapes, material=_material(piece)),
             position=position,
             orientation=turned,
             is_solid=piece.is_solid,
@@ -113,9 +113,9 @@ def _given(value: float | None, default: float) -> float:
     return default if value is None else value
 
 
-def _look(piece: Piece) -> Look:
+def _material(piece: Piece) -> Material:
     red, green, blue = (_SHADE * part for part in piece.rgb)
-    return Look(
+    return Material(
         temperature_c=piece.temperature_c,
         emissivity=piece.emissivity,
         variation_k=piece.variation_k,

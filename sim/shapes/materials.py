@@ -27,7 +27,7 @@ class Pattern:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Look:
+class Material:
     """One surface, as both cameras need it.
 
     Attributes:

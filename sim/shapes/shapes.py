@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
 
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -53,9 +53,9 @@ class Part:
     Attributes:
         name: unique within its owner, such as "left_forearm".
         shapes: what it is made of; they may overlap.
-        look: how both cameras see it.
+        material: how both cameras see it.
     """
 
     name: str
     shapes: tuple[Shape, ...]
-    look: Look
+    material: Material

@@ -52,7 +52,7 @@ class Bystander:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Scene:
+class ImageFreeTruth:
     """The truth about one instant without images.
 
     Attributes:

@@ -16,7 +16,7 @@ from peopleboy.sim.physics.bodies import PartKey
 from peopleboy.sim.rendering.render import View
 from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bounds
 from peopleboy.sim.robot.peoplebot import Planar
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.truth.truth import (
     BORDER,
@@ -42,7 +42,7 @@ class TruthMaker:
         keys: Sequence[PartKey],
         table: ShapeTable,
         crowd: Crowd,
-        looks: Sequence[Look],
+        materials: Sequence[Material],
         camera: Camera,
     ) -> None:
         self._table = table
@@ -62,7 +62,7 @@ class TruthMaker:
         self._id_of_part = np.array([*(self.person_of_part + 1), 0], np.uint8)
         self._outlines = [_Outline(k, parts, self.person_of_part) for k in range(len(names))]
         self._temperatures = [
-            {parts[p]: looks[p].temperature_c for p in np.flatnonzero(outline.whole).tolist()}
+            {parts[p]: materials[p].temperature_c for p in np.flatnonzero(outline.whole).tolist()}
             for outline in self._outlines
         ]
 

@@ -1,6 +1,6 @@
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.patrol import Patrol, PatrolConfig
-from tests.helpers.percepts import person, sight
+from tests.helpers.percepts import percept, person
 from tests.helpers.toy_world import STEP_S
 
 AHEAD = Command(linear_m_s=0.3, angular_rad_s=0.0)
@@ -10,7 +10,7 @@ CONFIG = PatrolConfig(follow_s=4.0, lost_s=2.0)
 class Round:
     mode, reason, following = "corridor", "walls heard", None
 
-    def command(self, sight):  # noqa: ARG002
+    def command(self, percept):  # noqa: ARG002
         return AHEAD
 
 
@@ -18,7 +18,7 @@ def patrol(*frames_of_people):
     """Feed one group of people per frame; give modes and commands."""
     robot, modes, commands, turn = Patrol(Round(), config=CONFIG), [], [], 0.0
     for frame, people in enumerate(frames_of_people):
-        commands.append(robot.command(sight(frame * STEP_S, *people, angular_rad_s=turn)))
+        commands.append(robot.command(percept(frame * STEP_S, *people, angular_rad_s=turn)))
         modes.append(robot.mode)
         turn = commands[-1].angular_rad_s
     return modes, commands

@@ -19,8 +19,8 @@ SCRIPT = (
 )
 
 
-def at(time_s, sight):
-    return dataclasses.replace(sight, time_s=time_s)
+def at(time_s, percept):
+    return dataclasses.replace(percept, time_s=time_s)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.peers.compete import compete_on_film
 from benchmarks.peers.detectors import Blobs, Oracle, _from_colour
-from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 
 
@@ -24,7 +24,7 @@ def test_blobs_find_a_warm_upright_region_and_leave_a_flat_one() -> None:
 
 
 def test_the_oracle_gives_each_frame_who_is_seen_well_enough() -> None:
-    truth = Truth(
+    truth = TrueBoxes(
         frame=np.array([1, 1, 2]),
         id=np.array([1, 2, 1]),
         box=np.array([[0.0, 0, 10, 30], [50.0, 0, 10, 30], [2.0, 0, 10, 30]]),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.behaviours.corridor.corridor_from_image import CameraView
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 from tests.helpers.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 CAMERA = CameraView(focal_px=356.0, position_m=(0.14, 0.06, 1.2))
@@ -26,8 +26,8 @@ def sonar_in_corridor(offset: float, heading: float, width: float) -> NDArray[np
     return np.clip(ranges.min(axis=1), 0.15, 5.0)
 
 
-def sight_of(ranges: NDArray[np.float64], time_s: float = 1.0, **changes: object) -> Sight:
-    return Sight(
+def percept_of(ranges: NDArray[np.float64], time_s: float = 1.0, **changes: object) -> Percept:
+    return Percept(
         time_s=time_s,
         people=(),
         sonar_m=ranges,

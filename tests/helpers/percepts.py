@@ -4,12 +4,12 @@ import dataclasses
 
 import numpy as np
 
-from peopleboy.behaviours.percept import SeenPerson, Sight
+from peopleboy.behaviours.percept import Percept, SeenPerson
 from tests.helpers.toy_world import SONAR_ANGLE
 
 
-def sight_of(ranges_m, **changes):
-    sight = Sight(
+def percept_of(ranges_m, **changes):
+    percept = Percept(
         time_s=1.0,
         people=(),
         sonar_m=np.array(ranges_m, float),
@@ -17,7 +17,7 @@ def sight_of(ranges_m, **changes):
         linear_m_s=0.0,
         angular_rad_s=0.0,
     )
-    return dataclasses.replace(sight, **changes)
+    return dataclasses.replace(percept, **changes)
 
 
 def free(**ranges_m):
@@ -25,7 +25,7 @@ def free(**ranges_m):
     reading = np.full(16, 5.0)
     for name, value in ranges_m.items():
         reading[int(name[1:])] = value
-    return sight_of(reading)
+    return percept_of(reading)
 
 
 def person(x=0.0, height=0.4, **changes):
@@ -33,5 +33,5 @@ def person(x=0.0, height=0.4, **changes):
     return dataclasses.replace(seen, **changes)
 
 
-def sight(time_s, *people, **changes):
+def percept(time_s, *people, **changes):
     return dataclasses.replace(free(), time_s=time_s, people=people, **changes)

@@ -5,14 +5,14 @@ from collections.abc import Iterable
 import numpy as np
 from hypothesis import strategies as st
 
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 Line = tuple[int, int, float, float, float, float]  # frame, id, left, top, width, height
 
 
-def truth_of(lines: Iterable[Line], counted: bool | list[bool] = True, visible: float = 1.0) -> Truth:
+def truth_of(lines: Iterable[Line], counted: bool | list[bool] = True, visible: float = 1.0) -> TrueBoxes:
     table = np.array(list(lines), dtype=np.float64).reshape(-1, 6)
-    return Truth(
+    return TrueBoxes(
         frame=table[:, 0],
         id=table[:, 1],
         box=table[:, 2:],
@@ -21,17 +21,17 @@ def truth_of(lines: Iterable[Line], counted: bool | list[bool] = True, visible: 
     )
 
 
-def tracks_of(lines: Iterable[Line]) -> Tracks:
+def tracks_of(lines: Iterable[Line]) -> TrackBoxes:
     table = np.array(list(lines), dtype=np.float64).reshape(-1, 6)
-    return Tracks(frame=table[:, 0], id=table[:, 1], box=table[:, 2:], confidence=np.ones(len(table)))
+    return TrackBoxes(frame=table[:, 0], id=table[:, 1], box=table[:, 2:], confidence=np.ones(len(table)))
 
 
-def as_tracks(truth: Truth) -> Tracks:
-    return Tracks(frame=truth.frame, id=truth.id, box=truth.box, confidence=np.ones(len(truth)))
+def as_tracks(truth: TrueBoxes) -> TrackBoxes:
+    return TrackBoxes(frame=truth.frame, id=truth.id, box=truth.box, confidence=np.ones(len(truth)))
 
 
 @st.composite
-def sequences(draw: st.DrawFn, all_counted: bool = False) -> tuple[Truth, Tracks]:
+def sequences(draw: st.DrawFn, all_counted: bool = False) -> tuple[TrueBoxes, TrackBoxes]:
     """Crowded people, and tracks that jitter, miss, swap names and see ghosts; boxes never tie exactly."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     people, frames, ghosts = draw(st.integers(0, 4)), draw(st.integers(1, 8)), draw(st.integers(0, 3))
@@ -39,7 +39,7 @@ def sequences(draw: st.DrawFn, all_counted: bool = False) -> tuple[Truth, Tracks
     start = rng.uniform([0, 20, 20, 60], [80, 40, 40, 120], (people, 4))
     box = start[person] + rng.normal(0.0, 2.0, (len(frame), 4))
     present = rng.random(len(frame)) < draw(st.sampled_from([0.5, 0.9, 1.0]))
-    truth = Truth(
+    truth = TrueBoxes(
         frame=frame[present],
         id=person[present] * 3 + 1,
         box=box[present],
@@ -55,7 +55,7 @@ def sequences(draw: st.DrawFn, all_counted: bool = False) -> tuple[Truth, Tracks
     ghost_frame, ghost = (axis.ravel() for axis in np.mgrid[1 : frames + 1, 0:ghosts])
     ghost_box = rng.uniform([0, 20, 20, 60], [80, 40, 40, 120], (len(ghost), 4))
     all_boxes = np.concatenate([np.maximum(seen[found], 1.0), ghost_box])
-    tracks = Tracks(
+    tracks = TrackBoxes(
         frame=np.concatenate([frame[found], ghost_frame]),
         id=np.concatenate([name[found], ghost + 50]),
         box=all_boxes,

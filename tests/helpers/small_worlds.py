@@ -9,7 +9,7 @@ from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.places.rooms import build_place, straight_corridor
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
 SMALL = Camera(width=160, height=120)
@@ -23,9 +23,11 @@ def hall(*things: Fixture) -> Place:
     return build_place(straight_corridor(16.0, 12.0), things=things)
 
 
-def box_thing(name: str, size: tuple, position: tuple, look: Look | None = None) -> Fixture:
+def box_thing(name: str, size: tuple, position: tuple, material: Material | None = None) -> Fixture:
     shape = Shape(kind=ShapeKind.BOX, size=size)
-    part = Part(name=name, shapes=(shape,), look=Look(temperature_c=21.0) if look is None else look)
+    part = Part(
+        name=name, shapes=(shape,), material=Material(temperature_c=21.0) if material is None else material
+    )
     return Fixture(name=name, part=part, position=position)
 
 

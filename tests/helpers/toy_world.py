@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import STOP, Command
-from peopleboy.behaviours.percept import SeenPerson, Sight
+from peopleboy.behaviours.percept import Percept, SeenPerson
 
 Array = NDArray[np.float64]
 STEP_S = 1.0 / 15.0
@@ -111,8 +111,8 @@ class Toy:
         off = np.abs(np.arctan2(ahead[:, 1], ahead[:, 0]) - math.atan2(y, depth))
         return bool(np.any(near & (off < 0.02)))
 
-    def sight(self) -> Sight:
-        return Sight(
+    def percept(self) -> Percept:
+        return Percept(
             time_s=self.time_s,
             people=self.people(),
             sonar_m=self.sonar(),
@@ -132,7 +132,7 @@ class Toy:
 
     def step(self, behaviour: Behaviour) -> Command:
         """One tick; the command acts one frame after its image."""
-        command = behaviour.command(self.sight())
+        command = behaviour.command(self.percept())
         for _ in range(8):
             self._move(self.pending, STEP_S / 8.0)
         self.pending = command

@@ -17,7 +17,7 @@ from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.physics import bullet
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.world import World, light_level
 from tests.helpers.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
 
@@ -40,12 +40,12 @@ def no_world_is_left_open() -> Iterator[None]:
 
 
 def test_a_world_of_one_temperature_gives_one_value(monkeypatch: pytest.MonkeyPatch) -> None:
-    make = world_module.make_look_table
+    make = world_module.make_material_table
 
-    def at_one_temperature(looks: list[Look], rng: np.random.Generator) -> object:
-        return make([replace(k, temperature_c=29.0, variation_k=0.0, contrast_k=0.0) for k in looks], rng)
+    def at_one_temperature(materials: list[Material], rng: np.random.Generator) -> object:
+        return make([replace(k, temperature_c=29.0, variation_k=0.0, contrast_k=0.0) for k in materials], rng)
 
-    monkeypatch.setattr(world_module, "make_look_table", at_one_temperature)
+    monkeypatch.setattr(world_module, "make_material_table", at_one_temperature)
     place = replace(hall(), surroundings_c=29.0)
     with World(config(*WALKERS, place=place, robot=robot(thermal=QUIET))) as world:
         for _ in range(5):
@@ -56,8 +56,8 @@ def test_a_world_of_one_temperature_gives_one_value(monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("temperature", [25.0, 33.3])
 def test_a_black_body_reads_its_temperature(temperature: float) -> None:
-    look = Look(temperature_c=temperature, emissivity=1.0)
-    target = box_thing("target", (0.2, 3.0, 2.6), (3.0, 0.0, 1.3), look)
+    material = Material(temperature_c=temperature, emissivity=1.0)
+    target = box_thing("target", (0.2, 3.0, 2.6), (3.0, 0.0, 1.3), material)
     with World(config(place=hall(target), robot=robot(thermal=QUIET))) as world:
         assert world.observe().thermal_c == pytest.approx(temperature, abs=0.05)
 
@@ -103,7 +103,7 @@ def test_the_light_goes_out_at_its_time() -> None:
 
 
 def test_turning_blurs_the_image_and_driving_straight_does_not() -> None:
-    edge = box_thing("edge", (0.1, 2.0, 2.6), (4.0, 1.0, 1.3), Look(temperature_c=32.0))
+    edge = box_thing("edge", (0.1, 2.0, 2.6), (4.0, 1.0, 1.3), Material(temperature_c=32.0))
 
     def width_of_edge(command: tuple[float, float], steps: int, heading_deg: float) -> int:
         settings = {"place": hall(edge), "robot": robot(heading_deg=heading_deg, thermal=QUIET)}
@@ -200,7 +200,7 @@ def test_closing_frees_the_world_and_a_failed_one_leaves_nothing_open() -> None:
     broken = Fixture(name="broken")
     with pytest.raises(BadInput, match="'broken'"):
         World(config(place=replace(hall(), fixtures=(*hall().fixtures, broken))))
-    missing = Fixture(name="missing", urdf="no/such.urdf", look=Look(temperature_c=20.0))
+    missing = Fixture(name="missing", urdf="no/such.urdf", material=Material(temperature_c=20.0))
     with pytest.raises(BadInput, match=r"no/such\.urdf"):
         World(config(place=replace(hall(), fixtures=(*hall().fixtures, missing))))
     assert open_worlds() == before
@@ -236,7 +236,7 @@ def test_its_own_body_is_not_in_the_robot_s_default_cameras() -> None:
             for _ in range(8):
                 world.step(*command)
                 for camera in (world.config.robot.thermal.camera, world.config.robot.colour.camera):
-                    assert not np.isin(world._look(camera).view.part, own).any()
+                    assert not np.isin(world._see(camera).view.part, own).any()
 
 
 def test_time_goes_by_control_steps_and_people_are_where_their_script_says() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from peopleboy.tracker.evaluation.boxes import Floats, iou
-from peopleboy.tracker.evaluation.sequence import Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 
 GATE = 0.5  # a pair must overlap by more than this (thesis, section 3.4)
 
@@ -39,7 +39,7 @@ class Pairs:
             yield slice(first, last), width
 
 
-def pair_up(truth: Truth, tracks: Tracks) -> Pairs:
+def pair_up(truth: TrueBoxes, tracks: TrackBoxes) -> Pairs:
     """Pair every target with every candidate of its frame."""
     frames = np.intersect1d(truth.frame, tracks.frame)
     first_target, targets = _span(truth.frame, frames)

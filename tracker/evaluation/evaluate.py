@@ -11,7 +11,7 @@ from peopleboy.tracker.evaluation.metrics.mot_metrics import MotMetrics, measure
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics, measure_paper
 from peopleboy.tracker.evaluation.metrics.sums import Sums
 from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics, measure_thesis
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE, Rule, settle_uncounted
 
 
@@ -66,8 +66,8 @@ class Scores(Sums):
 
 
 def evaluate(
-    truth: Truth,
-    tracks: Tracks,
+    truth: TrueBoxes,
+    tracks: TrackBoxes,
     *,
     frames: int | None = None,
     uncounted: Rule = "ignore",
@@ -126,7 +126,7 @@ def combine(sequences: Sequence[Scores]) -> Scores:
     return sum(others, start=first)
 
 
-def _length(truth: Truth, tracks: Tracks, frames: int | None) -> int:
+def _length(truth: TrueBoxes, tracks: TrackBoxes, frames: int | None) -> int:
     """Give the number of frames, which no row may exceed."""
     if frames is None:
         return max(truth.last_frame, tracks.last_frame)

@@ -14,7 +14,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.boxes import Floats
-from peopleboy.tracker.evaluation.sequence import Rows, Tracks, Truth, find_fault
+from peopleboy.tracker.evaluation.sequence import Rows, TrackBoxes, TrueBoxes, find_fault
 
 TRUTH_COLUMNS = "frame, id, left, top, width, height, counted, class, visible fraction"
 TRACKS_COLUMNS = "frame, id, left, top, width, height, confidence, x, y, z"
@@ -25,7 +25,7 @@ CLASSES = range(1, 14)
 Kind = TypeVar("Kind", bound=Rows)
 
 
-def read_truth(path: Path) -> Truth:
+def read_truth(path: Path) -> TrueBoxes:
     """Read a truth file (`gt.txt`); distractors do not count, and things are left out, as in TrackEval.
 
     Raises:
@@ -36,25 +36,25 @@ def read_truth(path: Path) -> Truth:
     for row in np.flatnonzero(~np.isin(kind, CLASSES))[:1]:
         raise BadInput(f"{path}:{row + 1}: class must be 1 (person) to 13, got {kind[row]:g}")
     is_distractor = np.isin(kind, DISTRACTORS)
-    truth = _build(path, Truth, table, counted=table[:, 6], visible=table[:, 8])
+    truth = _build(path, TrueBoxes, table, counted=table[:, 6], visible=table[:, 8])
     if (kind == PERSON).all():
         return truth
     table[is_distractor, 6] = 0.0
     people = table[is_distractor | (kind == PERSON)]
-    return _build(path, Truth, people, counted=people[:, 6], visible=people[:, 8])
+    return _build(path, TrueBoxes, people, counted=people[:, 6], visible=people[:, 8])
 
 
-def read_tracks(path: Path) -> Tracks:
+def read_tracks(path: Path) -> TrackBoxes:
     """Read a tracker's results (`tracks.txt`); the world position in the last three columns is not kept.
 
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
     """
     table = _read_table(path, TRACKS_COLUMNS)
-    return _build(path, Tracks, table, confidence=table[:, 6])
+    return _build(path, TrackBoxes, table, confidence=table[:, 6])
 
 
-def write_truth(path: Path, truth: Truth) -> None:
+def write_truth(path: Path, truth: TrueBoxes) -> None:
     """Write a truth file: boxes with 2 decimals, the visible fraction with 4; equal truth gives equal bytes.
 
     Raises:
@@ -64,7 +64,7 @@ def write_truth(path: Path, truth: Truth) -> None:
     _write_lines(path, [truth_line(*row) for row in zip(*columns, strict=True)])
 
 
-def write_tracks(path: Path, tracks: Tracks) -> None:
+def write_tracks(path: Path, tracks: TrackBoxes) -> None:
     """Write a tracker's results: boxes with 2 decimals, the confidence with 4; equal tracks give equal bytes.
 
     Raises:

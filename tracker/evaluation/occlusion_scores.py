@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.evaluation.association import associate, pair_up
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -108,7 +108,7 @@ def find_occlusions(frame: Ints, hidden: Floats) -> list[tuple[int, int]]:
 
 
 def score_occlusions(
-    truth: Truth, tracks: Tracks, hidden: Floats, in_image: NDArray[np.bool_], rate_hz: float
+    truth: TrueBoxes, tracks: TrackBoxes, hidden: Floats, in_image: NDArray[np.bool_], rate_hz: float
 ) -> list[Occlusion]:
     """Tell of every total occlusion in a sequence what became of the identity.
 
@@ -153,7 +153,7 @@ def by_length(occlusions: Sequence[Occlusion], edges_s: Sequence[float] = LENGTH
     return table
 
 
-def _ids_on_people(truth: Truth, tracks: Tracks) -> list[int | None]:
+def _ids_on_people(truth: TrueBoxes, tracks: TrackBoxes) -> list[int | None]:
     """The track id on each row of the truth."""
     pairs = pair_up(truth, tracks)
     ids: list[int | None] = [None] * len(truth)

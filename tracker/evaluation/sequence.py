@@ -1,8 +1,8 @@
-"""One sequence of boxes: who was there (`Truth`), and what a tracker claims (`Tracks`)."""
+"""One sequence of boxes: who was there (`TrueBoxes`), and what a tracker claims (`TrackBoxes`)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,6 +33,8 @@ class Rows:
         BadInput: a column has the wrong shape, or a value is impossible.
     """
 
+    source: ClassVar[str] = "boxes"
+
     frame: Ints
     id: Ints
     box: Floats
@@ -41,7 +43,7 @@ class Rows:
         columns = as_columns({column.name: getattr(self, column.name) for column in fields(self)})
         fault = find_fault(columns)
         if fault is not None:
-            raise BadInput(f"{type(self).__name__.lower()}: row {fault[0]}: {fault[1]}")
+            raise BadInput(f"{self.source}: row {fault[0]}: {fault[1]}")
         order = np.lexsort((columns["id"], columns["frame"]))
         for name, column in columns.items():
             settled: NDArray[Any] = column[order].astype(DTYPES.get(name, np.float64))
@@ -68,7 +70,7 @@ class Rows:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Truth(Rows):
+class TrueBoxes(Rows):
     """The people of one sequence, the *targets*: one row per frame and person.
 
     Attributes:
@@ -76,17 +78,21 @@ class Truth(Rows):
         visible: (N,) in 0..1, the fraction of the person that nothing hides.
     """
 
+    source: ClassVar[str] = "truth"
+
     counted: Bools
     visible: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Tracks(Rows):
+class TrackBoxes(Rows):
     """What a tracker claims in one sequence, the *candidates*: one row per frame and track id.
 
     Attributes:
         confidence: (N,) finite; no metric here reads it.
     """
+
+    source: ClassVar[str] = "tracks"
 
     confidence: Floats
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.association import GATE, associate, pair_up
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 Rule = Literal["ignore", "absent"]
 MIN_VISIBLE = 0.0  # a target counts if more than this fraction of the person is visible
@@ -35,13 +35,13 @@ class Judged:
         ignored: the candidates that were taken out, because they lie on uncounted people.
     """
 
-    truth: Truth
-    tracks: Tracks
-    ignored: Tracks
+    truth: TrueBoxes
+    tracks: TrackBoxes
+    ignored: TrackBoxes
 
 
 def settle_uncounted(
-    truth: Truth, tracks: Tracks, *, rule: Rule = "ignore", min_visible: float = MIN_VISIBLE
+    truth: TrueBoxes, tracks: TrackBoxes, *, rule: Rule = "ignore", min_visible: float = MIN_VISIBLE
 ) -> Judged:
     """Take out the uncounted people by the named rule.
 
@@ -53,13 +53,13 @@ def settle_uncounted(
     if not 0.0 <= min_visible <= 1.0:
         raise BadInput(f"min_visible must be 0 to 1, got {min_visible}")
     counted = truth.counted & (truth.visible > min_visible)
-    truth = Truth(frame=truth.frame, id=truth.id, box=truth.box, counted=counted, visible=truth.visible)
+    truth = TrueBoxes(frame=truth.frame, id=truth.id, box=truth.box, counted=counted, visible=truth.visible)
     if rule == "ignore":
         return ignore_uncounted(truth, tracks)
     return Judged(truth.take(counted), tracks, tracks.take(np.zeros(len(tracks), dtype=np.bool_)))
 
 
-def ignore_uncounted(truth: Truth, tracks: Tracks, gate: float = GATE) -> Judged:
+def ignore_uncounted(truth: TrueBoxes, tracks: TrackBoxes, gate: float = GATE) -> Judged:
     """Take out the uncounted people, and the candidates on them.
 
     Counted targets choose first. Of the candidates that they leave, each uncounted person takes out at most

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.mot_files import read_truth
-from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.pictures import INNER
 
 KEPT_SINGLE: Final = Path("truth") / "groundtruth.txt"
@@ -31,7 +31,7 @@ class GivenTruth:
         path: the file.
     """
 
-    truth: Truth
+    truth: TrueBoxes
     is_single: bool
     path: Path
 
@@ -107,10 +107,12 @@ def _box(line: str, where: str) -> NDArray[np.float64]:
     return np.concatenate([corners.min(axis=0), np.ptp(corners, axis=0)])
 
 
-def _single(boxes: list[NDArray[np.float64]]) -> Truth:
+def _single(boxes: list[NDArray[np.float64]]) -> TrueBoxes:
     """Make the truth of one person from a box (4,) a frame."""
     table = np.array(boxes, dtype=np.float64).reshape(-1, 4)
     is_there = np.isfinite(table).all(axis=1) & (table[:, 2:] > 0).all(axis=1)
     frame = np.flatnonzero(is_there) + 1
     ones = np.ones(len(frame))
-    return Truth(frame=frame, id=ones.astype(np.int64), box=table[is_there], counted=ones > 0, visible=ones)
+    return TrueBoxes(
+        frame=frame, id=ones.astype(np.int64), box=table[is_there], counted=ones > 0, visible=ones
+    )

@@ -187,7 +187,7 @@ class SmoothingConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LooksConfig:
+class AppearanceConfig:
     """By how much the looks of one person differ from frame to frame: head, torso, legs.
 
     Colours and greys are means over the part, 0..1; colours after the light has been divided out.
@@ -229,7 +229,8 @@ class OcclusionConfig:
     """
 
     is_handled: bool = False  # whether it matters who is in front
-    # How that is told: "foot" by whose feet are lower, "looks" by looks as well, "contour" by contours too.
+    # How that is told: "foot" by whose feet are lower, "appearance" by looks as well, "contour" by
+    # contours too.
     order: str = "foot"
     head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
     kept_frames: int = 8  # frames for which a hidden person's samples are kept
@@ -259,7 +260,9 @@ class OcclusionConfig:
     sure_spread: float = 0.35
 
     def __post_init__(self) -> None:
-        refuse_unless(self.order in ("foot", "looks", "contour"), self, "order", "foot, looks or contour")
+        refuse_unless(
+            self.order in ("foot", "appearance", "contour"), self, "order", "foot, appearance or contour"
+        )
         check_share(self, "head_covered", "hidden_memory", "hidden_stiffness")
         check_not_negative(self, "kept_frames", "forget_s", "hidden_noise", "hidden_w")
         check_not_negative(self, "size_spread", "seen_size_spread")
@@ -281,5 +284,5 @@ class TrackerConfig:
     smoothing: SmoothingConfig = field(default_factory=SmoothingConfig)
     interaction: InteractionConfig = field(default_factory=InteractionConfig)
     colour: ColourConfig | None = None  # None: thermal alone
-    looks: LooksConfig | None = None  # None: colours as they are
+    appearance: AppearanceConfig | None = None  # None: colours as they are
     occlusion: OcclusionConfig = field(default_factory=OcclusionConfig)

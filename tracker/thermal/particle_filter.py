@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.appearance.part_appearance import LooksView
+from peopleboy.tracker.thermal.appearance.part_appearance import AppearanceView
 from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, FilterConfig, MotionConfig, TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import (
     ContourModel,
@@ -41,7 +41,7 @@ RESIZING = 0.3  # spread of the logarithm of the size of samples that are made l
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class View:
+class FrameView:
     """One frame as the filters see it.
 
     Attributes:
@@ -52,7 +52,7 @@ class View:
         focal_px: focal length [px].
         advance_m: how far the camera moved forward since then [m]; 0 if unknown.
         colour: the colour image; None without one.
-        looks: colours and thermal pattern together; None if they are not compared.
+        appearance: colours and thermal pattern together; None if they are not compared.
         covered: what a point of the contour counts where the image says that somebody is in front; None
             where it says nothing of the kind.
     """
@@ -63,7 +63,7 @@ class View:
     turn_rad: float
     focal_px: float
     colour: ColourView | None = None
-    looks: LooksView | None = None
+    appearance: AppearanceView | None = None
     covered: float | None = None
     advance_m: float = 0.0
 
@@ -77,7 +77,7 @@ class View:
         return turned(x, self.turn_rad, self.focal_px, (self.image.shape[1] - 1) / 2)
 
 
-def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig) -> View:
+def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig) -> FrameView:
     """Prepare a frame for all filters."""
     motion = config.motion
     turn = frame.turn_rad if motion.uses_odometry and frame.turn_rad is not None else 0.0
@@ -87,8 +87,8 @@ def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerCo
     colour = None
     if config.colour is not None and frame.colour is not None:
         colour = ColourView.build(frame.colour, frame.thermal.shape, config.colour)
-    looks = None if config.looks is None else LooksView.build(image, colour, config.looks)
-    return View(image, model, dt_s, turn, focal, colour, looks, advance_m=advance)
+    appearance = None if config.appearance is None else AppearanceView.build(image, colour, config.appearance)
+    return FrameView(image, model, dt_s, turn, focal, colour, appearance, advance_m=advance)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,7 +112,7 @@ class Belief:
 
 def weigh(
     state: Floats,
-    view: View,
+    view: FrameView,
     filter_config: FilterConfig,
     config: TrackerConfig,
     factor: Floats | None = None,
@@ -168,7 +168,7 @@ def _floored(fit: Floats, likeness: Floats | None, config: FilterConfig) -> Floa
 
 def step(
     particles: Particles,
-    view: View,
+    view: FrameView,
     filter_config: FilterConfig,
     config: TrackerConfig,
     rng: np.random.Generator,
@@ -185,7 +185,7 @@ def step(
 
 def advance(
     particles: Particles,
-    view: View,
+    view: FrameView,
     filter_config: FilterConfig,
     config: TrackerConfig,
     rng: np.random.Generator,
@@ -216,7 +216,9 @@ def _resize(state: Floats, share: float, head_divisor: float, rng: np.random.Gen
     tried[:, W : H + 1] *= factor[:, None]
 
 
-def begin(view: View, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator) -> Belief:
+def begin(
+    view: FrameView, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator
+) -> Belief:
     """Start a filter on samples from the prior."""
     return weigh(
         draw_fresh(filter_config.count, view, filter_config, config, rng), view, filter_config, config
@@ -224,7 +226,7 @@ def begin(view: View, filter_config: FilterConfig, config: TrackerConfig, rng: n
 
 
 def draw_fresh(
-    count: int, view: View, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator
+    count: int, view: FrameView, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator
 ) -> Floats:
     """Draw samples (count, 9) from the prior for this image."""
     return draw_prior(count, view.image.shape, config.motion, filter_config, rng)

@@ -19,9 +19,16 @@ from peopleboy.tracker.thermal.joint_update import follow
 from peopleboy.tracker.thermal.life import is_born
 from peopleboy.tracker.thermal.occlusion.depth_order import ORDERS, Order
 from peopleboy.tracker.thermal.occlusion.occlusion_status import foot_of, learn
-from peopleboy.tracker.thermal.particle_filter import Belief, View, advance, draw_fresh, view_frame, weigh
+from peopleboy.tracker.thermal.particle_filter import (
+    Belief,
+    FrameView,
+    advance,
+    draw_fresh,
+    view_frame,
+    weigh,
+)
 from peopleboy.tracker.thermal.reidentification import recognised, remembered
-from peopleboy.tracker.thermal.tracked_person import SIZE, Person
+from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.track import Status, Track
 
 FIRST_STEP_S = 1 / 15
@@ -42,8 +49,8 @@ class PeopleTracker:
         self._last_s: float | None = None
         self._detector: Belief | None = None
         self._hits = 0
-        self._persons: tuple[Person, ...] = ()
-        self._memories: tuple[Person, ...] = ()
+        self._persons: tuple[TrackedPerson, ...] = ()
+        self._memories: tuple[TrackedPerson, ...] = ()
         self._born = 0
         self._introduced: tuple[float, float, float, float] | None = None
 
@@ -100,7 +107,7 @@ class PeopleTracker:
             self._model = ContourModel.build(shape, self._config.contour)
         return self._model
 
-    def _part(self, persons: tuple[Person, ...]) -> None:
+    def _part(self, persons: tuple[TrackedPerson, ...]) -> None:
         """Divide people into those who are kept, those who are only remembered, and those who are gone."""
         kept, memories = [], []
         for person in persons:
@@ -111,7 +118,7 @@ class PeopleTracker:
         self._persons = tuple(kept)
         self._memories = (*self._memories, *memories)
 
-    def _is_kept(self, person: Person) -> bool:
+    def _is_kept(self, person: TrackedPerson) -> bool:
         handling = self._config.occlusion
         # Without confidence no sample is within the limits, and the estimate may be no ellipse at all.
         if not person.is_hidden:
@@ -120,10 +127,10 @@ class PeopleTracker:
             return person.missing < handling.searched_frames
         return person.hidden_frames <= handling.kept_frames
 
-    def _is_remembered(self, person: Person) -> bool:
+    def _is_remembered(self, person: TrackedPerson) -> bool:
         return person.is_hidden or (self._config.occlusion.remembers_lost and person.is_settled)
 
-    def _search(self, view: View, time_s: float) -> tuple[Track, ...]:
+    def _search(self, view: FrameView, time_s: float) -> tuple[Track, ...]:
         """Carry the detector on; a person is born when it has settled on one for long enough."""
         config = self._config
         if sum(not person.is_hidden for person in self._persons) >= config.interaction.max_persons:
@@ -148,21 +155,21 @@ class PeopleTracker:
                 found,
                 id=known.id,
                 born_s=known.born_s,
-                looks=known.looks or found.looks,
+                appearance=known.appearance or found.appearance,
                 colour=known.colour or found.colour,
             )
         self._persons = tuple(sorted((*self._persons, found), key=lambda person: person.id))
         return ()
 
-    def _meet(self, box: tuple[float, float, float, float], view: View, time_s: float) -> None:
+    def _meet(self, box: tuple[float, float, float, float], view: FrameView, time_s: float) -> None:
         """Start a filter on samples around a person who is pointed out."""
         state = draw_around(box, self._config, self._rng)
         found = self._newborn(weigh(state, view, self._config.person, self._config), view, time_s)
         self._born = found.id
         self._persons = (*self._persons, found)
 
-    def _newborn(self, belief: Belief, view: View, time_s: float) -> Person:
-        person = Person(
+    def _newborn(self, belief: Belief, view: FrameView, time_s: float) -> TrackedPerson:
+        person = TrackedPerson(
             id=self._born + 1,
             born_s=time_s,
             belief=belief,
@@ -173,7 +180,7 @@ class PeopleTracker:
         )
         return learn(person, belief.estimate, view, self._config)
 
-    def _detected(self, view: View) -> Belief:
+    def _detected(self, view: FrameView) -> Belief:
         """Weigh the detector's samples, kept off the people that are tracked."""
         config, rng = self._config, self._rng
         if self._detector is None:
@@ -184,7 +191,7 @@ class PeopleTracker:
         factor = detector_factor(least_overlaps(state, regions_of(seen, config), config), config.interaction)
         return weigh(state, view, config.detector, config, factor)
 
-    def _is_shown(self, person: Person, view: View) -> bool:
+    def _is_shown(self, person: TrackedPerson, view: FrameView) -> bool:
         """Tell whether a hidden person is shown: as long as it is fairly certain where it is."""
         handling = self._config.occlusion
         left, top, width, height = regions_of([person.shown], self._config)[0]
@@ -200,7 +207,7 @@ class PeopleTracker:
         is_whole = top + height < rows
         return person.hidden_s <= (handling.shown_leaving_s if walks_out and is_whole else handling.shown_s)
 
-    def _track(self, person: Person, time_s: float) -> Track:
+    def _track(self, person: TrackedPerson, time_s: float) -> Track:
         ellipse = ellipse_of(person.shown)
         return Track(
             id=person.id,

@@ -12,8 +12,8 @@ from peopleboy.tracker.thermal.appearance.colour_model import squared_distances
 from peopleboy.tracker.thermal.appearance.part_appearance import knows_colour
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.filter.particles import VW, VX, H, X, Y
-from peopleboy.tracker.thermal.particle_filter import View
-from peopleboy.tracker.thermal.tracked_person import Person, moved_on
+from peopleboy.tracker.thermal.particle_filter import FrameView
+from peopleboy.tracker.thermal.tracked_person import TrackedPerson, moved_on
 
 PLACE_PX = 12.0  # [px] of 240 rows: spread of the place of a person who was just lost
 PLACE_PX_S = 40.0  # [px/s] by which it grows
@@ -26,7 +26,9 @@ WORST = 6.8
 GROWTH = 0.7  # largest change of the logarithm of the height
 
 
-def remembered(person: Person, view: View, leaders: Sequence[Person], config: TrackerConfig) -> Person:
+def remembered(
+    person: TrackedPerson, view: FrameView, leaders: Sequence[TrackedPerson], config: TrackerConfig
+) -> TrackedPerson:
     """Carry on the memory of a person of whom nothing is seen.
 
     Source: thesis, section 7.3: it is where its occluder is; ours: it walks on.
@@ -45,7 +47,9 @@ def remembered(person: Person, view: View, leaders: Sequence[Person], config: Tr
     )
 
 
-def recognised(found: Person, memories: Sequence[Person], view: View, config: TrackerConfig) -> Person | None:
+def recognised(
+    found: TrackedPerson, memories: Sequence[TrackedPerson], view: FrameView, config: TrackerConfig
+) -> TrackedPerson | None:
     """Find the remembered person who is the found one; None if nobody is."""
     if not memories:
         return None
@@ -56,7 +60,7 @@ def recognised(found: Person, memories: Sequence[Person], view: View, config: Tr
     return most_alike_and_nearest(found, memories)
 
 
-def most_alike_and_nearest(found: Person, memories: Sequence[Person]) -> Person | None:
+def most_alike_and_nearest(found: TrackedPerson, memories: Sequence[TrackedPerson]) -> TrackedPerson | None:
     """Take the nearest remembered person if none other's colours are more like those of the found one.
 
     Source: thesis, section 7.3.
@@ -66,7 +70,7 @@ def most_alike_and_nearest(found: Person, memories: Sequence[Person]) -> Person 
     return nearest if nearest is alike else None
 
 
-def colour_distance(one: Person, other: Person) -> float:
+def colour_distance(one: TrackedPerson, other: TrackedPerson) -> float:
     """Measure the squared distance of colours; infinite where there are none."""
     if one.colour is None or other.colour is None:
         return float("inf")
@@ -74,7 +78,7 @@ def colour_distance(one: Person, other: Person) -> float:
     return float("inf") if np.isnan(distance) else distance
 
 
-def mismatch(found: Person, person: Person, view: View, config: TrackerConfig) -> float:
+def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, config: TrackerConfig) -> float:
     """Add up what speaks against one being the other: their places, and their looks.
 
     The logarithm takes into account that looks in another pose, or half hidden, can be far off.
@@ -83,15 +87,15 @@ def mismatch(found: Person, person: Person, view: View, config: TrackerConfig) -
         return math.inf
     place = (PLACE_PX + PLACE_PX_S * person.hidden_s) * view.size
     away = (found.shown - person.shown)[[X, Y]] / place
-    looks = looks_distance(found, person, config)
-    return PLACE_WEIGHT * min(float(away @ away), FARTHEST) + LOOKS_WEIGHT * float(np.log1p(looks))
+    appearance = appearance_distance(found, person, config)
+    return PLACE_WEIGHT * min(float(away @ away), FARTHEST) + LOOKS_WEIGHT * float(np.log1p(appearance))
 
 
-def looks_distance(found: Person, person: Person, config: TrackerConfig) -> float:
+def appearance_distance(found: TrackedPerson, person: TrackedPerson, config: TrackerConfig) -> float:
     """Measure the squared distance of looks; that of the same person where looks cannot tell."""
-    if config.looks is None or found.looks is None or person.looks is None:
+    if config.appearance is None or found.appearance is None or person.appearance is None:
         return LOOKS2
-    if config.looks.needs_colour and not knows_colour(found.looks.mean):
+    if config.appearance.needs_colour and not knows_colour(found.appearance.mean):
         return LOOKS2
-    distance = float(squared_distances(found.looks.mean[None], person.looks)[0])
+    distance = float(squared_distances(found.appearance.mean[None], person.appearance)[0])
     return LOOKS2 if np.isnan(distance) else distance

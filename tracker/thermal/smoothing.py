@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import SmoothingConfig
 from peopleboy.tracker.thermal.filter.particles import STATE_SIZE, VX, D, H, W, X, Y
-from peopleboy.tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.particle_filter import FrameView
 
 
 def smoothed(
-    before: NDArray[np.float64], now: NDArray[np.float64], view: View, config: SmoothingConfig
+    before: NDArray[np.float64], now: NDArray[np.float64], view: FrameView, config: SmoothingConfig
 ) -> NDArray[np.float64]:
     """Blend the estimate (9,) of this frame into the one shown before, first-order low pass.
 

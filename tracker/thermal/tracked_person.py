@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
 from peopleboy.tracker.thermal.filter.particles import VX, D, H, W, X
-from peopleboy.tracker.thermal.particle_filter import Belief, View
+from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
 from peopleboy.tracker.track import Status
 
 SETTLED = 6  # frames
@@ -19,7 +19,7 @@ HEIGHT = 3.7  # the same, in body semi-heights
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Person:
+class TrackedPerson:
     """A tracked person between two frames.
 
     Attributes:
@@ -38,7 +38,7 @@ class Person:
         hidden_frames: for how many frames it has been hidden.
         hidden_s: for how long it has been hidden [s].
         colour: its colours of late; None until they were seen.
-        looks: colours and thermal pattern of late; None until they were seen.
+        appearance: colours and thermal pattern of late; None until they were seen.
     """
 
     id: int
@@ -56,7 +56,7 @@ class Person:
     hidden_frames: int = 0
     hidden_s: float = 0.0
     colour: ColourModel | None = None
-    looks: ColourModel | None = None
+    appearance: ColourModel | None = None
 
     @property
     def is_settled(self) -> bool:
@@ -69,7 +69,7 @@ class Person:
         return self.status is Status.TOTALLY_OCCLUDED
 
 
-def approached(person: Person, view: View) -> Person:
+def approached(person: TrackedPerson, view: FrameView) -> TrackedPerson:
     """Let what is kept of a standing person grow as the camera comes nearer."""
     distance_m = view.focal_px * PERSON_M / (HEIGHT * max(float(person.size[1]), 1.0))
     growth = distance_m / max(distance_m - view.advance_m, 0.5 * distance_m)
@@ -77,7 +77,7 @@ def approached(person: Person, view: View) -> Person:
     return replace(person, size=growth * person.size, foot=horizon + growth * (person.foot - horizon))
 
 
-def moved_on(state: NDArray[np.float64], view: View) -> NDArray[np.float64]:
+def moved_on(state: NDArray[np.float64], view: FrameView) -> NDArray[np.float64]:
     """Move a state (9,) of the last frame to this one, by its velocity and the camera's turn."""
     later = state.copy()
     later[:4] += view.dt_s * later[VX:]

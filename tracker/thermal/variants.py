@@ -12,6 +12,7 @@ from peopleboy.tracker.thermal.appearance.colour_config import (
     ColourConfig,
 )
 from peopleboy.tracker.thermal.config import (
+    AppearanceConfig,
     BoxConfig,
     ContourConfig,
     FilterConfig,
@@ -19,7 +20,6 @@ from peopleboy.tracker.thermal.config import (
     LifeConfig,
     LikelihoodConfig,
     LimitsConfig,
-    LooksConfig,
     MotionConfig,
     OcclusionConfig,
     SmoothingConfig,
@@ -164,10 +164,10 @@ PEOPLEBOY = TrackerConfig(
         detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
     ),
     colour=_PEOPLEBOY_COLOUR,
-    looks=LooksConfig(),
+    appearance=AppearanceConfig(),
     occlusion=OcclusionConfig(
         is_handled=True,
-        order="looks",
+        order="appearance",
         removes_front=True,
         growth=1.2,
         keeps_velocity=True,
@@ -201,7 +201,7 @@ FOOTAGE = replace(
     life=replace(PEOPLEBOY.life, birth_confidence=0.9),
     box=BoxConfig(width_per_w=2.0, height_per_h=3.5),
     colour=replace(_PEOPLEBOY_COLOUR, affine=SAME_VIEW, parallax=0.0),
-    looks=LooksConfig(grey_spread=(0.15, 0.1, 0.15), needs_colour=True),
+    appearance=AppearanceConfig(grey_spread=(0.15, 0.1, 0.15), needs_colour=True),
     occlusion=replace(PEOPLEBOY.occlusion, order="contour", seen_size_spread=0.3, size_s=2.0),
 )
 """For footage of any camera, in which degC, horizon and the camera's own motion are unknown.

@@ -25,12 +25,12 @@ def steps() -> Figure:
     figure, axes = panels(titles, 2.45)
     with world_at("crossing_4", 0, 4.0) as world:
         # The surfaces alone: what every part would look like if it were black and the lens perfect.
-        config, sight = world.config.robot.thermal, world._look(world.config.robot.thermal.camera)
-        black = replace(world._looks, thermal=world._looks.thermal.copy())
+        config, seen = world.config.robot.thermal, world._see(world.config.robot.thermal.camera)
+        black = replace(world._materials, thermal=world._materials.thermal.copy())
         black.thermal[:, 1] = 1.0
-        place = (sight.world_from_camera, world._poses, world.config.place.surroundings_c, 0.0)
-        surface = surface_image(sight.view, black, replace(config, blur_px=0.0), *place)
-        apparent = surface_image(sight.view, world._looks, config, *place)
+        place = (seen.world_from_camera, world._poses, world.config.place.surroundings_c, 0.0)
+        surface = surface_image(seen.view, black, replace(config, blur_px=0.0), *place)
+        apparent = surface_image(seen.view, world._materials, config, *place)
     rng = np.random.default_rng(0)
     noisy = detect(apparent, make_detector(config, rng), config, rng)
     for panel, image in zip(axes, (surface, apparent, noisy), strict=False):

@@ -16,7 +16,7 @@ from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.run_files import read_about, read_files
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 _BOX = ("left_px", "top_px", "width_px", "height_px")
 _PEOPLE = (
@@ -52,8 +52,8 @@ class FinishedRun:
     fault: str
     metrics: Mapping[str, Any]
     events: tuple[LogLine, ...]
-    truth: Truth
-    tracks: Tracks
+    truth: TrueBoxes
+    tracks: TrackBoxes
     people: pa.Table
     beliefs: pa.Table
     robot: pa.Table

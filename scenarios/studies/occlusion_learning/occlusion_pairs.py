@@ -15,10 +15,10 @@ from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.boxes import iou
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.occlusion.depth_order import Figure, Order, lower_foot
+from peopleboy.tracker.thermal.occlusion.depth_order import ExpectedPerson, Order, lower_foot
 from peopleboy.tracker.thermal.occlusion.learned_order import features_of
 from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES, Features, overlapping_pairs
-from peopleboy.tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.particle_filter import FrameView
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 
 # A tracked person is the true one whose box it overlaps most, and by at least this (thesis, section 3.4).
@@ -56,9 +56,9 @@ class RecordingOrder:
     """Answers like another order, and keeps what it was asked since `asked` was last cleared."""
 
     order: Order = lower_foot
-    asked: list[tuple[Figure, Figure, Features]] = field(default_factory=list)
+    asked: list[tuple[ExpectedPerson, ExpectedPerson, Features]] = field(default_factory=list)
 
-    def __call__(self, one: Figure, other: Figure, view: View) -> float:
+    def __call__(self, one: ExpectedPerson, other: ExpectedPerson, view: FrameView) -> float:
         """Tell who is in front."""
         pairs = overlapping_pairs(np.stack([one.state, other.state]))
         if len(pairs) > 0 and not (one.person.is_hidden or other.person.is_hidden):
@@ -120,7 +120,13 @@ def collect(scenario: str, seed: int, config: TrackerConfig) -> Iterator[PairExa
 
 
 def _example(
-    scenario: str, seed: int, tick: Tick, one: Figure, other: Figure, features: Features, episodes: Episodes
+    scenario: str,
+    seed: int,
+    tick: Tick,
+    one: ExpectedPerson,
+    other: ExpectedPerson,
+    features: Features,
+    episodes: Episodes,
 ) -> PairExample | None:
     """Find out who two figures are, and make an example of them if they are fit for one."""
     true_one, true_other = (_true_person(figure, tick.truth.people) for figure in (one, other))
@@ -140,7 +146,7 @@ def _example(
     )
 
 
-def _true_person(figure: Figure, people: Sequence[PersonTruth]) -> PersonTruth | None:
+def _true_person(figure: ExpectedPerson, people: Sequence[PersonTruth]) -> PersonTruth | None:
     """Find the person whose box a tracked one overlaps most; None if it overlaps nobody's enough."""
     boxed = [person for person in people if person.box is not None]
     if not boxed:

@@ -15,7 +15,7 @@ from peopleboy.scenarios.studies.reproduce.measuring.store import Store
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workers import Report, run_units
 from peopleboy.scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan
-from peopleboy.scenarios.studies.reproduce.showing.source_page import About, write_page
+from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, write_page
 
 PAGE = "index.html"
 RESULTS = "units.jsonl"
@@ -65,7 +65,7 @@ def unique_units(experiments: Sequence[Experiment], plan: Plan, store: Store) ->
     return list(units.values())
 
 
-def _about(plan: Plan, means: Means, store: Store, seconds: float) -> About:
+def _about(plan: Plan, means: Means, store: Store, seconds: float) -> PageHead:
     spent = sum(result.get("cpu_s", 0.0) for result in store.values())
     facts: Mapping[str, str] = {
         "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
@@ -75,7 +75,7 @@ def _about(plan: Plan, means: Means, store: Store, seconds: float) -> About:
         "Time": f"{seconds / 60:.1f} min for this call; {spent / 60:.1f} min of processor time in trackers",
         "Results": f"{len(store)} units of work in {RESULTS}, beside this page",
     }
-    return About(command=means.command, is_quick=plan.is_quick, amount=_amount(plan), facts=facts)
+    return PageHead(command=means.command, is_quick=plan.is_quick, amount=_amount(plan), facts=facts)
 
 
 def _amount(plan: Plan) -> str:

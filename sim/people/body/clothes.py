@@ -10,7 +10,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.people.body.body_shapes import BODY_PARTS, SIDES
-from peopleboy.sim.shapes.materials import Look, Pattern, PatternKind, Rgb
+from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind, Rgb
 
 
 def _both(*parts: str) -> tuple[str, ...]:
@@ -202,7 +202,7 @@ def _resolve_colour(key: str, colour: str | Rgb) -> Rgb:
     return colour
 
 
-def dress(clothes: Clothes, rng: np.random.Generator) -> dict[str, Look]:
+def dress(clothes: Clothes, rng: np.random.Generator) -> dict[str, Material]:
     """Decide the look of every part of a person.
 
     People differ: each person's skin and each garment is up to half a kelvin warmer or cooler than the
@@ -213,19 +213,23 @@ def dress(clothes: Clothes, rng: np.random.Generator) -> dict[str, Look]:
     """
     skin_c = float(rng.uniform(-0.5, 0.5))
     complexion = tuple(float(c) for c in np.array(COLOURS["skin"]) * rng.uniform(0.35, 1.25))
-    looks = {part: _skin(part, skin_c, (complexion[0], complexion[1], complexion[2])) for part in BODY_PARTS}
+    materials = {
+        part: _skin(part, skin_c, (complexion[0], complexion[1], complexion[2])) for part in BODY_PARTS
+    }
     for garment, rgb in clothes.garments():
         offset_k = float(rng.uniform(-0.5, 0.5))
         is_bare = garment.colour == "skin"
         for part in garment.covers:
-            look = _cloth(garment, part, offset_k, rgb)
-            looks[part] = replace(look, rgb=looks["head"].rgb, emissivity=0.98) if is_bare else look
-    return looks
+            material = _cloth(garment, part, offset_k, rgb)
+            materials[part] = (
+                replace(material, rgb=materials["head"].rgb, emissivity=0.98) if is_bare else material
+            )
+    return materials
 
 
-def _skin(part: str, offset_k: float, rgb: Rgb) -> Look:
+def _skin(part: str, offset_k: float, rgb: Rgb) -> Material:
     bare = part.removeprefix("left_").removeprefix("right_")
-    return Look(
+    return Material(
         temperature_c=SKIN_C.get(bare, _OTHER_SKIN_C) + offset_k,
         emissivity=_EMISSIVITY["skin"],
         variation_k=0.5 if part == "head" else 0.3,
@@ -234,9 +238,9 @@ def _skin(part: str, offset_k: float, rgb: Rgb) -> Look:
     )
 
 
-def _cloth(garment: Garment, part: str, offset_k: float, rgb: Rgb) -> Look:
+def _cloth(garment: Garment, part: str, offset_k: float, rgb: Rgb) -> Material:
     is_front = part == "chest" or garment.thermal_pattern.kind is not PatternKind.PATCH
-    return Look(
+    return Material(
         temperature_c=garment.temperature_c + offset_k,
         emissivity=_EMISSIVITY["cloth"],
         variation_k=garment.variation_k,

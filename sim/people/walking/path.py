@@ -19,7 +19,7 @@ _ABOUT_TURN_RAD = math.radians(115.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Piece:
+class PathPiece:
     """A straight line or an arc.
 
     Attributes:
@@ -54,7 +54,7 @@ def turn_between(before: float, after: float) -> float:
     return math.remainder(after - before, 2.0 * math.pi)
 
 
-def route(points: Sequence[Point], first_goal: int) -> tuple[Piece, ...]:
+def route(points: Sequence[Point], first_goal: int) -> tuple[PathPiece, ...]:
     """Join points by lines, and round the corners between them.
 
     An arc leaves the corner by at most `CORNER_CUT_M` and takes up to half of the shorter line.
@@ -81,9 +81,9 @@ def route(points: Sequence[Point], first_goal: int) -> tuple[Piece, ...]:
     return tuple(pieces)
 
 
-def _piece(start: Array, heading: float, length: float, curvature: float, goal: int) -> Piece:
+def _piece(start: Array, heading: float, length: float, curvature: float, goal: int) -> PathPiece:
     at = (float(start[0]), float(start[1]))
-    return Piece(start=at, heading_rad=heading, length_m=max(length, 0.0), curvature=curvature, goal=goal)
+    return PathPiece(start=at, heading_rad=heading, length_m=max(length, 0.0), curvature=curvature, goal=goal)
 
 
 def _corner(turn: float, longest_trim: float) -> tuple[float, float]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.postures import Posture
-from peopleboy.sim.people.walking.path import Piece, is_about_turn, route, turn_between
+from peopleboy.sim.people.walking.path import PathPiece, is_about_turn, route, turn_between
 from peopleboy.sim.people.walking.social_force import KEEP_RIGHT_RAD, PlanarState, social_force
 
 Array = NDArray[np.float64]
@@ -96,7 +96,7 @@ class Walker:
         self.heading = self._first_heading()
         self._pause_left = self._pause_of(0)
         self._speed = 0.0
-        self._pieces: tuple[Piece, ...] = ()
+        self._pieces: tuple[PathPiece, ...] = ()
         self._along = 0.0
         self._on_feet_in = 0.0
         self._blocked_s = 0.0
@@ -219,7 +219,7 @@ class Walker:
             ahead += piece.length_m
         return min(limit, _braking_speed(ahead, 0.0, ACCELERATION_M_S2, dt_s))
 
-    def _piece_speed(self, piece: Piece) -> float:
+    def _piece_speed(self, piece: PathPiece) -> float:
         """Planned speed [m/s], less where the arc is too tight to turn so fast."""
         speed = self._path[piece.goal].speed_m_s
         return speed if piece.curvature == 0.0 else min(speed, TURN_RATE_RAD_S * 0.8 / abs(piece.curvature))

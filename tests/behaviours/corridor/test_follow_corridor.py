@@ -8,33 +8,35 @@ from peopleboy.behaviours.corridor.corridor_lane import LaneConfig, best_lane
 from peopleboy.behaviours.corridor.corridor_pose import Corridor
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
 from peopleboy.behaviours.registry import make_behaviour
-from tests.helpers.drawn_corridors import CAMERA, drawn_corridor, sight_of, sonar_in_corridor
+from tests.helpers.drawn_corridors import CAMERA, drawn_corridor, percept_of, sonar_in_corridor
 from tests.helpers.toy_world import SONAR_ANGLE, Toy, drive, wall
 
 STRAIGHT = Corridor(offset_m=0.0, heading_rad=0.0, width_m=3.0)
 
 
-def sight_before_wall(distance, width=3.0):
+def percept_before_wall(distance, width=3.0):
     """Ranges in a straight corridor with a wall across it."""
     fan = np.radians(np.linspace(-7.5, 7.5, 61))
     ahead = np.cos(SONAR_ANGLE[:, None] + fan)
     to_wall = np.where(ahead > 0.0, (distance - 0.15) / np.maximum(ahead, 1e-9), 99.0).min(axis=1)
-    return sight_of(np.minimum(sonar_in_corridor(0.0, 0.0, width), to_wall))
+    return percept_of(np.minimum(sonar_in_corridor(0.0, 0.0, width), to_wall))
 
 
 @pytest.mark.parametrize("distance", [0.8, 1.5, 2.0])
 def test_a_wall_across_is_told_by_its_distance_and_a_person_is_not_one(distance):
-    assert wall_ahead(sight_before_wall(distance), STRAIGHT, EndConfig()) == pytest.approx(distance, abs=0.1)
+    assert wall_ahead(percept_before_wall(distance), STRAIGHT, EndConfig()) == pytest.approx(
+        distance, abs=0.1
+    )
     ranges = sonar_in_corridor(0.0, 0.0, 3.0)
     ranges[[3, 4]] = distance
-    assert wall_ahead(sight_of(ranges), STRAIGHT, EndConfig()) is None
+    assert wall_ahead(percept_of(ranges), STRAIGHT, EndConfig()) is None
 
 
 def test_a_side_without_its_wall_is_open():
     ranges = sonar_in_corridor(0.0, 0.0, 3.0)
-    assert open_room(sight_of(ranges), STRAIGHT, EndConfig()) == (0.0, 0.0)
+    assert open_room(percept_of(ranges), STRAIGHT, EndConfig()) == (0.0, 0.0)
     ranges[[7, 8]] = 4.0
-    assert open_room(sight_of(ranges), STRAIGHT, EndConfig()) == (0.0, pytest.approx(2.5))
+    assert open_room(percept_of(ranges), STRAIGHT, EndConfig()) == (0.0, pytest.approx(2.5))
 
 
 def test_the_lane_is_the_middle_unless_somebody_is_near_it_and_then_the_clearest_side():
@@ -115,12 +117,12 @@ def test_the_robot_turns_into_the_side_that_is_open():
 def test_in_the_dark_the_sonars_take_over_and_the_reason_says_so():
     behaviour = FollowCorridor(CorridorConfig(sense="image", camera=CAMERA))
     ranges = sonar_in_corridor(0.4, 0.0, 3.0)
-    behaviour.command(sight_of(ranges, 1.0, colour=drawn_corridor(0.2, 0.0, 3.0)))
+    behaviour.command(percept_of(ranges, 1.0, colour=drawn_corridor(0.2, 0.0, 3.0)))
     assert behaviour.mode == "corridor"
     assert behaviour.state.corridor.offset_m == pytest.approx(0.2, abs=0.05)  # the image's word
     for step in range(1, 30):
         dark = drawn_corridor(0.2, 0.0, 3.0, light=0.0)
-        command = behaviour.command(sight_of(ranges, 1.0 + step / 15.0, colour=dark))
+        command = behaviour.command(percept_of(ranges, 1.0 + step / 15.0, colour=dark))
     assert behaviour.mode == "sonar"
     assert behaviour.reason == "the image does not tell: too dark"
     assert behaviour.state.corridor.offset_m == pytest.approx(0.4, abs=0.03)  # the sonars'
@@ -129,8 +131,8 @@ def test_in_the_dark_the_sonars_take_over_and_the_reason_says_so():
 
 def test_without_new_input_or_walls_the_robot_does_not_drive():
     behaviour = FollowCorridor()
-    assert behaviour.command(sight_of(np.full(16, 5.0))).linear_m_s == 0.0
+    assert behaviour.command(percept_of(np.full(16, 5.0))).linear_m_s == 0.0
     assert behaviour.mode == "search"
-    behaviour.command(sight_of(sonar_in_corridor(0.0, 0.0, 3.0), 1.1))
-    command = behaviour.command(sight_of(sonar_in_corridor(0.0, 0.0, 3.0), 1.1))
+    behaviour.command(percept_of(sonar_in_corridor(0.0, 0.0, 3.0), 1.1))
+    command = behaviour.command(percept_of(sonar_in_corridor(0.0, 0.0, 3.0), 1.1))
     assert (command.linear_m_s, command.angular_rad_s, behaviour.mode) == (0.0, 0.0, "blind")

@@ -12,7 +12,7 @@ from peopleboy.behaviours.following.reidentification import recognise
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.behaviours.safety.limits import SafetyConfig
 from peopleboy.scenarios.scores.following_metrics import FollowingRun, score_following
-from tests.helpers.percepts import person, sight
+from tests.helpers.percepts import percept, person
 from tests.helpers.toy_world import STEP_S, Toy, drive, room, straight, wall
 
 CONFIG = FollowConfig()
@@ -23,7 +23,7 @@ def follow_frames(*frames_of_people):
     state, command = FollowState(), STOP
     for frame, people in enumerate(frames_of_people):
         turned = command.angular_rad_s
-        state, command = follow(state, sight(frame * STEP_S, *people, angular_rad_s=turned), CONFIG)
+        state, command = follow(state, percept(frame * STEP_S, *people, angular_rad_s=turned), CONFIG)
     return state, command
 
 
@@ -65,16 +65,16 @@ def test_a_person_with_a_senseless_number_is_not_followed(name, value):
 
 
 @pytest.mark.parametrize("name", ["time_s", "linear_m_s", "angular_rad_s"])
-def test_a_sight_with_a_senseless_number_stops_the_robot_and_is_forgotten(name):
+def test_a_percept_with_a_senseless_number_stops_the_robot_and_is_forgotten(name):
     state, _ = follow_frames([person()])
-    after, command = follow(state, dataclasses.replace(sight(1.0, person()), **{name: math.nan}), CONFIG)
+    after, command = follow(state, dataclasses.replace(percept(1.0, person()), **{name: math.nan}), CONFIG)
     assert command == STOP
     assert after == dataclasses.replace(state, mode="blind", reason="senseless or old input")
 
 
 def test_an_image_seen_before_stops_the_robot():
     state, _ = follow_frames([person()], [person()])
-    after, command = follow(state, sight(STEP_S, person()), CONFIG)
+    after, command = follow(state, percept(STEP_S, person()), CONFIG)
     assert command == STOP
     assert after.mode == "blind"
 
@@ -102,19 +102,19 @@ def test_a_person_who_left_is_waited_for_and_then_searched_on_that_side(x, side)
 def test_a_search_that_an_obstacle_stops_goes_on_the_other_way_round():
     state, turns = FollowState(), []
     for frame in range(40):
-        state, command = follow(state, sight(frame * STEP_S), CONFIG)
+        state, command = follow(state, percept(frame * STEP_S), CONFIG)
         turns.append(command.angular_rad_s)
     assert turns[0] > 0.0
     assert min(turns) < 0.0
     state = FollowState()
     for frame in range(40):
-        state, command = follow(state, sight(frame * STEP_S, angular_rad_s=CONFIG.search_rad_s), CONFIG)
+        state, command = follow(state, percept(frame * STEP_S, angular_rad_s=CONFIG.search_rad_s), CONFIG)
         assert command.angular_rad_s > 0.0
 
 
 def test_after_a_long_gap_between_images_the_robot_starts_afresh():
     state, _ = follow_frames([person(x=0.5)])
-    state, _ = follow(state, sight(100.0, person(x=-0.5, id=7)), CONFIG)
+    state, _ = follow(state, percept(100.0, person(x=-0.5, id=7)), CONFIG)
     assert state.target.id == 7
     assert state.target.drift_rad_s == 0.0
 
@@ -163,11 +163,11 @@ def test_a_person_who_went_out_of_sight_ahead_is_gone_after_and_looked_for_from_
 @pytest.mark.parametrize(("changes", "why"), [({"image_age_s": 0.2}, "image"), ({"fault": "dead"}, "dead")])
 def test_the_guard_stops_at_once_without_images_or_tracker_and_goes_on_afterwards(changes, why):
     guarded = make_behaviour("follow_person")
-    assert guarded.command(sight(0.0, person(height=0.3))).linear_m_s > 0.0
-    assert guarded.command(sight(STEP_S, person(height=0.3), **changes)) == EMERGENCY_STOP
+    assert guarded.command(percept(0.0, person(height=0.3))).linear_m_s > 0.0
+    assert guarded.command(percept(STEP_S, person(height=0.3), **changes)) == EMERGENCY_STOP
     assert guarded.mode == "stop"
     assert why in guarded.reason
-    assert guarded.command(sight(2 * STEP_S, person(height=0.3))).linear_m_s > 0.0
+    assert guarded.command(percept(2 * STEP_S, person(height=0.3))).linear_m_s > 0.0
     assert guarded.mode == "follow"
 
 
@@ -179,8 +179,8 @@ seen_people = st.builds(
     confidence=st.floats(0.0, 1.0),
     is_visible=st.booleans(),
 )
-wild_sights = st.builds(
-    sight,
+wild_percepts = st.builds(
+    percept,
     st.floats(0.0, 3.0),
     seen_people,
     seen_people,
@@ -190,11 +190,11 @@ wild_sights = st.builds(
 )
 
 
-@given(st.lists(wild_sights, max_size=6))
-def test_whatever_is_seen_commands_are_finite_and_within_the_limits(sights):
+@given(st.lists(wild_percepts, max_size=6))
+def test_whatever_is_seen_commands_are_finite_and_within_the_limits(percepts):
     guarded = make_behaviour("follow_person")
     limits = SafetyConfig()
-    for each in sights:
+    for each in percepts:
         command = guarded.command(each)
         assert abs(command.linear_m_s) <= limits.max_linear_m_s
         assert abs(command.angular_rad_s) <= limits.max_angular_rad_s
@@ -331,6 +331,6 @@ def test_drop_outs_of_the_track_are_bridged_and_longer_ones_searched_for():
 
 def test_two_followers_share_nothing():
     one, other = FollowPerson(), FollowPerson()
-    one.command(sight(0.0, person()))
+    one.command(percept(0.0, person()))
     assert one.mode == "follow"
     assert other.mode == "search"

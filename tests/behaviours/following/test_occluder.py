@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.behaviours.following.occluder import HiddenConfig, hider, keep_behind
+from peopleboy.behaviours.following.occluder import OccluderConfig, hider, keep_behind
 from peopleboy.behaviours.following.target import Target, TargetConfig, bearing
 from peopleboy.behaviours.percept import SeenPerson
 
-CONFIG, VIEW = HiddenConfig(), TargetConfig()
+CONFIG, VIEW = OccluderConfig(), TargetConfig()
 TARGET = Target(id=1, seen_s=0.0, bearing_rad=0.1, drift_rad_s=0.0, height=0.5)
 
 

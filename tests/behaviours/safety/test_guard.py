@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from peopleboy.behaviours.command import Command
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 from peopleboy.behaviours.safety.guard import Guarded
 from peopleboy.behaviours.scripted import Scripted
 from peopleboy.scenarios.files.load import parse_scenario
@@ -60,7 +60,7 @@ def gaps_under_guard(tmp_path, seed):
             senses, scene = world.sense(), world.scene()
             left, right = senses.wheel_speeds_m_s
             command = guarded.command(
-                Sight(
+                Percept(
                     time_s=senses.time_s,
                     people=(),
                     sonar_m=senses.sonar_m,

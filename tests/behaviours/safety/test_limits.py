@@ -9,7 +9,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import STOP, Command
 from peopleboy.behaviours.safety.limits import SafetyConfig, limit, safe_speed
 from peopleboy.behaviours.sonar.echo_points import echoes, fill_drop_outs
-from tests.helpers.percepts import free, sight_of
+from tests.helpers.percepts import free, percept_of
 from tests.helpers.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 CONFIG = SafetyConfig()
@@ -27,7 +27,7 @@ def test_free_space_lets_a_command_within_the_limits_pass_unchanged():
 def test_whatever_is_asked_the_result_is_within_limits_and_no_part_changes_its_sign(
     linear, angular, ranges_m
 ):
-    safe = limit(Command(linear_m_s=linear, angular_rad_s=angular), sight_of(ranges_m), CONFIG)
+    safe = limit(Command(linear_m_s=linear, angular_rad_s=angular), percept_of(ranges_m), CONFIG)
     assert abs(safe.linear_m_s) <= min(abs(linear), CONFIG.max_linear_m_s)
     assert abs(safe.angular_rad_s) <= min(abs(angular), CONFIG.max_angular_rad_s)
     assert safe.linear_m_s * linear >= 0.0
@@ -36,9 +36,9 @@ def test_whatever_is_asked_the_result_is_within_limits_and_no_part_changes_its_s
 
 @given(speeds, speeds, ranges)
 def test_limiting_twice_is_limiting_once(linear, angular, ranges_m):
-    sight = sight_of(ranges_m)
-    once = limit(Command(linear_m_s=linear, angular_rad_s=angular), sight, CONFIG)
-    assert limit(once, sight, CONFIG) == once
+    percept = percept_of(ranges_m)
+    once = limit(Command(linear_m_s=linear, angular_rad_s=angular), percept, CONFIG)
+    assert limit(once, percept, CONFIG) == once
 
 
 @given(st.floats(0.0, 3.0))
@@ -51,16 +51,16 @@ def test_from_the_safe_speed_reaction_and_braking_take_no_more_than_the_room(roo
 
 @pytest.mark.parametrize("sonar", range(2, 6))
 def test_an_obstacle_ahead_stops_the_way_forwards_only(sonar):
-    sight = free(**{f"i{sonar}": 0.25})
-    assert limit(FULL, sight, CONFIG).linear_m_s == 0.0
-    assert limit(Command(linear_m_s=-0.3, angular_rad_s=0.0), sight, CONFIG).linear_m_s == -0.3
+    percept = free(**{f"i{sonar}": 0.25})
+    assert limit(FULL, percept, CONFIG).linear_m_s == 0.0
+    assert limit(Command(linear_m_s=-0.3, angular_rad_s=0.0), percept, CONFIG).linear_m_s == -0.3
 
 
 @pytest.mark.parametrize("sonar", range(10, 14))
 def test_an_obstacle_behind_stops_the_way_backwards_only(sonar):
-    sight = free(**{f"i{sonar}": 0.25})
-    assert limit(Command(linear_m_s=-0.3, angular_rad_s=0.0), sight, CONFIG).linear_m_s == 0.0
-    assert limit(FULL, sight, CONFIG).linear_m_s == 0.8
+    percept = free(**{f"i{sonar}": 0.25})
+    assert limit(Command(linear_m_s=-0.3, angular_rad_s=0.0), percept, CONFIG).linear_m_s == 0.0
+    assert limit(FULL, percept, CONFIG).linear_m_s == 0.8
 
 
 def test_a_wall_beside_the_robot_does_not_slow_it():
@@ -68,9 +68,9 @@ def test_a_wall_beside_the_robot_does_not_slow_it():
 
 
 def test_with_a_corner_ahead_left_the_robot_may_turn_right_slowly_but_not_left():
-    sight = free(i1=0.15)
-    left = limit(Command(linear_m_s=0.0, angular_rad_s=1.0), sight, CONFIG)
-    right = limit(Command(linear_m_s=0.0, angular_rad_s=-1.0), sight, CONFIG)
+    percept = free(i1=0.15)
+    left = limit(Command(linear_m_s=0.0, angular_rad_s=1.0), percept, CONFIG)
+    right = limit(Command(linear_m_s=0.0, angular_rad_s=-1.0), percept, CONFIG)
     assert left.angular_rad_s == 0.0
     assert right.angular_rad_s == -CONFIG.tight_turn_rad_s
 
@@ -84,24 +84,24 @@ def test_turning_is_slower_the_nearer_the_obstacle():
 
 @pytest.mark.parametrize("name", ["time_s", "linear_m_s", "angular_rad_s"])
 @pytest.mark.parametrize("value", [math.nan, math.inf])
-def test_a_sight_with_a_senseless_number_stops_the_robot(name, value):
-    assert limit(FULL, sight_of(np.full(16, 5.0), **{name: value}), CONFIG) == STOP
+def test_a_percept_with_a_senseless_number_stops_the_robot(name, value):
+    assert limit(FULL, percept_of(np.full(16, 5.0), **{name: value}), CONFIG) == STOP
 
 
 def test_without_sonars_the_robot_stands():
-    blind = sight_of(np.full(16, 5.0), sonar_m=np.zeros(0), sonar_angle_rad=np.zeros(0))
+    blind = percept_of(np.full(16, 5.0), sonar_m=np.zeros(0), sonar_angle_rad=np.zeros(0))
     assert limit(FULL, blind, CONFIG) == STOP
 
 
 def test_sonars_that_read_no_number_block_every_way():
-    blind = sight_of(np.full(16, math.nan))
+    blind = percept_of(np.full(16, math.nan))
     assert limit(FULL, blind, CONFIG).linear_m_s == 0.0
     assert limit(Command(linear_m_s=-0.3, angular_rad_s=0.0), blind, CONFIG).linear_m_s == 0.0
 
 
 def test_echoes_lie_within_three_centimetres_of_the_real_rings():
     real = np.stack([SONAR_X + np.cos(SONAR_ANGLE), SONAR_Y + np.sin(SONAR_ANGLE)], axis=1)
-    off = np.linalg.norm(echoes(sight_of(np.ones(16))) - real, axis=1)
+    off = np.linalg.norm(echoes(percept_of(np.ones(16))) - real, axis=1)
     looks_sideways = np.isclose(np.abs(SONAR_ANGLE), math.pi / 2.0)
     assert np.all(off[~looks_sideways] < 0.03)
     assert np.all(off[looks_sideways] < 0.12)
@@ -126,15 +126,15 @@ def test_a_command_that_is_not_finite_is_refused(value):
         Command(linear_m_s=0.0, angular_rad_s=value)
 
 
-def test_a_sight_with_more_ranges_than_angles_is_refused():
+def test_a_percept_with_more_ranges_than_angles_is_refused():
     with pytest.raises(BadInput, match="sonar"):
-        sight_of(np.ones(15))
+        percept_of(np.ones(15))
 
 
-def test_a_sight_keeps_its_own_read_only_sonar():
+def test_a_percept_keeps_its_own_read_only_sonar():
     ranges_m = np.ones(16)
-    sight = sight_of(ranges_m)
+    percept = percept_of(ranges_m)
     ranges_m[0] = 3.0
-    assert sight.sonar_m[0] == 1.0
+    assert percept.sonar_m[0] == 1.0
     with pytest.raises(ValueError, match="read-only"):
-        sight.sonar_m[0] = 2.0
+        percept.sonar_m[0] = 2.0

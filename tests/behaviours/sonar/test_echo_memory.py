@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.behaviours.registry import make_behaviour
-from peopleboy.behaviours.sonar.echo_memory import EchoMemory, MemoryConfig, remember
+from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
 from tests.helpers.percepts import free
 from tests.helpers.toy_world import Toy, room, straight
 
-CONFIG = MemoryConfig()
+CONFIG = EchoMemoryConfig()
 
 
 def at(time_s, speed=0.0, turn=0.0, **ranges_m):
@@ -21,7 +21,7 @@ def at(time_s, speed=0.0, turn=0.0, **ranges_m):
 @given(st.floats(-0.5, 0.5), st.floats(-2.0, 2.0))
 def test_a_remembered_echo_stays_where_it_is_in_the_world(speed, turn):
     first = remember(EchoMemory(), at(0.0, i1=0.15), CONFIG)
-    later = remember(first, at(0.1, speed, turn), MemoryConfig(within_m=0.9))
+    later = remember(first, at(0.1, speed, turn), EchoMemoryConfig(within_m=0.9))
     pose = 0.1 * speed * np.exp(0.05j * turn)  # where the robot is by now, as a complex number
     x, y = later.points[0]
     world = pose + (x + 1j * y) * np.exp(0.1j * turn)

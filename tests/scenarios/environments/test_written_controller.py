@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from peopleboy.behaviours.command import Command
-from peopleboy.behaviours.percept import Sight
+from peopleboy.behaviours.percept import Percept
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.scenarios.files.load import load_scenario
@@ -14,10 +14,10 @@ class Echo:
     mode, reason, following = "echo", "", None
 
     def __init__(self) -> None:
-        self.told: list[Sight] = []
+        self.told: list[Percept] = []
 
-    def command(self, sight: Sight) -> Command:
-        self.told.append(sight)
+    def command(self, percept: Percept) -> Command:
+        self.told.append(percept)
         return Command(linear_m_s=0.4, angular_rad_s=-99.0)
 
 

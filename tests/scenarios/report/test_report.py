@@ -27,7 +27,7 @@ from peopleboy.scenarios.report.findings.story import Hold, Sight
 from peopleboy.scenarios.report.findings.summary import Outcome, headline, headline_of_many, look_into
 from peopleboy.scenarios.report.findings.worst_moments import worst_moments
 from peopleboy.scenarios.running.run import RunOptions, run
-from peopleboy.tracker.evaluation.sequence import Tracks
+from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from tests.helpers import toy_runs as toy
 
 CODES = st.lists(st.integers(0, 3), max_size=60).map(lambda values: np.array(values, np.int64))
@@ -137,7 +137,7 @@ def test_no_loss_of_the_log_is_counted_twice_or_not_at_all(
     frames = np.flatnonzero(shown) + 1
     at = np.flatnonzero((steady.tracks.id == 2) & np.isin(steady.tracks.frame, frames))
     columns = {name: getattr(steady.tracks, name)[at] for name in ("frame", "id", "box", "confidence")}
-    run = replace(steady, tracks=Tracks(**columns))
+    run = replace(steady, tracks=TrackBoxes(**columns))
     lost = sum(before and frame not in frames for frame, before in enumerate(np.isin(range(91), frames), 1))
     fleeting, listed = count_fleeting(run), find_losses(run, [])
     ends_with_run = int(run.frames in frames)

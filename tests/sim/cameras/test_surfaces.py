@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.cameras.surfaces import (
-    make_look_table,
+    make_material_table,
     part_from_pixel,
     pattern_value,
     smooth_variation,
@@ -13,7 +13,7 @@ from peopleboy.sim.cameras.surfaces import (
 )
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.shapes.materials import Look, PatternKind
+from peopleboy.sim.shapes.materials import Material, PatternKind
 
 PHASE = stream(0, "surface.variation").uniform(0.0, 1.0, (3, 3))
 
@@ -89,8 +89,8 @@ def test_plain_surfaces_have_no_second_value() -> None:
 
 
 def test_no_two_parts_vary_alike_and_the_seed_repeats_them() -> None:
-    looks = [Look(temperature_c=20.0)] * 3
-    table = make_look_table(looks, stream(4, "surface.variation"))
-    again = make_look_table(looks, stream(4, "surface.variation"))
+    materials = [Material(temperature_c=20.0)] * 3
+    table = make_material_table(materials, stream(4, "surface.variation"))
+    again = make_material_table(materials, stream(4, "surface.variation"))
     assert np.array_equal(table.phase, again.phase)
     assert len({tuple(row) for row in table.phase}) == 3

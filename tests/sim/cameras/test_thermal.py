@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.surfaces import make_look_table
+from peopleboy.sim.cameras.surfaces import make_material_table
 from peopleboy.sim.cameras.thermal import (
     band_radiance,
     detect,
@@ -16,7 +16,7 @@ from peopleboy.sim.config import ThermalConfig
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.render import View
-from peopleboy.sim.shapes.materials import Look
+from peopleboy.sim.shapes.materials import Material
 
 CONFIG = ThermalConfig(camera=Camera(width=40, height=30))
 
@@ -28,10 +28,10 @@ def view_of(part: np.ndarray) -> View:
 
 
 def image_of(
-    part: np.ndarray, looks: list[Look], surroundings_c: float, turned_rad: float = 0.0
+    part: np.ndarray, materials: list[Material], surroundings_c: float, turned_rad: float = 0.0
 ) -> np.ndarray:
-    table = make_look_table(looks, stream(0, "surface.variation"))
-    poses = np.tile(np.eye(4), (len(looks), 1, 1))
+    table = make_material_table(materials, stream(0, "surface.variation"))
+    poses = np.tile(np.eye(4), (len(materials), 1, 1))
     return surface_image(view_of(part), table, CONFIG, np.eye(4), poses, surroundings_c, turned_rad)
 
 
@@ -47,8 +47,11 @@ def test_a_world_of_one_temperature_gives_one_value(
     part = np.zeros((30, 40), np.int32)
     part[:10] = -1
     part[:, 20:] = 1
-    looks = [Look(temperature_c=temperature, emissivity=emissivity), Look(temperature_c=temperature)]
-    image = image_of(part, looks, temperature, turned)
+    materials = [
+        Material(temperature_c=temperature, emissivity=emissivity),
+        Material(temperature_c=temperature),
+    ]
+    image = image_of(part, materials, temperature, turned)
     assert np.ptp(image) < 2e-3
     assert image.mean() == pytest.approx(temperature, abs=2e-3)
 
@@ -56,13 +59,13 @@ def test_a_world_of_one_temperature_gives_one_value(
 @pytest.mark.parametrize("temperature", [-5.0, 18.0, 24.0, 30.3, 36.0, 60.0, 120.0])
 def test_a_black_body_reads_its_temperature_within_50_mk(temperature: float) -> None:
     part = np.zeros((30, 40), np.int32)
-    image = image_of(part, [Look(temperature_c=temperature, emissivity=1.0)], 21.0)
+    image = image_of(part, [Material(temperature_c=temperature, emissivity=1.0)], 21.0)
     assert np.abs(image - temperature).max() < 0.05
 
 
 def test_low_emissivity_draws_a_warm_surface_towards_its_surroundings() -> None:
     part = np.zeros((30, 40), np.int32)
-    grey = image_of(part, [Look(temperature_c=40.0, emissivity=0.6)], 20.0).mean()
+    grey = image_of(part, [Material(temperature_c=40.0, emissivity=0.6)], 20.0).mean()
     radiance = 0.6 * band_radiance(np.array([40.0])) + 0.4 * band_radiance(np.array([20.0]))
     assert band_radiance(np.array([grey], np.float64)) == pytest.approx(radiance, rel=1e-4)
     assert 20.0 < grey < 40.0
@@ -76,7 +79,7 @@ def test_band_radiance_of_300_k_agrees_with_the_tables() -> None:
 
 def test_variation_stays_within_its_amplitude() -> None:
     part = np.zeros((30, 40), np.int32)
-    image = image_of(part, [Look(temperature_c=30.0, emissivity=1.0, variation_k=0.5)], 21.0)
+    image = image_of(part, [Material(temperature_c=30.0, emissivity=1.0, variation_k=0.5)], 21.0)
     assert 0.1 < np.ptp(image) < 1.0 + 1e-3
     assert np.abs(image - 30.0).max() < 0.5 + 1e-3
 
@@ -113,10 +116,10 @@ def test_rotation_blurs_a_vertical_edge_and_leaves_a_horizontal_one() -> None:
     upright[:, 20:] = 1
     level = np.zeros((30, 40), np.int32)
     level[15:] = 1
-    looks = [Look(temperature_c=20.0, emissivity=1.0), Look(temperature_c=34.0, emissivity=1.0)]
+    materials = [Material(temperature_c=20.0, emissivity=1.0), Material(temperature_c=34.0, emissivity=1.0)]
     turned = 0.2
-    blurred = image_of(upright, looks, 21.0, turned)
+    blurred = image_of(upright, materials, 21.0, turned)
     swept = CONFIG.camera.focal_px * turned
     between = (blurred[15] > 20.5) & (blurred[15] < 33.5)
     assert swept * 0.7 < between.sum() < swept * 1.3 + 4
-    assert np.allclose(image_of(level, looks, 21.0, turned), image_of(level, looks, 21.0), atol=1e-3)
+    assert np.allclose(image_of(level, materials, 21.0, turned), image_of(level, materials, 21.0), atol=1e-3)

@@ -71,18 +71,18 @@ def test_unknown_clothes_are_refused_with_a_hint(settings, message):
 def test_temperatures_lie_where_people_have_them(seed):
     rng = stream(seed, "clothes")
     clothes = random_clothes(rng)
-    looks = dress(clothes, rng)
-    assert 33.5 <= looks["head"].temperature_c <= 34.8
-    assert 32.0 <= looks["left_hand"].temperature_c <= 33.5
-    assert looks["left_hand"] == looks["right_hand"]
-    assert 26.7 <= looks["chest"].temperature_c <= 31.2
-    assert 24.7 <= looks["left_foot"].temperature_c <= 28.5
+    materials = dress(clothes, rng)
+    assert 33.5 <= materials["head"].temperature_c <= 34.8
+    assert 32.0 <= materials["left_hand"].temperature_c <= 33.5
+    assert materials["left_hand"] == materials["right_hand"]
+    assert 26.7 <= materials["chest"].temperature_c <= 31.2
+    assert 24.7 <= materials["left_foot"].temperature_c <= 28.5
     if clothes.hair != "bald":
-        assert looks["hair"].temperature_c < looks["head"].temperature_c - 2.5
-    for look in looks.values():
-        assert 0.2 <= look.variation_k <= 0.6
-        assert 0.9 <= look.emissivity <= 1.0
-        assert all(0.0 <= channel <= 1.0 for channel in (*look.rgb, *look.second_rgb))
+        assert materials["hair"].temperature_c < materials["head"].temperature_c - 2.5
+    for material in materials.values():
+        assert 0.2 <= material.variation_k <= 0.6
+        assert 0.9 <= material.emissivity <= 1.0
+        assert all(0.0 <= channel <= 1.0 for channel in (*material.rgb, *material.second_rgb))
 
 
 def test_every_garment_fits_a_person_and_thick_ones_are_cooler():

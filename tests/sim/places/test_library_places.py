@@ -28,14 +28,16 @@ def test_everything_that_the_robot_sees_from_its_start_is_a_surface(name: str) -
 @every_scenario
 def test_temperatures_are_those_of_rooms_and_of_warm_things(name: str) -> None:
     fixtures = load_scenario(name).place.fixtures
-    looks = {f.name: f.part.look if f.part is not None else f.look for f in fixtures}
+    materials = {f.name: f.part.material if f.part is not None else f.material for f in fixtures}
     shell = [
-        look.temperature_c
-        for n, look in looks.items()
-        if look and (n in ("floor", "ceiling") or n.startswith("wall_"))
+        material.temperature_c
+        for n, material in materials.items()
+        if material and (n in ("floor", "ceiling") or n.startswith("wall_"))
     ]
     assert all(18.0 <= temperature <= 26.0 for temperature in shell)
-    assert all(look is not None and 14.0 <= look.temperature_c <= 80.0 for look in looks.values())
+    assert all(
+        material is not None and 14.0 <= material.temperature_c <= 80.0 for material in materials.values()
+    )
 
 
 @every_scenario

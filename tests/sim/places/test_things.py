@@ -70,7 +70,7 @@ def test_a_thing_fits_into_bodies_of_sixteen_shapes_with_names_of_their_own(kind
 )
 def test_warm_things_are_as_warm_as_such_things_are(kind: str, low_c: float, high_c: float) -> None:
     fixtures = build_thing(Thing(name="x", kind=kind, at_m=(0.0, 0.0)))
-    temperatures = [f.part.look.temperature_c for f in fixtures if f.part is not None]
+    temperatures = [f.part.material.temperature_c for f in fixtures if f.part is not None]
     assert low_c <= temperatures[0] <= high_c
     assert max(temperatures) <= high_c
 

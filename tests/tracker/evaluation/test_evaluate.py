@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.evaluate import combine, evaluate
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread, to_json
 from tests.helpers.random_sequences import sequences, tracks_of, truth_of
 
@@ -67,7 +67,7 @@ def test_a_sequence_of_no_frames_holds_nobody_and_one_of_fewer_is_refused():
         evaluate(*nobody, frames=-1)
 
 
-def joined(many: list[tuple[Truth, Tracks]]) -> tuple[Truth, Tracks]:
+def joined(many: list[tuple[TrueBoxes, TrackBoxes]]) -> tuple[TrueBoxes, TrackBoxes]:
     """Put sequences one after another, with names of their own."""
 
     def column(part: int, name: str, step: int = 0) -> np.ndarray:
@@ -78,8 +78,8 @@ def joined(many: list[tuple[Truth, Tracks]]) -> tuple[Truth, Tracks]:
         for part in (0, 1)
     ]
     counted = np.concatenate([truth.counted for truth, _ in many])
-    truth = Truth(**shared[0], counted=counted, visible=column(0, "visible"))
-    return truth, Tracks(**shared[1], confidence=column(1, "confidence"))
+    truth = TrueBoxes(**shared[0], counted=counted, visible=column(0, "visible"))
+    return truth, TrackBoxes(**shared[1], confidence=column(1, "confidence"))
 
 
 @given(st.lists(sequences(), min_size=1, max_size=3))

@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth, write_tracks, write_truth
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from tests.helpers.random_sequences import sequences, tracks_of, truth_of
 
 GOOD_TRUTH = "1,1,10.00,20.00,30.00,80.00,1,1,0.5000\n"
@@ -109,7 +109,7 @@ def test_a_file_that_cannot_be_written_is_refused(tmp_path):
 
 def test_arrays_are_copied_sorted_and_read_only():
     box = np.array([[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]])
-    tracks = Tracks(frame=[2, 1], id=[0, 0], box=box, confidence=[0.5, 1.0])
+    tracks = TrackBoxes(frame=[2, 1], id=[0, 0], box=box, confidence=[0.5, 1.0])
     box[:] = 0.0
     assert tracks.frame.tolist() == [1, 2]
     assert tracks.box[0].tolist() == [5.0, 6.0, 7.0, 8.0]
@@ -120,9 +120,9 @@ def test_arrays_are_copied_sorted_and_read_only():
 def test_impossible_arrays_are_refused_by_column_or_row():
     one = {"frame": [1], "id": [1], "box": [[0, 0, 1, 1]], "counted": [True], "visible": [1.0]}
     with pytest.raises(BadInput, match=r"column 'box' must have shape \(1, 4\), got \(4,\)"):
-        Truth(**one | {"box": [0, 0, 1, 1]})
+        TrueBoxes(**one | {"box": [0, 0, 1, 1]})
     with pytest.raises(BadInput, match="truth: row 0: the visible fraction must be 0 to 1, got 2"):
-        Truth(**one | {"visible": [2.0]})
+        TrueBoxes(**one | {"visible": [2.0]})
 
 
 def test_other_classes_of_motchallenge_do_not_count_or_are_left_out(tmp_path):

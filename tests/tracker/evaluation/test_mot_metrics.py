@@ -10,17 +10,17 @@ from trackeval.metrics import CLEAR, HOTA, Identity
 
 from peopleboy.tracker.evaluation.association import pair_up
 from peopleboy.tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from tests.helpers.random_sequences import as_tracks, sequences, tracks_of, truth_of
 
 REFERENCES = (HOTA(), CLEAR({"PRINT_CONFIG": False}), Identity({"PRINT_CONFIG": False}))
 
 
-def measure(truth: Truth, tracks: Tracks) -> MotMetrics:
+def measure(truth: TrueBoxes, tracks: TrackBoxes) -> MotMetrics:
     return measure_mot(truth, tracks, pair_up(truth, tracks))
 
 
-def trackeval_data(truth: Truth, tracks: Tracks) -> dict:
+def trackeval_data(truth: TrueBoxes, tracks: TrackBoxes) -> dict:
     frames = range(1, max(truth.last_frame, tracks.last_frame) + 1)
     here = [(truth.frame == frame, tracks.frame == frame) for frame in frames]
     return {

@@ -14,7 +14,7 @@ from peopleboy.tracker.evaluation.occlusion_scores import (
     find_occlusions,
     score_occlusions,
 )
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 BOX = (100.0, 50.0, 30.0, 90.0)
 RATE_HZ = 10.0
@@ -22,7 +22,7 @@ RATE_HZ = 10.0
 
 def scene(hidden: list[float], track_ids: list[int | None]) -> list[Occlusion]:
     frames = np.arange(1, len(hidden) + 1)
-    truth = Truth(
+    truth = TrueBoxes(
         frame=frames,
         id=np.ones(len(frames)),
         box=np.tile(BOX, (len(frames), 1)),
@@ -30,7 +30,7 @@ def scene(hidden: list[float], track_ids: list[int | None]) -> list[Occlusion]:
         visible=1.0 - np.array(hidden),
     )
     seen = [(frame, track) for frame, track in zip(frames, track_ids, strict=True) if track is not None]
-    tracks = Tracks(
+    tracks = TrackBoxes(
         frame=np.array([frame for frame, _ in seen], dtype=np.int64),
         id=np.array([track for _, track in seen], dtype=np.int64),
         box=np.tile(BOX, (len(seen), 1)),

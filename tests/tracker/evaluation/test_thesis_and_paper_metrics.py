@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.evaluation.evaluate import evaluate
-from peopleboy.tracker.evaluation.sequence import Tracks
+from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from tests.helpers.random_sequences import as_tracks, sequences, tracks_of, truth_of
 
 THESIS = ("cr", "cp", "ca", "ar", "ap", "aa")
@@ -114,7 +114,7 @@ def test_adding_false_alarms_never_raises_precision_nor_changes_recall(sequence,
     assume(len(tracks) > 0)
     number = np.arange(ghosts)
     away = np.stack([5000.0 + 100.0 * number, 0.0 * number, 0 * number + 10.0, 0 * number + 30.0], axis=1)
-    haunted = Tracks(
+    haunted = TrackBoxes(
         frame=np.append(tracks.frame, number % 3 + 1),
         id=np.append(tracks.id, 900 + number),
         box=np.concatenate([tracks.box, away]),
@@ -137,7 +137,7 @@ def test_shuffling_ids_within_each_frame_leaves_the_thesis_metrics(sequence, see
     for frame in np.unique(tracks.frame):
         here = tracks.frame == frame
         shuffled[here] = rng.permutation(shuffled[here])
-    renamed = Tracks(frame=tracks.frame, id=shuffled, box=tracks.box, confidence=tracks.confidence)
+    renamed = TrackBoxes(frame=tracks.frame, id=shuffled, box=tracks.box, confidence=tracks.confidence)
     before, after = evaluate(truth, tracks).thesis, evaluate(truth, renamed).thesis
     for name in THESIS:
         assert getattr(after, name) == pytest.approx(getattr(before, name), nan_ok=True)

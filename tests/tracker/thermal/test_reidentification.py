@@ -9,7 +9,7 @@ from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.filter.particles import equally_weighted
 from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
 from peopleboy.tracker.thermal.reidentification import most_alike_and_nearest, recognised, remembered
-from peopleboy.tracker.thermal.tracked_person import SIZE, Person
+from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.thermal.variants import FOOTAGE, PEOPLEBOY, THESIS_OCCLUSION
 from peopleboy.tracker.track import Status
 from tests.helpers.drawn_people import blank
@@ -26,7 +26,7 @@ def person(number, x=160.0, h=30.0, colour=0.0, hidden_s=1.0, **more):
     state = np.array([x, 131.0, 0.38 * h, h, 0, 0, 0, 0, 0])
     cloud = equally_weighted(state[None].astype(np.float32))
     model = ColourModel(np.full((1, 12), colour, dtype=np.float32), 10)
-    return Person(
+    return TrackedPerson(
         id=number,
         born_s=0.0,
         belief=Belief(cloud, cloud, state, 0.9, 1.0),
@@ -37,7 +37,7 @@ def person(number, x=160.0, h=30.0, colour=0.0, hidden_s=1.0, **more):
         status=Status.TOTALLY_OCCLUDED,
         hidden_s=hidden_s,
         colour=model,
-        looks=model,
+        appearance=model,
         **more,
     )
 
@@ -62,9 +62,9 @@ def test_a_stranger_is_nobody_who_was_lost(found):
 
 
 def thermal_only(one):
-    looks = one.looks.recent.copy().reshape(-1, 3, 4)
-    looks[..., :3] = np.nan
-    return replace(one, looks=ColourModel(looks.reshape(-1, 12), 10))
+    appearance = one.appearance.recent.copy().reshape(-1, 3, 4)
+    appearance[..., :3] = np.nan
+    return replace(one, appearance=ColourModel(appearance.reshape(-1, 12), 10))
 
 
 def test_in_footage_nobody_far_away_is_recognised_by_the_thermal_pattern_alone():

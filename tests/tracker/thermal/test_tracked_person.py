@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from peopleboy.tracker.thermal.filter.particles import equally_weighted
 from peopleboy.tracker.thermal.particle_filter import Belief
-from peopleboy.tracker.thermal.tracked_person import HEIGHT, PERSON_M, SIZE, Person, approached
+from peopleboy.tracker.thermal.tracked_person import HEIGHT, PERSON_M, SIZE, TrackedPerson, approached
 
 FOCAL_PX = 297.0
 HORIZON = 119.5
@@ -18,7 +18,7 @@ def standing(distance_m, camera_m=1.2):
     state = np.array([160, HORIZON, 0.4 * h, h, 0, 0, 0, 0, 0])
     cloud = equally_weighted(state[None].astype(np.float32))
     foot = HORIZON + FOCAL_PX * camera_m / distance_m
-    return Person(1, 0.0, Belief(cloud, cloud, state, 0.9, 1.0), state, np.zeros(2), foot, state[SIZE])
+    return TrackedPerson(1, 0.0, Belief(cloud, cloud, state, 0.9, 1.0), state, np.zeros(2), foot, state[SIZE])
 
 
 @given(distance_m=st.floats(2, 12), advance_m=st.floats(-0.1, 0.1))

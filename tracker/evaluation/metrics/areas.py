@@ -8,7 +8,7 @@ import numpy as np
 from peopleboy.tracker.evaluation.association import Pairs
 from peopleboy.tracker.evaluation.boxes import Floats, area, cover, intersection
 from peopleboy.tracker.evaluation.metrics.sums import Sums, percent, sum_by
-from peopleboy.tracker.evaluation.sequence import Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class AreaSums(Sums):
     of_both: float
 
     @classmethod
-    def over(cls, truth: Truth, tracks: Tracks, pairs: Pairs, matched: Ints) -> Self:
+    def over(cls, truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs, matched: Ints) -> Self:
         """Sum up the sequence whose matched pairs are the rows (M,) of `pairs`."""
         target, candidate = pairs.target[matched], pairs.candidate[matched]
         shared = intersection(truth.box[target], tracks.box[candidate])  # (M,)
@@ -63,7 +63,7 @@ class AreaSums(Sums):
         return percent(self.of_both, self.targets + self.candidates)
 
 
-def _sum_dice(truth: Truth, tracks: Tracks, shared_frame: Ints, shared: Floats) -> float:
+def _sum_dice(truth: TrueBoxes, tracks: TrackBoxes, shared_frame: Ints, shared: Floats) -> float:
     """Sum the frames' Dice coefficients of areas, each times the number of boxes in its frame."""
     box_frame = np.concatenate([truth.frame, tracks.frame])
     box_area = np.concatenate([area(truth.box), area(tracks.box)])

@@ -9,7 +9,7 @@ from scipy.optimize import linear_sum_assignment
 from peopleboy.tracker.evaluation.association import GATE, Pairs
 from peopleboy.tracker.evaluation.boxes import Floats
 from peopleboy.tracker.evaluation.metrics.sums import Sums, percent
-from peopleboy.tracker.evaluation.sequence import Bools, Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import Bools, Ints, TrackBoxes, TrueBoxes
 
 ROUNDING = float(np.finfo(np.float64).eps)
 KEPT = 1000.0  # a kept identity outweighs any overlap
@@ -40,7 +40,7 @@ class Clear(Sums):
     overlap: float
 
     @classmethod
-    def over(cls, truth: Truth, tracks: Tracks, pairs: Pairs) -> Self:
+    def over(cls, truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> Self:
         """Match one sequence frame after frame."""
         person, rows = truth.number_ids()
         track, _ = tracks.number_ids()

@@ -9,7 +9,7 @@ import numpy as np
 from peopleboy.tracker.evaluation.association import Pairs, assign
 from peopleboy.tracker.evaluation.boxes import Floats, cover
 from peopleboy.tracker.evaluation.metrics.sums import Sums, sum_by
-from peopleboy.tracker.evaluation.sequence import Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 
 ALPHAS = np.arange(0.05, 0.99, 0.05)  # (19,) IoU that a match needs
 ROUNDING = float(np.finfo(np.float64).eps)
@@ -42,7 +42,7 @@ class Hota(Sums):
         self.association.setflags(write=False)
 
     @classmethod
-    def over(cls, truth: Truth, tracks: Tracks, pairs: Pairs) -> Self:
+    def over(cls, truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> Self:
         """Match one sequence at all thresholds."""
         key, present = _pair_ids(truth, tracks, pairs)  # (P,), (K,)
         common = sum_by(key, _share(pairs, len(truth), len(tracks)), len(present))
@@ -84,7 +84,7 @@ class Hota(Sums):
         return 100.0 * float(by_alpha.mean()) if self.targets + self.candidates else math.nan
 
 
-def _pair_ids(truth: Truth, tracks: Tracks, pairs: Pairs) -> tuple[Ints, Floats]:
+def _pair_ids(truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> tuple[Ints, Floats]:
     """Number the combinations of person and track that ever share a frame.
 
     Returns:

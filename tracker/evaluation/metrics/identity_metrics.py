@@ -8,7 +8,7 @@ from scipy.optimize import linear_sum_assignment
 
 from peopleboy.tracker.evaluation.association import GATE, Pairs
 from peopleboy.tracker.evaluation.metrics.sums import Sums, percent
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Identity(Sums):
     matches: int
 
     @classmethod
-    def over(cls, truth: Truth, tracks: Tracks, pairs: Pairs) -> Self:
+    def over(cls, truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> Self:
         """Pair persons with tracks over one sequence."""
         person, of_person = truth.number_ids()
         track, of_track = tracks.number_ids()

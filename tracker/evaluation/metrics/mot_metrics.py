@@ -11,7 +11,7 @@ from peopleboy.tracker.evaluation.metrics.clear import Clear
 from peopleboy.tracker.evaluation.metrics.hota import Hota
 from peopleboy.tracker.evaluation.metrics.identity_metrics import Identity
 from peopleboy.tracker.evaluation.metrics.sums import Sums
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,7 +23,7 @@ class MotMetrics(Sums):
     hota: Hota
 
 
-def measure_mot(truth: Truth, tracks: Tracks, pairs: Pairs) -> MotMetrics:
+def measure_mot(truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> MotMetrics:
     """Sum up one sequence."""
     return MotMetrics(
         clear=Clear.over(truth, tracks, pairs),

@@ -21,7 +21,7 @@ from scipy.optimize import linear_sum_assignment
 from peopleboy.tracker.evaluation.association import Pairs, associate
 from peopleboy.tracker.evaluation.metrics.areas import AreaSums
 from peopleboy.tracker.evaluation.metrics.sums import Sums, percent, sum_by
-from peopleboy.tracker.evaluation.sequence import Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class RangeSums(Sums):
     common: int
 
     @classmethod
-    def over(cls, truth: Truth, tracks: Tracks, pairs: Pairs) -> Self:
+    def over(cls, truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> Self:
         """Pair the ranges of one sequence and sum up."""
         target, of_target = truth.number_ids()
         candidate, of_candidate = tracks.number_ids()
@@ -108,7 +108,7 @@ class PaperMetrics(Sums):
         return self.areas.accuracy
 
 
-def measure_paper(truth: Truth, tracks: Tracks, pairs: Pairs) -> PaperMetrics:
+def measure_paper(truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> PaperMetrics:
     """Sum up one sequence."""
     targets = np.diff(pairs.start) // pairs.width
     return PaperMetrics(

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from peopleboy.tracker.evaluation.association import Pairs
 from peopleboy.tracker.evaluation.metrics.areas import AreaSums
 from peopleboy.tracker.evaluation.metrics.sums import Sums, percent
-from peopleboy.tracker.evaluation.sequence import Ints, Tracks, Truth
+from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +57,6 @@ class ThesisMetrics(Sums):
         return self.areas.accuracy
 
 
-def measure_thesis(truth: Truth, tracks: Tracks, pairs: Pairs, matched: Ints) -> ThesisMetrics:
+def measure_thesis(truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs, matched: Ints) -> ThesisMetrics:
     """Sum up one sequence, whose correct detections are the rows `matched` (M,) of the pairs."""
     return ThesisMetrics(len(matched), AreaSums.over(truth, tracks, pairs, matched))

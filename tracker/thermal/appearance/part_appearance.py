@@ -12,7 +12,7 @@ from peopleboy.tracker.thermal.appearance.colour_config import SAME_VIEW, Colour
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
 from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangles
-from peopleboy.tracker.thermal.config import LooksConfig
+from peopleboy.tracker.thermal.config import AppearanceConfig
 from peopleboy.tracker.thermal.filter.particles import Floats
 from peopleboy.tracker.thermal.interaction import Regions
 
@@ -20,7 +20,7 @@ HIDDEN_PART = 0.3  # share of a part behind others from which its colour is not 
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LooksView:
+class AppearanceView:
     """One frame as far as people's looks are concerned.
 
     Attributes:
@@ -35,7 +35,9 @@ class LooksView:
     scale: Floats
 
     @classmethod
-    def build(cls, image: NDArray[np.uint8], colour: ColourView | None, config: LooksConfig) -> LooksView:
+    def build(
+        cls, image: NDArray[np.uint8], colour: ColourView | None, config: AppearanceConfig
+    ) -> AppearanceView:
         """Prepare a thermal image (H, W), and the colour image if there is one."""
         light = 0.0 if colour is None else float(colour.picture[::8, ::8].mean())
         alignment = Alignment.build(image.shape, image.shape, ColourConfig(affine=SAME_VIEW))
@@ -77,7 +79,7 @@ def are_hidden(state: Floats, hiding: Regions) -> NDArray[np.bool_]:
     return hidden
 
 
-def _scale(light: float, config: LooksConfig) -> Floats:
+def _scale(light: float, config: AppearanceConfig) -> Floats:
     """Divide by what one person's looks differ from frame to frame, and colours by the light."""
     scale = np.empty((PARTS, 4), dtype=np.float32)
     scale[:, :3] = config.brightness / max(light, 1.0) / np.array(config.colour_spread)[:, None]

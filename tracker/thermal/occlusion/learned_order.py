@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.occlusion.depth_order import Figure
+from peopleboy.tracker.thermal.occlusion.depth_order import ExpectedPerson
 from peopleboy.tracker.thermal.occlusion.learned_table import TABLES, LearnedTable
 from peopleboy.tracker.thermal.occlusion.pair_features import (
     FEATURES,
@@ -19,7 +19,7 @@ from peopleboy.tracker.thermal.occlusion.pair_features import (
     pair_features,
 )
 from peopleboy.tracker.thermal.occlusion.visibility import appearance
-from peopleboy.tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.particle_filter import FrameView
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,11 +67,11 @@ class LearnedOrder:
         """
         return (self.votes(features) - self.votes(-features)) / 2
 
-    def __call__(self, one: Figure, other: Figure, view: View) -> float:
+    def __call__(self, one: ExpectedPerson, other: ExpectedPerson, view: FrameView) -> float:
         """Compare two people: positive if the one is in front, negative if the other is."""
         return float(self._leads((one, other), np.array([[0, 1]]), view)[0])
 
-    def leads(self, figures: Sequence[Figure], view: View) -> Features:
+    def leads(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Features:
         """Compare all people (M,) whose boxes overlap: the lead (M, M) of the row's over the column's.
 
         All pairs at once cost hardly more than one. `sorted_by_lead` makes an order of it.
@@ -81,11 +81,11 @@ class LearnedOrder:
         leads[pairs[:, 0], pairs[:, 1]] = self._leads(figures, pairs, view)
         return leads - leads.T
 
-    def _leads(self, figures: Sequence[Figure], pairs: Pairs, view: View) -> Features:
+    def _leads(self, figures: Sequence[ExpectedPerson], pairs: Pairs, view: FrameView) -> Features:
         return self.lead(features_of(figures, pairs, view))
 
 
-def features_of(figures: Sequence[Figure], pairs: Pairs, view: View) -> Features:
+def features_of(figures: Sequence[ExpectedPerson], pairs: Pairs, view: FrameView) -> Features:
     """Measure the features (P, 6) of pairs (P, 2) among people (M,)."""
     states = np.array([figure.state for figure in figures])
     models = [appearance(figure.person) for figure in figures]

@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
 from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.appearance.part_appearance import LooksView
+from peopleboy.tracker.thermal.appearance.part_appearance import AppearanceView
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.contour.coverage import body_share, head_share, seen_shares
 from peopleboy.tracker.thermal.filter.particles import FOOT, VX, VY, D, Floats, H, W, X, Y, equally_weighted
 from peopleboy.tracker.thermal.interaction import overlap_shares, regions_of
 from peopleboy.tracker.thermal.life import is_kept
-from peopleboy.tracker.thermal.occlusion.visibility import CLEAR, Scene, look_at
-from peopleboy.tracker.thermal.particle_filter import Belief, View
+from peopleboy.tracker.thermal.occlusion.visibility import CLEAR, Surroundings, look_at
+from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
 from peopleboy.tracker.thermal.smoothing import smoothed
-from peopleboy.tracker.thermal.tracked_person import SIZE, Person, approached, moved_on
+from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson, approached, moved_on
 from peopleboy.tracker.track import Status
 
 VELOCITY_S = 0.4  # time constant of the velocity with which a hidden person walks on
@@ -31,57 +31,69 @@ HIDDEN_BODY = 0.4  # least share of the contour by which a person with a covered
 
 
 def judge(
-    person: Person, belief: Belief, scene: Scene, view: View, config: TrackerConfig, rng: np.random.Generator
-) -> Person:
+    person: TrackedPerson,
+    belief: Belief,
+    surroundings: Surroundings,
+    view: FrameView,
+    config: TrackerConfig,
+    rng: np.random.Generator,
+) -> TrackedPerson:
     """Tell how well a person is seen, and learn from it what may be learnt."""
     if config.occlusion.keeps_velocity:
         person = approached(person, view)
-        return _judge_walking(person, belief, scene, view, config, rng)
-    if scene.front:
-        shares = seen_shares(scene.image, belief.estimate, view.model.probes)
+        return _judge_walking(person, belief, surroundings, view, config, rng)
+    if surroundings.front:
+        shares = seen_shares(surroundings.image, belief.estimate, view.model.probes)
         if head_share(shares) <= 1 - config.occlusion.head_covered:
-            return _behind(person, belief, scene, view, config)
-    return _seen(person, belief, scene, view, config)
+            return _behind(person, belief, surroundings, view, config)
+    return _seen(person, belief, surroundings, view, config)
 
 
-def _behind(person: Person, belief: Belief, scene: Scene, view: View, config: TrackerConfig) -> Person:
+def _behind(
+    person: TrackedPerson, belief: Belief, surroundings: Surroundings, view: FrameView, config: TrackerConfig
+) -> TrackedPerson:
     """Suppose a hidden person where its occluder is (thesis, section 7.3)."""
-    occluder = main_occluder(belief, scene.front, config)
+    occluder = main_occluder(belief, surroundings.front, config)
     return replace(_hidden(person, view), belief=belief, shown=occluder.shown, occluder=occluder.id)
 
 
 def _judge_walking(
-    person: Person, belief: Belief, scene: Scene, view: View, config: TrackerConfig, rng: np.random.Generator
-) -> Person:
+    person: TrackedPerson,
+    belief: Belief,
+    surroundings: Surroundings,
+    view: FrameView,
+    config: TrackerConfig,
+    rng: np.random.Generator,
+) -> TrackedPerson:
     """Judge by what is in view; who is hidden walks on, and is seen again once most of it is."""
-    sight = look_at(person, belief, scene, view, config)
-    occluder = main_occluder(belief, scene.front, config).id if scene.front else None
+    visibility = look_at(person, belief, surroundings, view, config)
+    occluder = main_occluder(belief, surroundings.front, config).id if surroundings.front else None
     if person.is_hidden:
-        if sight.is_clear and sight.confidence > config.life.birth_confidence:
-            return _seen(person, belief, scene, view, config)
-        missing = person.missing + (sight.head > CLEAR)
-        shown = _supposed(person, belief, scene, view, config)
+        if visibility.is_clear and visibility.confidence > config.life.birth_confidence:
+            return _seen(person, belief, surroundings, view, config)
+        missing = person.missing + (visibility.head > CLEAR)
+        shown = _supposed(person, belief, surroundings, view, config)
         return replace(
             _hidden(person, view),
             belief=belief,
             shown=shown,
             missing=missing,
             occluder=occluder,
-            is_behind=_is_behind(shown, scene, view),
+            is_behind=_is_behind(shown, surroundings, view),
         )
-    is_covered = sight.head <= 1 - config.occlusion.head_covered and sight.body < HIDDEN_BODY
-    seen = _seen(person, belief, scene, view, config)
+    is_covered = visibility.head <= 1 - config.occlusion.head_covered and visibility.body < HIDDEN_BODY
+    seen = _seen(person, belief, surroundings, view, config)
     is_lost = config.occlusion.remembers_lost and seen.missing >= config.occlusion.lost_frames
-    if (scene.front and is_covered) or (is_lost and person.is_settled):
+    if (surroundings.front and is_covered) or (is_lost and person.is_settled):
         return walking_on(replace(_hidden(seen, view), occluder=occluder), rng)
     return seen
 
 
 def _supposed(
-    person: Person, belief: Belief, scene: Scene, view: View, config: TrackerConfig
+    person: TrackedPerson, belief: Belief, surroundings: Surroundings, view: FrameView, config: TrackerConfig
 ) -> NDArray[np.float64]:
     """Suppose where a hidden person is (9,): it walks on, as tall as it was, on the floor where it was."""
-    if scene.front:
+    if surroundings.front:
         shown = smoothed(person.shown, belief.estimate, view, config.smoothing)
     else:
         shown = moved_on(person.shown, view)
@@ -93,14 +105,14 @@ def _supposed(
     return shown
 
 
-def _is_behind(state: NDArray[np.float64], scene: Scene, view: View) -> bool:
+def _is_behind(state: NDArray[np.float64], surroundings: Surroundings, view: FrameView) -> bool:
     """Tell whether people in front explain why a person with this state (9,) is not seen."""
-    if not scene.front:
+    if not surroundings.front:
         return False
-    return body_share(seen_shares(scene.image, state, view.model.probes)) < HIDDEN_BODY
+    return body_share(seen_shares(surroundings.image, state, view.model.probes)) < HIDDEN_BODY
 
 
-def _hidden(person: Person, view: View) -> Person:
+def _hidden(person: TrackedPerson, view: FrameView) -> TrackedPerson:
     return replace(
         person,
         status=Status.TOTALLY_OCCLUDED,
@@ -110,9 +122,11 @@ def _hidden(person: Person, view: View) -> Person:
     )
 
 
-def _seen(person: Person, belief: Belief, scene: Scene, view: View, config: TrackerConfig) -> Person:
+def _seen(
+    person: TrackedPerson, belief: Belief, surroundings: Surroundings, view: FrameView, config: TrackerConfig
+) -> TrackedPerson:
     missing = 0 if is_kept(belief, view, config.life) else person.missing + 1
-    status = Status.PARTLY_OCCLUDED if scene.front else Status.TRACKED
+    status = Status.PARTLY_OCCLUDED if surroundings.front else Status.TRACKED
     shown = smoothed(person.shown, belief.estimate, view, config.smoothing)
     if missing > 0 and config.occlusion.keeps_velocity:
         shown = moved_on(np.concatenate([person.shown[:VX], person.velocity, (0.0, 0.0)]), view)
@@ -121,13 +135,13 @@ def _seen(person: Person, belief: Belief, scene: Scene, view: View, config: Trac
         belief=belief,
         shown=shown,
         status=Status.TENTATIVE if missing >= config.life.doubt_frames else status,
-        occluder=main_occluder(belief, scene.front, config).id if scene.front else None,
-        is_behind=bool(scene.front),
+        occluder=main_occluder(belief, surroundings.front, config).id if surroundings.front else None,
+        is_behind=bool(surroundings.front),
         missing=missing,
         hidden_frames=0,
         hidden_s=0.0,
     )
-    if missing > 0 or scene.front:
+    if missing > 0 or surroundings.front:
         return moved
     before = moved_on(person.belief.estimate, replace(view, dt_s=0.0))
     speed = (belief.estimate[[X, Y]] - before[[X, Y]]) / view.dt_s
@@ -140,7 +154,9 @@ def _seen(person: Person, belief: Belief, scene: Scene, view: View, config: Trac
     )
 
 
-def learn(person: Person, state: NDArray[np.float64], view: View, config: TrackerConfig) -> Person:
+def learn(
+    person: TrackedPerson, state: NDArray[np.float64], view: FrameView, config: TrackerConfig
+) -> TrackedPerson:
     """Remember what a person looks like who is seen whole.
 
     Source: thesis, sections 6.1.3 and 7.4, by which the model is not updated during occlusions.
@@ -151,12 +167,12 @@ def learn(person: Person, state: NDArray[np.float64], view: View, config: Tracke
     return replace(
         person,
         colour=_updated(person.colour, view.colour, rows, config.colour),
-        looks=_updated(person.looks, view.looks, rows, config.colour),
+        appearance=_updated(person.appearance, view.appearance, rows, config.colour),
     )
 
 
 def _updated(
-    model: ColourModel | None, source: ColourView | LooksView | None, rows: Floats, config: ColourConfig
+    model: ColourModel | None, source: ColourView | AppearanceView | None, rows: Floats, config: ColourConfig
 ) -> ColourModel | None:
     if source is None:
         return model
@@ -164,7 +180,7 @@ def _updated(
     return ColourModel.begin(features, config) if model is None else model.updated(features)
 
 
-def walking_on(person: Person, rng: np.random.Generator) -> Person:
+def walking_on(person: TrackedPerson, rng: np.random.Generator) -> TrackedPerson:
     """Start the samples of a person who has just been hidden from where it is shown, with its velocity."""
     shown = person.shown.copy()
     shown[VX:] = [*person.velocity, 0.0, 0.0]
@@ -177,7 +193,7 @@ def walking_on(person: Person, rng: np.random.Generator) -> Person:
     return replace(person, belief=replace(person.belief, particles=cloud), shown=shown)
 
 
-def main_occluder(belief: Belief, front: Sequence[Person], config: TrackerConfig) -> Person:
+def main_occluder(belief: Belief, front: Sequence[TrackedPerson], config: TrackerConfig) -> TrackedPerson:
     """Find the one of those in front who covers most of a person."""
     regions = regions_of([person.belief.estimate for person in front], config)
     shares = overlap_shares(belief.estimate.astype(np.float32)[None], regions, config)[0]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, squared_distances
 from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangles
 from peopleboy.tracker.thermal.filter.particles import Floats, H, W, X, Y
-from peopleboy.tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.particle_filter import FrameView
 
 FEATURES = ("strength", "top", "bottom", "colour", "colour_o", "colour_no")
 """Table 7.3's names: of the filter, the contour, and the colours of all, the shared and the other area."""
@@ -28,7 +28,7 @@ def pair_features(
     state: NDArray[np.floating],
     models: Sequence[ColourModel | None],
     pairs: Pairs,
-    view: View,
+    view: FrameView,
     feet: Sequence[float] | None = None,
 ) -> Features:
     """Measure the features of pairs of people: the one's minus the other's.
@@ -57,27 +57,29 @@ def pair_features(
     alone = np.stack([_strength(people, view), top, bottom], axis=1)
     result = np.zeros((len(pairs), len(FEATURES)))
     result[:, :3] = alone[pairs[:, 0]] - alone[pairs[:, 1]]
-    if len(pairs) > 0 and (view.looks is not None or view.colour is not None):
+    if len(pairs) > 0 and (view.appearance is not None or view.colour is not None):
         both_ways = np.concatenate([pairs, pairs[:, ::-1]])
         one, other = np.split(_similarities(people, models, both_ways, view), 2)
         result[:, 3:] = np.nan_to_num(one - other)
     return result
 
 
-def _strength(people: Floats, view: View) -> Features:
+def _strength(people: Floats, view: FrameView) -> Features:
     """Measure the mean gradient (M,) along the contours, f of equation 4.3."""
     differences = view.model.differences(view.image, people)
     return differences.astype(np.float64) @ view.model.weights
 
 
-def _ends(people: Floats, view: View) -> tuple[Features, Features]:
+def _ends(people: Floats, view: FrameView) -> tuple[Features, Features]:
     """Give the rows (M,) of heads and feet in image heights."""
     y, h = people[:, Y].astype(np.float64), people[:, H]
     rows = view.image.shape[0]
     return (y + HEAD_TOP * h) / rows, (y + FEET * h) / rows
 
 
-def _similarities(people: Floats, models: Sequence[ColourModel | None], pairs: Pairs, view: View) -> Features:
+def _similarities(
+    people: Floats, models: Sequence[ColourModel | None], pairs: Pairs, view: FrameView
+) -> Features:
     """Compare the first of each pair with its model (P, 3): all of it, what the other overlaps, the rest."""
     one, other = people[pairs[:, 0]], people[pairs[:, 1]]
     parts, height = part_rectangles(one), one[:, H]
@@ -97,17 +99,17 @@ def _similarities(people: Floats, models: Sequence[ColourModel | None], pairs: P
     return result
 
 
-def _described(view: View, areas: Floats, height: Floats, holes: Floats | None = None) -> Floats:
+def _described(view: FrameView, areas: Floats, height: Floats, holes: Floats | None = None) -> Floats:
     """Describe areas (P, 3, 4) of people, (P, F), as the tracker describes people as a whole."""
-    if view.looks is None:
+    if view.appearance is None:
         assert view.colour is not None
         return view.colour.describe_rectangles(areas, height, holes)
     each = np.full((len(areas), PARTS, 4), np.nan, dtype=np.float32)
-    if view.looks.colour is not None:
-        colours = view.looks.colour.describe_rectangles(areas, height, holes)
+    if view.appearance.colour is not None:
+        colours = view.appearance.colour.describe_rectangles(areas, height, holes)
         each[..., :3] = colours.reshape(len(areas), PARTS, 3, -1)[..., 0]
-    each[..., 3] = view.looks.thermal.describe_rectangles(areas, height, holes)
-    return (each * view.looks.scale).reshape(len(areas), -1)
+    each[..., 3] = view.appearance.thermal.describe_rectangles(areas, height, holes)
+    return (each * view.appearance.scale).reshape(len(areas), -1)
 
 
 def boxes(people: Floats) -> Floats:

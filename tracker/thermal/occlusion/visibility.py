@@ -16,8 +16,8 @@ from peopleboy.tracker.thermal.contour.coverage import body_share, head_share, s
 from peopleboy.tracker.thermal.contour.likelihood import probability
 from peopleboy.tracker.thermal.filter.particles import Floats, H
 from peopleboy.tracker.thermal.interaction import overlap_shares, regions_of
-from peopleboy.tracker.thermal.particle_filter import Belief, View
-from peopleboy.tracker.thermal.tracked_person import Person
+from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
+from peopleboy.tracker.thermal.tracked_person import TrackedPerson
 
 CLEAR = 0.5  # share of head and body in view from which a hidden person may be seen again
 
@@ -25,7 +25,7 @@ CLAIMED = 0.5  # share of its region that another person must have left free
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Scene:
+class Surroundings:
     """The others, as one person's filter sees them.
 
     Attributes:
@@ -35,7 +35,7 @@ class Scene:
         image: (H, W) with the people in front marked as covered.
     """
 
-    front: tuple[Person, ...]
+    front: tuple[TrackedPerson, ...]
     others: Floats
     strength: NDArray[np.float64]
     image: NDArray[np.uint8]
@@ -47,7 +47,7 @@ class Scene:
 
 
 @dataclass(frozen=True, slots=True)
-class Sight:
+class Visibility:
     """What can be seen of a person at its estimate.
 
     Attributes:
@@ -70,33 +70,39 @@ class Sight:
         return min(self.head, self.body) > CLEAR and self.is_alike and self.is_free
 
 
-def look_at(person: Person, belief: Belief, scene: Scene, view: View, config: TrackerConfig) -> Sight:
+def look_at(
+    person: TrackedPerson, belief: Belief, surroundings: Surroundings, view: FrameView, config: TrackerConfig
+) -> Visibility:
     """Judge a person by what is in view of it alone."""
     rows = belief.estimate.astype(np.float32)[None]
-    image = scene.image if scene.front else view.image
-    shares = seen_shares(image, belief.estimate, view.model.probes) if scene.front else np.ones(SECTIONS)
-    differences = view.model.differences(image, rows, 0.0 if scene.front else None)
+    image = surroundings.image if surroundings.front else view.image
+    shares = (
+        seen_shares(image, belief.estimate, view.model.probes) if surroundings.front else np.ones(SECTIONS)
+    )
+    differences = view.model.differences(image, rows, 0.0 if surroundings.front else None)
     seen = float(shares @ view.model.weights)
     fit = differences[0] @ view.model.weights / max(seen, 1e-3)
     chance = float(probability(np.array([fit], dtype=np.float32), config.likelihood)[0])
-    model, features = appearance(person), describe(rows, scene.front, view, config)
+    model, features = appearance(person), describe(rows, surroundings.front, view, config)
     away = np.nan
     if model is not None and features is not None:
         away = float(squared_distances(features, model)[0])
     growth = abs(np.log(max(belief.estimate[H], 1.0) / max(person.shown[H], 1.0)))
     is_alike = growth < config.occlusion.size_gate and not away > config.occlusion.colour_gate
-    is_free = not (overlap_shares(rows, scene.rivals, config) > CLAIMED).any()
-    return Sight(head_share(shares), body_share(shares), chance, is_free, is_alike)
+    is_free = not (overlap_shares(rows, surroundings.rivals, config) > CLAIMED).any()
+    return Visibility(head_share(shares), body_share(shares), chance, is_free, is_alike)
 
 
-def appearance(person: Person) -> ColourModel | None:
+def appearance(person: TrackedPerson) -> ColourModel | None:
     """Give what a person's samples are compared with."""
-    return person.colour if person.looks is None else person.looks
+    return person.colour if person.appearance is None else person.appearance
 
 
-def describe(state: Floats, front: Sequence[Person], view: View, config: TrackerConfig) -> Floats | None:
+def describe(
+    state: Floats, front: Sequence[TrackedPerson], view: FrameView, config: TrackerConfig
+) -> Floats | None:
     """Describe people (N, 9) as their models do, (N, F); NaN for parts that people in front hide."""
-    source = view.colour if view.looks is None else view.looks
+    source = view.colour if view.appearance is None else view.appearance
     if source is None:
         return None
     hiding = regions_of([other.belief.estimate for other in front], config)

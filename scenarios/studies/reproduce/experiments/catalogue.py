@@ -10,7 +10,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
 from peopleboy.scenarios.studies.reproduce.experiments.timing import TIMINGS
-from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, Tracking, Trial
+from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, TrackerTrial, Tracking
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting, Value
 from peopleboy.tracker.evaluation.uncounted import Rule
 from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
@@ -30,7 +30,7 @@ def _per_suite(number: str, suites: Sequence[str], literal: str) -> Tracking:
         (OURS, "peopleboy", "ignore"),
     )
     trials = (
-        Trial(Line(suite, who), Setting(base), (suite,), rule)
+        TrackerTrial(Line(suite, who), Setting(base), (suite,), rule)
         for suite in suites
         for who, base, rule in kinds
     )
@@ -48,7 +48,7 @@ def _sweep(
 ) -> Tracking:
     """Change one number; `values` gives it by the name that the source has for it."""
     trials = (
-        Trial(
+        TrackerTrial(
             Line(name, who), Setting(base, tuple((p, value) for p in paths)), suites, "ignore", name in quick
         )
         for name, value in values.items()
@@ -147,7 +147,7 @@ _STEPS = {"thermal": "thermal", "thermal + colour": "colour", "thermal + colour 
 def _chapters(number: str, groups: Iterable[str]) -> Tracking:
     """Compare thermal alone, with colour, and with occlusion handling."""
     trials = (
-        Trial(Line(group, who), Setting(base), SEVERAL)
+        TrackerTrial(Line(group, who), Setting(base), SEVERAL)
         for group in groups
         for who, base in ((LITERAL, f"thesis-{_STEPS[group]}"), (OURS, _ours(_STEPS[group])))
     )
@@ -163,7 +163,7 @@ def _colours(
 ) -> Tracking:
     """Compare ways to describe colours; None is no colour at all."""
     trials = (
-        Trial(
+        TrackerTrial(
             Line(name, who),
             Setting(thermal) if changes is None else Setting(colour, changes),
             SEVERAL,
@@ -201,9 +201,9 @@ _SPACES: dict[str, Changes | None] = {
 
 def _paper_figure_5() -> Tracking:
     trials = (
-        Trial(Line("several persons", LITERAL), Setting("paper-several"), SEVERAL),
-        Trial(Line("several persons", STRICT), Setting("paper-several"), SEVERAL, "absent"),
-        Trial(Line("several persons", OURS), Setting("peopleboy"), SEVERAL),
+        TrackerTrial(Line("several persons", LITERAL), Setting("paper-several"), SEVERAL),
+        TrackerTrial(Line("several persons", STRICT), Setting("paper-several"), SEVERAL, "absent"),
+        TrackerTrial(Line("several persons", OURS), Setting("peopleboy"), SEVERAL),
     )
     return Tracking("paper-figure-5", PAPER, trials, "bars", PAPER)
 

@@ -20,7 +20,7 @@ PAPER = ("OC", "DC", "OCR", "OCP", "OCA", "OAR", "BAP", "ADC")
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
+class TrackerTrial:
     """A tracker on some data sets.
 
     Attributes:
@@ -57,7 +57,7 @@ class Tracking:
 
     id: str
     metrics: tuple[str, ...]
-    trials: tuple[Trial, ...]
+    trials: tuple[TrackerTrial, ...]
     chart: Chart = "bars"
     plotted: tuple[str, ...] = ()
 
@@ -75,7 +75,7 @@ class Tracking:
         """Add up the runs of each repeat, and take the metrics of the sums."""
         return {trial.line: self._figures(trial, plan, done) for trial in self._trials(plan)}
 
-    def _trials(self, plan: Plan) -> list[Trial]:
+    def _trials(self, plan: Plan) -> list[TrackerTrial]:
         return [trial for trial in self.trials if trial.is_quick or not plan.is_quick]
 
     def _units(self, plan: Plan) -> Iterator[TrackUnit]:
@@ -83,7 +83,7 @@ class Tracking:
             for trial in self._trials(plan):
                 yield from units_of(trial, plan, repeat)
 
-    def _figures(self, trial: Trial, plan: Plan, done: Done) -> dict[str, NDArray[np.float64]]:
+    def _figures(self, trial: TrackerTrial, plan: Plan, done: Done) -> dict[str, NDArray[np.float64]]:
         rows = []
         for repeat in range(plan.repeats):
             sums = add_up([done[unit.key][trial.rule] for unit in units_of(trial, plan, repeat)])
@@ -91,7 +91,7 @@ class Tracking:
         return dict(zip(self.metrics, np.array(rows).T, strict=True))
 
 
-def units_of(trial: Trial, plan: Plan, repeat: int) -> list[TrackUnit]:
+def units_of(trial: TrackerTrial, plan: Plan, repeat: int) -> list[TrackUnit]:
     """List the work of one repeat of a trial."""
     return [
         TrackUnit(play, plan.cache, trial.setting_in(plan), repeat)

@@ -16,7 +16,7 @@ from peopleboy.scenarios.studies.reproduce.measuring.units import play_key
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.association import GATE
 from peopleboy.tracker.evaluation.boxes import iou
-from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import Tracker
 
@@ -68,7 +68,7 @@ class DelayUnit:
         return {"starts": len(starts), "needed": needed}
 
 
-def plain_starts(truth: Truth) -> Iterator[int]:
+def plain_starts(truth: TrueBoxes) -> Iterator[int]:
     """Give frames from which on exactly one person is there, counted and in plain view, for long enough."""
     people = np.bincount(truth.frame, minlength=truth.last_frame + 1)
     plain = np.bincount(truth.frame[truth.counted & (truth.visible > PLAIN)], minlength=len(people))

@@ -69,7 +69,7 @@ def milliseconds(work: Callable[[], object], steps: int) -> float:
 
 def time_steps(setting: Setting, steps: int) -> Milliseconds:
     """Time the steps of one filter with 1000 samples (thesis, table 4.1)."""
-    config = replace(setting.config(), colour=None, looks=None)
+    config = replace(setting.config(), colour=None, appearance=None)
     person, rng = replace(config.person, count=COUNT), stream(0, "reproduce.timing")
     view = view_frame(frame_of(1), 1 / 15, ContourModel.build(SHAPE, config.contour), config)
     belief = begin(view, person, config, rng)
@@ -154,7 +154,7 @@ def time_colours(setting: Setting, steps: int) -> Milliseconds:
 
 
 def _time_colour(config: TrackerConfig, colour: ColourConfig | None, steps: int) -> float:
-    config = replace(config, colour=None, looks=None)
+    config = replace(config, colour=None, appearance=None)
     person, rng = replace(config.person, count=COUNT), stream(0, "reproduce.timing")
     frame = frame_of(1)
     view = view_frame(frame, 1 / 15, ContourModel.build(SHAPE, config.contour), config)

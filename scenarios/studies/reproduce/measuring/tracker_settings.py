@@ -28,10 +28,10 @@ BASES: Mapping[str, TrackerConfig] = {
     "thesis-occlusion": THESIS_OCCLUSION,
     "paper-several": PAPER,
     "peopleboy": PEOPLEBOY,
-    "peopleboy-thermal": replace(PEOPLEBOY, colour=None, looks=None, occlusion=_OPEN),
+    "peopleboy-thermal": replace(PEOPLEBOY, colour=None, appearance=None, occlusion=_OPEN),
     "peopleboy-colour": replace(PEOPLEBOY, occlusion=_OPEN),
     # The default's contour with the thesis's colour model, whose descriptions can be exchanged.
-    "peopleboy-moments": replace(PEOPLEBOY, colour=THESIS_COLOUR.colour, looks=None, occlusion=_OPEN),
+    "peopleboy-moments": replace(PEOPLEBOY, colour=THESIS_COLOUR.colour, appearance=None, occlusion=_OPEN),
 }
 """Every tracker that the sources report on, and the default with as much as each of them."""
 

@@ -20,7 +20,7 @@ from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
 from peopleboy.tracker.evaluation.metrics.sums import Sums
 from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics
-from peopleboy.tracker.evaluation.sequence import Tracks
+from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.evaluation.uncounted import Rule
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import Tracker
@@ -108,7 +108,7 @@ def play_key(play: SuiteRun) -> str:
     return f"{play.name} {play.scenario.duration_s:g}s"
 
 
-def track_film(shot: Film, tracker: Tracker) -> Tracks:
+def track_film(shot: Film, tracker: Tracker) -> TrackBoxes:
     """Let a tracker see a film; who is only tentative is not yet claimed."""
     rows = [
         (number, track.id, track.box, track.confidence)
@@ -117,7 +117,7 @@ def track_film(shot: Film, tracker: Tracker) -> Tracks:
         if track.status is not Status.TENTATIVE
     ]
     frame, identity, box, confidence = zip(*rows, strict=True) if rows else ((), (), (), ())
-    return Tracks(
+    return TrackBoxes(
         frame=np.array(frame, dtype=np.int64),
         id=np.array(identity, dtype=np.int64),
         box=np.array(box, dtype=np.float64).reshape(-1, 4),

@@ -20,7 +20,7 @@ BLIND = 5.0  # [%] below which both figures say only that nobody is found
 Floats = NDArray[np.float64]
 
 
-class Outcome(StrEnum):
+class ClaimStatus(StrEnum):
     """How a claim fares."""
 
     HOLDS = "holds"
@@ -45,7 +45,7 @@ class Verdict:
     first: float
     second: float
     p: float
-    outcome: Outcome
+    outcome: ClaimStatus
 
     @property
     def by(self) -> float:
@@ -79,25 +79,25 @@ def _verdict(claim: Claim, who: str, one: Floats, other: Floats) -> Verdict:
     p = paired_t_test(one, other)
     first, second = float(one.mean()), float(other.mean())
     if np.isnan(first - second):
-        outcome = Outcome.UNKNOWN
+        outcome = ClaimStatus.UNKNOWN
     elif max(first, second) < BLIND:
-        outcome = Outcome.BLIND
+        outcome = ClaimStatus.BLIND
     else:
         outcome = _outcome(claim, first - second, p)
     return Verdict(who, first, second, p, outcome)
 
 
-def _outcome(claim: Claim, by: float, p: float) -> Outcome:
+def _outcome(claim: Claim, by: float, p: float) -> ClaimStatus:
     """Compare a difference with a claim; where the source tests, ours has to be significant as well."""
     is_clear = p < SIGNIFICANT or not claim.tested
     if claim.expect in ("alike", "no less"):
         if by >= -ALIKE and (by <= ALIKE or claim.expect == "no less"):
-            return Outcome.HOLDS
-        return Outcome.UNCLEAR if claim.tested and p >= SIGNIFICANT else Outcome.FAILS
+            return ClaimStatus.HOLDS
+        return ClaimStatus.UNCLEAR if claim.tested and p >= SIGNIFICANT else ClaimStatus.FAILS
     ways = {"more": by > 0, "less": by < 0, "differs": by != 0}
     if not ways[claim.expect]:
-        return Outcome.FAILS
-    return Outcome.HOLDS if is_clear else Outcome.UNCLEAR
+        return ClaimStatus.FAILS
+    return ClaimStatus.HOLDS if is_clear else ClaimStatus.UNCLEAR
 
 
 def mean_and_spread(values: Floats) -> tuple[float, float | None]:

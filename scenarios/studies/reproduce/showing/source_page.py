@@ -14,7 +14,7 @@ from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
 from peopleboy.scenarios.studies.reproduce.showing.against_source import (
     SIGNIFICANT,
-    Outcome,
+    ClaimStatus,
     Verdict,
     judge,
     mean_and_spread,
@@ -30,7 +30,7 @@ Figures = Mapping[str, tuple[float, float | None]]
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class PageRow:
     """One line of a table on the page: a group, whose figures, and the cells as text."""
 
     group: str
@@ -55,7 +55,7 @@ class Section:
     id: str
     table: SourceTable
     columns: tuple[str, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[PageRow, ...]
     picture: str | None
     checked: tuple[Checked, ...]
     why: str
@@ -64,11 +64,11 @@ class Section:
         """How the source's claims fare with a main tracker, in a few words."""
         verdicts = (verdict for item in self.checked for verdict in item.verdicts)
         count = Counter(verdict.outcome for verdict in verdicts if verdict.who in MAIN[main])
-        return ", ".join(f"{outcome.value}: {count[outcome]}" for outcome in Outcome if count[outcome])
+        return ", ".join(f"{outcome.value}: {count[outcome]}" for outcome in ClaimStatus if count[outcome])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class About:
+class PageHead:
     """What the page says of the run.
 
     Attributes:
@@ -84,7 +84,7 @@ class About:
     facts: Mapping[str, str]
 
 
-def write_page(path: Path, results: Sequence[tuple[Experiment, Samples]], about: About) -> None:
+def write_page(path: Path, results: Sequence[tuple[Experiment, Samples]], about: PageHead) -> None:
     """Write the page."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE),
@@ -119,7 +119,7 @@ def section(experiment: Experiment, samples: Samples) -> Section:
     )
 
 
-def rows(samples: Samples, table: SourceTable, columns: Sequence[str]) -> list[Row]:
+def rows(samples: Samples, table: SourceTable, columns: Sequence[str]) -> list[PageRow]:
     """Put the source's lines before ours, group by group."""
     lines: dict[str, list[tuple[str, Figures, bool]]] = {}
     for value in table.values:
@@ -129,7 +129,7 @@ def rows(samples: Samples, table: SourceTable, columns: Sequence[str]) -> list[R
         lines.setdefault(line.group, []).append((line.who, ours, False))
     write = _writer([figures for parts in lines.values() for _, figures, _ in parts])
     return [
-        Row(group, who, tuple(write(figures.get(name)) for name in columns), is_source, number == 0)
+        PageRow(group, who, tuple(write(figures.get(name)) for name in columns), is_source, number == 0)
         for group in in_order(lines)
         for number, (who, figures, is_source) in enumerate(lines[group])
     ]

@@ -19,7 +19,7 @@ from peopleboy.scenarios.studies.reproduce.measuring.delay_units import (
 )
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
-from peopleboy.tracker.evaluation.sequence import Truth
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Ellipse, Status, Track
@@ -28,9 +28,9 @@ from peopleboy.tracker.trackers import Tracker
 PLAY = SuiteRun(load_scenario("single_stationary").lasting(9.0), 0)
 
 
-def truth_of(frames: list[int], visible: float = 1.0, *, counted: bool = True, person: int = 1) -> Truth:
+def truth_of(frames: list[int], visible: float = 1.0, *, counted: bool = True, person: int = 1) -> TrueBoxes:
     count = len(frames)
-    return Truth(
+    return TrueBoxes(
         frame=np.array(frames),
         id=np.full(count, person),
         box=np.tile([10.0, 10.0, 20.0, 60.0], (count, 1)),
@@ -51,14 +51,14 @@ def test_nobody_is_to_be_found_while_there_are_two() -> None:
     columns = ("frame", "id", "box", "counted", "visible")
     both = {name: np.concatenate([getattr(one, name), getattr(other, name)]) for name in columns}
     assert list(plain_starts(one)) == [1]
-    assert list(plain_starts(Truth(**both))) == []
+    assert list(plain_starts(TrueBoxes(**both))) == []
 
 
 @dataclass
 class Late:
     """Knows the truth, and tells it in the third frame that it sees; before, it is only tentative."""
 
-    truth: Truth
+    truth: TrueBoxes
     seen: list[Frame] = field(default_factory=list)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:

@@ -20,9 +20,9 @@ from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import BAS
 from peopleboy.scenarios.studies.reproduce.measuring.units import RECORDS, TrackUnit, restored
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan, full_plan
 from peopleboy.scenarios.studies.reproduce.reproduce import Means, reproduce
-from peopleboy.scenarios.studies.reproduce.showing.against_source import Outcome, judge, paired_t_test
+from peopleboy.scenarios.studies.reproduce.showing.against_source import ClaimStatus, judge, paired_t_test
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim, source_tables
-from peopleboy.scenarios.studies.reproduce.showing.source_page import About, write_page
+from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, write_page
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
 
@@ -122,23 +122,23 @@ A, B = Line("a", "default"), Line("b", "default")
 @pytest.mark.parametrize(
     ("expect", "tested", "first", "second", "outcome"),
     [
-        ("more", False, [71.0, 70.0], [60.0, 69.5], Outcome.HOLDS),
-        ("more", True, [71.0, 70.0], [60.0, 69.5], Outcome.UNCLEAR),
-        ("more", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], Outcome.HOLDS),
-        ("less", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], Outcome.FAILS),
-        ("alike", False, [71.0, 70.0], [69.5, 70.0], Outcome.HOLDS),
-        ("alike", False, [75.0, 75.0], [69.5, 70.0], Outcome.FAILS),
-        ("no less", False, [75.0, 75.0], [69.5, 70.0], Outcome.HOLDS),
-        ("no less", False, [68.0, 70.0], [70.0, 70.5], Outcome.HOLDS),
-        ("no less", False, [66.0, 67.0], [69.5, 70.0], Outcome.FAILS),
-        ("alike", True, [75.0, 60.0], [55.0, 70.0], Outcome.UNCLEAR),
-        ("differs", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], Outcome.HOLDS),
-        ("more", False, [1.0, 1.0], [0.0, 0.0], Outcome.BLIND),
-        ("more", False, [np.nan, 1.0], [0.0, 0.0], Outcome.UNKNOWN),
+        ("more", False, [71.0, 70.0], [60.0, 69.5], ClaimStatus.HOLDS),
+        ("more", True, [71.0, 70.0], [60.0, 69.5], ClaimStatus.UNCLEAR),
+        ("more", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], ClaimStatus.HOLDS),
+        ("less", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], ClaimStatus.FAILS),
+        ("alike", False, [71.0, 70.0], [69.5, 70.0], ClaimStatus.HOLDS),
+        ("alike", False, [75.0, 75.0], [69.5, 70.0], ClaimStatus.FAILS),
+        ("no less", False, [75.0, 75.0], [69.5, 70.0], ClaimStatus.HOLDS),
+        ("no less", False, [68.0, 70.0], [70.0, 70.5], ClaimStatus.HOLDS),
+        ("no less", False, [66.0, 67.0], [69.5, 70.0], ClaimStatus.FAILS),
+        ("alike", True, [75.0, 60.0], [55.0, 70.0], ClaimStatus.UNCLEAR),
+        ("differs", True, [71.0, 72.1, 70.9], [61.0, 62.0, 61.0], ClaimStatus.HOLDS),
+        ("more", False, [1.0, 1.0], [0.0, 0.0], ClaimStatus.BLIND),
+        ("more", False, [np.nan, 1.0], [0.0, 0.0], ClaimStatus.UNKNOWN),
     ],
 )
 def test_claims_are_judged_by_difference_and_significance(
-    expect: str, tested: bool, first: list[float], second: list[float], outcome: Outcome
+    expect: str, tested: bool, first: list[float], second: list[float], outcome: ClaimStatus
 ) -> None:
     claim = Claim(says="x", metric="AA", groups=("a", "b"), expect=expect, tested=tested)  # type: ignore[arg-type]
     samples = {A: {"AA": np.array(first)}, B: {"AA": np.array(second)}}
@@ -169,7 +169,7 @@ def read(page: Path) -> tuple[str, Addresses]:
 
 def test_the_page_holds_everything_and_fetches_nothing(tmp_path: Path) -> None:
     results = [(experiment, made_up(experiment)) for experiment in EXPERIMENTS.values()]
-    about = About(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
+    about = PageHead(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
     write_page(tmp_path / "index.html", results, about)
     text, addresses = read(tmp_path / "index.html")
     assert addresses.ids >= ALL

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.thermal.occlusion.depth_order import (
-    Figure,
+    ExpectedPerson,
     front_to_back,
     likelier_front,
     lower_foot,
@@ -17,7 +17,7 @@ VIEW = SimpleNamespace(size=1.0)
 
 def figure(number, foot, unlikeness=0.0, fit=0.0):
     person = SimpleNamespace(id=number, foot=foot)
-    return Figure(person, np.zeros(9), np.zeros(4), unlikeness, fit)
+    return ExpectedPerson(person, np.zeros(9), np.zeros(4), unlikeness, fit)
 
 
 @given(st.lists(st.floats(0, 300), min_size=1, max_size=8), st.randoms())

@@ -9,9 +9,9 @@ from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.filter.particles import equally_weighted
 from peopleboy.tracker.thermal.interaction import regions_of
 from peopleboy.tracker.thermal.occlusion.occlusion_status import judge
-from peopleboy.tracker.thermal.occlusion.visibility import Scene
+from peopleboy.tracker.thermal.occlusion.visibility import Surroundings
 from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
-from peopleboy.tracker.thermal.tracked_person import SIZE, Person
+from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
 from peopleboy.tracker.track import Status
 from tests.helpers.drawn_people import blank
@@ -21,7 +21,9 @@ def person(number, x, h):
     state = np.array([x, 120 + 0.36 * h, 0.38 * h, h, 0, 0, 0, 0, 0])
     cloud = equally_weighted(np.repeat(state[None], 50, axis=0).astype(np.float32))
     belief = Belief(cloud, cloud, state, 0.9, 1.0)
-    return Person(number, 0.0, belief, state, np.array([30.0, 0.0]), 190.0, state[SIZE], seen_frames=30)
+    return TrackedPerson(
+        number, 0.0, belief, state, np.array([30.0, 0.0]), 190.0, state[SIZE], seen_frames=30
+    )
 
 
 def judged(config, behind, *front):
@@ -29,13 +31,13 @@ def judged(config, behind, *front):
         Frame(thermal=blank(), time_s=1.0), 1 / 15, ContourModel.build((240, 320), config.contour), config
     )
     states = [one.belief.estimate for one in front]
-    scene = Scene(
+    surroundings = Surroundings(
         front=front,
         others=regions_of(states, config),
         strength=np.zeros(len(front)),
         image=covered_by(view.image, states, config.contour) if front else view.image,
     )
-    return judge(behind, behind.belief, scene, view, config, np.random.default_rng(0))
+    return judge(behind, behind.belief, surroundings, view, config, np.random.default_rng(0))
 
 
 @pytest.mark.parametrize("config", [PEOPLEBOY, THESIS_OCCLUSION])
@@ -88,8 +90,8 @@ def test_a_hidden_person_is_behind_those_who_cover_it_and_behind_nobody_where_it
 def test_looks_are_not_learnt_while_somebody_is_in_front():
     alone = judged(PEOPLEBOY, person(1, 160, 30))
     beside = judged(PEOPLEBOY, person(1, 160, 30), person(2, 183, 40))
-    assert alone.looks is not None
-    assert beside.looks is None
+    assert alone.appearance is not None
+    assert beside.appearance is None
 
 
 def test_who_is_lost_in_mid_image_is_hidden_by_something_unknown():

@@ -19,7 +19,7 @@ from peopleboy.tracker.thermal.occlusion.pair_features import (
     overlapping_pairs,
     pair_features,
 )
-from peopleboy.tracker.thermal.particle_filter import View
+from peopleboy.tracker.thermal.particle_filter import FrameView
 
 
 def people(*rows: tuple[float, float, float, float]) -> np.ndarray:
@@ -61,7 +61,7 @@ NEAR, FAR = (150.0, 130.0, 16.0, 42.0), (164.0, 122.0, 10.0, 28.0)
 ALONE = ColourConfig(affine=(0.0, 1.0, 0.0, 0.0, 0.0, 1.0), least_seen=0.0)
 
 
-def scene(*drawn: int) -> View:
+def surroundings(*drawn: int) -> FrameView:
     """A view of the given people, later ones painted over earlier ones: 0 near in red, 1 far in blue."""
     thermal, colour = np.full((240, 320), 10, np.uint8), np.full((240, 320, 3), 128, np.uint8)
     for number in drawn:
@@ -71,18 +71,18 @@ def scene(*drawn: int) -> View:
         left, top, right, bottom = boxes(people((x, y, w, h)))[0].astype(int)
         colour[top:bottom, left:right] = ((200, 40, 40), (40, 40, 200))[number]
     model = ContourModel.build((240, 320), ContourConfig())
-    return View(thermal, model, 1 / 15, 0.0, 300.0, colour=ColourView.build(colour, (240, 320), ALONE))
+    return FrameView(thermal, model, 1 / 15, 0.0, 300.0, colour=ColourView.build(colour, (240, 320), ALONE))
 
 
 def known_colours() -> list[ColourModel]:
     return [
-        ColourModel.begin(scene(number).colour.describe(people((NEAR, FAR)[number]))[0], ALONE)
+        ColourModel.begin(surroundings(number).colour.describe(people((NEAR, FAR)[number]))[0], ALONE)
         for number in (0, 1)
     ]
 
 
 def test_the_one_in_front_looks_more_like_itself_where_the_two_overlap():
-    features = pair_features(people(NEAR, FAR), known_colours(), np.array([[0, 1]]), scene(1, 0))[0]
+    features = pair_features(people(NEAR, FAR), known_colours(), np.array([[0, 1]]), surroundings(1, 0))[0]
     named = dict(zip(FEATURES, features, strict=True))
     assert named["colour"] > 0.1
     assert named["colour_o"] > 0.3
@@ -94,7 +94,7 @@ def test_the_one_in_front_looks_more_like_itself_where_the_two_overlap():
 
 def test_the_mirrored_pair_has_the_same_features_with_the_sign_turned():
     there_and_back = np.array([[0, 1], [1, 0]])
-    one, other = pair_features(people(NEAR, FAR), known_colours(), there_and_back, scene(0, 1))
+    one, other = pair_features(people(NEAR, FAR), known_colours(), there_and_back, surroundings(0, 1))
     assert np.allclose(one, -other)
     assert np.all(one != 0)
 
@@ -103,7 +103,7 @@ def test_the_mirrored_pair_has_the_same_features_with_the_sign_turned():
 def test_colours_that_nobody_knows_make_no_difference(models):
     known = known_colours()
     models = [None if model is None else known[1] for model in models]
-    features = pair_features(people(NEAR, FAR), models, np.array([[0, 1]]), scene(1, 0))[0]
+    features = pair_features(people(NEAR, FAR), models, np.array([[0, 1]]), surroundings(1, 0))[0]
     assert np.all(features[3:] == 0)
     assert np.all(features[:3] != 0)
 
@@ -113,10 +113,12 @@ def test_everybody_is_compared_at_once_as_they_are_two_by_two():
     models = known_colours()
     states = [NEAR, FAR, (290.0, 120.0, 9.0, 25.0)]
     figures = [
-        SimpleNamespace(state=people(state)[0], person=SimpleNamespace(looks=None, colour=model, foot=foot))
+        SimpleNamespace(
+            state=people(state)[0], person=SimpleNamespace(appearance=None, colour=model, foot=foot)
+        )
         for state, model, foot in zip(states, [*models, None], [216.0, 179.0, 171.0], strict=True)
     ]
-    view = scene(1, 0)
+    view = surroundings(1, 0)
     leads = order.leads(figures, view)
     assert np.array_equal(leads, -leads.T)
     assert leads[0, 1] == order(figures[0], figures[1], view) > 0
@@ -125,4 +127,4 @@ def test_everybody_is_compared_at_once_as_they_are_two_by_two():
 
 def test_without_pairs_there_are_no_features():
     none = np.zeros((0, 2), np.int64)
-    assert pair_features(people(NEAR), [None], none, scene(0)).shape == (0, 6)
+    assert pair_features(people(NEAR), [None], none, surroundings(0)).shape == (0, 6)
