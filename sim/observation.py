@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.geometry.planar import Planar
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -16,16 +16,20 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera, Matrix
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.people.crowd import Crowd
+from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.rendering.render import BLIND, View, render
-from peopleboy.sim.robot.peoplebot import NAME as ROBOT
+from peopleboy.sim.rendering.render import render
+from peopleboy.sim.rendering.view import BLIND, View
 from peopleboy.sim.robot.peoplebot import PeopleBot
+from peopleboy.sim.robot.robot_body import NAME as ROBOT
+from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.robot.robot_materials import robot_material
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import make_shape_table
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth, bystanders
+from peopleboy.sim.truth.bystanders import bystanders
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.truth.truth import BORDER, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 
@@ -143,7 +147,7 @@ class World:
             BadInput: the command is not finite.
         """
         self._robot.command(linear_m_s, angular_rad_s, is_emergency=is_emergency)
-        self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot)
+        self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot_state())
         self._tick += 1
         touched = set()
         steps = self.config.physics_hz // self.config.control_hz
@@ -155,6 +159,13 @@ class World:
         self._touching = {name.split("/")[0] for name in touched} - {"floor"}
         self._robot.update_odometry()
         self._settle()
+
+    def _robot_state(self) -> PlanarState:
+        """Tell people where the robot is, how it moves, and how wide it is."""
+        pose, (speed, _) = self._robot.pose(), self._robot.velocity()
+        heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
+        place = np.array([pose.x, pose.y])
+        return PlanarState(position=place, velocity=speed * heading, radius_m=RADIUS_M)
 
     def _build(self) -> None:
         config, bullet = self.config, self._bullet
@@ -185,7 +196,7 @@ class World:
 
     def _settle(self) -> None:
         """Take over the poses of a new instant; what was seen before is forgotten."""
-        self._crowd.show(self._robot)
+        self._crowd.show(self._robot.gap_to)
         if self.config.renderer == BLIND:
             return
         self._poses = self._bullet.part_poses()

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.appearance.colour_config import ROBOT_AFFINE
+from peopleboy.tracker.thermal.colour_config import ROBOT_AFFINE
 
 Boxes = NDArray[np.float64]
 TORSO_PER_HEIGHT = 0.27  # width of a truth box over its height, mean of the library

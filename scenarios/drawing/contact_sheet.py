@@ -28,8 +28,8 @@ from peopleboy.scenarios.drawing.sheet_head import (
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.out_folder import writing_to
-from peopleboy.sim.config import RobotConfig
 from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.tracker.thermal.config import ContourConfig
 from peopleboy.wording import counted
 

@@ -13,8 +13,8 @@ from peopleboy.scenarios.drawing.labels import Labels
 from peopleboy.scenarios.files.check import ROBOT_M
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema import CommandSpec
-from peopleboy.sim.config import RobotConfig
 from peopleboy.sim.places.place import Place
+from peopleboy.sim.robot.robot_config import RobotConfig
 
 _COLOUR = "#c0392b"
 _COUNTED_M = (3.0, 10.0)

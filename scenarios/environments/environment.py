@@ -31,12 +31,13 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.scores.score import following_task
-from peopleboy.sim.config import RobotConfig, WorldConfig
+from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.rendering.render import BLIND
-from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.rendering.view import BLIND
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track

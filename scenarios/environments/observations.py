@@ -10,9 +10,10 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from peopleboy.sim.config import RobotConfig
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation, Senses
-from peopleboy.sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
+from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
 from peopleboy.tracker.track import Status, Track
 

@@ -11,9 +11,10 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.schema_errors import hint
-from peopleboy.sim.config import RobotConfig, WorldConfig
+from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.body.clothes import random_clothes
 from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
 
 LIMITS: Final[Mapping[str, tuple[float, float]]] = {

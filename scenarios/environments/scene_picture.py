@@ -15,10 +15,11 @@ from peopleboy.scenarios.drawing.labels import Labels
 from peopleboy.scenarios.drawing.overlay import Picture, draw_tracks, show_thermal
 from peopleboy.scenarios.drawing.palette import ROBOT, Rgb, person_colour
 from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
-from peopleboy.sim.robot.peoplebot import RADIUS_M, Planar
+from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
 from peopleboy.tracker.track import Track
 

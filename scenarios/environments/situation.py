@@ -8,7 +8,7 @@ from typing import Final
 
 from peopleboy.scenarios.environments.observations import SEEN_SHARE
 from peopleboy.sim.places.floor_plan import FloorPlan
-from peopleboy.sim.robot.peoplebot import RADIUS_M
+from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
 
 LOST_S: Final = 10.0

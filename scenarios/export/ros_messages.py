@@ -18,9 +18,10 @@ from scipy.spatial.transform import Rotation
 
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.sim.config import RobotConfig
 from peopleboy.sim.geometry.pinhole import Camera
-from peopleboy.sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
+from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Box
 from peopleboy.tracker.track import Status
 

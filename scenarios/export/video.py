@@ -16,8 +16,8 @@ from peopleboy.scenarios.export.extra import need
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.sim.config import RobotConfig
 from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.robot.robot_config import RobotConfig
 
 HEIGHT_PX: Final = 480
 BAR_PX: Final = 32

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 from peopleboy.scenarios.files.schema import CameraSpec, RobotSpec, ThermalSpec
-from peopleboy.sim.config import RobotConfig
 from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.robot.robot_config import RobotConfig
 
 _IN_DEGREES = {"vertical_fov_deg": "vertical_fov_rad", "pitch_deg": "pitch_rad", "yaw_deg": "yaw_rad"}
 _RENAMED = {"width_px": "width", "height_px": "height", "mount_m": "position_m"}

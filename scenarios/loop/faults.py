@@ -10,8 +10,8 @@ import numpy as np
 
 from peopleboy.scenarios.files.schema import FaultSpec
 from peopleboy.scenarios.loop.loop import Stage
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
-from peopleboy.sim.robot.peoplebot import Planar
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.filter.particles import Particles

@@ -13,9 +13,10 @@ from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.percept import Percept, SeenPerson
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
-from peopleboy.sim.robot.peoplebot import WHEEL_DISTANCE_M, Planar
-from peopleboy.sim.robot.sonar import SONAR_ANGLE_RAD
+from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
+from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.filter.particles import Particles

@@ -29,7 +29,7 @@ from peopleboy.scenarios.recording.still import Still
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.thermal.config import ContourConfig, TrackerConfig
 from peopleboy.tracker.thermal.contour.section_evidence import evidence_of
 

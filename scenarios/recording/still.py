@@ -22,7 +22,7 @@ from peopleboy.scenarios.recording.entities import (
 from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera
-from peopleboy.sim.robot.peoplebot import URDF
+from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 _ROBOT_CURVES = {

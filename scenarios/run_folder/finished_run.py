@@ -12,7 +12,8 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_about, read_files, read_run
 from peopleboy.scenarios.run_folder.tables import Row, track_of
-from peopleboy.sim.config import RobotConfig, WorldConfig
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.tracker.track import Track
 
 _FILES = (

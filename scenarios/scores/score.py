@@ -18,7 +18,7 @@ from peopleboy.scenarios.scores.following_metrics import (
     score_following,
 )
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.robot.peoplebot import outline_gap
+from peopleboy.sim.robot.robot_body import outline_gap
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.evaluation.boxes import iou
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate

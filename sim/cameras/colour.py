@@ -7,11 +7,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import rotation_blur
+from peopleboy.sim.cameras.camera_config import ColourConfig
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
-from peopleboy.sim.config import ColourConfig
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.rendering.render import View
+from peopleboy.sim.rendering.view import View
 
 # The room's lamps hang above and a little to one side, so that walls and sides of people differ in shade.
 _LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])

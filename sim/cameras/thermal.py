@@ -14,6 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
+from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
@@ -22,9 +23,8 @@ from peopleboy.sim.cameras.surfaces import (
     smooth_variation,
     surface_point,
 )
-from peopleboy.sim.config import ThermalConfig
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.rendering.render import View
+from peopleboy.sim.rendering.view import View
 
 _LOWEST_C, _HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
 

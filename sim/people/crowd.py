@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,6 @@ from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.robot.peoplebot import RADIUS_M, PeopleBot
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
 
@@ -45,17 +44,13 @@ class Crowd:
         for person in self.people:
             self._add(person)
 
-    def step(self, time_s: float, dt_s: float, robot: PeopleBot) -> None:
-        """Let everybody walk on for dt_s from time_s, knowing where the others are now."""
+    def step(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
+        """Let everybody walk on for dt_s from time_s, knowing where the others and the robot are now."""
         states = {person.name: _state(person) for person in self.people if person.present}
-        pose, (speed, _) = robot.pose(), robot.velocity()
-        heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
-        place = np.array([pose.x, pose.y])
-        robot_state = PlanarState(position=place, velocity=speed * heading, radius_m=RADIUS_M)
         for person in self.people:
             self._before[person.name] = person.position.copy()
             others = {name: state for name, state in states.items() if name != person.name}
-            person.step(time_s, dt_s, others, robot_state, self._obstacles)
+            person.step(time_s, dt_s, others, robot, self._obstacles)
 
     def move_bodies(self, share: float) -> None:
         """Move the solid capsules to where people are when this share of the control step has passed."""
@@ -64,14 +59,18 @@ class Crowd:
                 before = self._before[person.name]
                 self._place_solid(person, before + share * (person.position - before))
 
-    def show(self, robot: PeopleBot) -> None:
-        """Put every visible part where its person is now; those who are away are hidden."""
+    def show(self, gap_to_robot: Callable[[float, float], float]) -> None:
+        """Put every visible part where its person is now; those who are away are hidden.
+
+        Args:
+            gap_to_robot: distance [m] between the robot's outline and a point x, y [m] on the floor.
+        """
         for person in self.people:
             if person.present != self._is_shown[person.name]:
                 self._set_shown(person, person.present)
             if person.present:
                 self._pose(person)
-                self._make_solid(person, robot)
+                self._make_solid(person, gap_to_robot)
 
     def _add(self, person: Person) -> None:
         for part in self._visible_parts(person):
@@ -92,9 +91,9 @@ class Crowd:
             self._solid.discard(person.name)
             self._bullet.set_hidden(f"{person.name}/{_SOLID}", True)
 
-    def _make_solid(self, person: Person, robot: PeopleBot) -> None:
+    def _make_solid(self, person: Person, gap_to_robot: Callable[[float, float], float]) -> None:
         """Give a person who has just appeared its solid capsule, as soon as the robot is not in it."""
-        if person.name not in self._solid and robot.gap_to(*person.position.tolist()) > person.radius_m:
+        if person.name not in self._solid and gap_to_robot(*person.position.tolist()) > person.radius_m:
             self._solid.add(person.name)
             self._bullet.set_hidden(f"{person.name}/{_SOLID}", False)
 

@@ -3,38 +3,28 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.config import DriveConfig, RobotConfig
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.robot.robot_body import (
+    NAME,
+    URDF,
+    WHEEL_DISTANCE_M,
+    WHEEL_RADIUS_M,
+    outline_gap,
+    wheel_speeds,
+)
+from peopleboy.sim.robot.robot_config import DriveConfig, RobotConfig
 from peopleboy.sim.robot.sonar import SonarRing
 
-NAME = "robot"
-URDF = Path(__file__).with_name("peoplebot.urdf")
-
-WHEEL_RADIUS_M = 0.0825
-WHEEL_DISTANCE_M = 0.333
-RADIUS_M = 0.355  # of the circle about the middle between the wheels in which the robot turns on the spot
-# The body's rear and front ends and its half width [m], about the same middle.
-_REAR_M, _FRONT_M, _HALF_WIDTH_M = -0.30, 0.21, 0.19
 _JOINTS = ("left_wheel_joint", "right_wheel_joint")
 _MOTOR_TORQUE_NM = 4.0
-
-
-@dataclass(frozen=True, slots=True)
-class Planar:
-    """Where something stands on the floor: x, y [m] and heading [rad], world frame."""
-
-    x: float
-    y: float
-    heading: float
 
 
 def limit_command(linear: float, angular: float, limits: DriveConfig) -> tuple[float, float]:
@@ -43,12 +33,6 @@ def limit_command(linear: float, angular: float, limits: DriveConfig) -> tuple[f
         float(np.clip(linear, -limits.max_linear_m_s, limits.max_linear_m_s)),
         float(np.clip(angular, -limits.max_angular_rad_s, limits.max_angular_rad_s)),
     )
-
-
-def wheel_speeds(linear: float, angular: float) -> tuple[float, float]:
-    """Return the rim speeds [m/s] of the left and right wheel that give a robot's velocity [m/s, rad/s]."""
-    half = angular * WHEEL_DISTANCE_M / 2.0
-    return linear - half, linear + half
 
 
 class PeopleBot:
@@ -163,14 +147,6 @@ class PeopleBot:
     def _wheel_angles(self) -> NDArray[np.float64]:
         angles, _ = self._bullet.joint_states(NAME, _JOINTS)
         return angles
-
-
-def outline_gap(pose: Planar, point_m: tuple[float, float]) -> float:
-    """Distance [m] on the floor between the outline of a robot at a pose and a point; 0 inside."""
-    cos, sin = math.cos(pose.heading), math.sin(pose.heading)
-    x, y = point_m[0] - pose.x, point_m[1] - pose.y
-    ahead, aside = cos * x + sin * y, cos * y - sin * x
-    return math.hypot(max(_REAR_M - ahead, ahead - _FRONT_M, 0.0), max(abs(aside) - _HALF_WIDTH_M, 0.0))
 
 
 def _approach(value: float, target: float, step: float) -> float:

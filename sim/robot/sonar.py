@@ -7,34 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.config import SonarConfig
 from peopleboy.sim.geometry.pinhole import Matrix, transform
 from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.robot.robot_config import SonarConfig
+from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD, SONAR_POSITION_M
 
-# x, y [m] and angle [deg] of each sonar of the lower rings: ARIA's parameter file peoplebot-sh.p, SonarUnit
-# 0..15 (its 16..31, up on the deck, are left out).
-_UNITS = np.array(
-    [
-        (0.069, 0.136, 90.0),
-        (0.114, 0.119, 50.0),
-        (0.148, 0.078, 30.0),
-        (0.166, 0.027, 10.0),
-        (0.166, -0.027, -10.0),
-        (0.148, -0.078, -30.0),
-        (0.114, -0.119, -50.0),
-        (0.069, -0.136, -90.0),
-        (-0.157, -0.136, -90.0),
-        (-0.203, -0.119, -130.0),
-        (-0.237, -0.078, -150.0),
-        (-0.255, -0.027, -170.0),
-        (-0.255, 0.027, 170.0),
-        (-0.237, 0.078, 150.0),
-        (-0.203, 0.119, 130.0),
-        (-0.157, 0.136, 90.0),
-    ]
-)
-SONAR_POSITION_M = _UNITS[:, :2].copy()
-SONAR_ANGLE_RAD = np.radians(_UNITS[:, 2])
+_SONARS = len(SONAR_ANGLE_RAD)
 # Rings of rays about a cone's axis: share of its half angle, and number of rays.
 _RINGS = ((0.0, 1), (0.5, 6), (1.0, 8))
 # Rays end this far above the floor, which throws sound away from a sonar and is not heard itself.
@@ -47,7 +25,7 @@ def cone_rays(cone_rad: float) -> NDArray[np.float64]:
     off, turn = np.array(around).T * [[cone_rad / 2.0], [1.0]]
     ahead, left, up = np.cos(off), np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn)
     cos, sin = np.cos(SONAR_ANGLE_RAD)[:, None], np.sin(SONAR_ANGLE_RAD)[:, None]
-    return np.stack([ahead * cos - left * sin, ahead * sin + left * cos, np.tile(up, (len(_UNITS), 1))], -1)
+    return np.stack([ahead * cos - left * sin, ahead * sin + left * cos, np.tile(up, (_SONARS, 1))], -1)
 
 
 class SonarRing:
@@ -64,7 +42,7 @@ class SonarRing:
         self._rng = rng
         self._owner = owner
         rays = cone_rays(config.cone_rad)
-        self._starts = np.concatenate([SONAR_POSITION_M, np.full((len(_UNITS), 1), config.height_m)], axis=1)[
+        self._starts = np.concatenate([SONAR_POSITION_M, np.full((_SONARS, 1), config.height_m)], axis=1)[
             :, None, :
         ].repeat(rays.shape[1], axis=1)
         with np.errstate(divide="ignore"):
@@ -85,7 +63,7 @@ class SonarRing:
         ends = transform(world_from_robot, self._ends).reshape(-1, 3)
         fraction = self._bullet.cast_rays(starts, ends, ignore=self._owner)[0].reshape(self._reach.shape)
         nearest = np.where(fraction < 1.0, fraction * self._reach, np.inf).min(axis=1)
-        noise = self._rng.normal(0.0, self._config.noise_m, len(_UNITS))
-        is_lost = self._rng.random(len(_UNITS)) < self._config.drop_out
+        noise = self._rng.normal(0.0, self._config.noise_m, _SONARS)
+        is_lost = self._rng.random(_SONARS) < self._config.drop_out
         reading = np.where(is_lost, np.inf, nearest + noise)
         return np.clip(reading, self._config.nearest_m, self._config.farthest_m)

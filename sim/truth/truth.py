@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Camera, Matrix
-from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.geometry.planar import Planar
 
 Box = tuple[float, float, float, float]
 

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
 from peopleboy.sim.physics.bodies import PartKey
-from peopleboy.sim.rendering.render import View
 from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bounds
-from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.truth.truth import (

@@ -3,12 +3,14 @@
 import math
 from functools import cache
 
-from peopleboy.sim.config import ColourConfig, RobotConfig, SonarConfig, ThermalConfig, WorldConfig
+from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
+from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.robot.robot_config import RobotConfig, SonarConfig
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 

@@ -13,11 +13,11 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
-from peopleboy.sim.robot.peoplebot import Planar
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Ellipse, Status, Track

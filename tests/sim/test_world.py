@@ -11,12 +11,13 @@ import pytest
 
 import peopleboy.sim.world as world_module
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.config import RobotConfig, WorldConfig
+from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.physics import bullet
 from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.world import World, light_level
 from tests.helpers.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot

@@ -9,13 +9,13 @@ import math
 from dataclasses import dataclass, field
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
 from peopleboy.tracker.thermal.check_config import (
     check_not_negative,
     check_positive,
     check_share,
     refuse_unless,
 )
+from peopleboy.tracker.thermal.colour_config import ColourConfig
 
 REFERENCE_HEIGHT_PX = 240
 """Image height for which the sources give their constants."""

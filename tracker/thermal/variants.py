@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from peopleboy.tracker.thermal.appearance.colour_config import (
+from peopleboy.tracker.thermal.colour_config import (
     FAR_AFFINE,
     ROBOT_PARALLAX,
     SAME_VIEW,

@@ -21,7 +21,7 @@ from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.sim.robot.peoplebot import RADIUS_M
+from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth
 
 PATH = Path(__file__).parents[2] / "overview.png"

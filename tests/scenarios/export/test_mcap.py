@@ -21,7 +21,7 @@ from scipy.spatial.transform import Rotation
 
 from peopleboy.scenarios.export.ros_messages import drift
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.sim.robot.peoplebot import Planar
+from peopleboy.sim.geometry.planar import Planar
 from tests.helpers.exported import export
 
 TOPICS = {

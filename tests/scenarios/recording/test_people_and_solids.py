@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from peopleboy.scenarios.recording.capsule_people import body_capsules, turn_z_to
 from peopleboy.scenarios.recording.solids import fixture_solids, group_fixtures, urdf_solids
 from peopleboy.sim.places.extent import fixture_extent
-from peopleboy.sim.robot.peoplebot import URDF
+from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import ShapeKind
 from tests.helpers import synthetic_ticks as made
 

@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
+from peopleboy.sim.cameras.camera_config import ColourConfig
 from peopleboy.sim.cameras.colour import colour_image, expose
 from peopleboy.sim.cameras.surfaces import make_material_table
-from peopleboy.sim.config import ColourConfig
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.rendering.render import View
+from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind
 
 CONFIG = ColourConfig(camera=Camera(width=60, height=40))

@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.surfaces import make_material_table
 from peopleboy.sim.cameras.thermal import (
     band_radiance,
@@ -12,10 +13,9 @@ from peopleboy.sim.cameras.thermal import (
     make_detector,
     surface_image,
 )
-from peopleboy.sim.config import ThermalConfig
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.rendering.render import View
+from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material
 
 CONFIG = ThermalConfig(camera=Camera(width=40, height=30))

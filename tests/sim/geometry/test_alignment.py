@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.config import COLOUR_BASELINE_M, RobotConfig
+from peopleboy.sim.cameras.camera_config import COLOUR_BASELINE_M
 from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
+from peopleboy.sim.robot.robot_config import RobotConfig
 
 ROBOT = RobotConfig()
 THERMAL, COLOUR = ROBOT.thermal.camera, ROBOT.colour.camera

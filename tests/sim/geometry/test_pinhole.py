@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.sim.config import COLOUR_ZOOM, ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.camera_config import COLOUR_ZOOM, ColourConfig, ThermalConfig
 from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
 
 cameras = st.builds(

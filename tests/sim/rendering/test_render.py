@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.rendering.render import View, render
+from peopleboy.sim.rendering.render import render
+from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import make_shape_table
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
 

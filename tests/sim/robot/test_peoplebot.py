@@ -10,18 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.config import DriveConfig, RobotConfig, SonarConfig
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.robot.peoplebot import (
-    NAME,
-    URDF,
-    WHEEL_DISTANCE_M,
-    WHEEL_RADIUS_M,
-    PeopleBot,
-    Planar,
-    limit_command,
-    wheel_speeds,
-)
+from peopleboy.sim.robot.peoplebot import PeopleBot, limit_command
+from peopleboy.sim.robot.robot_body import NAME, URDF, WHEEL_DISTANCE_M, WHEEL_RADIUS_M, wheel_speeds
+from peopleboy.sim.robot.robot_config import DriveConfig, RobotConfig, SonarConfig
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 FLOOR = Shape(kind=ShapeKind.BOX, size=(40.0, 40.0, 0.1), position=(0.0, 0.0, -0.05))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
+from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.filter.particles import Floats
 
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
+from peopleboy.tracker.thermal.colour_config import ColourConfig
 
 _FULL_TURN = 256
 

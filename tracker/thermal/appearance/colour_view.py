@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.appearance.alignment import Alignment
-from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
 from peopleboy.tracker.thermal.appearance.colour_moments import normalised_moments
 from peopleboy.tracker.thermal.appearance.colour_space import channels_of
 from peopleboy.tracker.thermal.appearance.histograms import cumulative_histograms
 from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
 from peopleboy.tracker.thermal.appearance.regions import Bounds, covered, part_rectangles, pixel_bounds
+from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.filter.particles import Floats, H
 
 

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.appearance.alignment import Alignment
-from peopleboy.tracker.thermal.appearance.colour_config import SAME_VIEW, ColourConfig
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
 from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangles
+from peopleboy.tracker.thermal.colour_config import SAME_VIEW, ColourConfig
 from peopleboy.tracker.thermal.config import AppearanceConfig
 from peopleboy.tracker.thermal.filter.particles import Floats
 from peopleboy.tracker.thermal.interaction import Regions

@@ -9,10 +9,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
 from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.appearance.part_appearance import AppearanceView
+from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.contour.coverage import body_share, head_share, seen_shares
 from peopleboy.tracker.thermal.filter.particles import FOOT, VX, VY, D, Floats, H, W, X, Y, equally_weighted

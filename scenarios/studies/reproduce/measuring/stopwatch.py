@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
 from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
+from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import (
     ContourModel,

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
 from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood, squared_distances
+from peopleboy.tracker.thermal.colour_config import ColourConfig
 
 CONFIG = ColourConfig()
 NAN = np.float32(np.nan)

@@ -7,10 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.config import RobotConfig
 from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.tracker.thermal.appearance.alignment import Alignment
-from peopleboy.tracker.thermal.appearance.colour_config import (
+from peopleboy.tracker.thermal.appearance.colour_view import ColourView
+from peopleboy.tracker.thermal.appearance.regions import part_rectangles, pixel_bounds
+from peopleboy.tracker.thermal.colour_config import (
     FAR_AFFINE,
     REPRESENTATIONS,
     ROBOT_PARALLAX,
@@ -18,8 +20,6 @@ from peopleboy.tracker.thermal.appearance.colour_config import (
     THESIS_AFFINE,
     ColourConfig,
 )
-from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.appearance.regions import part_rectangles, pixel_bounds
 
 SHAPE = (240, 320)
 SAME = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)

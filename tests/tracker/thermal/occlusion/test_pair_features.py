@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.thermal.appearance.colour_config import ColourConfig
 from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
+from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.config import ContourConfig
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
