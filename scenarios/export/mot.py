@@ -106,8 +106,19 @@ def _write_sequence(name: str, run: FinishedRun, folder: Path, play: Play) -> No
     lines = "".join(f"{key}={value}\n" for key, value in settings.items())
     (folder / "seqinfo.ini").write_text(f"[Sequence]\n{lines}", encoding="utf-8")
     (folder / "gt" / "gt.txt").write_text(gt_text(run), encoding="utf-8")
+    _write_images(run, folder / "img1", play)
+
+
+def _write_images(run: FinishedRun, folder: Path, play: Play) -> None:
+    """Copy the run's thermal images if it has written them, else render them again."""
+    names = [f"{frame:06d}.png" for frame in range(1, run.frames + 1)]
+    written = [run.folder / "thermal" / name for name in names]
+    if all(path.is_file() for path in written):
+        for path in written:
+            (folder / path.name).write_bytes(path.read_bytes())
+        return
     for tick in play(run):
-        write_png(folder / "img1" / f"{tick.frame:06d}.png", tick.observation.thermal)
+        write_png(folder / f"{tick.frame:06d}.png", tick.observation.thermal)
 
 
 def _judged(cells: list[str]) -> list[str]:

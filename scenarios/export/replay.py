@@ -18,7 +18,6 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.tables import Row, truth_rows
-from peopleboy.sim.world import World
 
 Play = Callable[[FinishedRun], Iterator[Tick]]
 
@@ -31,8 +30,10 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
     """Yield the ticks of a finished run, with images and masks, but without particles.
 
     Raises:
-        BadInput: the world does not come out as it was in the run.
+        BadInput: the world does not come out as it was in the run, or PyBullet is not installed.
     """
+    from peopleboy.sim.world import World  # here, as what is written can be exported without PyBullet
+
     tracks, people = run.tracks(), run.truth_rows()
     with World(run.world) as world:
         stage = FaultySensors(world, run.scenario.spec.faults, run.robot.sonar.farthest_m)

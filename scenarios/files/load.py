@@ -48,8 +48,9 @@ def parse_scenario(data: dict[Any, Any], *, source: str, folder: Path) -> Scenar
 
 def library() -> dict[str, str]:
     """Names and descriptions of the scenarios that come with PeopleBoy, by name."""
-    scenarios = [load_scenario(path.stem) for path in sorted(LIBRARY.glob("*.yaml"))]
-    return {scenario.name: scenario.description for scenario in scenarios}
+    data = [_filled_in(read_yaml(path)) for path in sorted(LIBRARY.glob("*.yaml"))]
+    specs = [ScenarioSpec.model_validate(each) for each in data]
+    return {spec.name: " ".join(spec.description.split()) for spec in specs}
 
 
 def _filled_in(data: dict[Any, Any], via: tuple[str, ...] = ()) -> dict[Any, Any]:

@@ -10,10 +10,9 @@ from xml.etree import ElementTree
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.schema import ScenarioSpec
-from peopleboy.sim.places.extent import find_urdf
+from peopleboy.sim.physics.model_files import is_in_data
+from peopleboy.sim.places.urdf import MESH_PLACES
 
-# Where PyBullet looks for what a URDF names, from the URDF's own folder.
-_PLACES = (".", "..", "../..")
 # How an OBJ names its materials, and these their textures; the name is a line's last word.
 _NAMED = {".obj": r"^mtllib\s+(?:.*\s)?(\S+)\s*$", ".mtl": r"^(?:map_\w+|bump)\s+(?:.*\s)?(\S+)\s*$"}
 
@@ -33,7 +32,7 @@ def read_own_files(spec: ScenarioSpec, folder: Path) -> dict[str, bytes]:
     """
     found: dict[str, bytes] = {}
     for index, thing in enumerate(spec.things):
-        if thing.urdf is None or find_urdf(thing.urdf).is_file():
+        if thing.urdf is None or is_in_data(thing.urdf):
             continue
         for path in _parts(folder / thing.urdf):
             if not path.resolve().is_relative_to(folder.resolve()):
@@ -65,7 +64,7 @@ def _parts(urdf: Path) -> Iterator[Path]:
     text = re.sub(r"<\?xml.*?\?>", "", urdf.read_text("utf-8"), count=1)
     for part in ElementTree.fromstring(text).iter():
         name = part.get("filename", "").removeprefix("package://")
-        places = [urdf.parent / place / name for place in _PLACES] if name else []
+        places = [urdf.parent / place / name for place in MESH_PLACES] if name else []
         for path in [path for path in places if path.is_file()][:1]:
             yield path
             yield from _named_by(path)

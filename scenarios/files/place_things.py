@@ -13,10 +13,12 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.schema import Colour, ScenarioSpec, ThingSpec
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.people.body.clothes import COLOURS
-from peopleboy.sim.places.extent import Extent, find_urdf, fixture_extent, urdf_extent
+from peopleboy.sim.physics.model_files import is_in_data
+from peopleboy.sim.places.extent import Extent, fixture_extent, urdf_extent
 from peopleboy.sim.places.floor_plan import FloorPlan, Wall
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.places.things import KINDS, Thing, build_thing
+from peopleboy.sim.places.urdf import find_urdf
 from peopleboy.sim.shapes.materials import Pattern, PatternKind, Rgb
 
 _GAP_M = 0.01  # between a wall and what stands against it
@@ -207,7 +209,7 @@ def _find_urdf(spec: ThingSpec, folder: Path) -> str | None:
             "no '..', no absolute path"
         )
     own = folder / name
-    if find_urdf(spec.urdf).is_file():
+    if is_in_data(spec.urdf):
         return spec.urdf
     if own.is_file() and own.resolve().is_relative_to(folder.resolve()):
         return str(own.resolve())

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -13,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from peopleboy.scenarios.drawing.palette import Rgb
 from peopleboy.sim.places.extent import fixture_extent, shape_extent
 from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.places.urdf import read_urdf
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
@@ -66,44 +66,18 @@ def fixture_solids(fixture: Fixture) -> Iterator[Solid]:
 
 
 def urdf_solids(path: Path) -> list[Solid]:
-    """Read the visual shapes of a URDF, in the frame of its root link, all joints at zero."""
-    root = ElementTree.parse(path).getroot()
-    colours = {m.get("name", ""): _material_colour(m) for m in root.iterfind("./material")}
-    joints = {_named(joint, "child"): joint for joint in root.iterfind("./joint")}
+    """Give what is to be seen of a URDF, in the frame of its root link, all joints at zero."""
     return [
-        _visual_solid(visual, _link_pose(link.get("name", ""), joints), colours)
-        for link in root.iterfind("./link")
-        for visual in link.iterfind("./visual")
+        Solid(
+            kind=kind,
+            size=size,
+            position=position,
+            orientation=visible.shape.orientation,
+            colour=_bytes(visible.rgb),
+        )
+        for visible in read_urdf(path)
+        for kind, size, position in [_simplify(visible.shape)]
     ]
-
-
-_Pose = tuple[np.ndarray[tuple[int], np.dtype[np.float64]], Rotation]
-
-
-def _link_pose(link: str, joints: dict[str, ElementTree.Element]) -> _Pose:
-    """Where a link is in the root link's frame: position and rotation."""
-    if link not in joints:
-        return np.zeros(3), Rotation.identity()
-    position, turn = _link_pose(_named(joints[link], "parent"), joints)
-    offset, rotation = _origin(joints[link])
-    return position + turn.apply(offset), turn * rotation
-
-
-def _visual_solid(visual: ElementTree.Element, link: _Pose, colours: dict[str, Rgb]) -> Solid:
-    offset, rotation = _origin(visual)
-    geometry = next(iter(visual.iterfind("./geometry/*")))
-    material = visual.find("material")
-    kind = {"box": ShapeKind.BOX, "cylinder": ShapeKind.CYLINDER, "sphere": ShapeKind.SPHERE}[geometry.tag]
-    size = _numbers(geometry.get("size") or f"{geometry.get('length', 0)} {geometry.get('radius')} 0")
-    if kind is ShapeKind.SPHERE:
-        size = np.array([size[1], 0.0, 0.0])
-    return Solid(
-        kind=kind,
-        size=_vector(size),
-        position=_vector(link[0] + link[1].apply(offset)),
-        orientation=_quaternion(link[1] * rotation),
-        colour=(128, 128, 128) if material is None else colours[material.get("name", "")],
-    )
 
 
 def _simplify(shape: Shape) -> tuple[ShapeKind, Vector, Vector]:
@@ -127,34 +101,12 @@ def _box(centre: np.ndarray, size: np.ndarray, colour: Rgb) -> Solid:
 def _srgb(material: Material | None) -> Rgb:
     """Encode a look's linear reflectance for the screen."""
     red, green, blue = (0.5, 0.5, 0.5) if material is None else material.rgb
-    return _byte(red ** (1 / 2.2)), _byte(green ** (1 / 2.2)), _byte(blue ** (1 / 2.2))
+    return _bytes((red ** (1 / 2.2), green ** (1 / 2.2), blue ** (1 / 2.2)))
 
 
-def _material_colour(material: ElementTree.Element) -> Rgb:
-    colour = material.find("color")
-    red, green, blue = _numbers("0.5 0.5 0.5 1" if colour is None else colour.get("rgba", ""))[:3]
-    return _byte(red), _byte(green), _byte(blue)
-
-
-def _byte(share: float) -> int:
-    return round(255 * min(max(float(share), 0.0), 1.0))
-
-
-def _named(joint: ElementTree.Element, tag: str) -> str:
-    element = joint.find(tag)
-    return "" if element is None else element.get("link", "")
-
-
-def _origin(element: ElementTree.Element) -> _Pose:
-    origin = element.find("origin")
-    if origin is None:
-        return np.zeros(3), Rotation.identity()
-    turn = Rotation.from_euler("xyz", _numbers(origin.get("rpy", "0 0 0")))
-    return _numbers(origin.get("xyz", "0 0 0")), turn
-
-
-def _numbers(text: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    return np.array([float(word) for word in text.split()])
+def _bytes(shares: tuple[float, float, float]) -> Rgb:
+    red, green, blue = (round(255 * min(max(share, 0.0), 1.0)) for share in shares)
+    return red, green, blue
 
 
 def _vector(numbers: np.ndarray) -> Vector:

@@ -13,7 +13,7 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.report.columns import Column
 from peopleboy.scenarios.report.findings.finished_run import FinishedRun
-from peopleboy.scenarios.running.compare_controllers import bootstrap
+from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
 from peopleboy.tracker.evaluation.table import FIGURES, Figure

@@ -17,6 +17,7 @@ from peopleboy.sim.geometry.pinhole import Camera, Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bodies import Bodies, Body, PartKey, Place
 from peopleboy.sim.physics.bullet_shapes import shape_arguments, visual_shape
+from peopleboy.sim.physics.model_files import MISSING, find_model
 from peopleboy.sim.physics.opengl import metric_depth, projection_matrix, view_matrix
 from peopleboy.sim.physics.quiet import quiet
 from peopleboy.sim.physics.solid_boxes import SolidBoxes
@@ -27,11 +28,8 @@ from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, V
 try:
     with quiet():
         import pybullet
-        import pybullet_data
 except ImportError as error:
-    raise BadInput(
-        "pybullet is not installed: its wheels are for Linux and Python 3.10 or 3.11; use Python 3.11"
-    ) from error
+    raise BadInput(MISSING) from error
 
 GRAVITY_M_S2 = 9.81
 _SHAPES_A_BODY = 16  # PyBullet silently drops the rest
@@ -427,15 +425,3 @@ class Bullet:
             for number, link in [(number, link) for number in body.ids for link in links]:
                 self._client.setCollisionFilterGroupMask(number, link, body.group, mask)
         return body.group
-
-
-def find_model(path: Path | str) -> Path:
-    """Find a URDF or SDF file: as it stands, else in pybullet_data.
-
-    Raises:
-        BadInput: there is no such file.
-    """
-    for candidate in (Path(path), Path(pybullet_data.getDataPath()) / path):
-        if candidate.is_file():
-            return candidate.resolve()
-    raise BadInput(f"model file {path}: there is no such file, neither as it stands nor in pybullet_data")

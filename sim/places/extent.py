@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from functools import cache
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
-import pybullet_data
 import trimesh
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.physics.model_files import data_folder, is_in_data
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.shapes.shape_table import VisualShape
+from peopleboy.sim.places.urdf import find_urdf, mesh_files, read_urdf
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 Extent = NDArray[np.float64]  # (2, 3) [m]: lowest and highest x, y, z
@@ -73,11 +70,6 @@ def mesh_extent(path: Path) -> Extent:
         raise BadInput(f"mesh {path} cannot be read: {error}") from error
 
 
-def find_urdf(name: str) -> Path:
-    """Find a URDF as PyBullet does: an absolute path, or a name inside pybullet_data."""
-    return Path(pybullet_data.getDataPath()) / name
-
-
 @cache
 def urdf_extent(path: Path) -> Extent:
     """The box around everything that is seen of a URDF, all links in their rest pose.
@@ -86,31 +78,16 @@ def urdf_extent(path: Path) -> Extent:
         BadInput: the file is not a URDF with shapes, or names a mesh outside its own folder.
     """
     _check_meshes(path)
-    with Bullet() as bullet:
-        bullet.add_urdf("thing", path)
-        poses = bullet.part_poses()
-        extents = [_visual_extent(shape, poses[shape.part]) for shape in bullet.visual_shapes()]
-    if not extents:
+    shapes = [visible.shape for visible in read_urdf(path)]
+    if not shapes:
         raise BadInput(f"{path} is not furniture: it has no visible shapes")
-    return _around(np.concatenate(extents))
-
-
-def _visual_extent(shape: VisualShape, world_from_part: NDArray[np.float64]) -> Extent:
-    own = shape_extent(Shape(kind=shape.kind, size=shape.size, mesh=shape.mesh))
-    return _placed(own, world_from_part @ shape.part_from_shape)
+    return _around(np.concatenate([_moved(shape_extent(s), s.position, s.orientation) for s in shapes]))
 
 
 def _check_meshes(path: Path) -> None:
-    """Refuse a file that is no XML, and meshes that lie outside its folder, or outside pybullet_data."""
-    try:
-        text = re.sub(r"<\?xml.*?\?>", "", path.read_text("utf-8"), count=1)
-        root = ElementTree.fromstring(text)
-    except (OSError, UnicodeDecodeError, ElementTree.ParseError) as error:
-        raise BadInput(f"{path} cannot be read as a URDF: {error}") from error
-    data = Path(pybullet_data.getDataPath())
-    home = data if path.is_relative_to(data) else path.parent
-    for mesh in root.iter("mesh"):
-        name = mesh.get("filename", "")
+    """Refuse meshes that lie outside the file's folder, or outside pybullet_data if the file is of there."""
+    home = data_folder() if is_in_data(path) else path.parent
+    for name in mesh_files(path):
         if not (path.parent / name).resolve().is_relative_to(home.resolve()):
             raise BadInput(f"{path}: mesh {name!r} lies outside the file's folder")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import importlib.util
 import json
 import math
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES
+from peopleboy.sim.physics.model_files import data_folder
 
 Array = NDArray[np.float64]
 
@@ -91,11 +91,7 @@ def _without_mean(coefficients: Array) -> Array:
 
 def _read_frames() -> Array:
     """(F, 44) frames of the clip, as DeepMimic's format orders them."""
-    spec = importlib.util.find_spec("pybullet_data")
-    if spec is None or spec.origin is None:
-        raise FileNotFoundError("pybullet_data, which holds the walking clip, is not installed")
-    with open(Path(spec.origin).parent / _CLIP, encoding="utf-8") as file:
-        return np.array(json.load(file)["Frames"])
+    return np.array(json.loads((data_folder() / _CLIP).read_text("utf-8"))["Frames"])
 
 
 def _rotation_vectors(frames: Array) -> Array:

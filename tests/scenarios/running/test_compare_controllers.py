@@ -7,14 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.compare_controllers import (
-    Controller,
-    bootstrap,
-    compare,
-    intervals,
-    parse_controller,
-)
+from peopleboy.scenarios.running.compare_controllers import Controller, compare, intervals, parse_controller
 from peopleboy.scenarios.running.show_comparison import show_comparison
+from peopleboy.scenarios.scores.bootstrap import bootstrap
 
 NAN = math.nan
 

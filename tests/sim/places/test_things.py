@@ -9,10 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.places.extent import find_urdf, fixture_extent, urdf_extent
+from peopleboy.sim.places.extent import fixture_extent, urdf_extent
 from peopleboy.sim.places.pieces import SINK_M
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.places.things import KINDS, Thing, build_thing
+from peopleboy.sim.places.urdf import find_urdf
 from tests.helpers.boxes import Box, fighting_faces, piece_boxes
 
 kinds = pytest.mark.parametrize("kind", KINDS)

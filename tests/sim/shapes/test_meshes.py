@@ -6,7 +6,8 @@ import trimesh
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Camera
-from peopleboy.sim.physics.bullet import Bullet, find_model
+from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.physics.model_files import find_model
 from peopleboy.sim.rendering.render import render
 from peopleboy.sim.shapes.meshes import load_triangles
 from peopleboy.sim.shapes.shape_table import make_shape_table

@@ -1,0 +1,62 @@
+"""The settings of the cameras: where each sits, and how its images are formed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from peopleboy.sim.geometry.pinhole import Camera
+
+# The colour camera sits 6 cm to the left of the thermal one and sees an angle narrower by 1.2 (T eq. 6.1).
+COLOUR_BASELINE_M = 0.06
+COLOUR_ZOOM = 1.2
+
+
+def _colour_camera() -> Camera:
+    thermal = Camera()
+    x, y, z = thermal.position_m
+    half_angle = math.atan(math.tan(thermal.vertical_fov_rad / 2.0) / COLOUR_ZOOM)
+    return Camera(vertical_fov_rad=2.0 * half_angle, position_m=(x, y + COLOUR_BASELINE_M, z))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThermalConfig:
+    """The thermal camera and its image formation.
+
+    Attributes:
+        camera: geometry.
+        exposure_s: [s] thermal time constant over which rotation blurs the image.
+        blur_px: [px] standard deviation of the optics' point spread.
+        netd_k: [K] temporal noise, noise-equivalent temperature difference.
+        fixed_pattern_k: [K] standard deviation of the offsets between pixels, constant over a run.
+        dead_pixels: share of pixels that read one constant value over a run.
+        lowest_c, highest_c: [degC] span of the 8-bit image (T ch. 3).
+    """
+
+    camera: Camera = field(default_factory=Camera)
+    exposure_s: float = 0.012
+    blur_px: float = 0.7
+    netd_k: float = 0.08
+    fixed_pattern_k: float = 0.03
+    dead_pixels: float = 0.0001
+    lowest_c: float = 24.0
+    highest_c: float = 36.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ColourConfig:
+    """The colour camera and its image formation.
+
+    Attributes:
+        camera: geometry.
+        exposure_s: [s] time over which rotation blurs the image.
+        gain: share of full scale that a white surface facing the light has at light level 1.
+        read_noise: standard deviation of the noise of a black pixel, share of full scale.
+        shot_noise: standard deviation of the noise of a white pixel, share of full scale.
+    """
+
+    camera: Camera = field(default_factory=_colour_camera)
+    exposure_s: float = 0.015
+    gain: float = 0.95
+    read_noise: float = 0.004
+    shot_noise: float = 0.012

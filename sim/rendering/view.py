@@ -1,0 +1,28 @@
+"""What lies behind the pixels of one image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+NOBODY = -1
+BLIND = "none"  # in place of a renderer's name: a world without images
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """What lies behind each pixel's centre, from 0.05 m to 100 m.
+
+    Attributes:
+        part: (H, W) part number, -1 where nothing is.
+        depth: (H, W) [m] along the optical axis, inf where nothing is.
+        normal: (H, W, 3) unit normal that faces the camera, world frame; 0 where nothing is.
+        cover: (H, W) bit k is set where person k's silhouette lies, whether it is hidden or not.
+    """
+
+    part: NDArray[np.int32]
+    depth: NDArray[np.float32]
+    normal: NDArray[np.float32]
+    cover: NDArray[np.uint64]
