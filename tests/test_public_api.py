@@ -1,0 +1,38 @@
+import subprocess
+import sys
+import typing
+from importlib import import_module
+from pathlib import Path
+
+import peopleboy
+
+
+def run_python(code: str) -> str:
+    command = [sys.executable, "-W", "error", "-c", code]
+    return subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
+
+
+def test_every_public_name_is_that_of_its_home_and_is_told_by_dir() -> None:
+    assert set(peopleboy.__all__) == set(peopleboy._HOMES) <= set(dir(peopleboy))
+    for name, home in peopleboy._HOMES.items():
+        assert getattr(peopleboy, name) is getattr(import_module(f"peopleboy.{home}"), name)
+
+
+def test_type_checkers_are_told_the_same_homes_as_the_interpreter() -> None:
+    source = Path(peopleboy.__file__).read_text(encoding="utf-8")
+    told = dict.fromkeys(peopleboy.__all__, "")
+    namespace: dict[str, typing.Any] = {}
+    block = source.split("if TYPE_CHECKING:\n")[1].split("\n\n")[0]
+    exec("\n".join(line.strip() for line in block.splitlines()), namespace)
+    assert {name: namespace[name] for name in told} == {name: getattr(peopleboy, name) for name in told}
+
+
+def test_importing_it_loads_none_of_the_heavy_packages() -> None:
+    heavy = ("numba", "pybullet", "scipy", "cv2", "rerun", "matplotlib", "pydantic", "peopleboy.sim")
+    told = run_python(f"import sys, peopleboy; print([name for name in {heavy} if name in sys.modules])")
+    assert told.strip() == "[]"
+
+
+def test_a_name_that_is_not_there_is_refused_as_modules_do() -> None:
+    told = run_python("import peopleboy; print(hasattr(peopleboy, 'nothing_of_that_name'))")
+    assert told.strip() == "False"
