@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-heavy lint format bench peers rl docs clean
+.PHONY: demo test test-heavy test-install lint format bench peers rl docs clean
 
 demo: $(READY)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -13,6 +13,10 @@ test: $(READY)
 
 test-heavy: $(READY)
 	$(BIN)/python -m pytest -m heavy
+
+# A wheel in empty environments, with and without PyBullet. Needs a package index, and Python 3.12 or 3.13 beside 3.11.
+test-install: $(READY)
+	$(BIN)/python -m pytest -m install
 
 lint: $(READY)
 	$(BIN)/ruff check .

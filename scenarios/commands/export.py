@@ -29,7 +29,7 @@ def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -
     films. Images and masks are rendered again, and are those of the run. mcap and mp4 need the
     extra `export`.
     """
-    from peopleboy.scenarios.export.dataset.make_dataset import refuse_unfinished
+    from peopleboy.scenarios.export.dataset.splits import refuse_unfinished
     from peopleboy.scenarios.export.formats import export as write
     from peopleboy.scenarios.export.progress import bar
     from peopleboy.scenarios.run_folder.finished_run import open_runs

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Mapping, Sequence
-from importlib.metadata import version
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
@@ -103,8 +104,12 @@ class RunFolder:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of the packages on which the bytes of a run depend."""
-    return {name: version(name) for name in _VERSIONED}
+    """Return the versions of the packages on which the bytes of a run depend, of those that are installed."""
+    found = {}
+    for name in _VERSIONED:
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return found
 
 
 def claim_folder(path: Path, *, overwrite: bool) -> None:

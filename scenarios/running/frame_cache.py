@@ -24,7 +24,6 @@ from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.scenarios.run_folder.folder import gt_lines, versions
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
-from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
@@ -165,6 +164,8 @@ def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int
 def _render(
     scenario: Scenario, seed: int, part: Path, report: Callable[[int, int], None] | None
 ) -> dict[str, Any]:
+    from peopleboy.sim.world import World  # here, as films that are there can be shown without PyBullet
+
     config = scenario.world(seed)
     count = round(scenario.duration_s * config.control_hz)
     with (

@@ -12,7 +12,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.dataset.checks import Check, check_set
 from peopleboy.scenarios.export.dataset.datasheet import write_datasheet
 from peopleboy.scenarios.export.dataset.splits import (
+    ABOUT,
     SPLITS,
+    is_set,
     lacking_splits,
     split_file,
     split_lines,
@@ -24,8 +26,6 @@ from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import check_named, writing_to
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.sweep import Job, run_jobs, unfinished
-
-ABOUT = "dataset.json"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,7 +115,7 @@ def _claim(folder: Path) -> None:
         BadInput: something else lies there.
     """
     check_named(folder)
-    if folder.exists() and (not folder.is_dir() or (any(folder.iterdir()) and not _is_ours(folder))):
+    if folder.exists() and (not folder.is_dir() or (any(folder.iterdir()) and not is_set(folder))):
         raise BadInput(f"{folder}: holds something that is no rendered set; give another --out")
     with writing_to(folder):
         (folder / "splits").mkdir(parents=True, exist_ok=True)
@@ -125,23 +125,6 @@ def _reopen(folder: Path) -> None:
     """Take back what says that the set is finished."""
     for name in ("README.md", ABOUT):
         (folder / name).unlink(missing_ok=True)
-
-
-def refuse_unfinished(folder: Path) -> None:
-    """Refuse a set of which runs may be missing; folders that are no set are none of its business.
-
-    Raises:
-        BadInput: it is not finished.
-    """
-    if _is_ours(folder) and not (folder / ABOUT).is_file():
-        raise BadInput(
-            f"{folder}: this set is not finished; the same `peopleboy render` goes on where it was, "
-            "or name runs of it"
-        )
-
-
-def _is_ours(folder: Path) -> bool:
-    return (folder / "splits").is_dir()
 
 
 def _write_splits(folder: Path, names: Sequence[str], seeds: Sequence[int]) -> None:

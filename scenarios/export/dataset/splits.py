@@ -7,6 +7,9 @@ from pathlib import Path
 
 from peopleboy.bad_input import BadInput
 
+ABOUT = "dataset.json"
+"""The file that a finished set has."""
+
 SPLITS = ("train", "val", "test")
 _TURNS = ("train", "train", "train", "train", "train", "val", "test")
 
@@ -61,3 +64,21 @@ def read_split(run: Path) -> str | None:
             "render the set with all its seeds, or move this run away"
         )
     return own[0]
+
+
+def refuse_unfinished(folder: Path) -> None:
+    """Refuse a set of which runs may be missing; folders that are no set are none of its business.
+
+    Raises:
+        BadInput: it is not finished.
+    """
+    if is_set(folder) and not (folder / ABOUT).is_file():
+        raise BadInput(
+            f"{folder}: this set is not finished; the same `peopleboy render` goes on where it was, "
+            "or name runs of it"
+        )
+
+
+def is_set(folder: Path) -> bool:
+    """Tell whether a folder is a rendered set, finished or not."""
+    return (folder / "splits").is_dir()

@@ -12,7 +12,6 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.boxes import iou
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.occlusion.depth_order import ExpectedPerson, Order, lower_foot
@@ -106,6 +105,8 @@ def collect(scenario: str, seed: int, config: TrackerConfig) -> Iterator[PairExa
     Raises:
         BadInput: an unknown scenario.
     """
+    from peopleboy.sim.world import World  # here, as examples that are there can be read without PyBullet
+
     loaded = load_scenario(scenario)
     order, episodes = RecordingOrder(), Episodes()
     people = PeopleTracker(config, stream(seed, "tracker"), order)

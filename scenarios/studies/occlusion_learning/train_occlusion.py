@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, mirrored
-from peopleboy.tracker.thermal.occlusion.boosting import train
 from peopleboy.tracker.thermal.occlusion.learned_order import LearnedOrder
 from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
 from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL, Features
@@ -115,6 +114,10 @@ def _try_out(
     unseen: Sequence[PairExample],
     rounds: int,
 ) -> Trial:
+    from peopleboy.tracker.thermal.occlusion.boosting import (
+        train,  # here, as only learning needs scikit-learn
+    )
+
     held_out, elsewhere = [], []
     for split in splits:
         cut = round(_TRAINING_SHARE * len(split))
@@ -158,6 +161,8 @@ def learn(
     Raises:
         BadInput: too few examples.
     """
+    from peopleboy.tracker.thermal.occlusion.boosting import train
+
     check_examples(training, "training")
     check_examples(unseen, "unseen")
     table = train(*mirrored(training), rounds=rounds)

@@ -11,7 +11,6 @@ from peopleboy.behaviours.command import Command
 from peopleboy.scenarios.files.drives import read_drive, write_drive
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import make_frame
-from peopleboy.scenarios.running import frame_cache
 from peopleboy.scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
 from peopleboy.sim.world import World
 from peopleboy.tracker.frame import Frame
@@ -50,7 +49,7 @@ def test_truth_lies_beside_the_frames(shot: Film) -> None:
 
 
 def test_a_film_is_made_once(shot: Film, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(frame_cache, "World", None)
+    monkeypatch.setattr("peopleboy.sim.world.World", None)
     assert film(SCENARIO, 3, shot.folder.parent) == shot
 
 
