@@ -1,1 +1,1 @@
-"""People in thermal and colour images: particle filters with an elliptic contour."""
+"""People in images, and how well they are found."""

@@ -1,1 +1,1 @@
-"""Limits that every command passes through."""
+"""Safety last: the guard that every command passes through, and its limits."""

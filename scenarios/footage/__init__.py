@@ -1,1 +1,1 @@
-"""Tracking in footage that others recorded: reading it, its grey, its truth, and what is left of it."""
+"""Tracking in footage that others recorded, and what is left of it."""

@@ -1,1 +1,1 @@
-"""Running scenarios: one, many seeds, suites, behaviours side by side."""
+"""Running scenarios: one, many seeds, suites, behaviours side by side, films on disk."""

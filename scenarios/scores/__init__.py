@@ -1,1 +1,1 @@
-"""How well a run went, in figures."""
+"""How well runs went, in figures, and how sure these are."""

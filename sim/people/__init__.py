@@ -1,1 +1,1 @@
-"""Walking people: bodies, gait, scripts, clothes."""
+"""Walking people: who they are, when they are where, and their bodies in the physics world."""

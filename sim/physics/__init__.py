@@ -1,1 +1,1 @@
-"""The only door to PyBullet: bodies by name, steps, rays, contacts and TinyRenderer's images."""
+"""The only door to PyBullet: bodies by name, steps, rays, contacts, models and TinyRenderer's images."""
