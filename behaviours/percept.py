@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 
 Ranges = NDArray[np.float64]
+Points = NDArray[np.float64]  # (N, 2) [m] x forward, y left, in the robot's frame
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

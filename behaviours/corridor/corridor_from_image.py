@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
-from peopleboy.behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.percept import Points
 
 Image = NDArray[np.uint8]
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
 from peopleboy.behaviours.corridor.wall_echoes import BeamConfig, wall_distances
-from peopleboy.behaviours.percept import Percept
-from peopleboy.behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.percept import Percept, Points
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

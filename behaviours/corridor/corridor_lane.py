@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.behaviours.corridor.corridor_pose import Corridor
-from peopleboy.behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.percept import Points
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from peopleboy.behaviours.dead_reckoning import Motion
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Corridor:
@@ -32,13 +34,13 @@ class Unknown:
     reason: str
 
 
-def drive_on(corridor: Corridor, way_m: float, turn_rad: float) -> Corridor:
-    """Predict the place after driving way_m [m] on an arc that turns by turn_rad [rad]."""
-    mean_heading = corridor.heading_rad + turn_rad / 2.0
+def drive_on(corridor: Corridor, motion: Motion) -> Corridor:
+    """Predict the place after the robot has moved."""
+    mean_heading = corridor.heading_rad + motion.turn_rad / 2.0
     return replace(
         corridor,
-        offset_m=corridor.offset_m + way_m * math.sin(mean_heading),
-        heading_rad=corridor.heading_rad + turn_rad,
+        offset_m=corridor.offset_m + motion.way_m * math.sin(mean_heading),
+        heading_rad=corridor.heading_rad + motion.turn_rad,
     )
 
 

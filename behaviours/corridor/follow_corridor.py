@@ -26,6 +26,7 @@ from peopleboy.behaviours.corridor.corridor_lane import (
 )
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
 from peopleboy.behaviours.corridor.wall_echoes import side_walls, without_walls
+from peopleboy.behaviours.dead_reckoning import Motion
 from peopleboy.behaviours.percept import Percept
 from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
 
@@ -180,7 +181,7 @@ def _locate(state: CorridorState, percept: Percept, step_s: float, config: Corri
     """Move the place by the wheels, and correct it by what is seen of the walls."""
     expected = state.corridor if percept.time_s - state.seen_s <= config.lost_s else None
     if expected is not None:
-        expected = drive_on(expected, percept.linear_m_s * step_s, percept.angular_rad_s * step_s)
+        expected = drive_on(expected, Motion.of(percept, step_s))
         if abs(expected.heading_rad) > config.turn_only_rad:  # turning: the walls are yet to come into view
             return replace(state, corridor=expected, seen_s=percept.time_s)
     by_image: Corridor | Unknown = Unknown("")

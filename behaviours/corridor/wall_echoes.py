@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.behaviours.corridor.corridor_pose import Corridor
-from peopleboy.behaviours.percept import Percept, Ranges
-from peopleboy.behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.percept import Percept, Points, Ranges
 from peopleboy.behaviours.sonar.sonar_ring import mounts
 
 Flags = NDArray[np.bool_]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from peopleboy.behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.percept import Points
 
 # Shares of the largest swerve that are tried, the least first; and what a radian wanted weighs against one
 # swerved.

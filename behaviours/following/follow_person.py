@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 
 from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.dead_reckoning import Motion
 from peopleboy.behaviours.following.avoid import WIDELY, AvoidConfig, swerve
 from peopleboy.behaviours.following.last_seen import (
     LastPlace,
@@ -209,8 +210,9 @@ def _update_target(state: FollowState, percept: Percept, step_s: float, config: 
     if known is None:
         state = replace(state, target=None, others=frozenset(), place=None)
     else:
-        known = carry_on(known, percept.angular_rad_s, step_s)
-        place = None if state.place is None else carry_place(state.place, percept, step_s)
+        motion = Motion.of(percept, step_s)
+        known = carry_on(known, motion, step_s)
+        place = None if state.place is None else carry_place(state.place, motion)
         gone = forget_drift(known, step_s, config.target)
         if config.max_age_s < percept.time_s - known.seen_s < config.patience_s:
             gone = keep_behind(gone, percept.people, config.hidden, config.target)

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from peopleboy.behaviours.dead_reckoning import Motion
 from peopleboy.behaviours.following.target import Target
-from peopleboy.behaviours.percept import Percept
-from peopleboy.behaviours.sonar.echo_points import Points
+from peopleboy.behaviours.percept import Percept, Points
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,13 +70,10 @@ def place_of(target: Target, config: PlaceConfig) -> LastPlace:
     return LastPlace(x_m=far * math.cos(target.bearing_rad), y_m=far * math.sin(target.bearing_rad))
 
 
-def carry_place(place: LastPlace, percept: Percept, step_s: float) -> LastPlace:
-    """Express a place in the robot's frame after a step, by the wheels' speeds."""
-    turn, way = percept.angular_rad_s * step_s, percept.linear_m_s * step_s
-    x = place.x_m - way * math.cos(turn / 2.0)
-    y = place.y_m - way * math.sin(turn / 2.0)
-    cosine, sine = math.cos(turn), math.sin(turn)
-    return replace(place, x_m=cosine * x + sine * y, y_m=cosine * y - sine * x)
+def carry_place(place: LastPlace, motion: Motion) -> LastPlace:
+    """Express a place in the robot's frame after it has moved."""
+    ((x, y),) = motion.carry(np.array([[place.x_m, place.y_m]])).tolist()
+    return replace(place, x_m=x, y_m=y)
 
 
 def on_the_way(place: LastPlace, percept: Percept, step_s: float) -> LastPlace:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from peopleboy.behaviours.dead_reckoning import Motion
 from peopleboy.behaviours.percept import SeenPerson
 
 
@@ -62,9 +63,9 @@ def first_sight(person: SeenPerson, time_s: float, config: TargetConfig) -> Targ
     )
 
 
-def carry_on(target: Target, turn_rad_s: float, step_s: float) -> Target:
-    """Predict the bearing after a step in which the robot turned; nothing else changes."""
-    moved = target.bearing_rad + (target.drift_rad_s - turn_rad_s) * step_s
+def carry_on(target: Target, motion: Motion, step_s: float) -> Target:
+    """Predict the bearing after a step in which the robot moved; nothing else changes."""
+    moved = target.bearing_rad + target.drift_rad_s * step_s - motion.turn_rad
     return replace(target, bearing_rad=math.remainder(moved, math.tau))
 
 

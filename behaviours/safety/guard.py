@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import EMERGENCY_STOP, Command
-from peopleboy.behaviours.percept import Percept
+from peopleboy.behaviours.percept import Percept, Points
 from peopleboy.behaviours.safety.limits import SafetyConfig, limit
 from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
-from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, Points, fill_drop_outs
+from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, fill_drop_outs
 from peopleboy.behaviours.sonar.sonar_failure import SonarFailure
 
 # As long as something takes from one beam through the gap to the next; people have moved on by then.

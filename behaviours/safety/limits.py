@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.behaviours.command import STOP, Command
-from peopleboy.behaviours.percept import Percept
-from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, Points, echoes
+from peopleboy.behaviours.percept import Percept, Points
+from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, echoes
 
 NOTHING_REMEMBERED: Points = np.zeros((0, 2))
 NOTHING_REMEMBERED.setflags(write=False)

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from peopleboy.behaviours.percept import Percept, Ranges
-from peopleboy.behaviours.sonar.echo_points import Points, echoes
+from peopleboy.behaviours.dead_reckoning import Motion
+from peopleboy.behaviours.percept import Percept, Points, Ranges
+from peopleboy.behaviours.sonar.echo_points import echoes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,20 +50,10 @@ def remember(
     if not percept.is_sound:
         return memory
     heard = echoes(percept, spread_rad)
-    points = np.concatenate([_moved(memory, percept), heard])
+    step_s = 0.0 if math.isnan(memory.time_s) else percept.time_s - memory.time_s
+    points = np.concatenate([Motion.of(percept, step_s).carry(memory.points), heard])
     heard_s = np.concatenate([memory.heard_s, np.full(len(heard), percept.time_s)])
     is_kept = (np.hypot(points[:, 0], points[:, 1]) < config.within_m) & (
         np.abs(percept.time_s - heard_s) < config.keep_s
     )
     return EchoMemory(time_s=percept.time_s, points=points[is_kept], heard_s=heard_s[is_kept])
-
-
-def _moved(memory: EchoMemory, percept: Percept) -> Points:
-    """Express the old echoes in the robot's new frame: (N, 2) [m]."""
-    step_s = 0.0 if math.isnan(memory.time_s) else percept.time_s - memory.time_s
-    turn, way = percept.angular_rad_s * step_s, percept.linear_m_s * step_s
-    shift = way * np.array([math.cos(turn / 2.0), math.sin(turn / 2.0)])
-    cosine, sine = math.cos(turn), math.sin(turn)
-    old_from_new = np.array([[cosine, -sine], [sine, cosine]])
-    moved: Points = (memory.points - shift) @ old_from_new
-    return moved

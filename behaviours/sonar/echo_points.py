@@ -5,11 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from peopleboy.behaviours.percept import Percept
-
-Points = NDArray[np.float64]
+from peopleboy.behaviours.percept import Percept, Points
 
 # The PeopleBot's ring: an ellipse within 3 cm of ARIA's peoplebot-sh.p, SonarUnit 0..15, except the four
 # units that look sideways, which sit 11 cm fore and aft of it.

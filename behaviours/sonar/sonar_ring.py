@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from peopleboy.behaviours.sonar.echo_points import RING_CENTRE_X_M, RING_HALF_AXES_M, Points
+from peopleboy.behaviours.percept import Points
+from peopleboy.behaviours.sonar.echo_points import RING_CENTRE_X_M, RING_HALF_AXES_M
 
 # The PeopleBot's sideways units sit this far fore and aft of the ellipse on which all others lie.
 SIDEWAYS_M = 0.113
