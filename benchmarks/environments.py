@@ -9,8 +9,11 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from multiprocessing import get_context
 
+import numpy as np
+from numpy.typing import NDArray
+
 from benchmarks.memory import resident_mb
-from peopleboy.scenarios.environments.environment import PHYSICS_HZ, PeopleBoyEnv
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.physics.opengl import projection_matrix, view_matrix
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
@@ -19,6 +22,7 @@ from peopleboy.sim.world import World
 SCENARIO = "single_follow"
 ACTION = (0.0, 0.13)
 WARM_UP = 10
+RUN_HZ, QUICK_HZ = 240, 60  # physics as in a run, and at a quarter of that rate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,9 +49,11 @@ CASES = (
 )
 
 
-def step_rate(case: Case) -> float:
+def step_rate(case: Case, physics_hz: int = RUN_HZ) -> float:
     """Return environment steps per second of CPU time, of one process."""
-    env = PeopleBoyEnv(SCENARIO, observation=case.observation, image_size=case.image_size)
+    env = PeopleBoyEnv(
+        SCENARIO, observation=case.observation, image_size=case.image_size, physics_hz=physics_hz
+    )
     env.reset(seed=0)
     for _ in range(WARM_UP):
         env.step(ACTION)
@@ -61,15 +67,42 @@ def step_rate(case: Case) -> float:
     return case.steps / spent
 
 
-def step_rates(case: Case, processes: int) -> float:
+def step_rates(case: Case, processes: int, physics_hz: int = RUN_HZ) -> float:
     """Return the same of several processes at once, added up."""
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        return sum(pool.map(step_rate, [case] * processes))
+        return sum(pool.map(step_rate, [case] * processes, [physics_hz] * processes))
+
+
+def way_off_mm(seeds: int = 4, steps: int = 450) -> float:
+    """Return how far [mm] the robot gets off its way at most, in drives by chance, if physics is quick."""
+    ways = [[_drive(seed, steps, hz) for hz in (RUN_HZ, QUICK_HZ)] for seed in range(seeds)]
+    shortest = [min(map(len, pair)) for pair in ways]
+    return 1e3 * max(
+        float(np.linalg.norm(run[:n] - quick[:n], axis=1).max())
+        for (run, quick), n in zip(ways, shortest, strict=True)
+    )
+
+
+def _drive(seed: int, steps: int, physics_hz: int) -> NDArray[np.float64]:
+    """Return where the robot was after each step, (N, 2) [m], until it touched something."""
+    env = PeopleBoyEnv(SCENARIO, observation="truth", physics_hz=physics_hz)
+    env.reset(seed=seed)
+    rng = np.random.default_rng(seed)
+    way = []
+    for step in range(steps):
+        if step % 15 == 0:
+            action = rng.uniform((-0.1, -0.25), (0.35, 0.25))
+        *_, terminated, truncated, info = env.step(action)
+        way.append((info["truth"].robot.x, info["truth"].robot.y))
+        if terminated or truncated:
+            break
+    env.close()
+    return np.array(way)
 
 
 def bullet_rate(image_size: tuple[int, int], steps: int = 20) -> float:
     """Return steps per second of the same world with two plain calls of getCameraImage a step."""
-    config = replace(load_scenario(SCENARIO).world(0), physics_hz=PHYSICS_HZ)
+    config = load_scenario(SCENARIO).world(0)
     cameras = [
         replace(camera, width=image_size[0], height=image_size[1])
         for camera in (config.robot.thermal.camera, config.robot.colour.camera)
@@ -114,8 +147,11 @@ def main() -> None:
     parser.add_argument("--resets", type=int, default=1000)
     options = parser.parse_args()
     for case in CASES:
-        one, two = step_rate(case), step_rates(case, 2)
-        print(f"{case.name:18s} {one:7.0f} steps/s, goal {case.goal}; 2 processes {two:7.0f}", flush=True)
+        for rate in (RUN_HZ, QUICK_HZ):
+            one, two = step_rate(case, rate), step_rates(case, 2, rate)
+            name, goal = f"{case.name}, physics at {rate} Hz", f"goal {case.goal}"
+            print(f"{name:34s} {one:7.0f} steps/s, {goal}; 2 processes {two:7.0f}", flush=True)
+    print(f"the robot's way at {QUICK_HZ} Hz is off by at most {way_off_mm():.1f} mm in 30 s", flush=True)
     for size in ((320, 240), (80, 60)):
         print(f"getCameraImage twice, {size[0]} x {size[1]}: {bullet_rate(size):.0f} steps/s", flush=True)
     print(f"growth over {options.resets} resets: {reset_growth(options.resets):.0f} bytes a reset")

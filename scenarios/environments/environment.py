@@ -43,8 +43,6 @@ from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, Tracker, make_tracker
 
-# A quarter of the rate of a run. The robot's ways differ by millimetres, and a step takes half the time.
-PHYSICS_HZ: Final = 60
 SMALLEST_PX: Final = (80, 60)
 LARGEST_PX: Final = (1280, 960)
 DEFAULT_PX: Final = (320, 240)
@@ -62,8 +60,9 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     scenario's time is over. `info` holds `truth` (a `ImageFreeTruth`), `reward` (its terms), `metrics` (see
     `Episode.metrics`), `events` (what is new, and with whom), and `seed`.
 
-    `reset(seed=3)` plays the world of `peopleboy run --seed 3`; `reset()` goes on to a seed drawn from it.
-    `reset(options=...)` varies that one episode, see `peopleboy.scenarios.environments.randomise.LIMITS`.
+    `reset(seed=3)` plays the world of `peopleboy run --seed 3`: the same commands lead to the same truth.
+    `reset()` goes on to a seed drawn from it. `reset(options=...)` varies that one episode, see
+    `peopleboy.scenarios.environments.randomise.LIMITS`.
 
     Args:
         scenario: name in the library or path of a YAML file.
@@ -74,6 +73,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         tracker: name of the tracker behind "tracks".
         randomise: options of every episode for which `reset` is given none.
         render_mode: "rgb_array" or None.
+        physics_hz: steps of physics a second, a multiple of 15; None is that of a run, 240. 60 is quicker by
+            what `python -m benchmarks.environments` prints, beside how far the robot's way is off then.
 
     Raises:
         BadInput: an argument cannot be used.
@@ -91,6 +92,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         tracker: str = DEFAULT_TRACKER,
         randomise: Mapping[str, Any] | None = None,
         render_mode: str | None = None,
+        physics_hz: int | None = None,
     ) -> None:
         self._world: World | None = None
         _check_word("task", task, TASKS)
@@ -103,7 +105,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._scenario = load_scenario(scenario)
         self._task, self._kind, self._size, self._tracker_name = task, observation, image_size, tracker
         self.render_mode = render_mode
-        self._robot = _resize(self._scenario.world(0).robot, image_size)
+        usual = self._scenario.world(0)
+        self._physics_hz = usual.physics_hz if physics_hz is None else physics_hz
+        replace(usual, physics_hz=self._physics_hz)  # refuses a rate that does not fit now
+        self._robot = _resize(usual.robot, image_size)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = observation_space(observation, self._robot)
         self._picture = ScenePicture(self._scenario.plan, self._scenario.place) if render_mode else None
@@ -186,7 +191,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         config = self._scenario.world(self._seed)
         needs_images = self._kind != "truth" or self.render_mode is not None
         renderer = config.renderer if needs_images else BLIND
-        config = replace(config, robot=self._robot, physics_hz=PHYSICS_HZ, renderer=renderer)
+        config = replace(config, robot=self._robot, physics_hz=self._physics_hz, renderer=renderer)
         return vary(config, options, stream(self._seed, "environment.options"))
 
     def _observe(self) -> Arrays:

@@ -285,3 +285,24 @@ def test_stable_baselines_own_check_finds_nothing(scene: Path) -> None:
     checker = pytest.importorskip("stable_baselines3.common.env_checker")
     for kind in KINDS:
         checker.check_env(PeopleBoyEnv(scene, observation=kind, image_size=SMALL))
+
+
+def test_an_episode_is_the_world_of_a_run_with_the_same_commands() -> None:
+    scenario = load_scenario("single_follow")
+    env = PeopleBoyEnv("single_follow", observation="truth")
+    env.reset(seed=3)
+    drive = scenario.world(3).robot.drive
+    with World(scenario.world(3)) as world:
+        for step in range(60):
+            shares = (0.3, 0.2 if step % 20 < 10 else -0.1)
+            *_, info = env.step(shares)
+            world.step(shares[0] * drive.max_linear_m_s, shares[1] * drive.max_angular_rad_s)
+            there, here = world.truth(), info["truth"]
+            assert (here.robot, here.robot_velocity) == (there.robot, there.robot_velocity)
+            assert [p.position_m for p in here.people] == [p.position_m for p in there.people]
+    env.close()
+
+
+def test_a_physics_rate_that_does_not_fit_the_control_rate_is_refused() -> None:
+    with pytest.raises(BadInput, match=r"15 Hz must divide the physics rate 50 Hz"):
+        PeopleBoyEnv("single_follow", physics_hz=50)
