@@ -9,7 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.files.schema import ScenarioSpec
+from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.sim.places.extent import find_urdf
 
 # Where PyBullet looks for what a URDF names, from the URDF's own folder.
