@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-heavy lint format bench peers rl docs clean
+.PHONY: demo test test-heavy lint format bench peers rl pages docs clean
 
 demo: $(READY)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -33,6 +33,11 @@ peers: $(READY)
 rl: $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps --index-url https://download.pytorch.org/whl/cpu torch
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[rl]'
+
+# What pages say of scenario files, commands, trackers, settings, metrics and results, made anew from code and figures.
+pages: $(READY)
+	$(BIN)/python -m docs.generate
+	$(BIN)/python -m benchmarks.results
 
 # Strictly: a warning is an error. Leaves build/docs/index.html, which needs no server and no network.
 # Its pictures are drawn by `python -m docs.generate.pictures`, and kept.
