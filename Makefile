@@ -34,10 +34,9 @@ rl: $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps --index-url https://download.pytorch.org/whl/cpu torch
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[rl]'
 
-# What pages say of scenario files, commands, trackers, settings, metrics and results, made anew from code and figures.
+# The parts of pages that are made from the code, and from the figures in docs/results.yaml.
 pages: $(READY)
 	$(BIN)/python -m docs.generate
-	$(BIN)/python -m benchmarks.results
 
 # Strictly: a warning is an error. Leaves build/docs/index.html, which needs no server and no network.
 # Its pictures are drawn by `python -m docs.generate.pictures`, and kept.

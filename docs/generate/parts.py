@@ -7,9 +7,11 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
+from benchmarks.results.tables import read_tables
 from docs.generate import choices
 from docs.generate.commands import commands
 from docs.generate.metrics import metrics
+from docs.generate.results import results
 from docs.generate.scenario_keys import scenario_keys
 from docs.generate.settings import settings
 from docs.generate.trackers import trackers
@@ -28,6 +30,7 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "metrics paper": partial(metrics, "paper"),
     "metrics mot": partial(metrics, "mot"),
     "metrics counts": partial(metrics, "counts"),
+    **{f"results {name}": partial(results, table) for name, table in read_tables().tables.items()},
 }
 
 PLACE = re.compile(r"<!-- generated: (.*?) -->.*?<!-- end -->", re.DOTALL)

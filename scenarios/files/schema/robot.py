@@ -81,7 +81,7 @@ class RobotSpec(Strict):
         default=None,
         gt=0.05,
         le=1.5,
-        description="of a following robot: the person's height in the image [image heights] at which it stops",
+        description="of a following robot: the person's height in the image [image heights] where it stops",
     )
     walls_by: Literal["sonar", "image"] | None = Field(
         default=None,
