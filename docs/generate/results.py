@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.results.tables import Column, ResultTable
-from docs.generate.markdown import sentence, table
+from docs.generate.markdown import table
 
 
 def results(one: ResultTable) -> str:
@@ -21,5 +21,5 @@ def _cell(value: float | None, column: Column) -> str:
 
 
 def _about(one: ResultTable) -> str:
-    chosen = f" Values were chosen on: {one.chosen_on}." if one.chosen_on else ""
-    return f"{sentence(f'`{one.command}`, {one.seeds}, put down on {one.recorded}')}{chosen}"
+    measured = f"Measured by `{one.command}`, {one.seeds}; put down on {one.recorded}."
+    return f"> {measured} {one.chosen_on}".rstrip()

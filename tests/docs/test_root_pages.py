@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.load import library, load_scenario
 
 ROOT = Path(__file__).parents[2]
 README, RESULTS = (ROOT / name for name in ("README.md", "docs/results.md"))
@@ -58,3 +58,8 @@ def test_changelog_and_citation_are_of_this_version() -> None:
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     assert (citation["cff-version"], citation["version"]) == ("1.2.0", version())
     assert f"## [{version()}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_every_scenario_of_the_library_is_on_its_page() -> None:
+    text = (ROOT / "docs/reference/library.md").read_text(encoding="utf-8")
+    assert not [name for name in library() if f"`{name.removesuffix('_by_image')}`" not in text]
