@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-heavy test-install lint format bench peers rl docs clean
+.PHONY: demo test test-heavy test-install lint format bench peers rl pages docs clean
 
 demo: $(READY)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -37,6 +37,10 @@ peers: $(READY)
 rl: $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps --index-url https://download.pytorch.org/whl/cpu torch
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[rl]'
+
+# The parts of pages that are made from the code, and from the figures in docs/results.yaml.
+pages: $(READY)
+	$(BIN)/python -m docs.generate
 
 # Strictly: a warning is an error. Leaves build/docs/index.html, which needs no server and no network.
 # Its pictures are drawn by `python -m docs.generate.pictures`, and kept.

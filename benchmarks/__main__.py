@@ -1,6 +1,12 @@
-"""`make bench`: every figure of speed in the README, from one run."""
+"""`make bench`: how fast everything is, from one run; leaves runs/bench.json."""
 
 from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -16,52 +22,91 @@ COUNTS = (300, 1000)
 SCENARIOS = ("single_follow", "crossing_pair")
 MEMORY_FRAMES = 10_000
 RESETS = 100
+OUT = Path("runs/bench.json")
+
+
+@dataclass(frozen=True, slots=True)
+class BenchFigure:
+    """One figure: what it is of, as a path, how it is written, and what it should be."""
+
+    path: tuple[str, ...]
+    value: float
+    form: str
+    goal: str = ""
 
 
 def main() -> None:
-    """Measure, and print one table."""
+    """Measure, print one table, and keep the figures."""
+    found = []
     table = Table("what", "figure", "goal", title="CPU time, medians of one run", box=None)
-    drawn = render_times()
-    table.add_row("ray caster, both views with full truth, 4 people", f"{drawn.raycast_ms:.2f} ms", "")
-    table.add_row("TinyRenderer, the same", f"{drawn.bullet_ms:.1f} ms", "")
-    table.add_row("ratio", f"{drawn.ratio:.1f}", "at least 10")
+    for figure in measure():
+        found.append(figure)
+        name = ", ".join(figure.path).removesuffix(", ms")
+        table.add_row(name, figure.form.format(figure.value), figure.goal)
+    Console(width=120).print(table)
+    OUT.parent.mkdir(parents=True, exist_ok=True)
+    OUT.write_text(json.dumps(nested(found), indent=2) + "\n", encoding="utf-8")
+
+
+def nested(figures: Sequence[BenchFigure]) -> dict[str, Any]:
+    """Put the figures into mappings within mappings, as their paths say."""
+    whole: dict[str, Any] = {}
+    for figure in figures:
+        inner = whole
+        for step in figure.path[:-1]:
+            inner = inner.setdefault(step, {})
+        inner[figure.path[-1]] = figure.value
+    return whole
+
+
+def measure() -> Iterator[BenchFigure]:
+    """Measure one after the other."""
+    yield from _rendering()
     for count in COUNTS:
         goal = "at most 0.5 ms" if count == 1000 else ""
-        table.add_row(f"one filter step, N = {count}", f"{step_time_ms(count):.3f} ms", goal)
+        yield BenchFigure(("filter step", f"N = {count}", "ms"), step_time_ms(count), "{:.3f} ms", goal)
     for name in SCENARIOS:
-        table.add_row(f"closed loop, {name}", f"{loop_speed(name):.1f} x real time", "at least 5")
-        table.add_row(f"peopleboy run {name}, all it writes", f"{run_speed(name):.1f} x real time", "")
-    table.add_row("peak memory", f"{peak_memory_mb():.0f} MB", "")
-    _add_tracker(table)
+        yield BenchFigure(("closed loop", name), loop_speed(name), "{:.1f} x real time", "at least 5")
+        yield BenchFigure(("peopleboy run", name), run_speed(name), "{:.1f} x real time")
+    yield BenchFigure(("memory", "peak"), peak_memory_mb(), "{:.0f} MB")
+    yield from _tracker()
     growth = long_run(MEMORY_FRAMES).bytes_per_frame
-    table.add_row(f"growth of memory over {MEMORY_FRAMES} frames", f"{growth:.0f} bytes a frame", "none")
-    _add_environments(table)
-    Console(width=100).print(table)
+    yield BenchFigure(("memory", f"over {MEMORY_FRAMES} frames"), growth, "{:.0f} bytes a frame", "none")
+    yield from _environments()
 
 
-def _add_environments(table: Table) -> None:
+def _rendering() -> Iterator[BenchFigure]:
+    drawn = render_times()
+    yield BenchFigure(("rendering", "ray caster", "ms"), drawn.raycast_ms, "{:.2f} ms, 4 people, two views")
+    yield BenchFigure(("rendering", "TinyRenderer", "ms"), drawn.bullet_ms, "{:.1f} ms, the same")
+    yield BenchFigure(("rendering", "TinyRenderer", "ratio"), drawn.ratio, "{:.1f}", "at least 10")
+
+
+def _tracker() -> Iterator[BenchFigure]:
+    found, of = whole_tracker(), "whole tracker"
+    for crowd in found.crowds:
+        form = f"{{:.2f}} ms, N = 1000 each, {crowd.tracked:.1f} tracked"
+        goal = "at most 5 ms" if crowd is found.crowds[-1] else ""
+        yield BenchFigure((of, f"{crowd.people} people", "ms"), crowd.frame_ms, form, goal)
+    yield BenchFigure((of, "each further person", "ms"), found.person_ms, "{:.2f} ms")
+    yield BenchFigure((of, "both images prepared", "ms"), found.prepare_ms, "{:.2f} ms, for all")
+    for part, time_ms in found.parts_ms.items():
+        yield BenchFigure((of, part, "ms"), time_ms, "{:.3f} ms, a person's 1000 samples")
+    yield BenchFigure((of, "OpenCV's HOG", "ms"), found.hog_ms, "{:.0f} ms, frames of 4 people")
+    yield BenchFigure((of, "OpenCV's HOG", "ratio"), found.hog_ratio, "{:.1f}", "at least 10")
+
+
+def _environments() -> Iterator[BenchFigure]:
+    of = "environments"
     for case in CASES:
         goal = f"at least {case.goal}"
-        table.add_row(f"environment, {case.name}", f"{step_rate(case):.0f} steps/s", goal)
-        table.add_row(f"environment, {case.name}, 2 processes", f"{step_rates(case, 2):.0f} steps/s", "")
+        yield BenchFigure((of, case.name, "one process"), step_rate(case), "{:.0f} steps/s", goal)
+        yield BenchFigure((of, case.name, "two processes"), step_rates(case, 2), "{:.0f} steps/s")
     for size in ((320, 240), (80, 60)):
-        name = f"PyBullet's getCameraImage twice a step, {size[0]} x {size[1]}"
-        table.add_row(name, f"{bullet_rate(size):.0f} steps/s", "")
-    table.add_row(f"growth of memory over {RESETS} resets", f"{reset_growth(RESETS):.0f} bytes each", "none")
-
-
-def _add_tracker(table: Table) -> None:
-    found = whole_tracker()
-    for crowd in found.crowds:
-        seen = f"{crowd.tracked:.1f} of {crowd.people} tracked"
-        goal = "at most 5 ms" if crowd is found.crowds[-1] else ""
-        table.add_row(f"whole tracker, N = 1000 each, {seen}", f"{crowd.frame_ms:.2f} ms", goal)
-    table.add_row("each further person", f"{found.person_ms:.2f} ms", "")
-    table.add_row("both images prepared for all", f"{found.prepare_ms:.2f} ms", "")
-    for part, time_ms in found.parts_ms.items():
-        table.add_row(f"a person's 1000 samples: {part}", f"{time_ms:.3f} ms", "")
-    table.add_row("OpenCV's HOG on frames of 4 people", f"{found.hog_ms:.0f} ms", "")
-    table.add_row("ratio", f"{found.hog_ratio:.1f}", "at least 10")
+        name = f"getCameraImage, {size[0]} x {size[1]}"
+        form = "{:.0f} steps/s, PyBullet's own images twice a step"
+        yield BenchFigure((of, name, "one process"), bullet_rate(size), form)
+    yield BenchFigure(("memory", f"over {RESETS} resets"), reset_growth(RESETS), "{:.0f} bytes each", "none")
 
 
 if __name__ == "__main__":

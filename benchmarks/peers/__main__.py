@@ -19,7 +19,7 @@ except ImportError as error:
 
 from benchmarks.peers.compete import Result, compete_on_film
 from benchmarks.peers.contestants import contestants
-from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results
+from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results, write_results
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.scenarios.files.suite import load_suite
 
@@ -60,6 +60,7 @@ def main(scenarios: str, seeds: int, trackers: str, jobs: int, out: Path) -> Non
     print_results(results, console)
     console.print()
     print_occlusions(results, console)
+    write_results(results, out / "results.json")
     draw_occlusions(results, out / "occlusions.png")
     console.print(f"\n{out / 'occlusions.png'}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -14,8 +15,10 @@ from rich.table import Table
 from benchmarks.peers.compete import Result
 from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.evaluation.occlusion_scores import LengthRow, by_length
+from peopleboy.tracker.evaluation.table import to_json
 
 Results = Mapping[str, Sequence[Result]]  # by contestant
+KEPT_UP_TO = {"up to 1.5 s": 1.5, "all": np.inf}
 _SPOT = 4.0
 
 
@@ -50,6 +53,26 @@ def print_occlusions(results: Results, console: Console) -> None:
     for name, table_rows in rows.items():
         table.add_row(name, *(_cell(row) for row in table_rows))
     console.print(table)
+
+
+def write_results(results: Results, path: Path) -> None:
+    """Keep every contestant's figures over all films, and the identities kept, as JSON."""
+    content = {
+        name: {
+            "runs": len(runs),
+            "scores": to_json(combine([run.scores for run in runs])),
+            "kept": {title: _kept(runs, to_s) for title, to_s in KEPT_UP_TO.items()},
+        }
+        for name, runs in results.items()
+    }
+    path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+
+
+def _kept(runs: Sequence[Result], to_s: float) -> dict[str, float | None]:
+    """Of the occlusions that are shorter than that, the share after which the identity is the same."""
+    rows = [row for row in by_length(_occlusions(runs)) if row.to_s <= to_s]
+    tracked = sum(row.occlusions for row in rows)
+    return {"share": sum(row.kept for row in rows) / tracked if tracked else None, "occlusions": tracked}
 
 
 def draw_occlusions(results: Results, path: Path) -> None:

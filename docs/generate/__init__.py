@@ -1,1 +1,1 @@
-"""Parts of the site that are made from the code, so that they cannot say something else, and the pictures."""
+"""Parts of pages that are made from the code, so that they cannot say something else, and the pictures."""

@@ -1,47 +1,21 @@
-"""What there is to choose from in scenario files: walls, clothes, colours, things, and more."""
+"""What there is to choose from in scenario files: walls, clothes, colours and things."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import get_args
 
-from docs.generate.markdown import sentence, table
+from docs.generate.markdown import table
 from peopleboy.scenarios.files.build_place import make_floor_plan
-from peopleboy.scenarios.files.schema import (
+from peopleboy.scenarios.files.schema.place import (
     CorridorSpec,
-    FaultSpec,
     LCorridorSpec,
     PlaceSpec,
-    RobotSpec,
     RoomSpec,
     TCorridorSpec,
-    WaypointSpec,
 )
 from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Garment
 from peopleboy.sim.places.things import KINDS, Kind
 from peopleboy.sim.shapes.materials import Rgb
-
-BEHAVIOURS = {
-    "stand": "the robot stands",
-    "follow_person": "finds a person and follows, up to where that one looks as tall as `keep_height` says",
-    "follow_corridor": "keeps to the middle of a corridor, turns at its end, and waits for people in the way",
-    "patrol": "follows a corridor until somebody turns up, follows that person for a while, and returns",
-    "scripted": "drives as `commands` says",
-}
-POSTURES = {
-    "standing": "upright, arms at the sides",
-    "sitting": "as on a chair, which may stand at that point",
-    "bending": "bent forward",
-    "arms_raised": "both arms up",
-    "arms_crossed": "arms in front of the chest",
-}
-FAULTS = {
-    "camera_frozen": "the cameras give the last images again and again",
-    "camera_black": "the cameras give black images",
-    "tracker_raises": "the tracker fails at every image",
-    "sonar_maximum": "all sonars say that there is nothing",
-    "odometry_jumps": "the odometry's pose jumps at once, and again every second",
-}
 
 _PLACES: Mapping[str, PlaceSpec] = {
     "room": RoomSpec(kind="room", length_m=8.0, width_m=5.0),
@@ -76,21 +50,6 @@ def things() -> str:
     return table(head, [_thing(name, kind) for name, kind in KINDS.items()])
 
 
-def postures() -> str:
-    """List what people do while they pause."""
-    return _described(POSTURES, get_args(WaypointSpec.model_fields["posture"].annotation))
-
-
-def behaviours() -> str:
-    """List what may drive the robot."""
-    return _described(BEHAVIOURS, get_args(RobotSpec.model_fields["behaviour"].annotation))
-
-
-def faults() -> str:
-    """List what may break."""
-    return _described(FAULTS, get_args(FaultSpec.model_fields["kind"].annotation))
-
-
 def _walls(place: PlaceSpec) -> str:
     return ", ".join(f"`{wall.name}`" for wall in make_floor_plan(place).walls())
 
@@ -112,7 +71,3 @@ def _thing(name: str, kind: Kind) -> tuple[str, ...]:
     if kind.is_to_ceiling:
         where += ", up to the ceiling"
     return f"`{name}`", f"{size} m", f"{kind.temperature_c:g} °C", where
-
-
-def _described(meanings: Mapping[str, str], names: tuple[str, ...]) -> str:
-    return table(("name", "what it is"), [(f"`{name}`", sentence(meanings[name])) for name in names])

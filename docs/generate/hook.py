@@ -1,20 +1,13 @@
-"""Puts the generated parts into the pages when MkDocs reads them, and looks at the site when it is built."""
+"""Looks at the site when MkDocs has built it."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 
 from docs.generate.offline import loads
-from docs.generate.parts import fill_in
-
-
-def on_page_markdown(markdown: str, **_: Any) -> str:
-    """Replace every `<!-- generated: NAME -->` of a page."""
-    return fill_in(markdown)
 
 
 def on_post_build(config: MkDocsConfig) -> None:

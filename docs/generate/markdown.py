@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-WIDE = ("meaning", "values", "what it is")
-"""Columns that hold sentences and lists, to which the style sheet gives room."""
-
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Write a table; bars within cells are escaped, and line ends become blanks."""
-    titles = [f"{title} {{ .wide }}" if title in WIDE else title for title in head]
-    lines = [_row(titles), _row(["---"] * len(head)), *(_row(row) for row in rows)]
+    lines = [_row(head), _row(["---"] * len(head)), *(_row(row) for row in rows)]
     return "\n".join(lines) + "\n"
 
 

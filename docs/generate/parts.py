@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
+from pathlib import Path
 
+from benchmarks.results.tables import read_tables
 from docs.generate import choices
 from docs.generate.commands import commands
 from docs.generate.metrics import metrics
+from docs.generate.results import results
 from docs.generate.scenario_keys import scenario_keys
 from docs.generate.settings import settings
 from docs.generate.trackers import trackers
 
+DOCS = Path(__file__).parents[1]
 PARTS: Mapping[str, Callable[[], str]] = {
     "scenario keys": scenario_keys,
     "walls": choices.walls,
     "garments": choices.garments,
     "colours": choices.colours,
     "things": choices.things,
-    "postures": choices.postures,
-    "behaviours": choices.behaviours,
-    "faults": choices.faults,
     "commands": commands,
     "trackers": trackers,
     "settings": settings,
@@ -29,15 +30,29 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "metrics paper": partial(metrics, "paper"),
     "metrics mot": partial(metrics, "mot"),
     "metrics counts": partial(metrics, "counts"),
+    **{f"results {name}": partial(results, table) for name, table in read_tables().tables.items()},
 }
 
-PLACE = re.compile(r"<!-- generated: (.*?) -->")
+PLACE = re.compile(r"<!-- generated: (.*?) -->.*?<!-- end -->", re.DOTALL)
+
+
+def outdated_pages() -> Iterator[tuple[Path, str]]:
+    """Find the pages of the documentation whose parts are not what they should be, with their new text."""
+    for path in sorted(DOCS.rglob("*.md")):
+        text = path.read_text(encoding="utf-8")
+        new = fill_in(text)
+        if new != text:
+            yield path, new
 
 
 def fill_in(markdown: str) -> str:
-    """Put the parts that a page asks for into it.
+    """Make the parts between `<!-- generated: NAME -->` and `<!-- end -->` anew.
 
     Raises:
         KeyError: there is no part of that name.
     """
-    return PLACE.sub(lambda place: PARTS[place[1]](), markdown)
+    return PLACE.sub(lambda place: _part(place[1]), markdown)
+
+
+def _part(name: str) -> str:
+    return f"<!-- generated: {name} -->\n\n{PARTS[name]().strip()}\n\n<!-- end -->"

@@ -8,9 +8,7 @@ from typing import Any
 
 from docs.generate.json_types import default_text, models_in, title, type_text
 from docs.generate.markdown import sentence, table
-from docs.generate.plain_keys import PLAIN_KEYS
-from peopleboy.scenarios.files import schema
-from peopleboy.scenarios.files.schema import ScenarioSpec
+from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 
 UNITS = {
     "_deg_s": "deg/s",
@@ -52,14 +50,8 @@ def keys_of(parts: Mapping[str, dict[str, Any]]) -> Iterator[Key]:
                 unit=next((unit for end, unit in UNITS.items() if name.endswith(end)), ""),
                 values=type_text(field),
                 default="**required**" if is_required else default_text(field),
-                meaning=sentence(field.get("description") or plain_meaning(part, name)),
+                meaning=sentence(field.get("description", "")),
             )
-
-
-def plain_meaning(part: str, name: str) -> str:
-    """Say what a key means that the schema leaves to its name; empty if nobody has said it."""
-    classes = [kind.__name__ for kind in getattr(schema, part).__mro__]
-    return next((PLAIN_KEYS[f"{kind}.{name}"] for kind in classes if f"{kind}.{name}" in PLAIN_KEYS), "")
 
 
 def parts_of_a_file() -> Mapping[str, dict[str, Any]]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.labels import Labels
 from peopleboy.scenarios.files.check import ROBOT_M
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema import CommandSpec
+from peopleboy.scenarios.files.schema.robot import CommandSpec
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig
 

@@ -7,15 +7,9 @@ from pathlib import Path
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.place_things import make_things, resolve_colour
-from peopleboy.scenarios.files.schema import (
-    Colour,
-    CorridorSpec,
-    DoorSpec,
-    LCorridorSpec,
-    PlaceSpec,
-    RoomSpec,
-    ScenarioSpec,
-)
+from peopleboy.scenarios.files.schema.place import CorridorSpec, DoorSpec, LCorridorSpec, PlaceSpec, RoomSpec
+from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
+from peopleboy.scenarios.files.schema.values import Colour
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.places.floor_plan import Door, FloorPlan, check_doors
 from peopleboy.sim.places.place import Place

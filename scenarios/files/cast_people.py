@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from peopleboy.scenarios.files.schema import ClothesSpec, GroupSpec, PersonSpec, WaypointSpec
+from peopleboy.scenarios.files.schema.people import ClothesSpec, GroupSpec, PersonSpec, WaypointSpec
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.person import PersonConfig

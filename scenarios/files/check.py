@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.place_things import describe_floor, name_things
-from peopleboy.scenarios.files.schema import PersonSpec, RobotSpec, ScenarioSpec, WaypointSpec
+from peopleboy.scenarios.files.schema.people import PersonSpec, WaypointSpec
+from peopleboy.scenarios.files.schema.robot import RobotSpec
+from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place

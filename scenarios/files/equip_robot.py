@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from peopleboy.scenarios.files.schema import CameraSpec, RobotSpec, ThermalSpec
+from peopleboy.scenarios.files.schema.robot import CameraSpec, RobotSpec, ThermalSpec
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.robot.robot_config import RobotConfig
 

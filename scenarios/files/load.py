@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario, make_scenario
-from peopleboy.scenarios.files.schema import ScenarioSpec
+from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.scenarios.files.schema_errors import explain, hint
 
 LIBRARY = Path(__file__).parents[1] / "library"

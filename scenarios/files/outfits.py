@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from peopleboy.scenarios.files.schema import ClothesSpec, PersonSpec
+from peopleboy.scenarios.files.schema.people import ClothesSpec, PersonSpec
 
 # Colours that differ clearly from each other in hue or brightness; a white top stays apart from yellow ones.
 TOP_COLOURS = ("white", "black", "red", "yellow", "green", "blue", "pink", "orange")

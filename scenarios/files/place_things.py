@@ -10,7 +10,9 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.files.schema import Colour, ScenarioSpec, ThingSpec
+from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
+from peopleboy.scenarios.files.schema.things import ThingSpec
+from peopleboy.scenarios.files.schema.values import Colour
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.people.body.clothes import COLOURS
 from peopleboy.sim.physics.model_files import is_in_data

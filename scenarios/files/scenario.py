@@ -22,7 +22,9 @@ from peopleboy.scenarios.files.drives import KEPT, Repeat, pack_drive, read_driv
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.outfits import tell_apart
 from peopleboy.scenarios.files.own_files import read_own_files
-from peopleboy.scenarios.files.schema import DrawnSpec, PersonSpec, RobotSpec, ScenarioSpec
+from peopleboy.scenarios.files.schema.people import PersonSpec
+from peopleboy.scenarios.files.schema.robot import RobotSpec
+from peopleboy.scenarios.files.schema.scenario_file import DrawnSpec, ScenarioSpec
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place

@@ -14,7 +14,7 @@ from peopleboy.scenarios.files.drives import read_drive
 from peopleboy.scenarios.files.load import SUITES, load_scenario
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema import Key, Strict
+from peopleboy.scenarios.files.schema.values import Key, Strict
 from peopleboy.scenarios.files.schema_errors import explain, hint
 
 DRIVES = SUITES / "drives"
@@ -23,21 +23,25 @@ DRIVES = SUITES / "drives"
 class EntrySpec(Strict):
     """A scenario of a suite, played once with each seed."""
 
-    scenario: Key
-    """name in the library"""
-    seeds: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(strict=False, min_length=1)]
-    duration_s: Annotated[float, Field(gt=0.0, le=36000.0)] | None = None
-    """where the scenario's own will not do"""
-    repeats_drive: bool = False
-    """whether the robot repeats the drive that is kept for this suite, scenario and seed"""
+    scenario: Key = Field(description="name in the library")
+    seeds: tuple[Annotated[int, Field(ge=0)], ...] = Field(
+        strict=False, min_length=1, description="of the runs"
+    )
+    duration_s: float | None = Field(
+        default=None, gt=0.0, le=36000.0, description="where the scenario's own will not do"
+    )
+    repeats_drive: bool = Field(
+        default=False,
+        description="whether the robot repeats the drive that is kept for this suite, scenario and seed",
+    )
 
 
 class SuiteSpec(Strict):
     """A suite file."""
 
-    name: Key
-    description: Annotated[str, Field(min_length=1, max_length=1000)]
-    runs: Annotated[tuple[EntrySpec, ...], Field(strict=False, min_length=1)]
+    name: Key = Field(description="one word, for folders")
+    description: str = Field(min_length=1, max_length=1000, description="what it is for")
+    runs: tuple[EntrySpec, ...] = Field(strict=False, min_length=1, description="what is played")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

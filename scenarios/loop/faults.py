@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from peopleboy.scenarios.files.schema import FaultSpec
+from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.loop import Stage
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,9 @@ import pytest
 
 from benchmarks.peers.compete import compete_on_film
 from benchmarks.peers.detectors import Blobs, Oracle, _from_colour
+from benchmarks.peers.show import write_results
+from benchmarks.results.measured import take_in
+from benchmarks.results.tables import read_tables
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 
@@ -50,3 +54,20 @@ def test_results_are_kept_and_the_oracle_is_right_about_everybody_it_tracks(tmp_
     assert first[0].scores.thesis.cp == 100.0
     assert first[0].scores.thesis.cr > first[1].scores.thesis.cr
     assert len(first[0].occlusions) > 0
+
+
+def test_what_is_kept_of_the_peers_can_be_taken_into_the_tables_of_results(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("runs/peers").mkdir(parents=True)
+    runs = compete_on_film(["oracle+bytetrack"], "crossing_2", 1, tmp_path)
+    write_results({"oracle+bytetrack": runs}, Path("runs/peers/results.json"))
+    kept = json.loads(Path("runs/peers/results.json").read_text())["oracle+bytetrack"]["kept"]["all"]
+    tracked = [o for o in runs[0].occlusions if o.id_before is not None]
+    assert kept == {"share": np.mean([o.is_kept for o in tracked]), "occlusions": len(tracked)}
+    tables = read_tables().tables
+    for name in ("peers", "identity"):
+        row = next(row for row in tables[name].rows if row.measured.endswith("oracle+bytetrack"))
+        taken = take_in(tables[name].model_copy(update={"rows": (row.model_copy(update={"runs": 1}),)}))
+        assert None not in taken.rows[0].figures

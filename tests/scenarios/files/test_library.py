@@ -12,7 +12,8 @@ import yaml
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.plan import draw_plan
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
-from peopleboy.scenarios.files.schema import RobotSpec, json_schema
+from peopleboy.scenarios.files.schema.robot import RobotSpec
+from peopleboy.scenarios.files.schema.scenario_file import json_schema
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.timetable import timetable
 

@@ -6,7 +6,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
-from peopleboy.scenarios.files.schema import FaultSpec
+from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.faults import active
 from peopleboy.scenarios.running.run import RunOptions, run
 

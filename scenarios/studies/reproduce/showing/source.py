@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field, RootModel, ValidationError, model_valida
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.read_yaml import read_yaml
-from peopleboy.scenarios.files.schema import Strict
+from peopleboy.scenarios.files.schema.values import Strict
 
 PATH = Path(__file__).with_name("source_figures.yaml")
 SOURCE = "source"

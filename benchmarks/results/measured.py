@@ -1,0 +1,105 @@
+"""Figures from what measuring commands leave: JSON files, and folders of runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.results.tables import Column, ResultTable, Row
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.running.compare_controllers import figures_of
+from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
+from peopleboy.tracker.evaluation.evaluate import combine
+from peopleboy.tracker.evaluation.table import to_json
+
+
+def take_in(table: ResultTable) -> ResultTable:
+    """Give a table the figures that now lie where its rows say, and today's date.
+
+    Cells without a figure stay without one.
+
+    Raises:
+        BadInput: no row says where its figures lie, or one of them is not there.
+    """
+    if not any(row.measured for row in table.rows):
+        raise BadInput(f"`{table.command}` only prints its figures; put them into docs/results.yaml by hand")
+    rows = tuple(_take_row(row, table) for row in table.rows)
+    return table.model_copy(update={"rows": rows, "recorded": date.today().isoformat()})
+
+
+def _take_row(row: Row, table: ResultTable) -> Row:
+    if not row.measured:
+        return row
+    found = read_measured(row)
+    figures = tuple(
+        old if old is None or not column.key else _look_up(found, column, row)
+        for column, old in zip(table.columns, row.figures, strict=True)
+    )
+    return row.model_copy(update={"figures": figures})
+
+
+def read_measured(row: Row) -> Any:
+    """Read what a row's figures are looked up in.
+
+    Of folders, that is `scores`, of all their frames together; `mean` and `worst`, how the robot drove; and
+    `runs`, how many there are. A JSON file may have `runs`, too, as their number or a list.
+
+    Raises:
+        BadInput: it is not there, or of another number of runs than the row says.
+    """
+    found = _of_folders(row.measured) if row.measured.endswith("*") else _of_file(row)
+    runs = found.get("runs") if isinstance(found, dict) else None
+    count = len(runs) if isinstance(runs, list) else runs
+    if count != row.runs:
+        raise BadInput(f"{row.measured}: it is of {count} runs, not of {row.runs}; measure them first")
+    return found
+
+
+def _of_file(row: Row) -> Any:
+    path, _, inside = row.measured.partition("#")
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: there are no figures; measure them first") from error
+    return _at(content, inside, row)
+
+
+def _of_folders(pattern: str) -> dict[str, Any]:
+    """Score the folders whose names end in a seed: `crossing_2-0`, not `crossing_2-0-thesis`."""
+    folders = [path for path in sorted(Path().glob(pattern)) if path.name.rpartition("-")[2].isdigit()]
+    if not folders:
+        raise BadInput(f"{pattern}: there are no runs; measure them first")
+    return _of_runs(folders)
+
+
+def _of_runs(folders: Sequence[Path]) -> dict[str, Any]:
+    drives = [figures_of(folder) for folder in folders]
+    values = {name: np.array([drive[name] for drive in drives]) for name in drives[0]}
+    return {
+        "runs": len(folders),
+        "scores": to_json(combine(evaluate_runs(folders))),
+        "mean": {name: float(np.nanmean(value)) for name, value in values.items()},
+        "worst": {name: float(np.nanmax(value)) for name, value in values.items()},
+    }
+
+
+def _look_up(found: Any, column: Column, row: Row) -> float | None:
+    value = _at(found, column.key, row)
+    if value is not None and not isinstance(value, int | float):
+        raise BadInput(f"{row.measured}: {column.key} is no figure, got {value!r}")
+    return None if value is None else column.factor * value
+
+
+def _at(content: Any, key: str, row: Row) -> Any:
+    """Go along a key such as /thesis/CP; numbers count entries of lists."""
+    for step in key.split("/")[1:]:
+        try:
+            content = content[int(step)] if isinstance(content, list) else content[step]
+        except (KeyError, IndexError, TypeError, ValueError) as error:
+            raise BadInput(f"{row.measured}: {row.name} has no {key}") from error
+    return content

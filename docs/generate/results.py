@@ -1,0 +1,25 @@
+"""Measured figures, from the file that keeps them."""
+
+from __future__ import annotations
+
+from benchmarks.results.tables import Column, ResultTable
+from docs.generate.markdown import table
+
+
+def results(one: ResultTable) -> str:
+    """Draw a table of figures, and say how, when and on what they were measured."""
+    head = (one.rows_are, *(column.name for column in one.columns))
+    rows = [
+        (row.name, *(_cell(value, column) for value, column in zip(row.figures, one.columns, strict=True)))
+        for row in one.rows
+    ]
+    return f"{table(head, rows)}\n{_about(one)}"
+
+
+def _cell(value: float | None, column: Column) -> str:
+    return "" if value is None else column.form.format(value)
+
+
+def _about(one: ResultTable) -> str:
+    measured = f"Measured by `{one.command}`, {one.seeds}; put down on {one.recorded}."
+    return f"> {measured} {one.chosen_on}".rstrip()

@@ -1,0 +1,106 @@
+"""The robot: its cameras, what it does, and what breaks."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from peopleboy.scenarios.files.schema.values import Degrees, Point, Position, Seconds, Share, Strict
+
+Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
+
+
+class CameraSpec(Strict):
+    """What differs from the robot's usual camera."""
+
+    width_px: int | None = Field(
+        default=None, ge=16, le=4096, description="columns of the image; usually 320"
+    )
+    height_px: int | None = Field(default=None, ge=16, le=4096, description="rows of the image; usually 240")
+    vertical_fov_deg: float | None = Field(
+        default=None,
+        ge=5.0,
+        le=150.0,
+        description="angle from upper to lower edge; usually 44, of the colour camera 37.2",
+    )
+    mount_m: Position | None = Field(
+        default=None, description="optical centre in the robot's frame: forward, left, up from the floor"
+    )
+    pitch_deg: float | None = Field(default=None, ge=-90.0, le=90.0, description="tilt; positive looks down")
+    yaw_deg: float | None = Field(default=None, ge=-180.0, le=180.0, description="pan; positive looks left")
+    exposure_s: float | None = Field(
+        default=None, ge=0.0, le=1.0, description="time over which rotation blurs the image"
+    )
+
+
+class ThermalSpec(CameraSpec):
+    """What differs from the usual thermal camera."""
+
+    blur_px: float | None = Field(
+        default=None, ge=0.0, le=20.0, description="blur of the optics, a standard deviation"
+    )
+    netd_k: float | None = Field(
+        default=None, ge=0.0, le=5.0, description="noise that is new in every image, a standard deviation"
+    )
+    fixed_pattern_k: float | None = Field(
+        default=None, ge=0.0, le=5.0, description="offsets between pixels that stay, a standard deviation"
+    )
+    dead_pixels: Share | None = Field(
+        default=None, description="share of the pixels that read one value all the time"
+    )
+
+
+class CommandSpec(Strict):
+    """From a time on, a scripted robot drives at this velocity."""
+
+    from_s: Seconds = Field(description="when the robot begins to drive so")
+    linear_m_s: float = Field(default=0.0, ge=-2.0, le=2.0, description="forward speed; negative drives back")
+    angular_deg_s: float = Field(
+        default=0.0, ge=-360.0, le=360.0, description="turn rate; positive turns left"
+    )
+
+
+class RobotSpec(Strict):
+    """The robot: where it starts and what it does."""
+
+    at_m: Point = Field(description="where it starts")
+    heading_deg: Degrees = Field(default=0.0, description="where it looks at the start")
+    behaviour: Literal["stand", "follow_person", "follow_corridor", "patrol", "scripted"] = Field(
+        default="stand",
+        description="what drives it: `stand`, nothing does; `follow_person` finds a person and follows, up "
+        "to where that one looks as tall as `keep_height` says; `follow_corridor` keeps to the middle of a "
+        "corridor, turns at its end, and waits for people in the way; `patrol` follows a corridor until "
+        "somebody turns up, follows that person for a while, and returns; `scripted` drives as `commands` "
+        "says",
+    )
+    commands: tuple[CommandSpec, ...] = Field(
+        default=(), strict=False, description="of a scripted robot, in the order of time"
+    )
+    keep_height: float | None = Field(
+        default=None,
+        gt=0.05,
+        le=1.5,
+        description="of a following robot: the person's height in the image [image heights] where it stops",
+    )
+    walls_by: Literal["sonar", "image"] | None = Field(
+        default=None,
+        description="of a robot in corridors: the sense that tells it the walls; left out, the sonar",
+    )
+    thermal: ThermalSpec = Field(
+        default=ThermalSpec(), description="what differs from the usual thermal camera"
+    )
+    colour: CameraSpec = Field(default=CameraSpec(), description="what differs from the usual colour camera")
+
+
+class FaultSpec(Strict):
+    """Something that breaks for a while."""
+
+    kind: Failure = Field(
+        description="`camera_frozen`: the cameras give the last images again and again; `camera_black`: they "
+        "give black ones; `tracker_raises`: the tracker fails at every image; `sonar_maximum`: all sonars "
+        "say that there is nothing; `odometry_jumps`: the odometry's pose jumps at once, and again every "
+        "second"
+    )
+    from_s: Seconds = Field(description="when it begins")
+    lasts_s: Seconds | None = Field(default=None, description="left out, it lasts to the end")

@@ -1,0 +1,77 @@
+"""Warm and cold things in the place."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from peopleboy.scenarios.files.schema.values import (
+    Celsius,
+    Colour,
+    Coordinate,
+    Degrees,
+    Key,
+    Name,
+    Point,
+    Size,
+    Strict,
+)
+from peopleboy.sim.places.things import KINDS
+
+
+class PatternSpec(Strict):
+    """A two-coloured pattern."""
+
+    kind: Literal["plain", "stripes", "checks", "patch", "speckle"] = Field(
+        description="shape of the pattern"
+    )
+    period_m: float = Field(
+        default=0.1,
+        ge=0.01,
+        le=10.0,
+        description="width of a pair of stripes, of two checks, or size of a patch",
+    )
+
+
+class ThingSpec(Strict):
+    """A thing that stands on the floor, on another thing, or on a wall."""
+
+    kind: Literal[*KINDS, "urdf"] = Field(description="what it is")  # type: ignore[valid-type]
+    name: Name | None = Field(
+        default=None, description="defaults to the kind and a number, such as radiator_1"
+    )
+    at_m: Point | None = Field(default=None, description="where it stands; not together with wall")
+    wall: Key | None = Field(default=None, description="the wall that it hangs on or stands against")
+    along_m: Coordinate | None = Field(
+        default=None,
+        description="where along that wall: world x of north or south walls, world y of east or west walls",
+    )
+    on_top_of: Name | None = Field(default=None, description="name of the thing that it stands on")
+    base_m: float | None = Field(
+        default=None, ge=0.0, le=8.0, description="height of its foot, where the kind's own will not do"
+    )
+    facing_deg: Degrees = Field(
+        default=0.0, description="where its front looks; a thing on a wall looks into the place"
+    )
+    size_m: Size | None = Field(default=None, description="depth, width, height")
+    temperature_c: Celsius | None = Field(
+        default=None, description="of its main surface; left out, the kind's own"
+    )
+    emissivity: float = Field(
+        default=0.93,
+        gt=0.0,
+        le=1.0,
+        description="of its main surface; what is missing to 1 mirrors the surroundings",
+    )
+    colour: Colour | None = Field(default=None, description="of its main surface; left out, the kind's own")
+    pattern: PatternSpec = Field(
+        default=PatternSpec(kind="plain"), description="of its main surface, seen by the colour camera"
+    )
+    urdf: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=200,
+        description="of kind urdf: a file of pybullet_data, or one in the scenario file's own folder",
+    )
+    scale: float = Field(default=1.0, ge=0.001, le=1000.0, description="factor on the size of a `urdf`")

@@ -1,0 +1,65 @@
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+import yaml
+
+from peopleboy.scenarios.files.load import library, load_scenario
+
+ROOT = Path(__file__).parents[2]
+README, RESULTS = (ROOT / name for name in ("README.md", "docs/results.md"))
+NUMBER = r"\d+(?:\.\d+)?"
+
+
+def section(title: str) -> str:
+    return README.read_text(encoding="utf-8").split(f"## {title}\n")[1].split("\n## ")[0]
+
+
+def version() -> str:
+    return str(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"])
+
+
+def test_the_readme_is_short() -> None:
+    assert len(README.read_text(encoding="utf-8").splitlines()) <= 120
+
+
+def test_the_scenario_of_the_readme_can_be_loaded(tmp_path: Path) -> None:
+    path = tmp_path / "my_scene.yaml"
+    path.write_text(re.search(r"```yaml\n(.*?)```", section("A scenario"), re.DOTALL)[1], encoding="utf-8")
+    assert [person.name for person in load_scenario(path).people(seed=0)] == ["anna", "ben"]
+
+
+def test_every_figure_of_the_readme_is_one_of_the_results() -> None:
+    measured = set(re.findall(NUMBER, RESULTS.read_text(encoding="utf-8")))
+    rows = [line.split("|")[2:4] for line in section("Figures").splitlines() if line.startswith("| ")][1:]
+    given = {number for row in rows for cell in row for number in re.findall(NUMBER, cell)}
+    assert len(rows) == 5
+    assert given <= measured
+
+
+@pytest.mark.parametrize("name", ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/results.md"])
+def test_what_a_page_of_the_repository_points_to_is_there(name: str) -> None:
+    page = ROOT / name
+    text = page.read_text(encoding="utf-8")
+    links = [link.partition("#")[0] for link in re.findall(r"\]\((?!https?:|#)([^)]+)\)", text)]
+    assert not [link for link in links if not (page.parent / link).exists()]
+
+
+def test_the_files_that_contributors_are_sent_to_are_there() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = [word for word in re.findall(r"`([\w./]+/[\w./]*)`", text) if "NAME" not in word]
+    made = ("runs/", "build/")
+    assert len(named) > 30
+    assert not [word for word in named if not word.startswith(made) and not (ROOT / word).exists()]
+
+
+def test_changelog_and_citation_are_of_this_version() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert (citation["cff-version"], citation["version"]) == ("1.2.0", version())
+    assert f"## [{version()}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_every_scenario_of_the_library_is_on_its_page() -> None:
+    text = (ROOT / "docs/reference/library.md").read_text(encoding="utf-8")
+    assert not [name for name in library() if f"`{name.removesuffix('_by_image')}`" not in text]
