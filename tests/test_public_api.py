@@ -1,3 +1,4 @@
+import re
 import subprocess
 import sys
 import typing
@@ -5,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 import peopleboy
+from tests.helpers.import_graph import ROOT
 
 
 def run_python(code: str) -> str:
@@ -36,3 +38,10 @@ def test_importing_it_loads_none_of_the_heavy_packages() -> None:
 def test_a_name_that_is_not_there_is_refused_as_modules_do() -> None:
     told = run_python("import peopleboy; print(hasattr(peopleboy, 'nothing_of_that_name'))")
     assert told.strip() == "False"
+
+
+def test_the_page_on_the_package_names_each_of_them() -> None:
+    page = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
+    rows = [line.split("|")[1] for line in page.splitlines() if line.startswith("| `")]
+    told = {name for row in rows for name in re.findall(r"`(\w+)`", row)}
+    assert told == set(peopleboy.__all__)
