@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,16 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.closed_loop import loop_speed, peak_memory_mb, run_speed
-from benchmarks.environments import CASES, bullet_rate, reset_growth, step_rate, step_rates
+from benchmarks.environments import (
+    CASES,
+    QUICK_HZ,
+    RUN_HZ,
+    bullet_rate,
+    reset_growth,
+    step_rate,
+    step_rates,
+    way_off_mm,
+)
 from benchmarks.filter_step import step_time_ms
 from benchmarks.memory import long_run
 from benchmarks.render import render_times
@@ -98,10 +108,11 @@ def _tracker() -> Iterator[BenchFigure]:
 
 def _environments() -> Iterator[BenchFigure]:
     of = "environments"
-    for case in CASES:
-        goal = f"at least {case.goal}"
-        yield BenchFigure((of, case.name, "one process"), step_rate(case), "{:.0f} steps/s", goal)
-        yield BenchFigure((of, case.name, "two processes"), step_rates(case, 2), "{:.0f} steps/s")
+    for case, rate in product(CASES, (RUN_HZ, QUICK_HZ)):
+        name, goal, form = f"{case.name}, physics at {rate} Hz", f"at least {case.goal}", "{:.0f} steps/s"
+        yield BenchFigure((of, name, "one process"), step_rate(case, rate), form, goal)
+        yield BenchFigure((of, name, "two processes"), step_rates(case, 2, rate), form)
+    yield BenchFigure((of, f"way off at {QUICK_HZ} Hz"), way_off_mm(), "{:.1f} mm at most, 30 s")
     for size in ((320, 240), (80, 60)):
         name = f"getCameraImage, {size[0]} x {size[1]}"
         form = "{:.0f} steps/s, PyBullet's own images twice a step"
