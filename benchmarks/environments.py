@@ -105,7 +105,7 @@ def bullet_rate(image_size: tuple[int, int], steps: int = 20) -> float:
     config = load_scenario(SCENARIO).world(0)
     cameras = [
         replace(camera, width=image_size[0], height=image_size[1])
-        for camera in (config.robot.thermal.camera, config.robot.colour.camera)
+        for camera in (one.camera for one in config.robot.cameras.values())
     ]
     with World(config) as world:
         client, robot = world._bullet._client, world._robot

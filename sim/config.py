@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from peopleboy.bad_input import BadInput
+from peopleboy.sim.cameras.kinds import check_rate
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig
+
+CONTROL_HZ = 15  # [Hz] of commands and images, if nothing else is said
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,7 +27,8 @@ class WorldConfig:
         renderer: "raycast" or "bullet"; "none" for a world without images, which is several times faster.
 
     Raises:
-        BadInput: a control step is not a whole number of physics steps, or the seed is negative.
+        BadInput: a control step is not a whole number of physics steps, or an image not one of control
+            steps; or the seed is negative.
     """
 
     place: Place
@@ -32,7 +36,7 @@ class WorldConfig:
     robot: RobotConfig = field(default_factory=RobotConfig)
     seed: int = 0
     physics_hz: int = 240
-    control_hz: int = 15
+    control_hz: int = CONTROL_HZ
     renderer: str = "raycast"
 
     def __post_init__(self) -> None:
@@ -42,5 +46,7 @@ class WorldConfig:
                 f"control rate {self.control_hz} Hz must divide the physics rate {self.physics_hz} Hz: "
                 "a control step is a whole number of physics steps"
             )
+        for name, camera in self.robot.cameras.items():
+            check_rate(f"camera {name!r}: rate_hz", camera.rate_hz, self.control_hz)
         if self.seed < 0:
             raise BadInput(f"seed {self.seed} must be 0 or more")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,11 +34,10 @@ class Observation(Senses):
     """All the robot's senses at one instant.
 
     Attributes:
-        thermal: (H, W) uint8 grey, linear over 24..36 degC: the robot's view.
-        thermal_c: (H, W) float32 [degC], the same before it is encoded.
-        colour: (H, W, 3) uint8 sRGB.
+        images: of the cameras that take one at this instant, by the camera's name; each is made when it is
+            first asked for, which must be before the next step or observation. A thermal camera, such as
+            `thermal`, gives (H, W) uint8 grey, linear over 24..36 degC, and as `thermal_c` (H, W) float32
+            [degC], the same before it is encoded; a colour camera, such as `colour`, (H, W, 3) uint8 sRGB.
     """
 
-    thermal: NDArray[np.uint8]
-    thermal_c: NDArray[np.float32]
-    colour: NDArray[np.uint8]
+    images: Mapping[str, NDArray[Any]]

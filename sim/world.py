@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import TracebackType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.cameras.colour import colour_image, expose
+from peopleboy.sim.cameras.rig import Rig
+from peopleboy.sim.cameras.sensors import Glimpse
 from peopleboy.sim.cameras.surfaces import make_material_table
-from peopleboy.sim.cameras.thermal import detect, encode_8bit, make_detector, surface_image
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera, Matrix
 from peopleboy.sim.observation import Observation, Senses
+from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.bullet import Bullet
@@ -75,7 +77,9 @@ class World:
         self.close()
 
     def close(self) -> None:
-        """Free the physics world."""
+        """Free the physics world; what was not read until now cannot be read any more."""
+        if self.config.renderer != BLIND:
+            self._rig.forget()
         self._bullet.close()
 
     @property
@@ -86,16 +90,17 @@ class World:
     def observe(self) -> Observation:
         """Read every sensor once.
 
-        The images are those of this instant. Call it once a control step: each call draws fresh noise.
+        The images are those of this instant, and are made when they are asked for. Call it once a control
+        step: each call draws fresh noise.
+
+        Raises:
+            BadInput: this is a world without images.
         """
-        thermal_c = self._thermal_image()
-        lowest, highest = self.config.robot.thermal.lowest_c, self.config.robot.thermal.highest_c
+        self._check_sight()
         senses = self.sense()
         return Observation(
             time_s=senses.time_s,
-            thermal=encode_8bit(thermal_c, lowest, highest),
-            thermal_c=thermal_c,
-            colour=self._colour_image(),
+            images=self._rig.read(self._tick),
             sonar_m=senses.sonar_m,
             odometry=senses.odometry,
             wheel_speeds_m_s=senses.wheel_speeds_m_s,
@@ -121,15 +126,24 @@ class World:
                 self._crowd.people,
                 self._bullet,
                 self._robot.world_from_robot(),
-                self.config.robot.thermal.camera,
+                self.config.robot.cameras["thermal"].camera,
             ),
         )
 
-    def truth(self) -> Truth:
-        """Tell all that is true at this instant."""
-        seen = self._see(self.config.robot.thermal.camera)
+    def truth(self, camera: str = "thermal") -> Truth:
+        """Tell all that is true at this instant, boxes and masks in the image of a camera.
+
+        Raises:
+            BadInput: there is no camera of that name, or this is a world without images.
+        """
+        if camera not in self.config.robot.cameras:
+            known = ", ".join(self.config.robot.cameras)
+            raise BadInput(f"camera {camera!r}: there is none of that name; choose from {known}")
+        geometry = self.config.robot.cameras[camera].camera
+        seen = self._see(geometry)
         return self._truth_maker.make(
             time_s=self.time_s,
+            camera=geometry,
             view=seen.view,
             world_from_camera=seen.world_from_camera,
             world_from_part=self._poses,
@@ -137,6 +151,16 @@ class World:
             robot_velocity=self._robot.velocity(),
             contacts=tuple(sorted(self._touching)),
         )
+
+    def truths(self) -> Mapping[str, Truth]:
+        """Give the truth by camera that takes an image now: that of `thermal`, the rest when asked for.
+
+        Raises:
+            BadInput: this is a world without images; or, when one is asked for, the instant is over.
+        """
+        self._check_sight()
+        at_once = {"thermal": self.truth()}
+        return OnDemand(self._rig.due(self._tick), partial(self._truth_at, self._tick), at_once)
 
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
         """Drive the robot by a velocity command for one control step; people and light move on too.
@@ -187,12 +211,8 @@ class World:
         ]
         self._table = make_shape_table(bullet.visual_shapes())
         self._materials = make_material_table(part_materials, stream(config.seed, "surface.variation"))
-        self._truth_maker = TruthMaker(
-            keys, self._table, self._crowd, part_materials, config.robot.thermal.camera
-        )
-        self._detector = make_detector(config.robot.thermal, stream(config.seed, "thermal.detector"))
-        self._thermal_noise = stream(config.seed, "thermal.noise")
-        self._colour_noise = stream(config.seed, "colour.noise")
+        self._truth_maker = TruthMaker(keys, self._table, self._crowd, part_materials)
+        self._rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._glimpse)
 
     def _settle(self) -> None:
         """Take over the poses of a new instant; what was seen before is forgotten."""
@@ -202,6 +222,16 @@ class World:
         self._poses = self._bullet.part_poses()
         self._hidden = self._bullet.hidden_parts()
         self._seen: dict[Camera, _CameraView] = {}
+        self._rig.forget()
+
+    def _check_sight(self) -> None:
+        if self.config.renderer == BLIND:
+            raise BadInput("renderer 'none': there are no images in this world; choose raycast or bullet")
+
+    def _truth_at(self, tick: int, camera: str) -> Truth:
+        if tick != self._tick:
+            raise BadInput(f"camera {camera!r}: the truth of an instant that is over cannot be told any more")
+        return self.truth(camera)
 
     def _see(self, camera: Camera) -> _CameraView:
         """Render one camera's view, once an instant.
@@ -209,8 +239,7 @@ class World:
         Raises:
             BadInput: this is a world without images.
         """
-        if self.config.renderer == BLIND:
-            raise BadInput("renderer 'none': there are no images in this world; choose raycast or bullet")
+        self._check_sight()
         if camera not in self._seen:
             pose = self._robot.world_from_robot() @ camera.robot_from_camera
             self._seen[camera] = _CameraView(pose, self._render(camera, pose))
@@ -222,23 +251,18 @@ class World:
             self._truth_maker.person_of_part, self._hidden,
         )  # fmt: skip
 
-    def _thermal_image(self) -> NDArray[np.float32]:
-        config = self.config.robot.thermal
-        seen = self._see(config.camera)
-        apparent = surface_image(
-            seen.view, self._materials, config, seen.world_from_camera, self._poses,
-            self.config.place.surroundings_c, self._robot.velocity()[1] * config.exposure_s,
-        )  # fmt: skip
-        return detect(apparent, self._detector, config, self._thermal_noise)
-
-    def _colour_image(self) -> NDArray[np.uint8]:
-        config = self.config.robot.colour
-        seen = self._see(config.camera)
-        linear = colour_image(
-            seen.view, self._materials, config, seen.world_from_camera, self._poses,
-            light_level(self.config.place, self.time_s), self._robot.velocity()[1] * config.exposure_s,
-        )  # fmt: skip
-        return expose(linear, config, self._colour_noise)
+    def _glimpse(self, camera: Camera) -> Glimpse:
+        """Tell a sensor what it sees, and all that forms its images from that."""
+        seen = self._see(camera)
+        return Glimpse(
+            view=seen.view,
+            world_from_camera=seen.world_from_camera,
+            world_from_part=self._poses,
+            materials=self._materials,
+            surroundings_c=self.config.place.surroundings_c,
+            light_level=light_level(self.config.place, self.time_s),
+            turn_rad_s=self._robot.velocity()[1],
+        )
 
 
 def light_level(place: Place, time_s: float) -> float:

@@ -139,7 +139,8 @@ class ContactSheet:
 
     def _colour_picture(self, moment: Moment) -> Picture:
         scale = _TILE / moment.colour.shape[1]
-        affine = affine_between(self._robot.thermal.camera, self._robot.colour.camera, _TYPICAL_DEPTH_M)
+        cameras = self._robot.cameras
+        affine = affine_between(cameras["thermal"].camera, cameras["colour"].camera, _TYPICAL_DEPTH_M)
         return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, self._contour, affine)
 
 

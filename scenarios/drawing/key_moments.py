@@ -176,8 +176,8 @@ def _moment(tick: Tick) -> Moment:
         frame=tick.frame,
         time_s=senses.time_s,
         mode=tick.mode,
-        thermal=senses.thermal,
-        colour=senses.colour,
+        thermal=senses.images["thermal"],
+        colour=senses.images["colour"],
         tracks=tick.tracks,
         people=tick.truth.people,
     )

@@ -46,7 +46,7 @@ def draw_robot(axes: Axes, labels: Labels, scenario: Scenario, robot: RobotConfi
 
 
 def _draw_view(axes: Axes, labels: Labels, robot: RobotConfig, place: Place) -> None:
-    camera = robot.thermal.camera
+    camera = robot.cameras["thermal"].camera
     c, s = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
     forward, left, _ = camera.position_m
     eye = np.array([robot.at_m[0] + c * forward - s * left, robot.at_m[1] + s * forward + c * left])

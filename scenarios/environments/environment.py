@@ -32,7 +32,6 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.scores.score import following_task
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.random_streams import stream
@@ -69,7 +68,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         task: "follow", "corridor" or "patrol", which decides the reward.
         observation: "pixels"; "tracks", what the tracker makes of the images; or "truth", what a perfect
             tracker would, for which nothing is rendered.
-        image_size: width and height [px] of both images.
+        image_size: width and height [px] of all images.
         tracker: name of the tracker behind "tracks".
         randomise: options of every episode for which `reset` is given none.
         render_mode: "rgb_array" or None.
@@ -139,6 +138,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         )
         self._start: Planar | None = None
         self._tracks: tuple[Track, ...] = ()
+        self._images: Arrays = {}
         self._is_over = False
         observation = self._observe()
         self._episode.judge(self._scene)
@@ -208,7 +208,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             return found | see_truth(self._scene, self._robot)
         assert isinstance(self._senses, Observation)
         if self._kind == "pixels":
-            return found | see_images(self._senses)
+            self._images |= see_images(self._senses, self._robot)
+            return found | self._images
         self._tracks = self._tracker.update(make_frame(self._senses, before))
         return found | see_tracks(self._tracks, self._robot)
 
@@ -254,18 +255,8 @@ def _check_action(action: NDArray[np.float32] | Sequence[float]) -> tuple[float,
 
 
 def _resize(robot: RobotConfig, size: tuple[int, int]) -> RobotConfig:
-    """Let both cameras take images of another size, of the same height of view and as sharp."""
-    thermal, colour = robot.thermal, robot.colour
-
-    def camera(usual: Camera) -> Camera:
-        return replace(usual, width=size[0], height=size[1])
-
-    blur = thermal.blur_px * size[1] / thermal.camera.height
-    return replace(
-        robot,
-        thermal=replace(thermal, camera=camera(thermal.camera), blur_px=blur),
-        colour=replace(colour, camera=camera(colour.camera)),
-    )
+    """Let all cameras take images of another size, of the same height of view and as sharp."""
+    return replace(robot, cameras={name: camera.resized(*size) for name, camera in robot.cameras.items()})
 
 
 def _keep_m(scenario: Scenario, config: WorldConfig) -> float:

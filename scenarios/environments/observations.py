@@ -10,6 +10,8 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
@@ -43,8 +45,8 @@ def observation_space(kind: str, robot: RobotConfig) -> spaces.Space[Arrays]:
 
     `sonar` is (16,) [m], counted from the left to the front and round; `odometry` is (6,): x, y [m] from the
     start in its frame, cosine and sine of the heading since the start, forward speed [m/s], turn rate
-    [rad/s]. `pixels` has `thermal` (H, W, 1) and `colour` (H, W, 3) uint8 beside them; `tracks` and `truth`
-    have `tracks` (35,), five rows of `COLUMNS`.
+    [rad/s]. `pixels` has the newest image of each camera beside them by its name, (H, W, 1) or (H, W, 3)
+    uint8, such as `thermal` and `colour`; `tracks` and `truth` have `tracks` (35,), five rows of `COLUMNS`.
     """
     sonar = robot.sonar
     odometry = np.array([_FARTHEST_M, _FARTHEST_M, 1.0, 1.0, _FASTEST, _FASTEST], np.float32)
@@ -53,9 +55,8 @@ def observation_space(kind: str, robot: RobotConfig) -> spaces.Space[Arrays]:
         "odometry": spaces.Box(-odometry, odometry, dtype=np.float32),
     }
     if kind == "pixels":
-        thermal, colour = robot.thermal.camera, robot.colour.camera
-        found["thermal"] = spaces.Box(0, 255, (thermal.height, thermal.width, 1), np.uint8)
-        found["colour"] = spaces.Box(0, 255, (colour.height, colour.width, 3), np.uint8)
+        for name, camera in robot.cameras.items():
+            found[name] = spaces.Box(0, 255, _shape(camera), np.uint8)
     else:
         lowest, highest = (np.tile(np.array(row, np.float32), MOST_TRACKS) for row in (_LOWEST, _HIGHEST))
         found["tracks"] = spaces.Box(lowest, highest, dtype=np.float32)
@@ -76,9 +77,10 @@ def feel(senses: Senses, start: Planar) -> Arrays:
     return {"sonar": senses.sonar_m.astype(np.float32), "odometry": np.array(odometry, np.float32)}
 
 
-def see_images(observation: Observation) -> Arrays:
-    """Give the images of `pixels`."""
-    return {"thermal": observation.thermal[:, :, None], "colour": observation.colour}
+def see_images(observation: Observation, robot: RobotConfig) -> Arrays:
+    """Give the images of `pixels`, of the cameras that have a new one."""
+    cameras, images = robot.cameras.items(), observation.images
+    return {name: images[name].reshape(_shape(camera)) for name, camera in cameras if name in images}
 
 
 def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> Arrays:
@@ -99,18 +101,23 @@ def see_truth(scene: ImageFreeTruth, robot: RobotConfig) -> Arrays:
     )
 
 
+def _shape(camera: CameraConfig) -> tuple[int, int, int]:
+    return camera.camera.height, camera.camera.width, kind_of(camera).channels
+
+
 def _is_inside(person: Bystander, robot: RobotConfig) -> bool:
     """Whether a person's middle lies between the borders."""
     assert person.box is not None
     middle = person.box[0] + person.box[2] / 2.0
-    return -0.5 <= middle <= robot.thermal.camera.width - 0.5
+    return -0.5 <= middle <= robot.cameras["thermal"].camera.width - 0.5
 
 
 def _row(
     number: int, box: tuple[float, float, float, float], confidence: float, visible: bool, robot: RobotConfig
 ) -> Row:
     left, top, box_width, box_height = box
-    width, height = robot.thermal.camera.width, robot.thermal.camera.height
+    camera = robot.cameras["thermal"].camera
+    width, height = camera.width, camera.height
     x = (left + box_width / 2.0 - (width - 1) / 2.0) / (width / 2.0)
     upper, lower = (top + 0.5) / height, (top + box_height + 0.5) / height
     return float(number), x, box_height / height, upper, lower, confidence, float(visible)

@@ -27,7 +27,7 @@ LIMITS: Final[Mapping[str, tuple[float, float]]] = {
 """What `reset(options=...)` takes, with its limits; each a number, or a pair from which one is drawn evenly.
 
 warmer_k [K] is added to the temperatures of the place and of everything in it; light is a factor on the
-light, and noise one on the noise of both cameras; people is how many of the scenario's people are there, its
+light, and noise one on the noise of all cameras; people is how many of the scenario's people are there, its
 first ones; clothes, 1 or True, draws everybody's clothes anew.
 """
 
@@ -89,14 +89,8 @@ def _lighter(light: tuple[tuple[float, float], ...], factor: float) -> tuple[tup
 
 
 def _noisier(robot: RobotConfig, factor: float) -> RobotConfig:
-    thermal, colour = robot.thermal, robot.colour
-    return replace(
-        robot,
-        thermal=replace(
-            thermal, netd_k=factor * thermal.netd_k, fixed_pattern_k=factor * thermal.fixed_pattern_k
-        ),
-        colour=replace(colour, read_noise=factor * colour.read_noise, shot_noise=factor * colour.shot_noise),
-    )
+    cameras = {name: camera.noisier(factor) for name, camera in robot.cameras.items()}
+    return replace(robot, cameras=cameras)
 
 
 def _warmer(place: Place, by_k: float) -> Place:

@@ -39,9 +39,10 @@ class ScenePicture:
 
     def draw(self, observation: Observation, scene: ImageFreeTruth, tracks: Sequence[Track]) -> Picture:
         """Draw an instant: (360, 1440, 3)."""
-        thermal = _fit(show_thermal(observation.thermal))
-        scale = HEIGHT_PX / observation.thermal.shape[0]
-        panels = (draw_tracks(thermal, tracks, scale), _fit(observation.colour), self._draw_plan(scene))
+        thermal, colour = observation.images["thermal"], observation.images["colour"]
+        scale = HEIGHT_PX / thermal.shape[0]
+        seen = draw_tracks(_fit(show_thermal(thermal)), tracks, scale)
+        panels = (seen, _fit(colour), self._draw_plan(scene))
         return np.concatenate(panels, axis=1)
 
     def _draw_plan(self, scene: ImageFreeTruth) -> Picture:

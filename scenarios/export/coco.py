@@ -1,6 +1,7 @@
 """COCO: images, masks, boxes and keypoints of everybody who can be seen, and the truth of each image.
 
-    annotations/person_keypoints.json
+    annotations/person_keypoints.json                  of the thermal images
+    annotations/CAMERA/person_keypoints.json           of those of any other camera, such as colour
     images/RUN/thermal/000001.png, thermal16/..., colour/...
 
 and of runs of a rendered set, which has splits:
@@ -29,7 +30,9 @@ from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.run_lengths import encode_lengths, run_lengths
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.image_files import make_image_folders, write_images
+from peopleboy.scenarios.run_folder.image_files import image_file, make_image_folders, write_images
+from peopleboy.sim.cameras.camera_config import ThermalConfig
+from peopleboy.sim.cameras.kinds import image_folders, with_boxes
 from peopleboy.sim.geometry.pinhole import Camera, Matrix
 from peopleboy.sim.people.body.joints import JOINT_NAMES
 from peopleboy.sim.truth.truth import Box, PersonTruth
@@ -51,38 +54,56 @@ def write_coco(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
         BadInput: the runs cannot be sorted by split.
     """
     for split, own in by_split(runs).items():
-        content = _write_set(own, folder / "images" / (split or ""), play)
-        path = folder / annotations_file(split)
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
+        for camera, content in _write_set(own, folder / "images" / (split or ""), play).items():
+            path = folder / annotations_file(split, camera)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
 
 
-def annotations_file(split: str | None = None) -> Path:
+def annotations_file(split: str | None = None, camera: str = "thermal") -> Path:
     """Where the annotations of a split lie, or those of runs without splits."""
-    return Path("annotations") / f"person_keypoints{'' if split is None else f'_{split}'}.json"
+    folder = Path("annotations") / ("" if camera == "thermal" else camera)
+    return folder / f"person_keypoints{'' if split is None else f'_{split}'}.json"
 
 
-def _write_set(runs: Sequence[FinishedRun], folder: Path, play: Play) -> dict[str, Any]:
-    """Write the images of runs, and give what is to be said of them."""
-    images: list[dict[str, Any]] = []
-    annotations: list[dict[str, Any]] = []
+def _write_set(runs: Sequence[FinishedRun], folder: Path, play: Play) -> dict[str, dict[str, Any]]:
+    """Write the images of runs, and give what is to be said of each camera's."""
+    cameras = {name: _Annotations() for run in runs for name in with_boxes(run.robot.cameras)}
     for video, run in enumerate(runs, start=1):
-        make_image_folders(folder / run.name)
+        make_image_folders(folder / run.name, run.robot.cameras)
         for tick in play(run):
-            write_images(folder / run.name, tick.frame, tick.observation)
-            image = {"id": len(images) + 1, "video_id": video} | _image(run.name, tick)
-            images.append(image)
-            for person in tick.truth.people:
-                if person.visible_px > 0:
-                    number = {"id": len(annotations) + 1, "image_id": image["id"]}
-                    annotations.append(number | annotation(person, tick.truth.instance))
+            write_images(folder / run.name, tick.frame, tick.observation, run.robot.cameras)
+            for name in (name for name in cameras if name in tick.truths):
+                cameras[name].add(video, run, name, tick)
+    return {name: _content(runs, name, own) for name, own in cameras.items()}
+
+
+class _Annotations:
+    """Images of one camera, and who can be seen in them."""
+
+    def __init__(self) -> None:
+        self.images: list[dict[str, Any]] = []
+        self.annotations: list[dict[str, Any]] = []
+
+    def add(self, video: int, run: FinishedRun, camera: str, tick: Tick) -> None:
+        truth = tick.truths[camera]
+        number = len(self.images) + 1
+        self.images.append({"id": number, "video_id": video} | _image(run, camera, tick))
+        for person in truth.people:
+            if person.visible_px > 0:
+                own = {"id": len(self.annotations) + 1, "image_id": number}
+                self.annotations.append(own | annotation(person, truth.instance))
+
+
+def _content(runs: Sequence[FinishedRun], camera: str, own: _Annotations) -> dict[str, Any]:
+    videos = [_video(k, run) for k, run in enumerate(runs, start=1) if camera in run.robot.cameras]
     return {
         "info": {"description": "people seen by a simulated robot, with exact truth", "version": "1"},
         "licenses": [],
         "categories": [_category()],
-        "videos": [_video(number, run) for number, run in enumerate(runs, start=1)],
-        "images": images,
-        "annotations": annotations,
+        "videos": videos,
+        "images": own.images,
+        "annotations": own.annotations,
     }
 
 
@@ -145,17 +166,14 @@ def _keypoints(person: PersonTruth, shape: tuple[int, ...]) -> list[tuple[float,
     return found
 
 
-def _image(run: str, tick: Tick) -> dict[str, Any]:
-    truth = tick.truth
-    height, width = tick.observation.thermal.shape
-    file = f"{tick.frame:06d}.png"
+def _image(run: FinishedRun, camera: str, tick: Tick) -> dict[str, Any]:
+    truth = tick.truths[camera]
     hidden = [p for p in truth.people if p.visible_px == 0 and p.is_in_image]
     return {
-        "file_name": f"{run}/thermal/{file}",
-        "thermal16_file_name": f"{run}/thermal16/{file}",
-        "colour_file_name": f"{run}/colour/{file}",
-        "width": width,
-        "height": height,
+        "file_name": _file_name(run, camera, tick),
+        **_files_beside(run, camera, tick),
+        "width": truth.camera.width,
+        "height": truth.camera.height,
         "frame_id": tick.frame,
         "time_s": truth.time_s,
         "robot": {"x_m": truth.robot.x, "y_m": truth.robot.y, "heading_rad": truth.robot.heading},
@@ -164,8 +182,22 @@ def _image(run: str, tick: Tick) -> dict[str, Any]:
     }
 
 
+def _files_beside(run: FinishedRun, camera: str, tick: Tick) -> dict[str, str]:
+    """Name the other files of the same instant, by folder."""
+    return {
+        f"{folder}_file_name": _file_name(run, folder, tick)
+        for folder, image, _ in image_folders(run.robot.cameras)
+        if folder != camera and image in tick.observation.images
+    }
+
+
+def _file_name(run: FinishedRun, folder: str, tick: Tick) -> str:
+    return f"{run.name}/{folder}/{image_file(tick.frame)}"
+
+
 def _video(number: int, run: FinishedRun) -> dict[str, Any]:
-    thermal, colour = run.robot.thermal, run.robot.colour
+    thermal = run.robot.cameras["thermal"]
+    assert isinstance(thermal, ThermalConfig)
     return {
         "id": number,
         "name": run.name,
@@ -174,7 +206,7 @@ def _video(number: int, run: FinishedRun) -> dict[str, Any]:
         "frames": run.frames,
         "rate_hz": run.rate_hz,
         "thermal_span_c": [thermal.lowest_c, thermal.highest_c],
-        "cameras": {"thermal": _camera(thermal.camera), "colour": _camera(colour.camera)},
+        "cameras": {name: _camera(camera.camera) for name, camera in run.robot.cameras.items()},
     }
 
 

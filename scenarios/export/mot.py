@@ -93,7 +93,7 @@ def _sequences(runs: Sequence[FinishedRun]) -> _Sequences:
 def _write_sequence(name: str, run: FinishedRun, folder: Path, play: Play) -> None:
     for part in ("gt", "img1"):
         (folder / part).mkdir(parents=True)
-    camera = run.robot.thermal.camera
+    camera = run.robot.cameras["thermal"].camera
     settings = {
         "name": name,
         "imDir": "img1",
@@ -118,7 +118,7 @@ def _write_images(run: FinishedRun, folder: Path, play: Play) -> None:
             (folder / path.name).write_bytes(path.read_bytes())
         return
     for tick in play(run):
-        write_png(folder / f"{tick.frame:06d}.png", tick.observation.thermal)
+        write_png(folder / f"{tick.frame:06d}.png", tick.observation.images["thermal"])
 
 
 def _judged(cells: list[str]) -> list[str]:

@@ -43,7 +43,7 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
             tick = Tick(
                 frame=frame,
                 observation=stage.observe(),
-                truth=world.truth(),
+                truths=stage.truths(),
                 tracks=tuple(tracks[frame]),
                 particles={},
                 mode=row["mode"],

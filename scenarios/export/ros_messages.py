@@ -1,6 +1,7 @@
 """ROS 2 messages of one tick: images, cameras, truth, tracks, odometry and frames.
 
-Frames as in REP 105: map -> odom -> base_link -> thermal_optical, colour_optical; a frame per person, too.
+Frames as in REP 105: map -> odom -> base_link -> thermal_optical, colour_optical and one for each further
+camera; a frame per person, too.
 """
 
 from __future__ import annotations
@@ -18,18 +19,18 @@ from scipy.spatial.transform import Rotation
 
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
 from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.camera_truth import further_cameras
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.truth.truth import Box
+from peopleboy.sim.truth.truth import Box, Truth
 from peopleboy.tracker.track import Status
 
 Message = tuple[str, str, Any]  # topic, type, content
 
 JPEG_QUALITY: Final = 90
 _MAP, _ODOM, _BASE = "map", "odom", "base_link"
-_OPTICAL: Final = {"thermal": "thermal_optical", "colour": "colour_optical"}
 
 # vision_msgs 4, which no ROS distribution ships with its base.
 _VISION: Final = {
@@ -66,33 +67,26 @@ class Messenger:
 
     def __init__(self, robot: RobotConfig, types: Typestore) -> None:
         self._types = types.types
-        self._cameras = {"thermal": robot.thermal.camera, "colour": robot.colour.camera}
+        self._cameras = robot.cameras
+        self._further = further_cameras(robot.cameras)
 
     def fixed(self, time_s: float) -> Iterator[Message]:
         """Say once where the cameras are on the robot."""
-        poses = [self._camera_pose(name, camera, time_s) for name, camera in self._cameras.items()]
+        poses = [self._camera_pose(name, camera.camera, time_s) for name, camera in self._cameras.items()]
         yield "/tf_static", "tf2_msgs/msg/TFMessage", self._make("tf2_msgs/TFMessage", transforms=poses)
 
     def tick(self, tick: Tick) -> Iterator[Message]:
         """Say all about one tick."""
-        senses, time_s = tick.observation, tick.observation.time_s
-        thermal = cv2.imencode(".png", senses.thermal)[1].tobytes()
-        yield self._image("thermal", "mono8; png compressed mono8", thermal, time_s)
-        yield self._image(
-            "colour", "rgb8; jpeg compressed bgr8", encode_jpeg(senses.colour, JPEG_QUALITY), time_s
-        )
-        for name, camera in self._cameras.items():
-            yield (
-                f"/{name}/camera_info",
-                "sensor_msgs/msg/CameraInfo",
-                self._camera_info(name, camera, time_s),
-            )
-        people = [
-            (p.name, p.box, p.visible_fraction)
-            for p in tick.truth.people
-            if p.box is not None and p.is_in_image
-        ]
-        yield self._detections("/truth/people", people, time_s)
+        images, time_s = tick.observation.images, tick.observation.time_s
+        due = {name: camera for name, camera in self._cameras.items() if name in images}
+        for name in due:
+            yield self._image(name, images[name], time_s)
+        for name, camera in due.items():
+            content = self._camera_info(name, camera.camera, time_s)
+            yield f"/{name}/camera_info", "sensor_msgs/msg/CameraInfo", content
+        yield self._detections("/truth/people", _people(tick.truth), time_s)
+        for name in (name for name in self._further if name in tick.truths):
+            yield self._detections(f"/truth/{name}/people", _people(tick.truths[name]), time_s, name)
         tracks = [(str(t.id), t.box, t.confidence) for t in tick.tracks if t.status is not Status.TENTATIVE]
         yield self._detections("/tracks", tracks, time_s)
         yield "/odom", "nav_msgs/msg/Odometry", self._odometry(tick)
@@ -107,10 +101,13 @@ class Messenger:
         stamp = self._make("builtin_interfaces/Time", sec=sec, nanosec=nanosec)
         return self._make("std_msgs/Header", stamp=stamp, frame_id=frame)
 
-    def _image(self, camera: str, form: str, data: bytes, time_s: float) -> Message:
+    def _image(self, camera: str, image: NDArray[np.uint8], time_s: float) -> Message:
+        is_grey = image.ndim == 2
+        form = "mono8; png compressed mono8" if is_grey else "rgb8; jpeg compressed bgr8"
+        data = cv2.imencode(".png", image)[1].tobytes() if is_grey else encode_jpeg(image, JPEG_QUALITY)
         content = self._make(
             "sensor_msgs/CompressedImage",
-            header=self._header(_OPTICAL[camera], time_s),
+            header=self._header(_optical(camera), time_s),
             format=form,
             data=np.frombuffer(data, np.uint8),
         )
@@ -123,7 +120,7 @@ class Messenger:
         )
         return self._make(
             "sensor_msgs/CameraInfo",
-            header=self._header(_OPTICAL[name], time_s),
+            header=self._header(_optical(name), time_s),
             height=camera.height,
             width=camera.width,
             distortion_model="plumb_bob",
@@ -136,8 +133,10 @@ class Messenger:
             roi=whole,
         )
 
-    def _detections(self, topic: str, found: list[tuple[str, Box, float]], time_s: float) -> Message:
-        header = self._header(_OPTICAL["thermal"], time_s)
+    def _detections(
+        self, topic: str, found: list[tuple[str, Box, float]], time_s: float, camera: str = "thermal"
+    ) -> Message:
+        header = self._header(_optical(camera), time_s)
         detections = [self._detection(header, *one) for one in found]
         content = self._make("vision_msgs/Detection2DArray", header=header, detections=detections)
         return topic, "vision_msgs/msg/Detection2DArray", content
@@ -189,7 +188,7 @@ class Messenger:
 
     def _camera_pose(self, name: str, camera: Camera, time_s: float) -> Any:
         turn = Rotation.from_matrix(camera.robot_from_camera[:3, :3]).as_quat()
-        return self._stamped(_BASE, _OPTICAL[name], camera.position_m, turn, time_s)
+        return self._stamped(_BASE, _optical(name), camera.position_m, turn, time_s)
 
     def _stamped(
         self,
@@ -224,6 +223,16 @@ class Messenger:
     def _quaternion(self, turn: NDArray[np.float64]) -> Any:
         x, y, z, w = map(float, turn)
         return self._make("geometry_msgs/Quaternion", x=x, y=y, z=z, w=w)
+
+
+def _optical(camera: str) -> str:
+    """Name the optical frame of a camera."""
+    return f"{camera}_optical"
+
+
+def _people(truth: Truth) -> list[tuple[str, Box, float]]:
+    """Give name, box and visible fraction of everybody in the image."""
+    return [(p.name, p.box, p.visible_fraction) for p in truth.people if p.box is not None and p.is_in_image]
 
 
 def nanoseconds(time_s: float) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -25,7 +24,6 @@ BAR_PX: Final = 32
 _QUALITY: Final = "20"  # CRF: 0 loses nothing, 18 nothing to be seen
 # A track has no depth: its box is mapped to the colour image as if the person were so far away.
 _TYPICAL_DEPTH_M: Final = 4.0
-_NEAREST_M: Final = 0.3
 _BAR: Final[Rgb] = (22, 24, 28)
 _WORDS: Final[Rgb] = (225, 225, 225)
 _FONT: Final = cv2.FONT_HERSHEY_SIMPLEX
@@ -72,21 +70,21 @@ def draw_film_frame(tick: Tick, robot: RobotConfig, title: str) -> Picture:
 
 
 def _thermal(tick: Tick) -> Picture:
-    scale = HEIGHT_PX / tick.observation.thermal.shape[0]
-    picture, plates = enlarge(show_thermal(tick.observation.thermal), scale), list[Plate]()
+    thermal = tick.observation.images["thermal"]
+    scale = HEIGHT_PX / thermal.shape[0]
+    picture, plates = enlarge(show_thermal(thermal), scale), list[Plate]()
     picture = draw_tracks(picture, tick.tracks, scale, plates=plates)
     return _even(draw_truth(picture, tick.truth.people, scale, plates=plates))
 
 
 def _colour(tick: Tick, robot: RobotConfig) -> Picture:
-    affine_at = partial(affine_between, robot.thermal.camera, robot.colour.camera)
-    scale = HEIGHT_PX / tick.observation.colour.shape[0]
-    picture, plates = enlarge(tick.observation.colour, scale), list[Plate]()
-    picture = draw_tracks(picture, tick.tracks, scale, affine=affine_at(_TYPICAL_DEPTH_M), plates=plates)
-    for person in tick.truth.people:
-        affine = affine_at(max(person.distance_m, _NEAREST_M))
-        picture = draw_truth(picture, [person], scale, affine, plates=plates)
-    return _even(picture)
+    cameras = robot.cameras
+    affine = affine_between(cameras["thermal"].camera, cameras["colour"].camera, _TYPICAL_DEPTH_M)
+    colour = tick.observation.images["colour"]
+    scale = HEIGHT_PX / colour.shape[0]
+    picture, plates = enlarge(colour, scale), list[Plate]()
+    picture = draw_tracks(picture, tick.tracks, scale, affine=affine, plates=plates)
+    return _even(draw_truth(picture, tick.truths["colour"].people, scale, plates=plates))
 
 
 def _even(picture: Picture) -> Picture:

@@ -114,7 +114,7 @@ def _descriptor(
 
 
 def _file(source: ElementTree.Element, run: FinishedRun) -> None:
-    camera = run.robot.thermal.camera
+    camera = run.robot.cameras["thermal"].camera
     values = ("FRAMES", str(run.frames), str(float(run.rate_hz)), str(camera.width), str(camera.height))
     file = _child(source, "file", id="0", name="Information")
     for (name, kind), value in zip(_FILE.items(), values, strict=True):
@@ -139,7 +139,7 @@ def _object(
 
 
 def _location(attribute: ElementTree.Element, person: _Person, run: FinishedRun) -> None:
-    camera = run.robot.thermal.camera
+    camera = run.robot.cameras["thermal"].camera
     for frame, box in person.boxes.items():
         pixels = whole_pixels(box, camera.width, camera.height)
         if pixels is not None:

@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.place_things import describe_floor, name_things
 from peopleboy.scenarios.files.schema.people import PersonSpec, WaypointSpec
 from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.scenarios.files.schema_errors import hint
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.kinds import check_rate
+from peopleboy.sim.config import CONTROL_HZ
+from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rectangle import Rectangle
 from peopleboy.sim.places.things import KINDS
+from peopleboy.sim.robot.robot_config import RobotConfig
 
 BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
 ROBOT_M = 0.27  # radius of the circle around the robot
+
+# Names that cameras must leave to other folders, entities and arrays.
+_TAKEN = ("truth", "tracks", "body", "sonar", "odometry")
+_MOST_PIXELS = 1 << 23  # that trackers sum up
+_TYPICAL_DEPTH_M = 4.0  # at which tracks are drawn on the colour image
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,6 +112,7 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[str, PersonSpec]],
     """
     _check_names(people)
     _check_robot(spec, ground)
+    _check_cameras(spec.robot)
     _check_order("lights", "at_s", [light.at_s for light in spec.lights])
     for key, person in people:
         _check_times(key, person, spec.duration_s)
@@ -157,6 +169,31 @@ def _check_robot(spec: ScenarioSpec, ground: Ground) -> None:
     if spec.robot.walls_by is not None and spec.robot.behaviour != "follow_corridor":
         raise BadInput("robot.walls_by: only a robot that is to 'follow_corridor' takes it")
     _check_order("robot.commands", "from_s", [command.from_s for command in spec.robot.commands])
+
+
+def _check_cameras(robot: RobotSpec) -> None:
+    for name, camera in robot.cameras.items():
+        key = f"robot.cameras.{name}"
+        if name in _TAKEN:
+            raise BadInput(f"{key}: the name is taken in what a run leaves; choose another")
+        if name in RobotConfig().cameras and camera.kind != name:
+            raise BadInput(f"{key}.kind: must be {name!r}, as the tracker wants it; choose another name")
+        if name in RobotConfig().cameras and camera.rate_hz not in (None, CONTROL_HZ):
+            raise BadInput(f"{key}.rate_hz: must be {CONTROL_HZ}, as the tracker wants it; leave it out")
+        check_rate(f"{key}.rate_hz", camera.rate_hz, CONTROL_HZ)
+    try:
+        _check_views(equip_robot(robot).cameras)
+    except BadInput as error:
+        raise BadInput(f"robot.cameras: {error}") from error
+
+
+def _check_views(cameras: Mapping[str, CameraConfig]) -> None:
+    """Refuse images that a tracker or a sheet of pictures could not take in later."""
+    affine_between(cameras["thermal"].camera, cameras["colour"].camera, _TYPICAL_DEPTH_M)
+    for name, camera in cameras.items():
+        width, height = camera.camera.width, camera.camera.height
+        if width * height > _MOST_PIXELS:
+            raise BadInput(f"{name}: {width} x {height} pixels are too many; at most {_MOST_PIXELS} in all")
 
 
 def _check_order(key: str, unit_key: str, times: Sequence[float]) -> None:

@@ -139,7 +139,7 @@ class Scenario:
 
     def corridor_config(self) -> CorridorConfig:
         """The sense that tells a robot the walls of a corridor, and its colour camera."""
-        camera = equip_robot(self.robot).colour.camera
+        camera = equip_robot(self.robot).cameras["colour"].camera
         view = CameraView(focal_px=camera.focal_px, position_m=camera.position_m)
         return CorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.loop import Stage
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
+from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.filter.particles import Particles
@@ -29,32 +32,38 @@ class FaultySensors:
         self._world = world
         self._faults = faults
         self._reach_m = sonar_reach_m
-        self._last: Observation | None = None
+        self._may_freeze = any(fault.kind == "camera_frozen" for fault in faults)
+        self._last: Mapping[str, NDArray[Any]] = {}
 
     def observe(self) -> Observation:
         """Read every sensor once, and spoil what is to be spoilt."""
         seen = self._world.observe()
         now = active(self._faults, seen.time_s)
-        if "camera_frozen" in now and self._last is not None:
-            old = self._last
-            seen = replace(seen, thermal=old.thermal, thermal_c=old.thermal_c, colour=old.colour)
-        self._last = seen
+        if self._may_freeze:
+            seen = replace(seen, images=self._freeze(seen.images, is_frozen="camera_frozen" in now))
         if "camera_black" in now:
-            noise = seen.thermal & np.uint8(1)  # a dead picture still flickers
-            seen = replace(seen, thermal=noise, colour=np.zeros_like(seen.colour))
+            images = seen.images
+            seen = replace(seen, images=OnDemand(images, lambda name: _blackened(images[name])))
         if "sonar_maximum" in now:
             seen = replace(seen, sonar_m=np.full_like(seen.sonar_m, self._reach_m))
         if "odometry_jumps" in now:
             seen = replace(seen, odometry=_jumped(seen.odometry, now["odometry_jumps"]))
         return seen
 
-    def truth(self) -> Truth:
-        """Tell what is true at this instant."""
-        return self._world.truth()
+    def truths(self) -> Mapping[str, Truth]:
+        """Tell what is true at this instant, by camera that takes an image."""
+        return self._world.truths()
 
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
         """Drive the robot for one control step."""
         self._world.step(linear_m_s, angular_rad_s, is_emergency=is_emergency)
+
+    def _freeze(self, images: Mapping[str, NDArray[Any]], *, is_frozen: bool) -> Mapping[str, NDArray[Any]]:
+        """Give the images of now, or those that each camera gave last; these must all be read in time."""
+        old = self._last if is_frozen else {}
+        now = {name: old[name] if name in old else images[name] for name in images}
+        self._last = {**self._last, **now}
+        return now
 
 
 class FaultyTracker:
@@ -87,6 +96,13 @@ def active(faults: Sequence[FaultSpec], time_s: float) -> dict[str, float]:
         for fault in faults
         if 0.0 <= time_s - fault.from_s < (math.inf if fault.lasts_s is None else fault.lasts_s)
     }
+
+
+def _blackened(image: NDArray[Any]) -> NDArray[Any]:
+    """Darken an 8-bit image; what is not 8-bit is beside it, and stays."""
+    if image.dtype != np.uint8:
+        return image
+    return image & np.uint8(1) if image.ndim == 2 else np.zeros_like(image)  # dead grey still flickers
 
 
 def _jumped(pose: Planar, lasted_s: float) -> Planar:

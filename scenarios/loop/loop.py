@@ -35,7 +35,8 @@ class Tick:
     Attributes:
         frame: 1, 2, ...
         observation: what the robot sensed.
-        truth: what was true.
+        truths: what was true, by camera that took an image at this instant; those of other cameras than
+            `thermal` are made when first asked for, which must be before the next tick.
         tracks: what the tracker made of the images.
         particles: its samples by track id, 0 being the detector's.
         mode: what the behaviour was doing, such as "search" or "follow".
@@ -46,13 +47,18 @@ class Tick:
 
     frame: int
     observation: Observation
-    truth: Truth
+    truths: Mapping[str, Truth]
     tracks: tuple[Track, ...]
     particles: Mapping[int, Particles]
     mode: str
     command: Command
     reason: str = ""
     following: int | None = None
+
+    @property
+    def truth(self) -> Truth:
+        """What was true, boxes and masks in the thermal image."""
+        return self.truths["thermal"]
 
 
 class Stage(Protocol):
@@ -62,8 +68,8 @@ class Stage(Protocol):
         """Read every sensor once."""
         ...
 
-    def truth(self) -> Truth:
-        """Tell what is true at this instant."""
+    def truths(self) -> Mapping[str, Truth]:
+        """Tell what is true at this instant, by camera that takes an image."""
         ...
 
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
@@ -113,7 +119,7 @@ def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: in
         yield Tick(
             frame=frame,
             observation=observation,
-            truth=world.truth(),
+            truths=world.truths(),
             tracks=eyes.tracks,
             particles=tracker.particles,
             mode=behaviour.mode,
@@ -139,9 +145,9 @@ def make_frame(observation: Observation, before: Planar | None) -> Frame:
         if abs(turn) > FARTHEST_TURN_RAD or math.hypot(dx, dy) > FARTHEST_WAY_M:
             turn, advance = None, None
     return Frame(
-        thermal=observation.thermal,
+        thermal=observation.images["thermal"],
         time_s=observation.time_s,
-        colour=observation.colour,
+        colour=observation.images["colour"],
         turn_rad=turn,
         advance_m=advance,
     )
@@ -151,7 +157,7 @@ def make_percept(
     observation: Observation, tracks: tuple[Track, ...], *, image_age_s: float = 0.0, fault: str = ""
 ) -> Percept:
     """Give the behaviour what it steers by: confirmed tracks, sonar and the wheels' speed."""
-    height, width = observation.thermal.shape
+    height, width = observation.images["thermal"].shape
     people = tuple(
         see_person(track, width, height) for track in tracks if track.status is not Status.TENTATIVE
     )
@@ -163,14 +169,14 @@ def make_percept(
         sonar_angle_rad=SONAR_ANGLE_RAD,
         linear_m_s=(left + right) / 2.0,
         angular_rad_s=(right - left) / WHEEL_DISTANCE_M,
-        colour=observation.colour,
+        colour=observation.images["colour"],
         image_age_s=image_age_s,
         fault=fault,
     )
 
 
 def _is_same_image(one: Observation, other: Observation) -> bool:
-    return np.array_equal(one.thermal, other.thermal) and np.array_equal(one.colour, other.colour)
+    return all(np.array_equal(one.images[name], other.images[name]) for name in ("thermal", "colour"))
 
 
 def see_person(track: Track, width: int, height: int) -> SeenPerson:

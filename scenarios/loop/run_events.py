@@ -48,7 +48,7 @@ class RunEvents:
 
     def update(self, tick: Tick) -> list[LogLine]:
         """Return what is new at this tick."""
-        time_s, width = tick.truth.time_s, tick.observation.thermal.shape[1]
+        time_s, width = tick.truth.time_s, tick.truth.camera.width
         found = [(event.kind, event.person, event.other, "") for event in self._world.update(tick.truth)]
         for event in self._tracks.update(tick.tracks, time_s, width):
             by = "" if event.by is None else f"track {event.by}"

@@ -4,6 +4,7 @@ world/place/...             floor, walls and things; the ceiling is there, but n
 world/robot                 its pose; below it body and cameras, with what is drawn on their images:
 world/robot/thermal/...     image, tracks with evidence, particles, truth
 world/robot/colour/...      image, tracks, truth
+world/robot/CAMERA/...      image and truth of any further camera
 world/people/NAME/body      capsules, and the name
 world/occlusions            arrows from who hides to who is hidden
 world/trails                where robot and people went
@@ -34,6 +35,12 @@ LAYERS: Final[dict[str, tuple[Any, float]]] = {
     "particles/detector": (rr.Points2D, 1.5),
 }
 ON_COLOUR: Final = ("truth/boxes", "truth/names", "tracks/boxes")
+ON_FURTHER: Final = ("truth/boxes", "truth/names")
+
+
+def camera_path(name: str) -> str:
+    """Give the entity of a camera."""
+    return f"world/robot/{name}"
 
 
 def person_path(name: str) -> str:

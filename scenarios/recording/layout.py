@@ -7,17 +7,27 @@ import math
 import rerun as rr
 import rerun.blueprint as rrb
 
-from peopleboy.scenarios.recording.entities import COLOUR, EVENTS, LAYERS, THERMAL, TRAILS
+from peopleboy.scenarios.recording.entities import (
+    COLOUR,
+    EVENTS,
+    LAYERS,
+    THERMAL,
+    TRAILS,
+    camera_path,
+)
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera
 
 
 def lay_out(config: WorldConfig) -> rrb.Blueprint:
     """Lay out: thermal on the left, colour, events and the world in 3-D on the right, curves below."""
-    thermal = _image_view(
-        THERMAL, "Thermal: tracks with evidence, particles, truth", config.robot.thermal.camera
-    )
-    colour = _image_view(COLOUR, "Colour: tracks, truth", config.robot.colour.camera)
+    cameras = {name: camera.camera for name, camera in config.robot.cameras.items()}
+    thermal = _image_view(THERMAL, "Thermal: tracks with evidence, particles, truth", cameras.pop("thermal"))
+    colour = _image_view(COLOUR, "Colour: tracks, truth", cameras.pop("colour"))
+    further = [
+        _image_view(camera_path(name), f"{name.capitalize()}: truth", camera)
+        for name, camera in cameras.items()
+    ]
     events = rrb.TextLogView(
         origin=EVENTS, name="Events", columns=rrb.TextLogColumns(text_log_columns=["LogLevel", "Body"])
     )
@@ -27,7 +37,7 @@ def lay_out(config: WorldConfig) -> rrb.Blueprint:
         _plot("offset", "Offset of tracks [half widths]", (-1.05, 1.05), has_legend=False),
         _plot("motion", "Speed and turn rate", (-1.6, 1.6)),
     ]
-    right = rrb.Vertical(rrb.Horizontal(colour, events, column_shares=[1.0, 1.0]), _world_view(config))
+    right = rrb.Vertical(rrb.Horizontal(colour, *further, events), _world_view(config))
     above = rrb.Horizontal(thermal, right, column_shares=[1.0, 1.0])
     return rrb.Blueprint(
         rrb.Vertical(above, rrb.Horizontal(*plots), row_shares=[3.0, 1.0]),
@@ -53,7 +63,7 @@ def _world_view(config: WorldConfig) -> rrb.Spatial3DView:
         [rr.VisibleTimeRange(timeline, start=start, end=now) for timeline in ("frame", "time")]
     )
     # Boxes of people who are near reach far out of the image, and would cross the whole world.
-    overlays = [f"- {path}/{layer}" for path in (THERMAL, COLOUR) for layer in LAYERS]
+    overlays = [f"- {path}/{layer}" for path in map(camera_path, config.robot.cameras) for layer in LAYERS]
     return rrb.Spatial3DView(
         origin="world",
         contents=["$origin/**", "- $origin/place/ceiling/**", *overlays],

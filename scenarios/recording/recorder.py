@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache, partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -19,13 +18,22 @@ from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.recording import marks
 from peopleboy.scenarios.recording.arrows import Arrows, believed_arrows, true_arrows, world_arrows
 from peopleboy.scenarios.recording.capsule_people import NOBODY, body_capsules
-from peopleboy.scenarios.recording.entities import COLOUR, EVENTS, OCCLUSIONS, THERMAL, TRAILS, person_path
+from peopleboy.scenarios.recording.entities import (
+    COLOUR,
+    EVENTS,
+    OCCLUSIONS,
+    THERMAL,
+    TRAILS,
+    camera_path,
+    person_path,
+)
 from peopleboy.scenarios.recording.layout import lay_out
 from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
 from peopleboy.scenarios.recording.rows import RowBuffer
 from peopleboy.scenarios.recording.sections import section_marks
 from peopleboy.scenarios.recording.still import Still
+from peopleboy.sim.cameras.kinds import kind_of, with_boxes
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.geometry.pinhole import Matrix
@@ -39,9 +47,8 @@ APPLICATION = "peopleboy"
 TYPICAL_DEPTH_M = 4.0
 
 _FRAMES_SENT_TOGETHER = 15
-_JPEG_QUALITY = {THERMAL: 60, COLOUR: 45}
+_JPEG_QUALITY = {1: 60, 3: 45}  # by channels
 _NAME_HEIGHT_PX = 16.0
-_DEPTH_STEP_M = 0.1
 _GRAVE = ("contact", "lost")
 
 
@@ -70,8 +77,12 @@ class Recorder:
         viewer: str | None = None,
     ) -> None:
         self._tracker = tracker
-        self._thermal = config.robot.thermal.camera
-        self._affine_at = lru_cache(partial(affine_between, self._thermal, config.robot.colour.camera))
+        self._cameras = config.robot.cameras
+        self._boxed = with_boxes(self._cameras)
+        self._thermal = self._cameras["thermal"].camera
+        self._colour_from_thermal = affine_between(
+            self._thermal, self._cameras["colour"].camera, TYPICAL_DEPTH_M
+        )
         self._names = [person.name for person in config.people]
         self._path = path
         self._trails = marks.Trails()
@@ -123,17 +134,18 @@ class Recorder:
             self._stream.send_columns(rows.path, [frames, times], columns, strict=True)
 
     def _log_images(self, tick: Tick) -> None:
-        senses = tick.observation
-        for path, image in ((THERMAL, senses.thermal), (COLOUR, senses.colour)):
-            blob = encode_jpeg(image, _JPEG_QUALITY[path], has_own_codes=False)
-            self._rows.add(f"{path}/image", rr.EncodedImage, blob=[blob])
+        images = tick.observation.images
+        for name in (name for name in self._cameras if name in images):
+            quality = _JPEG_QUALITY[kind_of(self._cameras[name]).channels]
+            blob = encode_jpeg(images[name], quality, has_own_codes=False)
+            self._rows.add(f"{camera_path(name)}/image", rr.EncodedImage, blob=[blob])
 
     def _log_tracks(self, tick: Tick) -> None:
         contours = self._contours(tick)
         strips, colours = _from_corner(contours.line), contours.colour
         self._rows.add(f"{THERMAL}/tracks/contours", rr.LineStrips2D, strips=strips, colors=colours)
         on_thermal = marks.track_boxes(tick.tracks)
-        on_colour = marks.track_boxes(tick.tracks, self._affine_at(TYPICAL_DEPTH_M))
+        on_colour = marks.track_boxes(tick.tracks, self._colour_from_thermal)
         for path, boxes in ((THERMAL, on_thermal), (COLOUR, on_colour)):
             self._log_boxes(f"{path}/tracks/boxes", boxes, labels=boxes.label)
         self._log_arrows("tracks/occlusions", believed_arrows(tick.tracks))
@@ -141,7 +153,7 @@ class Recorder:
     def _contours(self, tick: Tick) -> marks.Lines:
         if self._tracker is None:
             return marks.track_contours(tick.tracks, ContourConfig())
-        evidence = evidence_of(tick.observation.thermal, tick.tracks, self._tracker)
+        evidence = evidence_of(tick.observation.images["thermal"], tick.tracks, self._tracker)
         return section_marks(tick.tracks, evidence, self._tracker)
 
     def _log_arrows(self, layer: str, arrows: Arrows) -> None:
@@ -159,20 +171,16 @@ class Recorder:
             self._rows.add(f"{THERMAL}/particles/{name}", rr.Points2D, positions=place, colors=colour)
 
     def _log_truth(self, tick: Tick) -> None:
-        on_thermal = marks.truth_boxes(tick.truth.people)
-        on_colour = marks.truth_boxes(tick.truth.people, self._affine_near)
-        for path, boxes in ((THERMAL, on_thermal), (COLOUR, on_colour)):
-            self._log_boxes(f"{path}/truth/boxes", boxes)
-            above = _from_corner(boxes.box[:, :2]) + boxes.box[:, 2:] * (0.5, 0.0) - (0.0, _NAME_HEIGHT_PX)
-            self._rows.add(
-                f"{path}/truth/names", rr.Points2D, positions=above, colors=boxes.colour, labels=boxes.label
-            )
-
+        for name in (name for name in self._boxed if name in tick.truths):
+            self._log_named_boxes(camera_path(name), marks.truth_boxes(tick.truths[name].people))
         self._log_arrows("truth/occlusions", true_arrows(tick.truth.people))
 
-    def _affine_near(self, away_m: float) -> Matrix:
-        """Map to the colour image at about this distance, which is worth a tenth of a pixel from 3 m on."""
-        return self._affine_at(max(round(away_m / _DEPTH_STEP_M), 1) * _DEPTH_STEP_M)
+    def _log_named_boxes(self, path: str, boxes: marks.Boxes) -> None:
+        self._log_boxes(f"{path}/truth/boxes", boxes)
+        above = _from_corner(boxes.box[:, :2]) + boxes.box[:, 2:] * (0.5, 0.0) - (0.0, _NAME_HEIGHT_PX)
+        self._rows.add(
+            f"{path}/truth/names", rr.Points2D, positions=above, colors=boxes.colour, labels=boxes.label
+        )
 
     def _log_boxes(self, path: str, boxes: marks.Boxes, **labels: list[str]) -> None:
         half = rounded(boxes.box[:, 2:] / 2.0, PIXEL_STEP)

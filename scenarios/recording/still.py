@@ -11,12 +11,12 @@ from rerun.components import FillMode
 
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
 from peopleboy.scenarios.recording.entities import (
-    COLOUR,
     LAYERS,
     OCCLUSIONS,
     ON_COLOUR,
-    THERMAL,
+    ON_FURTHER,
     TRAILS,
+    camera_path,
     person_path,
 )
 from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
@@ -46,8 +46,10 @@ class Still:
             self._log_solids(f"world/place/{group}", [s for f in fixtures for s in fixture_solids(f)], fill)
         self._log_solids("world/robot/body", urdf_solids(URDF), FillMode.Solid)
         # The colour camera's picture hangs nearer: it covers the middle of the thermal one.
-        self._log_camera(THERMAL, config.robot.thermal.camera, tuple(LAYERS), reach_m=1.4)
-        self._log_camera(COLOUR, config.robot.colour.camera, ON_COLOUR, reach_m=0.8)
+        own = {"thermal": (tuple(LAYERS), 1.4), "colour": (ON_COLOUR, 0.8)}
+        for name, camera in config.robot.cameras.items():
+            layers, reach_m = own.get(name, (ON_FURTHER, 0.8))
+            self._log_camera(camera_path(name), camera.camera, layers, reach_m)
         self._log(TRAILS, rr.LineStrips3D.from_fields(radii=[0.02]))
         self._log(OCCLUSIONS, rr.Arrows3D.from_fields(radii=[0.03]))
         for curve, (labels, shades) in _ROBOT_CURVES.items():

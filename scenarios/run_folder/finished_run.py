@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_about, read_files, read_run
 from peopleboy.scenarios.run_folder.tables import Row, track_of
+from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.tracker.track import Track
@@ -115,6 +117,15 @@ def open_run(folder: Path) -> FinishedRun:
         versions=about.versions,
         world=scenario.world(about.seed, about.renderer),
     )
+
+
+def cameras_of(folder: Path) -> Mapping[str, CameraConfig]:
+    """Read which cameras the robot of a run had.
+
+    Raises:
+        BadInput: there is no scenario of a run.
+    """
+    return equip_robot(load_scenario(folder / "scenario.yaml").robot).cameras
 
 
 def _by_frame(rows: Sequence[Row]) -> dict[int, list[Row]]:

@@ -14,6 +14,7 @@ from typing import Any, TextIO
 import yaml
 
 from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.camera_truth import CameraTruth, further_cameras, gt_lines, open_text
 from peopleboy.scenarios.run_folder.image_files import make_image_folders, write_images
 from peopleboy.scenarios.run_folder.out_folder import check_out, writing_to
 from peopleboy.scenarios.run_folder.tables import (
@@ -26,7 +27,8 @@ from peopleboy.scenarios.run_folder.tables import (
     truth_rows,
     write_table,
 )
-from peopleboy.tracker.evaluation.mot_files import track_line, truth_line
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.tracker.evaluation.mot_files import track_line
 from peopleboy.tracker.track import Status
 
 _VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet", "scipy")
@@ -41,9 +43,16 @@ class RunFolder:
     """
 
     def __init__(
-        self, path: Path, scenario: Mapping[str, Any], about: Mapping[str, Any], *, frames: bool
+        self,
+        path: Path,
+        scenario: Mapping[str, Any],
+        about: Mapping[str, Any],
+        cameras: Mapping[str, CameraConfig],
+        *,
+        frames: bool,
     ) -> None:
         self.path = path
+        self._cameras = cameras
         self._about = dict(about) | {"versions": versions()}
         self._writes_frames = frames
         self._truth: list[Row] = []
@@ -56,8 +65,9 @@ class RunFolder:
         )
         (path / "truth").mkdir()
         if frames:
-            make_image_folders(path)
+            make_image_folders(path, cameras)
         self._gt = self._open("truth/gt.txt")
+        self._further = {name: CameraTruth(path / "truth", name) for name in further_cameras(cameras)}
         self._results = self._open("tracks.txt")
         self._events = self._open("events.jsonl")
 
@@ -69,6 +79,8 @@ class RunFolder:
     ) -> None:
         for file in (self._gt, self._results, self._events):
             file.close()
+        for camera in self._further.values():
+            camera.close()
         write_table(self.path / "truth.parquet", self._truth, TRUTH)
         write_table(self.path / "tracks.parquet", self._tracks, TRACKS)
         write_table(self.path / "robot.parquet", self._robot, ROBOT)
@@ -81,10 +93,12 @@ class RunFolder:
         self._tracks += track_rows(tick)
         self._robot.append(robot_row(tick))
         self._gt.writelines(gt_lines(tick))
+        for camera in self._further.values():
+            camera.write(tick)
         self._results.writelines(result_lines(tick))
         self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
         if self._writes_frames:
-            write_images(self.path, tick.frame, tick.observation)
+            write_images(self.path, tick.frame, tick.observation, self._cameras)
 
     def complete(self, metrics: Mapping[str, Any]) -> None:
         """Write the metrics; the run is whole."""
@@ -95,9 +109,11 @@ class RunFolder:
         """Bring the text files to disk, so that they can be read while the run goes on."""
         for file in (self._gt, self._results, self._events):
             file.flush()
+        for camera in self._further.values():
+            camera.flush()
 
     def _open(self, name: str) -> TextIO:
-        return (self.path / name).open("w", encoding="utf-8", newline="\n")
+        return open_text(self.path / name)
 
     def _write_json(self, name: str, content: Mapping[str, Any]) -> None:
         (self.path / name).write_text(json.dumps(dict(content), indent=2) + "\n", encoding="utf-8")
@@ -124,15 +140,6 @@ def claim_folder(path: Path, *, overwrite: bool) -> None:
             shutil.rmtree(path)
         path.mkdir(parents=True, exist_ok=True)
         (path / "run.json").touch()
-
-
-def gt_lines(tick: Tick) -> list[str]:
-    """MOTChallenge truth of everybody whose silhouette reaches into the image: one line a person."""
-    return [
-        truth_line(tick.frame, person.id, person.box, person.is_counted, person.visible_fraction)
-        for person in tick.truth.people
-        if person.box is not None and person.is_in_image
-    ]
 
 
 def result_lines(tick: Tick) -> list[str]:

@@ -1,40 +1,41 @@
-"""A frame's images as lossless files: 8-bit thermal, 16-bit thermal, colour."""
+"""A frame's images as lossless files, a folder for each image of each camera."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import cv2
-import numpy as np
-from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.cameras.thermal import encode_16bit
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.kinds import Stored, image_folders
 from peopleboy.sim.observation import Observation
 
-Image = NDArray[np.uint8] | NDArray[np.uint16]
 
-IMAGES = ("thermal", "thermal16", "colour")
-
-
-def make_image_folders(folder: Path) -> None:
-    """Make a folder for each kind of image."""
-    for name in IMAGES:
+def make_image_folders(folder: Path, cameras: Mapping[str, CameraConfig]) -> None:
+    """Make a folder for each image that the cameras give: thermal, thermal16, colour, ..."""
+    for name, _, _ in image_folders(cameras):
         (folder / name).mkdir(parents=True)
 
 
-def write_images(folder: Path, frame: int, senses: Observation) -> None:
-    """Write a frame's images into the folders of their kinds.
+def write_images(folder: Path, frame: int, senses: Observation, cameras: Mapping[str, CameraConfig]) -> None:
+    """Write a frame's images into their folders.
 
     Raises:
         BadInput: one cannot be written.
     """
-    images: tuple[Image, ...] = (senses.thermal, encode_16bit(senses.thermal_c), senses.colour)
-    for name, image in zip(IMAGES, images, strict=True):
-        write_png(folder / name / f"{frame:06d}.png", image)
+    for name, image, layer in image_folders(cameras):
+        if image in senses.images:
+            write_png(folder / name / image_file(frame), layer.encode(senses.images[image]))
 
 
-def write_png(path: Path, image: Image) -> None:
+def image_file(frame: int) -> str:
+    """Name the file of a frame, from 1."""
+    return f"{frame:06d}.png"
+
+
+def write_png(path: Path, image: Stored) -> None:
     """Write an (H, W) grey image of 8 or 16 bits, or an (H, W, 3) RGB one.
 
     Raises:

@@ -82,9 +82,9 @@ MAY_BE_EMPTY = frozenset(
 """Columns that have no value where there is nobody or nothing to tell of."""
 
 
-def truth_rows(tick: Tick) -> list[Row]:
-    """Rows of the truth table for one tick: one per person present."""
-    return [_person_row(tick, person) for person in tick.truth.people]
+def truth_rows(tick: Tick, camera: str = "thermal") -> list[Row]:
+    """Rows of a camera's truth table for one tick: one per person present."""
+    return [_person_row(tick, person) for person in tick.truths[camera].people]
 
 
 def track_rows(tick: Tick) -> list[Row]:

@@ -21,23 +21,25 @@ from peopleboy import sim
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
-from peopleboy.scenarios.run_folder.folder import gt_lines, versions
+from peopleboy.scenarios.run_folder.camera_truth import gt_lines
+from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
+from peopleboy.sim.observation import Observation
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Track
 
+SEEN = ("thermal", "colour")  # cameras whose images trackers are given
 _GROUP = 16  # frames that are read or written at once
 _FRAMES = pa.schema(
     [
         pa.field("time_s", pa.float64()),
         pa.field("turn_rad", pa.float64()),
         pa.field("advance_m", pa.float64()),
-        pa.field("thermal", pa.binary()),
-        pa.field("colour", pa.binary()),
+        *(pa.field(camera, pa.binary()) for camera in SEEN),
     ]
 )
 
@@ -51,16 +53,14 @@ class Film:
         scenario: the scenario's name.
         seed: of the run.
         frames: how many.
-        thermal: (height, width) [px].
-        colour: (height, width, 3).
+        shapes: of the images, by camera: (height, width) or (height, width, 3) [px].
     """
 
     folder: Path
     scenario: str
     seed: int
     frames: int
-    thermal: tuple[int, int]
-    colour: tuple[int, int, int]
+    shapes: Mapping[str, tuple[int, ...]]
 
     def truth(self) -> TrueBoxes:
         """Read who was there, as the evaluation wants it."""
@@ -109,18 +109,18 @@ def open_film(folder: Path) -> Film:
         about = json.loads((folder / "about.json").read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise BadInput(f"{folder}: there are no finished frames here") from error
-    shapes = {name: tuple(about[name]) for name in ("thermal", "colour")}
-    return Film(folder=folder, **(about | shapes))
+    shapes = {camera: tuple(shape) for camera, shape in about.pop("shapes").items()}
+    return Film(folder=folder, shapes=shapes, **about)
 
 
 def frames_of(shot: Film) -> Iterator[Frame]:
     """Yield a film's frames, equal to the byte to those of the run; a few are in memory at a time."""
     for batch in pq.ParquetFile(shot.folder / "frames.parquet").iter_batches(batch_size=_GROUP):
         for row in batch.to_pylist():
+            images = {camera: _unpack(row[camera], shape) for camera, shape in shot.shapes.items()}
             yield Frame(
-                thermal=_unpack(row["thermal"], shot.thermal),
+                **images,
                 time_s=row["time_s"],
-                colour=_unpack(row["colour"], shot.colour),
                 turn_rad=row["turn_rad"],
                 advance_m=row["advance_m"],
             )
@@ -178,7 +178,7 @@ def _render(
         images: list[dict[str, Any]] = []
         people: list[dict[str, Any]] = []
         for tick in closed_loop(world, _Blind(), scenario.make_behaviour(), count):
-            images.append(_row(make_frame(tick.observation, before)))
+            images.append(_row(tick.observation, make_frame(tick.observation, before)))
             people += truth_rows(tick)
             boxes.writelines(gt_lines(tick))
             before = tick.observation.odometry
@@ -189,19 +189,13 @@ def _render(
                 people.clear()
             if report is not None:
                 report(tick.frame, count)
-    shapes = {"thermal": tick.observation.thermal.shape, "colour": tick.observation.colour.shape}
-    return {"scenario": scenario.name, "seed": seed, "frames": count, **shapes}
+    shapes = {camera: tick.observation.images[camera].shape for camera in SEEN}
+    return {"scenario": scenario.name, "seed": seed, "frames": count, "shapes": shapes}
 
 
-def _row(frame: Frame) -> dict[str, Any]:
-    assert frame.colour is not None
-    return {
-        "time_s": frame.time_s,
-        "turn_rad": frame.turn_rad,
-        "advance_m": frame.advance_m,
-        "thermal": _pack(frame.thermal),
-        "colour": _pack(frame.colour),
-    }
+def _row(senses: Observation, frame: Frame) -> dict[str, Any]:
+    motion = {"time_s": frame.time_s, "turn_rad": frame.turn_rad, "advance_m": frame.advance_m}
+    return motion | {camera: _pack(senses.images[camera]) for camera in SEEN}
 
 
 def _pack(image: NDArray[np.uint8]) -> bytes:

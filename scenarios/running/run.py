@@ -76,7 +76,13 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         tracker = make_eyes(options.tracker, options.seed, world.truth)
         claim_folder(options.out, overwrite=options.overwrite)
         folder = stack.enter_context(
-            RunFolder(options.out, scenario.resolved(options.seed, versions()), about, frames=options.frames)
+            RunFolder(
+                options.out,
+                scenario.resolved(options.seed, versions()),
+                about,
+                config.robot.cameras,
+                frames=options.frames,
+            )
         )
         keep_own_files(scenario.kept_files(), options.out)
         title = f"{scenario.name}, seed {options.seed}, tracker {options.tracker}"

@@ -113,7 +113,7 @@ def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:
 
     The band reaches 1.2 m to either side of it. It is the first person who is to be followed.
     """
-    camera = config.robot.thermal.camera
+    camera = config.robot.cameras["thermal"].camera
     shown_px = keep_height * camera.height
     keep_m = camera.focal_px * config.people[0].height_m / shown_px + camera.position_m[0]
     return FollowingTask(keep_m=keep_m, band_m=(keep_m - BAND_M, keep_m + BAND_M))

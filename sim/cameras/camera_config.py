@@ -1,9 +1,10 @@
-"""The settings of the cameras: where each sits, and how its images are formed."""
+"""The settings of the cameras: where each sits, how often it takes an image, and how that is formed."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Self
 
 from peopleboy.sim.geometry.pinhole import Camera
 
@@ -20,11 +21,36 @@ def _colour_camera() -> Camera:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ThermalConfig:
-    """The thermal camera and its image formation.
+class CameraConfig:
+    """One camera of the robot; each kind adds what forms its images.
 
     Attributes:
+        kind: its name in `peopleboy.sim.cameras.kinds.KINDS`.
         camera: geometry.
+        rate_hz: [Hz] of its images, which divides the control rate; None for that rate.
+        exposure_s: [s] time over which rotation blurs the image.
+    """
+
+    kind: ClassVar[str]
+
+    camera: Camera = field(default_factory=Camera)
+    rate_hz: int | None = None
+    exposure_s: float = 0.0
+
+    def resized(self, width: int, height: int) -> Self:
+        """The same camera with images of another size [px], of the same height of view."""
+        return replace(self, camera=replace(self.camera, width=width, height=height))
+
+    def noisier(self, factor: float) -> Self:  # noqa: ARG002
+        """The same camera with so many times the noise; one without any stays as it is."""
+        return self
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThermalConfig(CameraConfig):
+    """A thermal camera and its image formation.
+
+    Attributes:
         exposure_s: [s] thermal time constant over which rotation blurs the image.
         blur_px: [px] standard deviation of the optics' point spread.
         netd_k: [K] temporal noise, noise-equivalent temperature difference.
@@ -33,7 +59,8 @@ class ThermalConfig:
         lowest_c, highest_c: [degC] span of the 8-bit image (T ch. 3).
     """
 
-    camera: Camera = field(default_factory=Camera)
+    kind: ClassVar[str] = "thermal"
+
     exposure_s: float = 0.012
     blur_px: float = 0.7
     netd_k: float = 0.08
@@ -42,21 +69,34 @@ class ThermalConfig:
     lowest_c: float = 24.0
     highest_c: float = 36.0
 
+    def resized(self, width: int, height: int) -> Self:
+        """The same camera with images of another size [px], of the same height of view and as sharp."""
+        camera = replace(self.camera, width=width, height=height)
+        return replace(self, camera=camera, blur_px=self.blur_px * height / self.camera.height)
+
+    def noisier(self, factor: float) -> Self:
+        """The same camera with so many times the noise, temporal and fixed."""
+        return replace(self, netd_k=factor * self.netd_k, fixed_pattern_k=factor * self.fixed_pattern_k)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ColourConfig:
-    """The colour camera and its image formation.
+class ColourConfig(CameraConfig):
+    """A colour camera and its image formation.
 
     Attributes:
-        camera: geometry.
-        exposure_s: [s] time over which rotation blurs the image.
         gain: share of full scale that a white surface facing the light has at light level 1.
         read_noise: standard deviation of the noise of a black pixel, share of full scale.
         shot_noise: standard deviation of the noise of a white pixel, share of full scale.
     """
+
+    kind: ClassVar[str] = "colour"
 
     camera: Camera = field(default_factory=_colour_camera)
     exposure_s: float = 0.015
     gain: float = 0.95
     read_noise: float = 0.004
     shot_noise: float = 0.012
+
+    def noisier(self, factor: float) -> Self:
+        """The same camera with so many times the noise."""
+        return replace(self, read_noise=factor * self.read_noise, shot_noise=factor * self.shot_noise)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.kinds import check_cameras
+from peopleboy.sim.named import Named
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,11 +64,21 @@ class RobotConfig:
     Attributes:
         at_m: [m] start on the floor, world frame.
         heading_rad: [rad] start heading, 0 along x, positive to the left.
+        cameras: by name, in their order; one of them is the thermal camera `thermal`.
+
+    Raises:
+        BadInput: the cameras cannot be told apart, or there is no thermal one.
     """
 
     at_m: tuple[float, float] = (0.0, 0.0)
     heading_rad: float = 0.0
     drive: DriveConfig = field(default_factory=DriveConfig)
     sonar: SonarConfig = field(default_factory=SonarConfig)
-    thermal: ThermalConfig = field(default_factory=ThermalConfig)
-    colour: ColourConfig = field(default_factory=ColourConfig)
+    cameras: Mapping[str, CameraConfig] = field(
+        default_factory=lambda: {"thermal": ThermalConfig(), "colour": ColourConfig()}
+    )
+
+    def __post_init__(self) -> None:
+        """Refuse cameras that clash, and keep them from being changed."""
+        check_cameras(self.cameras)
+        object.__setattr__(self, "cameras", Named(self.cameras))

@@ -26,7 +26,7 @@ BORDER = "border"
 class PersonTruth:
     """All that is true of one person at one instant. Arrays are read-only.
 
-    Boxes are left, top, width, height [px] in the thermal image, whose pixel (0, 0) spans -0.5..0.5.
+    Boxes are left, top, width, height [px] in the camera's image, whose pixel (0, 0) spans -0.5..0.5.
 
     Attributes:
         id: 1, 2, ... in the scenario's order.
@@ -35,7 +35,7 @@ class PersonTruth:
         heading_rad: [rad] where the body faces, world frame.
         velocity_m_s: (x, y) [m/s] world frame.
         posture: such as "standing".
-        distance_m: [m] on the floor from the thermal camera.
+        distance_m: [m] on the floor from the camera.
         is_counted: whether that distance is one at which the sources count persons (T 3.3).
         box: head to feet, and as wide as the torso without arms, as if nothing hid it (T 3.3); None when
             nothing of it is in front of the camera.
@@ -104,10 +104,10 @@ class Truth:
     Attributes:
         time_s: [s] since the start.
         people: everybody who is present, seen or not.
-        instance: (H, W) uint8, the id of the person seen at each thermal pixel, 0 for none.
+        instance: (H, W) uint8, the id of the person seen at each pixel, 0 for none.
         body_part: (H, W) uint8, the PART_CLASSES number of the part of a person seen, 0 for none.
-        depth_m: (H, W) float32 [m] along the optical axis of the thermal camera, inf for none.
-        camera: the thermal camera.
+        depth_m: (H, W) float32 [m] along the optical axis of the camera, inf for none.
+        camera: in whose image boxes and masks are; the thermal one if no other was asked for.
         world_from_camera: (4, 4) its pose, optical frame.
         robot: true pose of the robot.
         robot_velocity: true forward speed [m/s] and turn rate [rad/s].

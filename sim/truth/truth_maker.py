@@ -43,11 +43,9 @@ class TruthMaker:
         table: ShapeTable,
         crowd: Crowd,
         materials: Sequence[Material],
-        camera: Camera,
     ) -> None:
         self._table = table
         self._people = crowd.people
-        self._camera = camera
         owners = [key.name.split("/")[0] for key in keys]
         names = [person.name for person in self._people]
         self._owner_names = names + sorted(set(owners) - set(names))
@@ -70,6 +68,7 @@ class TruthMaker:
         self,
         *,
         time_s: float,
+        camera: Camera,
         view: View,
         world_from_camera: Matrix,
         world_from_part: Matrix,
@@ -77,12 +76,12 @@ class TruthMaker:
         robot_velocity: tuple[float, float],
         contacts: tuple[str, ...],
     ) -> Truth:
-        """Make the truth of the instant that the thermal camera's view shows."""
+        """Make the truth of the instant that a camera's view shows."""
         cover = count_cover(
             view.part, view.cover, self._owner_of_part, len(self._people), len(self._owner_names)
         )
         people = tuple(
-            self._person(k, cover, view, world_from_camera, world_from_part)
+            self._person(k, cover, view, (self._table, world_from_part, camera, world_from_camera))
             for k, person in enumerate(self._people)
             if person.present
         )
@@ -92,23 +91,21 @@ class TruthMaker:
             instance=_frozen(self._id_of_part[view.part]),
             body_part=_frozen(self._class_of_part[view.part]),
             depth_m=_frozen(view.depth),
-            camera=self._camera,
+            camera=camera,
             world_from_camera=_frozen(world_from_camera),
             robot=robot,
             robot_velocity=robot_velocity,
             contacts=contacts,
         )
 
-    def _person(
-        self, k: int, cover: Cover, view: View, world_from_camera: Matrix, world_from_part: Matrix
-    ) -> PersonTruth:
+    def _person(self, k: int, cover: Cover, view: View, scene: _Scene) -> PersonTruth:
         person, outline = self._people[k], self._outlines[k]
+        _, _, camera, world_from_camera = scene
         distance = float(np.hypot(*(person.position - world_from_camera[:2, 3])))
-        scene = (self._table, world_from_part, self._camera, world_from_camera)
         whole = silhouette_bounds(*scene, outline.whole)
         visible = int(cover.seen[k, k])
         area = self._whole_area(k, cover, scene, whole)
-        joints, pixels, is_visible = self._joints(k, person, view, world_from_camera)
+        joints, pixels, is_visible = self._joints(k, person, view, camera, world_from_camera)
         return PersonTruth(
             id=k + 1,
             name=person.name,
@@ -134,17 +131,10 @@ class TruthMaker:
     def _whole_area(self, k: int, cover: Cover, scene: _Scene, whole: _Bounds) -> int:
         """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
         inside = int(cover.seen[k].sum())
-        if self._is_inside(whole):
+        if _is_inside(whole, scene[2]):
             return inside
         # TinyRenderer's silhouettes may be a few pixels larger.
         return max(inside, silhouette_area(*scene, self._outlines[k].whole))
-
-    def _is_inside(self, bounds: _Bounds) -> bool:
-        left, top, right, bottom = bounds
-        width, height = self._camera.width, self._camera.height
-        return math.isnan(left) or (
-            left > -0.5 and top > -0.5 and right < width - 0.5 and bottom < height - 0.5
-        )
 
     def _hidden_by(self, k: int, cover: Cover, area: int) -> dict[str, float]:
         """Share of the whole silhouette that each other owner, or the border, hides."""
@@ -158,11 +148,11 @@ class TruthMaker:
         return shares | {BORDER: outside / area} if outside > 0 else shares
 
     def _joints(
-        self, k: int, person: Person, view: View, world_from_camera: Matrix
+        self, k: int, person: Person, view: View, camera: Camera, world_from_camera: Matrix
     ) -> tuple[Matrix, Matrix, NDArray[np.bool_]]:
         joints = person.joints()
-        pixels = self._camera.project(transform(invert_pose(world_from_camera), joints))
-        size = np.array([self._camera.width, self._camera.height])
+        pixels = camera.project(transform(invert_pose(world_from_camera), joints))
+        size = np.array([camera.width, camera.height])
         is_inside = np.all((pixels > -0.5) & (pixels < size - 0.5), axis=1)
         u, v = np.rint(pixels[is_inside]).astype(np.int64).T
         is_visible = np.zeros(len(joints), np.bool_)
@@ -180,6 +170,13 @@ class _Outline:
         self.whole = (person_of_part == person) & is_body
         self.height = self.whole & ~is_arm
         self.torso = self.whole & is_torso
+
+
+def _is_inside(bounds: _Bounds, camera: Camera) -> bool:
+    left, top, right, bottom = bounds
+    return math.isnan(left) or (
+        left > -0.5 and top > -0.5 and right < camera.width - 0.5 and bottom < camera.height - 0.5
+    )
 
 
 def _thesis_box(scene: _Scene, outline: _Outline) -> Box | None:

@@ -10,7 +10,7 @@ import yaml
 
 from peopleboy.scenarios.cli import main
 
-CAMERA = {"width_px": 160, "height_px": 120}
+CAMERAS = {"thermal": {"kind": "thermal", "width_px": 160, "height_px": 120}}
 SCENE: dict[str, Any] = {
     "name": "tiny",
     "description": "Two people cross, one of them close to the robot.",
@@ -23,7 +23,7 @@ SCENE: dict[str, Any] = {
     ],
     "robot": {
         "at_m": [0.6, 0.0],
-        "thermal": CAMERA,
+        "cameras": CAMERAS,
         "behaviour": "scripted",
         "commands": [{"from_s": 0.0, "linear_m_s": 0.1, "angular_deg_s": 5.0}],
     },
@@ -33,7 +33,7 @@ FOLLOWING: dict[str, Any] = SCENE | {
     "duration_s": 5.0,
     "things": [],
     "people": [{"name": "anna", "path": [{"at_m": [4.0, 0.2]}, {"at_m": [7.0, 0.2], "speed_m_s": 0.7}]}],
-    "robot": {"at_m": [0.6, 0.0], "thermal": CAMERA, "behaviour": "follow_person"},
+    "robot": {"at_m": [0.6, 0.0], "cameras": CAMERAS, "behaviour": "follow_person"},
     "faults": [{"kind": "camera_frozen", "from_s": 3.5}],
 }
 

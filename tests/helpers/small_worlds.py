@@ -53,8 +53,10 @@ def robot(
         at_m=(x, y),
         heading_rad=math.radians(heading_deg),
         sonar=EXACT_SONAR,
-        thermal=ThermalConfig(camera=camera) if thermal is None else thermal,
-        colour=ColourConfig(camera=camera),
+        cameras={
+            "thermal": ThermalConfig(camera=camera) if thermal is None else thermal,
+            "colour": ColourConfig(camera=camera),
+        },
     )
 
 

@@ -102,9 +102,12 @@ def make_tick(frame: int, track: Track | None = TRACK, hidden: float = 0.0, mode
     thermal[60:220, 140:180] = 150
     state = np.float32(rng.normal((160, 120, 20, 50, 3, 0, 0, 0, 0), 3.0, (300, 9)))
     cloud = Particles(state, np.float32(np.full(300, 1 / 300)))
+    images = {
+        "thermal": thermal, "thermal_c": np.zeros((240, 320), np.float32),
+        "colour": rng.integers(90, 110, (240, 320, 3), np.uint8),
+    }  # fmt: skip
     observation = Observation(
-        time_s=time_s, thermal=thermal, thermal_c=np.zeros((240, 320), np.float32),
-        colour=rng.integers(90, 110, (240, 320, 3), np.uint8), sonar_m=np.full(16, 5.0),
+        time_s=time_s, images=images, sonar_m=np.full(16, 5.0),
         odometry=Planar(0.0, 0.0, 0.0), wheel_speeds_m_s=(0.0, 0.0),
     )  # fmt: skip
     truth = Truth(
@@ -114,7 +117,8 @@ def make_tick(frame: int, track: Track | None = TRACK, hidden: float = 0.0, mode
         robot_velocity=(0.2, 0.1), contacts=(),
     )  # fmt: skip
     return Tick(
-        frame=frame, observation=observation, truth=truth, tracks=() if track is None else (track,),
+        frame=frame, observation=observation, truths={"thermal": truth, "colour": truth},
+        tracks=() if track is None else (track,),
         particles={0: cloud} if track is None else {0: cloud, track.id: cloud}, mode=mode,
         command=Command(linear_m_s=0.3, angular_rad_s=0.0),
     )  # fmt: skip

@@ -12,6 +12,7 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import RunEvents
 from peopleboy.scenarios.run_folder.folder import RunFolder
 from peopleboy.scenarios.scores.score import score_run
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.track import Track
 from tests.helpers import synthetic_ticks as made
@@ -99,7 +100,7 @@ def write_run(
     } | about
     played = {"name": "toy", "description": "Two people stand."} if scenario is None else dict(scenario)
     events, sheet = RunEvents(), ContactSheet("toy")
-    with RunFolder(folder, played, known, frames=False) as run:
+    with RunFolder(folder, played, known, RobotConfig().cameras, frames=False) as run:
         for frame in range(1, FRAMES + 1):
             tick = _tick(frame, boxes(frame), hidden(frame))
             lines = events.update(tick)
@@ -120,7 +121,8 @@ def _tick(frame: int, boxes: Boxes, hidden: float) -> Tick:
         )
     people = (_at(made.person(1, "anna", 4.0), ANNA), ben)
     tracks = tuple(_track(number, box) for number, box in boxes.items())
-    return replace(tick, truth=replace(tick.truth, people=people), tracks=tracks)
+    truth = replace(tick.truth, people=people)
+    return replace(tick, truths={"thermal": truth, "colour": truth}, tracks=tracks)
 
 
 def _at(person: PersonTruth, box: tuple[float, float, float, float]) -> PersonTruth:

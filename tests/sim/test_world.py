@@ -50,7 +50,7 @@ def test_a_world_of_one_temperature_gives_one_value(monkeypatch: pytest.MonkeyPa
     place = replace(hall(), surroundings_c=29.0)
     with World(config(*WALKERS, place=place, robot=robot(thermal=QUIET))) as world:
         for _ in range(5):
-            image = world.observe().thermal_c
+            image = world.observe().images["thermal_c"]
             assert image == pytest.approx(29.0, abs=2e-3)
             world.step(0.3, 2.0)
 
@@ -60,23 +60,23 @@ def test_a_black_body_reads_its_temperature(temperature: float) -> None:
     material = Material(temperature_c=temperature, emissivity=1.0)
     target = box_thing("target", (0.2, 3.0, 2.6), (3.0, 0.0, 1.3), material)
     with World(config(place=hall(target), robot=robot(thermal=QUIET))) as world:
-        assert world.observe().thermal_c == pytest.approx(temperature, abs=0.05)
+        assert world.observe().images["thermal_c"] == pytest.approx(temperature, abs=0.05)
 
 
 def test_the_8_bit_image_is_the_source_s_line() -> None:
     with World(config(*WALKERS)) as world:
-        observation = world.observe()
-    exact = np.clip(np.round((observation.thermal_c.astype(float) - 24.0) / 12.0 * 255.0), 0, 255)
-    assert np.abs(observation.thermal - exact).max() <= 1
-    assert (observation.thermal == exact).mean() > 0.999
-    assert observation.thermal.dtype == np.uint8
-    assert observation.thermal.shape == (120, 160)
-    assert observation.colour.shape == (120, 160, 3)
+        images = dict(world.observe().images)
+    exact = np.clip(np.round((images["thermal_c"].astype(float) - 24.0) / 12.0 * 255.0), 0, 255)
+    assert np.abs(images["thermal"] - exact).max() <= 1
+    assert (images["thermal"] == exact).mean() > 0.999
+    assert images["thermal"].dtype == np.uint8
+    assert images["thermal"].shape == (120, 160)
+    assert images["colour"].shape == (120, 160, 3)
 
 
 def test_people_are_warmer_than_what_is_behind_them() -> None:
     with World(config(*WALKERS)) as world:
-        image, mask = world.observe().thermal_c, world.truth().instance > 0
+        image, mask = world.observe().images["thermal_c"], world.truth().instance > 0
     assert mask.sum() > 300
     assert image[mask].mean() > image[~mask].mean() + 5.0
 
@@ -95,8 +95,8 @@ def test_the_light_goes_out_at_its_time() -> None:
         colours, thermals = [], []
         for _ in range(8):
             observation = world.observe()
-            colours.append(observation.colour.mean())
-            thermals.append(observation.thermal_c.mean())
+            colours.append(observation.images["colour"].mean())
+            thermals.append(observation.images["thermal_c"].mean())
             world.step(0.0, 0.0)
     assert min(colours[:3]) > max(colours[3:6]) > 5.0
     assert min(colours[3:6]) > 4.0 * max(colours[6:])
@@ -111,7 +111,7 @@ def test_turning_blurs_the_image_and_driving_straight_does_not() -> None:
         with World(config(**settings)) as world:
             for _ in range(steps):
                 world.step(*command)
-            row = world.observe().thermal_c[40]
+            row = world.observe().images["thermal_c"][40]
         return int(np.count_nonzero((row > 23.5) & (row < 30.0)))
 
     still, driving = width_of_edge((0.0, 0.0), 1, 0.0), width_of_edge((0.5, 0.0), 10, 0.0)
@@ -126,7 +126,7 @@ def test_both_renderers_give_nearly_the_same_thermal_image() -> None:
     for name in ("raycast", "bullet"):
         with World(config(*WALKERS, robot=robot(camera=Camera(), thermal=NO_NOISE), renderer=name)) as world:
             world.step(0.1, 0.1)
-            images[name] = world.observe().thermal_c
+            images[name] = world.observe().images["thermal_c"]
     difference = np.abs(images["raycast"] - images["bullet"])
     assert np.median(difference) < 0.02
     # Outlines may differ by a pixel.
@@ -139,7 +139,12 @@ def fingerprints(seed: int) -> list[str]:
     with World(config(*WALKERS, robot=robot(camera=Camera()), seed=seed)) as world:
         for _ in range(20):
             senses, truth = world.observe(), world.truth()
-            arrays = [senses.thermal, senses.thermal_c, senses.colour, senses.sonar_m]
+            arrays = [
+                senses.images["thermal"],
+                senses.images["thermal_c"],
+                senses.images["colour"],
+                senses.sonar_m,
+            ]
             arrays += [truth.instance, truth.body_part, truth.depth_m, *(p.joints_m for p in truth.people)]
             rest = [(p.box, p.whole_box, p.hidden_by, p.position_m) for p in truth.people]
             digest = hashlib.sha256(repr((senses.odometry, truth.robot, rest)).encode())
@@ -164,7 +169,11 @@ def test_a_seed_gives_the_same_bytes_in_a_fresh_process_and_another_seed_does_no
 def test_worlds_that_are_open_at_once_do_not_disturb_each_other() -> None:
     def fingerprint(world: World) -> bytes:
         senses = world.observe()
-        return senses.thermal_c.tobytes() + senses.colour.tobytes() + senses.sonar_m.tobytes()
+        return (
+            senses.images["thermal_c"].tobytes()
+            + senses.images["colour"].tobytes()
+            + senses.sonar_m.tobytes()
+        )
 
     settings = config(*WALKERS)
     with World(settings) as alone:
@@ -219,7 +228,7 @@ def test_a_control_step_must_be_a_whole_number_of_physics_steps() -> None:
     with pytest.raises(BadInput, match="seed"):
         WorldConfig(place=hall(), seed=-1)
     with pytest.raises(BadInput, match="renderer 'magic'"), World(config(renderer="magic")) as world:
-        world.observe()
+        world.truth()
 
 
 def test_a_command_that_is_no_number_is_refused_and_moves_nothing() -> None:
@@ -236,7 +245,10 @@ def test_its_own_body_is_not_in_the_robot_s_default_cameras() -> None:
         for command in [(0.0, 0.0), (0.8, 2.6), (-0.8, -2.6)]:
             for _ in range(8):
                 world.step(*command)
-                for camera in (world.config.robot.thermal.camera, world.config.robot.colour.camera):
+                for camera in (
+                    world.config.robot.cameras["thermal"].camera,
+                    world.config.robot.cameras["colour"].camera,
+                ):
                     assert not np.isin(world._see(camera).view.part, own).any()
 
 

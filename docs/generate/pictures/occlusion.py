@@ -36,8 +36,8 @@ def explained_away() -> Figure:
     """What the filter of the person behind is compared with, once the one in front is taken out."""
     *_, (_, tick) = ticks(*CROSSING, frames=PARTLY)
     tracks = {track.id: track for track in tick.tracks}
-    model = ContourModel.build(tick.observation.thermal.shape, PEOPLEBOY.contour)
-    image = model.prepare(tick.observation.thermal)
+    model = ContourModel.build(tick.observation.images["thermal"].shape, PEOPLEBOY.contour)
+    image = model.prepare(tick.observation.images["thermal"])
     front = [state_of(tracks[NEAR])]
     marked = covered_by(image, front, PEOPLEBOY.contour, PEOPLEBOY.occlusion.growth)
     figure, axes = panels(("two people, two tracks", "what the filter of the one behind is shown"), 5.0)
@@ -93,7 +93,7 @@ def timeline() -> Figure:
 
 
 def _moment(panel: Axes, tick: Tick) -> None:
-    show(panel, tick.observation.thermal)
+    show(panel, tick.observation.images["thermal"])
     for track in tick.tracks:
         _outlined(panel, track)
     olaf = next(person for person in tick.truth.people if person.name == "olaf")

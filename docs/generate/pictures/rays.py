@@ -18,13 +18,13 @@ def layers() -> Figure:
     titles = ("depth", "part", "normal", "thermal image", "colour image", "body parts and persons")
     figure, axes = panels(titles, 5.6, columns=3)
     with world_at(*SCENE) as world:
-        view = world._see(world.config.robot.thermal.camera).view
+        view = world._see(world.config.robot.cameras["thermal"].camera).view
         observation, truth = world.observe(), world.truth()
     show(axes[0], np.minimum(view.depth, 12.0), cmap="viridis_r")
     show(axes[1], _shuffled(view.part))
     show(axes[2], (view.normal + 1.0) / 2.0)
-    show(axes[3], observation.thermal)
-    show(axes[4], observation.colour)
+    show(axes[3], observation.images["thermal"])
+    show(axes[4], observation.images["colour"])
     show(axes[5], _parts(truth.instance, truth.body_part))
     return figure
 
@@ -32,7 +32,7 @@ def layers() -> Figure:
 def silhouettes() -> Figure:
     """Everybody's whole silhouette, and what is seen of it."""
     with world_at(*SCENE) as world:
-        view = world._see(world.config.robot.thermal.camera).view
+        view = world._see(world.config.robot.cameras["thermal"].camera).view
         truth = world.truth()
     rows, columns = np.nonzero(view.cover)
     everybody = (float(columns.min()), float(rows.min()), float(np.ptp(columns)), float(np.ptp(rows)))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.moments import world_at
 from docs.generate.pictures.paper import panels, plot, show
+from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.thermal import band_radiance, detect, encode_8bit, make_detector, surface_image
 from peopleboy.sim.people.body.clothes import BOTTOMS, SKIN_C, TOPS
 from peopleboy.sim.places.things import KINDS
@@ -25,7 +26,9 @@ def steps() -> Figure:
     figure, axes = panels(titles, 2.45)
     with world_at("crossing_4", 0, 4.0) as world:
         # The surfaces alone: what every part would look like if it were black and the lens perfect.
-        config, seen = world.config.robot.thermal, world._see(world.config.robot.thermal.camera)
+        config = world.config.robot.cameras["thermal"]
+        assert isinstance(config, ThermalConfig)
+        seen = world._see(config.camera)
         black = replace(world._materials, thermal=world._materials.thermal.copy())
         black.thermal[:, 1] = 1.0
         place = (seen.world_from_camera, world._poses, world.config.place.surroundings_c, 0.0)

@@ -42,8 +42,8 @@ def contour() -> Figure:
     good = state_of(track)
     shifted = good + np.array([-1.2 * good[2], *np.zeros(8)])
     figure, axes = panels(("a sample on the person", "one beside the person"), 5.0)
-    model = ContourModel.build(tick.observation.thermal.shape, PEOPLEBOY.contour)
-    image = model.prepare(tick.observation.thermal)
+    model = ContourModel.build(tick.observation.images["thermal"].shape, PEOPLEBOY.contour)
+    image = model.prepare(tick.observation.images["thermal"])
     for panel, state in zip(axes, (good, shifted), strict=True):
         show(panel, image)
         points = _judged(panel, model, image, state)
@@ -86,7 +86,7 @@ def _judged(
 
 
 def _cloud(panel: Axes, tick: Tick) -> None:
-    show(panel, tick.observation.thermal)
+    show(panel, tick.observation.images["thermal"])
     for key, cloud in tick.particles.items():
         _samples(panel, cloud, "#56b4e9" if key == DETECTOR_KEY else "#e69f00")
     for track in tick.tracks:

@@ -6,7 +6,7 @@ import hashlib
 import json
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,8 +16,10 @@ import pyarrow.parquet as pq
 
 from peopleboy.scenarios.export.dataset.splits import SPLITS, split_file
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.run_folder.image_files import IMAGES
+from peopleboy.scenarios.run_folder.finished_run import cameras_of
+from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.sim.cameras.kinds import image_folders
 
 _ROUNDING = 1e-9
 _AGAIN_FRAMES = 3
@@ -71,14 +73,22 @@ def _check_images(run: Path) -> list[str]:
     if not about["images"]:
         return []
     wrong = []
-    for kind in IMAGES:
-        paths = sorted((run / kind).glob("*.png"))
-        if [path.stem for path in paths] != [f"{frame:06d}" for frame in range(1, about["frames"] + 1)]:
-            wrong.append(f"{kind}: {len(paths)} images for {about['frames']} frames")
-        shapes = {_shape_of(path) for path in paths}
-        if len(shapes) != 1 or None in shapes:
-            wrong.append(f"{kind}: images of several sizes, or unreadable, or without content")
+    for name, camera in cameras_of(run).items():
+        every = about["rate_hz"] // (camera.rate_hz or about["rate_hz"])
+        frames = range(1, about["frames"] + 1, every)
+        for folder, _, _ in image_folders({name: camera}):
+            wrong += [f"{folder}: {fault}" for fault in _check_folder(run / folder, frames)]
     return wrong
+
+
+def _check_folder(folder: Path, frames: Sequence[int]) -> Iterator[str]:
+    """Say what is wrong with a folder that should have the images of these frames."""
+    paths = sorted(folder.glob("*.png"))
+    if [path.name for path in paths] != [image_file(frame) for frame in frames]:
+        yield f"{len(paths)} images for {len(frames)} frames"
+    shapes = {_shape_of(path) for path in paths}
+    if len(shapes) != 1 or None in shapes:
+        yield "images of several sizes, or unreadable, or without content"
 
 
 def _shape_of(path: Path) -> tuple[int, ...] | None:
@@ -133,7 +143,8 @@ def _check_again(done: Path, scenario: Scenario, options: RunOptions) -> list[st
     with tempfile.TemporaryDirectory() as scratch:
         again = Path(scratch) / "again"
         run(short, replace(options, out=again), lambda _tick, _frames: None)
-        files = [path for kind in IMAGES for path in sorted((again / kind).glob("*.png"))]
+        folders = [folder for folder, _, _ in image_folders(cameras_of(again))]
+        files = [path for folder in folders for path in sorted((again / folder).glob("*.png"))]
         wrong = [
             f"{path.parent.name}/{path.name} differs"
             for path in files

@@ -47,7 +47,7 @@ def write_datasheet(
 
 def _image_sizes(scenarios: Sequence[Scenario]) -> list[str]:
     robots = [equip_robot(scenario.spec.robot) for scenario in scenarios]
-    cameras = [sensor.camera for robot in robots for sensor in (robot.thermal, robot.colour)]
+    cameras = [config.camera for robot in robots for config in robot.cameras.values()]
     return list(dict.fromkeys(f"{camera.width}x{camera.height}" for camera in cameras))
 
 

@@ -14,7 +14,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.scores.suite_table import add_up, count, is_in_image
+from peopleboy.sim.cameras.kinds import kind_of
 
 VISIBLE_EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 DISTANCE_EDGES_M = (0.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, np.inf)
@@ -107,17 +109,18 @@ def _hiders(people: pa.Table) -> dict[str, int]:
 
 def _image_statistics(runs: Sequence[Path]) -> tuple[dict[str, list[float]], dict[str, list[float]]]:
     means, deviations = {}, {}
-    for kind in ("thermal", "colour"):
-        paths = [path for run in runs for path in sorted((run / kind).glob("*.png"))[::_EVERY]]
+    cameras = {name: camera for run in runs for name, camera in cameras_of(run).items()}
+    for name, camera in cameras.items():
+        paths = [path for run in runs for path in sorted((run / name).glob("*.png"))[::_EVERY]]
         images = (image for path in paths if (image := cv2.imread(str(path))) is not None)
-        channels = 1 if kind == "thermal" else 3
+        channels = kind_of(camera).channels
         each = [_moments(image[..., :channels]) for image in images]
         if not each:
             continue
         moments = np.mean(each, axis=0)
-        means[kind] = [round(float(value), 2) for value in moments[0]]
+        means[name] = [round(float(value), 2) for value in moments[0]]
         spread = np.sqrt(np.maximum(moments[1] - moments[0] ** 2, 0.0))
-        deviations[kind] = [round(float(value), 2) for value in spread]
+        deviations[name] = [round(float(value), 2) for value in spread]
     return means, deviations
 
 

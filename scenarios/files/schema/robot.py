@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from peopleboy.scenarios.files.schema.values import Degrees, Point, Position, Seconds, Share, Strict
+from peopleboy.scenarios.files.schema.values import (
+    CameraName,
+    Degrees,
+    Point,
+    Position,
+    Seconds,
+    Share,
+    Strict,
+)
 
 Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
 
 
 class CameraSpec(Strict):
-    """What differs from the robot's usual camera."""
+    """What all cameras have; what is left out is as usual for the kind."""
 
     width_px: int | None = Field(
         default=None, ge=16, le=4096, description="columns of the image; usually 320"
@@ -22,7 +30,7 @@ class CameraSpec(Strict):
         default=None,
         ge=5.0,
         le=150.0,
-        description="angle from upper to lower edge; usually 44, of the colour camera 37.2",
+        description="angle from upper to lower edge; usually 44, of a colour camera 37.2",
     )
     mount_m: Position | None = Field(
         default=None, description="optical centre in the robot's frame: forward, left, up from the floor"
@@ -32,11 +40,18 @@ class CameraSpec(Strict):
     exposure_s: float | None = Field(
         default=None, ge=0.0, le=1.0, description="time over which rotation blurs the image"
     )
+    rate_hz: int | None = Field(
+        default=None,
+        ge=1,
+        le=15,
+        description="images a second: 1, 3, 5 or 15; usually 15, as `thermal` and `colour` always have",
+    )
 
 
-class ThermalSpec(CameraSpec):
-    """What differs from the usual thermal camera."""
+class ThermalCameraSpec(CameraSpec):
+    """A camera that sees heat; by the name `thermal` it is the one that the tracker looks through."""
 
+    kind: Literal["thermal"]
     blur_px: float | None = Field(
         default=None, ge=0.0, le=20.0, description="blur of the optics, a standard deviation"
     )
@@ -49,6 +64,15 @@ class ThermalSpec(CameraSpec):
     dead_pixels: Share | None = Field(
         default=None, description="share of the pixels that read one value all the time"
     )
+
+
+class ColourCameraSpec(CameraSpec):
+    """A camera that sees colours; by the name `colour` it is the one that the tracker looks through."""
+
+    kind: Literal["colour"]
+
+
+AnyCameraSpec = Annotated[ThermalCameraSpec | ColourCameraSpec, Field(discriminator="kind")]
 
 
 class CommandSpec(Strict):
@@ -87,10 +111,20 @@ class RobotSpec(Strict):
         default=None,
         description="of a robot in corridors: the sense that tells it the walls; left out, the sonar",
     )
-    thermal: ThermalSpec = Field(
-        default=ThermalSpec(), description="what differs from the usual thermal camera"
+    cameras: dict[CameraName, AnyCameraSpec] = Field(
+        default={},
+        description="by name; `thermal` and `colour` are there anyway, and what is said of them is what "
+        "differs from the usual; any other name is a further camera",
     )
-    colour: CameraSpec = Field(default=CameraSpec(), description="what differs from the usual colour camera")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _say_where_cameras_are(cls, data: Any) -> Any:
+        """Help whoever knows where cameras used to be."""
+        for name in ("thermal", "colour"):
+            if isinstance(data, dict) and name in data:
+                raise ValueError(f"{name!r} is a camera: write cameras: {{{name}: {{kind: {name}, ...}}}}")
+        return data
 
 
 class FaultSpec(Strict):

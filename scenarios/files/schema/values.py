@@ -19,6 +19,7 @@ Extent = Annotated[float, Field(ge=0.005, le=100.0)]
 Size = Annotated[tuple[Extent, Extent, Extent], Field(strict=False)]
 Rgb = Annotated[tuple[Share, Share, Share], Field(strict=False)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,39}$")]
+CameraName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
 Key = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,59}$")]
 
 

@@ -89,7 +89,7 @@ def _replay(run: FinishedRun, frames: Sequence[int]) -> Iterator[tuple[int, Ther
     try:
         for tick in replay(open_run(run.folder)):
             if tick.frame in frames:
-                yield tick.frame, tick.observation.thermal
+                yield tick.frame, tick.observation.images["thermal"]
             if tick.frame >= max(frames):
                 return
     except BadInput:

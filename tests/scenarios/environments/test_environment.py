@@ -87,8 +87,8 @@ def test_an_episode_of_a_seed_is_the_world_of_a_run_of_that_seed() -> None:
     observation, info = env.reset(seed=4)
     with World(load_scenario("corridor_meeting").world(4)) as world:
         seen = world.observe()
-        assert np.array_equal(observation["thermal"][:, :, 0], seen.thermal)
-        assert np.array_equal(observation["colour"], seen.colour)
+        assert np.array_equal(observation["thermal"][:, :, 0], seen.images["thermal"])
+        assert np.array_equal(observation["colour"], seen.images["colour"])
         assert info["truth"] == world.scene()
     env.close()
 

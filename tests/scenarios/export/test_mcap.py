@@ -26,7 +26,7 @@ from tests.helpers.exported import export
 
 TOPICS = {
     "/thermal/image/compressed", "/colour/image/compressed", "/thermal/camera_info", "/colour/camera_info",
-    "/truth/people", "/tracks", "/odom", "/tf",
+    "/truth/people", "/truth/colour/people", "/tracks", "/odom", "/tf",
 }  # fmt: skip
 
 # SHA-256 of a type and all that it is made of, as ROS 2's own builds have them (REP 2011).
@@ -93,7 +93,12 @@ def test_the_images_are_those_of_the_run(messages: dict[str, list[Any]], crossin
 
 
 def test_boxes_are_those_of_truth_and_tracks(messages: dict[str, list[Any]], crossing: Path) -> None:
-    for topic, file in (("/truth/people", "truth/gt.txt"), ("/tracks", "tracks.txt")):
+    files = {
+        "/truth/people": "truth/gt.txt",
+        "/truth/colour/people": "truth/colour.gt.txt",
+        "/tracks": "tracks.txt",
+    }
+    for topic, file in files.items():
         table = np.loadtxt(crossing / file, delimiter=",")
         found = []
         for frame, message in enumerate(messages[topic], start=1):
@@ -101,7 +106,7 @@ def test_boxes_are_those_of_truth_and_tracks(messages: dict[str, list[Any]], cro
                 middle, width, height = one.bbox.center.position, one.bbox.size_x, one.bbox.size_y
                 score = one.results[0].hypothesis.score
                 found.append((frame, middle.x - width / 2, middle.y - height / 2, width, height, score))
-        columns = [0, 2, 3, 4, 5, 8 if topic == "/truth/people" else 6]
+        columns = [0, 2, 3, 4, 5, 6 if topic == "/tracks" else 8]
         assert np.array(found) == pytest.approx(table[:, columns], abs=0.0051)
 
 
@@ -111,7 +116,7 @@ def test_the_frames_lead_from_the_camera_to_where_the_robot_truly_is(
     (fixed,) = messages["/tf_static"]
     camera = pose(next(t.transform for t in fixed.transforms if t.child_frame_id == "thermal_optical"))
     run = open_run(crossing)
-    assert camera == pytest.approx(run.robot.thermal.camera.robot_from_camera)
+    assert camera == pytest.approx(run.robot.cameras["thermal"].camera.robot_from_camera)
     for message, row in zip(messages["/tf"], run.robot_rows(), strict=True):
         frames = {
             one.child_frame_id: (one.header.frame_id, pose(one.transform)) for one in message.transforms
@@ -157,7 +162,10 @@ def test_whoever_knows_frames_and_camera_alone_finds_every_joint_at_its_pixel(
 
 def test_camera_info_is_that_of_the_cameras(messages: dict[str, list[Any]], crossing: Path) -> None:
     robot = open_run(crossing).robot
-    for name, camera in (("thermal", robot.thermal.camera), ("colour", robot.colour.camera)):
+    for name, camera in (
+        ("thermal", robot.cameras["thermal"].camera),
+        ("colour", robot.cameras["colour"].camera),
+    ):
         for info in messages[f"/{name}/camera_info"]:
             assert (info.width, info.height, info.distortion_model) == (
                 camera.width,

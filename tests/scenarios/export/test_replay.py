@@ -28,12 +28,13 @@ def images(run: Path, tick: Tick) -> list[np.ndarray]:
 def test_a_run_comes_out_again_to_the_bit(name: str, request: pytest.FixtureRequest) -> None:
     folder = request.getfixturevalue(name)
     run = open_run(folder)
-    ticks = list(replay(run))
-    assert len(ticks) == run.frames
-    for tick in ticks:
-        senses = tick.observation
-        again = (senses.thermal, encode_16bit(senses.thermal_c), senses.colour)
+    ticks = []
+    for tick in replay(run):
+        now = tick.observation.images
+        again = (now["thermal"], encode_16bit(now["thermal_c"]), now["colour"])
         assert all(map(np.array_equal, again, images(folder, tick)))
+        ticks.append(tick)
+    assert len(ticks) == run.frames
     people = [row for tick in ticks for row in truth_rows(tick)]
     assert pa.Table.from_pylist(people, schema=pq.read_schema(folder / "truth.parquet")) == pq.read_table(
         folder / "truth.parquet"

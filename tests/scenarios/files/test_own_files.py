@@ -26,7 +26,10 @@ SCENE: dict[str, Any] = {
     "place": {"kind": "room", "length_m": 8.0, "width_m": 6.0},
     "things": [{"kind": "urdf", "name": "desk", "urdf": "furniture/desk.urdf", "at_m": [4.0, 1.0]}],
     "people": [{"name": "anna", "path": [{"at_m": [5.0, 0.0]}, {"at_m": [6.0, 0.0], "speed_m_s": 1.0}]}],
-    "robot": {"at_m": [0.6, 0.0], "thermal": dict(CAMERA), "colour": dict(CAMERA)},
+    "robot": {
+        "at_m": [0.6, 0.0],
+        "cameras": {name: {"kind": name, **CAMERA} for name in ("thermal", "colour")},
+    },
 }
 URDF = """<?xml version="1.0"?>
 <robot name="desk"><link name="base">

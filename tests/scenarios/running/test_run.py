@@ -22,7 +22,10 @@ SCENE = {
     "duration_s": 2.0,
     "place": {"kind": "room", "length_m": 8.0, "width_m": 6.0},
     "people": [{"name": "anna", "path": [{"at_m": [4.5, -1.0]}, {"at_m": [4.5, 1.5], "speed_m_s": 1.2}]}],
-    "robot": {"at_m": [0.6, 0.0], "thermal": {"width_px": 160, "height_px": 120}},
+    "robot": {
+        "at_m": [0.6, 0.0],
+        "cameras": {"thermal": {"kind": "thermal", "width_px": 160, "height_px": 120}},
+    },
 }
 FOLDER = {
     "run.json", "scenario.yaml", "truth", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",

@@ -155,7 +155,7 @@ def test_a_detour_to_the_person_halves_the_efficiency_and_a_steady_run_has_no_je
 def test_the_distance_to_keep_is_the_one_that_shows_the_person_as_tall_as_asked() -> None:
     config = load_scenario("single_follow").world(0)
     task = following_task(config, keep_height=0.5)
-    camera, person = config.robot.thermal.camera, config.people[0]
+    camera, person = config.robot.cameras["thermal"].camera, config.people[0]
     away = task.keep_m - camera.position_m[0]
     feet, head = camera.project(np.array([[0.0, 1.2, away], [0.0, 1.2 - person.height_m, away]]))
     assert feet[1] - head[1] == pytest.approx(0.5 * camera.height)

@@ -14,7 +14,7 @@ from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 ROBOT = RobotConfig()
-THERMAL, COLOUR = ROBOT.thermal.camera, ROBOT.colour.camera
+THERMAL, COLOUR = ROBOT.cameras["thermal"].camera, ROBOT.cameras["colour"].camera
 
 
 @given(depth_m=st.floats(0.5, 20.0), x=st.floats(-3.0, 3.0), y=st.floats(-3.0, 3.0))

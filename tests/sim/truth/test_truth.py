@@ -251,7 +251,7 @@ def test_who_has_not_entered_or_has_left_is_nowhere() -> None:
             assert [somebody.name for somebody in truth.people] == ["guest"] * is_there
             assert truth.instance.any() == is_there
             assert (observation.sonar_m[3] < 2.5) == is_there
-            assert (observation.thermal[40:110, 70:90].max() > 60) == is_there
+            assert (observation.images["thermal"][40:110, 70:90].max() > 60) == is_there
             world.step(0.0, 0.0)
 
 

@@ -22,7 +22,7 @@ place: {kind: room, length_m: 8.0, width_m: 6.0}
 people:
   - name: anna
     path: [{at_m: [4.0, -1.0]}, {at_m: [4.0, 1.0]}]
-robot: {at_m: [0.6, 0.0], thermal: {width_px: 160, height_px: 120}}
+robot: {at_m: [0.6, 0.0], cameras: {thermal: {kind: thermal, width_px: 160, height_px: 120}}}
 """
 
 

@@ -1,0 +1,124 @@
+"""The kinds of cameras: all that the rest of the project asks of one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.sensors import ColourSensor, Image, Sensor, ThermalSensor
+from peopleboy.sim.cameras.thermal import encode_16bit
+
+Stored = NDArray[np.uint8] | NDArray[np.uint16]
+
+
+def _as_it_is(image: Image) -> Stored:
+    return image
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Layer:
+    """One of the images that a camera gives at an instant.
+
+    Attributes:
+        suffix: of its name, behind that of the camera.
+        folder: suffix of the folder that its files lie in, behind the name of the camera.
+        encode: gives what a PNG file can hold of it, without loss: (H, W) of 8 or 16 bits, or (H, W, 3) RGB.
+    """
+
+    suffix: str = ""
+    folder: str = ""
+    encode: Callable[[Image], Stored] = _as_it_is
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CameraKind:
+    """A kind of camera.
+
+    Attributes:
+        config: class of its settings.
+        sensor: opens a camera by settings, name and seed; the name is that of its streams of noise, too.
+        layers: its images; the first, without suffixes, is uint8, and what people and controllers are shown.
+        channels: of that first image: 1 for (H, W) grey, 3 for (H, W, 3) RGB.
+        has_boxes: whether a box round a person makes sense in it.
+    """
+
+    config: type[CameraConfig]
+    sensor: Callable[[Any, str, int], Sensor]
+    layers: tuple[Layer, ...] = (Layer(),)
+    channels: int = 1
+    has_boxes: bool = True
+
+
+KINDS: Final[dict[str, CameraKind]] = {
+    "thermal": CameraKind(
+        config=ThermalConfig,
+        sensor=ThermalSensor,
+        layers=(Layer(), Layer(suffix="_c", folder="16", encode=encode_16bit)),
+    ),
+    "colour": CameraKind(config=ColourConfig, sensor=ColourSensor, channels=3),
+}
+
+
+def kind_of(config: CameraConfig) -> CameraKind:
+    """Find the kind of a camera by its settings.
+
+    Raises:
+        BadInput: there is none of that name.
+    """
+    if config.kind not in KINDS:
+        raise BadInput(f"camera kind {config.kind!r}: there is none; choose from {', '.join(KINDS)}")
+    return KINDS[config.kind]
+
+
+def image_names(name: str, config: CameraConfig) -> tuple[str, ...]:
+    """Name the images that a camera gives, such as thermal and thermal_c."""
+    return tuple(f"{name}{layer.suffix}" for layer in kind_of(config).layers)
+
+
+def image_folders(cameras: Mapping[str, CameraConfig]) -> Iterator[tuple[str, str, Layer]]:
+    """Yield folder, name and layer of every image that cameras give."""
+    for name, config in cameras.items():
+        for layer in kind_of(config).layers:
+            yield f"{name}{layer.folder}", f"{name}{layer.suffix}", layer
+
+
+def with_boxes(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
+    """Name the cameras in whose images boxes make sense."""
+    return tuple(name for name, config in cameras.items() if kind_of(config).has_boxes)
+
+
+def check_rate(what: str, rate_hz: int | None, control_hz: int) -> None:
+    """Refuse a camera's rate that does not divide the control rate.
+
+    Raises:
+        BadInput: beginning with what it is.
+    """
+    if rate_hz is not None and (rate_hz < 1 or control_hz % rate_hz):
+        fits = [str(rate) for rate in range(1, control_hz + 1) if control_hz % rate == 0]
+        raise BadInput(
+            f"{what}: {rate_hz} must divide the control rate, {control_hz} Hz; choose from {', '.join(fits)}"
+        )
+
+
+def check_cameras(cameras: Mapping[str, CameraConfig]) -> None:
+    """Refuse cameras that cannot be told apart by the names of their images and folders.
+
+    Raises:
+        BadInput: a name is none or taken, or there is no thermal camera.
+    """
+    if not isinstance(cameras.get("thermal"), ThermalConfig):
+        raise BadInput("cameras: there must be one of the name and kind 'thermal', by which people count")
+    for name in cameras:
+        if re.fullmatch("[a-z][a-z0-9_]{0,39}", name) is None:
+            raise BadInput(f"camera {name!r}: is not a name: use small letters, digits and _, a letter first")
+    folders, images = zip(*((folder, image) for folder, image, _ in image_folders(cameras)), strict=True)
+    for names in (folders, images):
+        for taken in (name for name in cameras if names.count(name) > 1):
+            raise BadInput(f"camera {taken!r}: another camera gives images of that name; choose another")

@@ -1,0 +1,75 @@
+"""All cameras of a robot at work: which are due at an instant, and images that are made when asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.kinds import image_names, kind_of
+from peopleboy.sim.cameras.sensors import Glimpse, Image
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.on_demand import OnDemand
+
+
+class Rig:
+    """Takes the images of a robot's cameras.
+
+    A camera's noise is its own, and that of an image that nobody asks for goes by: what an image holds
+    depends neither on the other cameras nor on which images were asked for before.
+
+    Args:
+        cameras: settings by name.
+        control_hz: [Hz] of instants.
+        seed: of all noise.
+        look: gives what a camera of some geometry sees now.
+    """
+
+    def __init__(
+        self,
+        cameras: Mapping[str, CameraConfig],
+        control_hz: int,
+        seed: int,
+        look: Callable[[Camera], Glimpse],
+    ) -> None:
+        self._cameras, self._look = cameras, look
+        self._sensors = {name: kind_of(one).sensor(one, name, seed) for name, one in cameras.items()}
+        self._every = {name: control_hz // (one.rate_hz or control_hz) for name, one in cameras.items()}
+        self._unread = dict.fromkeys(cameras, 0)
+        self._reading = 0
+
+    def due(self, tick: int) -> tuple[str, ...]:
+        """Name the cameras that take an image at an instant, counted in control steps."""
+        return tuple(name for name, every in self._every.items() if tick % every == 0)
+
+    def read(self, tick: int) -> Mapping[str, Image]:
+        """Give the images of the cameras that are due, each made when first asked for, until the next call.
+
+        Raises:
+            BadInput: when one is asked for later.
+        """
+        self.forget()
+        due = self.due(tick)
+        for name in due:
+            self._unread[name] += 1
+        shots = OnDemand(due, partial(self._shoot, self._reading))
+        owner = {image: name for name in due for image in image_names(name, self._cameras[name])}
+        return OnDemand(owner, lambda image: shots[owner[image]][image])
+
+    def forget(self) -> None:
+        """Let nobody ask any more for images of the last reading."""
+        self._reading += 1
+
+    def _shoot(self, reading: int, name: str) -> dict[str, Image]:
+        if reading != self._reading:
+            raise BadInput(
+                f"camera {name!r}: the image of an instant that is over was not asked for while it lasted; "
+                "read it before the next step or observation"
+            )
+        sensor, config = self._sensors[name], self._cameras[name]
+        for _ in range(self._unread[name] - 1):
+            sensor.skip()
+        self._unread[name] = 0
+        images = sensor.take(self._look(config.camera))
+        return dict(zip(image_names(name, config), images, strict=True))

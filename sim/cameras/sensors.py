@@ -1,0 +1,98 @@
+"""Cameras at work: from what one sees at an instant to its images, noise included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.colour import colour_image, expose
+from peopleboy.sim.cameras.noise import skip_gaussian
+from peopleboy.sim.cameras.surfaces import MaterialTable
+from peopleboy.sim.cameras.thermal import detect, encode_8bit, make_detector, surface_image
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.rendering.view import View
+
+Image = NDArray[Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Glimpse:
+    """What one camera sees at an instant, and all that forms its images from that.
+
+    Attributes:
+        view: what lies behind each pixel.
+        world_from_camera: (4, 4) optical frame to world.
+        world_from_part: (P, 4, 4).
+        materials: of the P parts.
+        surroundings_c: [degC] what surfaces mirror.
+        light_level: 1 is the place's full light.
+        turn_rad_s: [rad/s] of the robot about the vertical axis.
+    """
+
+    view: View
+    world_from_camera: Matrix
+    world_from_part: Matrix
+    materials: MaterialTable
+    surroundings_c: float
+    light_level: float
+    turn_rad_s: float
+
+
+class Sensor(Protocol):
+    """One camera with its own streams of noise."""
+
+    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+        """Take the images of an instant, one for each layer of the camera's kind."""
+        ...
+
+    def skip(self) -> None:
+        """Let the noise of an image go by that nobody has asked for."""
+        ...
+
+
+class ThermalSensor:
+    """Gives 8-bit grey, and the same in float32 [degC] before it is encoded."""
+
+    def __init__(self, config: ThermalConfig, name: str, seed: int) -> None:
+        self._config = config
+        self._detector = make_detector(config, stream(seed, f"{name}.detector"))
+        self._noise = stream(seed, f"{name}.noise")
+
+    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+        """Take the (H, W) images of an instant: uint8, float32."""
+        config = self._config
+        apparent = surface_image(
+            glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
+            glimpse.surroundings_c, glimpse.turn_rad_s * config.exposure_s,
+        )  # fmt: skip
+        temperature = detect(apparent, self._detector, config, self._noise)
+        return encode_8bit(temperature, config.lowest_c, config.highest_c), temperature
+
+    def skip(self) -> None:
+        """Let the noise of an image go by."""
+        skip_gaussian(self._detector.dead.shape, self._noise)
+
+
+class ColourSensor:
+    """Gives 8-bit sRGB."""
+
+    def __init__(self, config: ColourConfig, name: str, seed: int) -> None:
+        self._config = config
+        self._noise = stream(seed, f"{name}.noise")
+
+    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+        """Take the (H, W, 3) uint8 image of an instant."""
+        config = self._config
+        linear = colour_image(
+            glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
+            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s,
+        )  # fmt: skip
+        return (expose(linear, config, self._noise),)
+
+    def skip(self) -> None:
+        """Let the noise of an image go by."""
+        skip_gaussian((self._config.camera.height, self._config.camera.width, 3), self._noise)
