@@ -168,7 +168,7 @@ def _ports(first: int | None) -> tuple[int, int]:
             found = [held.enter_context(socket.create_server((LOOPBACK, port))) for port in wanted]
         except OSError as error:
             raise BadInput(
-                f"--port {first}: {wanted[0]} and {wanted[1]} are not both free; leave it out for two that are"
+                f"--port {first}: {wanted[0]} and {wanted[1]} are not both free; leave it out for any two"
             ) from error
         one, other = (each.getsockname()[1] for each in found)
     return one, other

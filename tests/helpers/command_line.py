@@ -16,7 +16,7 @@ def run_cli(*arguments: object) -> int:
 
 
 def refusal(capsys: pytest.CaptureFixture[str], *arguments: object, lines: int = 1) -> str:
-    """Call `peopleboy`, which has to refuse, and return what it says on standard error: one line, or so many."""
+    """Call `peopleboy`, which has to refuse, and return the one line, or so many, on standard error."""
     capsys.readouterr()
     assert run_cli(*arguments) == 2
     told = capsys.readouterr().err
