@@ -42,11 +42,11 @@ def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
     with ExitStack() as running:
 
         def show(finished: int, total: int, note: str = "") -> None:
-            if not progress.live.is_started:
-                running.enter_context(progress)
             speed = progress.tasks[0].speed if unit else None
             rate = "" if speed is None else f"{speed:.0f} {unit}/s"
             progress.update(task, completed=finished, total=total, rate=rate, note=note)
+            if not progress.live.is_started:
+                running.enter_context(progress)
 
         yield show
 
@@ -57,4 +57,5 @@ def each_shown(items: Sequence[Item], title: str) -> Iterator[Item]:
         for finished, item in enumerate(items):
             show(finished, len(items))
             yield item
-        show(len(items), len(items))
+        if items:
+            show(len(items), len(items))

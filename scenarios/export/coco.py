@@ -50,7 +50,7 @@ def write_coco(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
     Raises:
         BadInput: the runs cannot be sorted by split, or the package that encodes masks is not installed.
     """
-    need("pycocotools.mask", "coco")
+    need("pycocotools", "coco")
     for split, own in by_split(runs).items():
         content = _write_set(own, folder / "images" / (split or ""), play)
         path = folder / annotations_file(split)
