@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -189,13 +189,4 @@ def _with_words(moment: Moment, words: tuple[str, ...]) -> Moment:
         seen = sum(person.visible_px > 0 for person in moment.people)
         sure = sum(track.status is not Status.TENTATIVE for track in moment.tracks)
         words = (f"{seen} in view, {sure} tracked",)
-    return Moment(
-        frame=moment.frame,
-        time_s=moment.time_s,
-        mode=moment.mode,
-        thermal=moment.thermal,
-        colour=moment.colour,
-        tracks=moment.tracks,
-        people=moment.people,
-        words=words,
-    )
+    return replace(moment, words=words)

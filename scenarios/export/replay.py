@@ -7,6 +7,7 @@ versions give the same bytes. No tracker is needed for that: commands and tracks
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +54,18 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
             yield tick
             if frame < run.frames:
                 stage.step(command.linear_m_s, command.angular_rad_s, is_emergency=command.is_emergency)
+
+
+def counted(report: Callable[[int], None]) -> Play:
+    """Give a `replay` that reports each tick by its number, counted on over all runs."""
+    number = count(1)
+
+    def play(run: FinishedRun) -> Iterator[Tick]:
+        for tick in replay(run):
+            report(next(number))
+            yield tick
+
+    return play
 
 
 def _command(row: Row) -> Command:

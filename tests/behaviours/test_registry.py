@@ -11,6 +11,7 @@ from peopleboy.behaviours.command import STOP, Command
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.behaviours.scripted import Scripted
 from tests.helpers.percepts import free
+from tests.helpers.refused import refused
 from tests.helpers.toy_world import FRONT, HALF_WIDTH, Toy, drive, wall
 
 SCRIPT = (
@@ -57,7 +58,7 @@ def test_standing_stands():
 
 
 def test_an_unknown_name_is_refused_with_the_names_there_are():
-    with pytest.raises(BadInput, match=r"'dance'; there are follow_corridor, .*patrol"):
+    with refused("'dance'", "follow_corridor", "patrol"):
         make_behaviour("dance")
 
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import pytest
 import yaml
 
-from peopleboy.scenarios.cli import main
+from tests.helpers.command_line import run_cli
 
 CAMERA = {"width_px": 160, "height_px": 120}
 SCENE: dict[str, Any] = {
@@ -36,13 +35,6 @@ FOLLOWING: dict[str, Any] = SCENE | {
     "robot": {"at_m": [0.6, 0.0], "thermal": CAMERA, "behaviour": "follow_person"},
     "faults": [{"kind": "camera_frozen", "from_s": 3.5}],
 }
-
-
-def run_cli(*arguments: object) -> int:
-    with pytest.raises(SystemExit) as stop:
-        main([str(argument) for argument in arguments])
-    assert isinstance(stop.value.code, int)
-    return stop.value.code
 
 
 def make_run(scene: dict[str, Any], folder: Path, *options: object) -> Path:

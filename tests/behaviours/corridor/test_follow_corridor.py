@@ -124,7 +124,7 @@ def test_in_the_dark_the_sonars_take_over_and_the_reason_says_so():
         dark = drawn_corridor(0.2, 0.0, 3.0, light=0.0)
         command = behaviour.command(percept_of(ranges, 1.0 + step / 15.0, colour=dark))
     assert behaviour.mode == "sonar"
-    assert behaviour.reason == "the image does not tell: too dark"
+    assert "too dark" in behaviour.reason
     assert behaviour.state.corridor.offset_m == pytest.approx(0.4, abs=0.03)  # the sonars'
     assert command.linear_m_s > 0.0
 
