@@ -43,7 +43,7 @@ class Moment:
     Attributes:
         frame, time_s, mode: as in the tick.
         thermal, colour: (H, W) and (H, W, 3) what the cameras saw.
-        tracks: what the tracker made of it.
+        tracks, explanation: what the tracker made of it, and told beyond that.
         people: what was true.
         words: what happened, the most telling first.
     """
@@ -54,6 +54,7 @@ class Moment:
     thermal: NDArray[np.uint8]
     colour: NDArray[np.uint8]
     tracks: tuple[Track, ...]
+    explanation: object
     people: tuple[PersonTruth, ...]
     words: tuple[str, ...] = ()
 
@@ -179,6 +180,7 @@ def _moment(tick: Tick) -> Moment:
         thermal=senses.thermal,
         colour=senses.colour,
         tracks=tick.tracks,
+        explanation=tick.explanation,
         people=tick.truth.people,
     )
 

@@ -28,14 +28,14 @@ _TOLERANCE = 0.01
 
 
 def replay(run: FinishedRun) -> Iterator[Tick]:
-    """Yield the ticks of a finished run, with images and masks, but without particles.
+    """Yield the ticks of a finished run, with images and masks, and explanations as far as it kept them.
 
     Raises:
         BadInput: the world does not come out as it was in the run, or PyBullet is not installed.
     """
     from peopleboy.sim.world import World  # here, as what is written can be exported without PyBullet
 
-    tracks, people = run.tracks(), run.truth_rows()
+    tracks, explanations, people = run.tracks(), run.explanations(), run.truth_rows()
     with World(run.world) as world:
         stage = FaultySensors(world, run.scenario.spec.faults, run.robot.sonar.farthest_m)
         for row in run.robot_rows():
@@ -46,7 +46,7 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
                 observation=stage.observe(),
                 truth=world.truth(),
                 tracks=tuple(tracks[frame]),
-                particles={},
+                explanation=explanations[frame],
                 mode=row["mode"],
                 command=command,
             )

@@ -74,7 +74,7 @@ def draw_film_frame(tick: Tick, robot: RobotConfig, title: str) -> Picture:
 def _thermal(tick: Tick) -> Picture:
     scale = HEIGHT_PX / tick.observation.thermal.shape[0]
     picture, plates = enlarge(show_thermal(tick.observation.thermal), scale), list[Plate]()
-    picture = draw_tracks(picture, tick.tracks, scale, plates=plates)
+    picture = draw_tracks(picture, tick.tracks, scale, tick.explanation, plates=plates)
     return _even(draw_truth(picture, tick.truth.people, scale, plates=plates))
 
 
@@ -82,7 +82,9 @@ def _colour(tick: Tick, robot: RobotConfig) -> Picture:
     affine_at = partial(affine_between, robot.thermal.camera, robot.colour.camera)
     scale = HEIGHT_PX / tick.observation.colour.shape[0]
     picture, plates = enlarge(tick.observation.colour, scale), list[Plate]()
-    picture = draw_tracks(picture, tick.tracks, scale, affine=affine_at(_TYPICAL_DEPTH_M), plates=plates)
+    picture = draw_tracks(
+        picture, tick.tracks, scale, tick.explanation, affine=affine_at(_TYPICAL_DEPTH_M), plates=plates
+    )
     for person in tick.truth.people:
         affine = affine_at(max(person.distance_m, _NEAREST_M))
         picture = draw_truth(picture, [person], scale, affine, plates=plates)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,9 +14,8 @@ from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Track
-from peopleboy.tracker.trackers import Tracker
+from peopleboy.tracker.trackers import Tracker, explanation_of
 
 JUMP_EVERY_S = 1.0
 JUMP = Planar(x=0.7, y=-0.4, heading=math.radians(50.0))
@@ -65,9 +64,9 @@ class FaultyTracker:
         self._faults = faults
 
     @property
-    def particles(self) -> Mapping[int, Particles]:
-        """Those of the tracker."""
-        return self._tracker.particles
+    def explanation(self) -> object:
+        """That of the tracker."""
+        return explanation_of(self._tracker)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Take in the next frame, or fail.

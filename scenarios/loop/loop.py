@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -19,9 +19,8 @@ from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.trackers import Tracker
+from peopleboy.tracker.trackers import Tracker, explanation_of
 
 # Ways between two images beyond what the drive can do in a quarter of a second are jumps of the odometry.
 FARTHEST_TURN_RAD = math.radians(40.0)
@@ -37,7 +36,7 @@ class Tick:
         observation: what the robot sensed.
         truth: what was true.
         tracks: what the tracker made of the images.
-        particles: its samples by track id, 0 being the detector's.
+        explanation: what it told beyond its tracks, to be drawn by its type; None for nothing.
         mode: what the behaviour was doing, such as "search" or "follow".
         command: what the robot was told to do next.
         reason: why the behaviour was doing that.
@@ -48,7 +47,7 @@ class Tick:
     observation: Observation
     truth: Truth
     tracks: tuple[Track, ...]
-    particles: Mapping[int, Particles]
+    explanation: object
     mode: str
     command: Command
     reason: str = ""
@@ -115,7 +114,7 @@ def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: in
             observation=observation,
             truth=world.truth(),
             tracks=eyes.tracks,
-            particles=tracker.particles,
+            explanation=explanation_of(tracker),
             mode=behaviour.mode,
             command=command,
             reason=behaviour.reason,

@@ -10,6 +10,7 @@ from pathlib import Path
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.run_folder.explained import read_explanation
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_about, read_files, read_run
 from peopleboy.scenarios.run_folder.tables import Row, track_of
 from peopleboy.sim.config import WorldConfig
@@ -68,6 +69,13 @@ class FinishedRun:
         """Give what the tracker said, by frame, tentative tracks too."""
         rows = _by_frame(self._files().beliefs.to_pylist())
         return defaultdict(list, {frame: [track_of(row) for row in here] for frame, here in rows.items()})
+
+    def explanations(self) -> dict[int, object]:
+        """Give what the tracker explained, by frame, as far as the tables hold it."""
+        rows = _by_frame(self._files().beliefs.to_pylist())
+        return defaultdict(
+            lambda: None, {frame: read_explanation(self.tracker, here) for frame, here in rows.items()}
+        )
 
     def _files(self) -> RunFiles:
         return read_files(self.folder, self.frames)

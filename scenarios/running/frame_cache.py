@@ -6,7 +6,7 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import astuple, dataclass
 from functools import cache
 from pathlib import Path
@@ -27,7 +27,6 @@ from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Track
 
 _GROUP = 16  # frames that are read or written at once
@@ -136,10 +135,6 @@ def film_key(scenario: Scenario, seed: int) -> str:
 
 class _Blind:
     """A tracker that sees nobody."""
-
-    @property
-    def particles(self) -> Mapping[int, Particles]:
-        return {}
 
     def update(self, frame: Frame) -> tuple[Track, ...]:  # noqa: ARG002
         return ()

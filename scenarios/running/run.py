@@ -18,7 +18,6 @@ from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versi
 from peopleboy.scenarios.running.watchers import Watchers
 from peopleboy.scenarios.scores.score import RunScores, following_task, score_run
 from peopleboy.sim.world import World
-from peopleboy.tracker.trackers import TRACKERS
 
 FOLLOWERS = ("follow_person", "patrol")
 
@@ -87,7 +86,6 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
                     options.out / "recording.rrd",
                     config,
                     title=title,
-                    tracker=TRACKERS.get(options.tracker),
                     viewer=options.viewer,
                 )
             )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,14 +20,16 @@ from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.truth.truth import PersonTruth, Truth
+from peopleboy.tracker.thermal.ellipse import Ellipse
+from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.filter.particles import Particles
-from peopleboy.tracker.track import Ellipse, Status, Track
+from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.track import Status, Track
 
 CAMERA = Camera()
 ELLIPSE = Ellipse(x=160.0, y=120.0, w=20.0, h=50.0, d=3.0, vx=0.0, vy=0.0, vw=0.0, vh=0.0)
 TRACK = Track(
-    id=1, ellipse=ELLIPSE, box=(140.0, 47.3, 40.0, 175.0), confidence=0.9, status=Status.TRACKED,
-    age_s=1.0, uncertainty_px2=10.0,
+    id=1, box=(140.0, 47.3, 40.0, 175.0), confidence=0.9, status=Status.TRACKED, age_s=1.0,
 )  # fmt: skip
 
 
@@ -93,6 +96,17 @@ def person(number: int, name: str, x: float, hidden: float = 0.0) -> PersonTruth
     )  # fmt: skip
 
 
+def explain(tracks: Sequence[Track] = (TRACK,), cloud: Particles | None = None) -> ContourExplanation:
+    """What the contour tracker says of such tracks; every filter has the same cloud."""
+    clouds = {} if cloud is None else {DETECTOR_KEY: cloud, **{track.id: cloud for track in tracks}}
+    return ContourExplanation(
+        config=PEOPLEBOY,
+        ellipses={track.id: ELLIPSE for track in tracks},
+        spread_px2={track.id: 10.0 for track in tracks},
+        particles=clouds,
+    )
+
+
 def make_tick(frame: int, track: Track | None = TRACK, hidden: float = 0.0, mode: str = "follow") -> Tick:
     """One tick; ben is there until frame 60."""
     rng = np.random.default_rng(frame)
@@ -115,7 +129,7 @@ def make_tick(frame: int, track: Track | None = TRACK, hidden: float = 0.0, mode
     )  # fmt: skip
     return Tick(
         frame=frame, observation=observation, truth=truth, tracks=() if track is None else (track,),
-        particles={0: cloud} if track is None else {0: cloud, track.id: cloud}, mode=mode,
+        explanation=explain(() if track is None else (track,), cloud), mode=mode,
         command=Command(linear_m_s=0.3, angular_rad_s=0.0),
     )  # fmt: skip
 

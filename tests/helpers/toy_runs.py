@@ -13,7 +13,6 @@ from peopleboy.scenarios.loop.run_events import RunEvents
 from peopleboy.scenarios.run_folder.folder import RunFolder
 from peopleboy.scenarios.scores.score import score_run
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.track import Track
 from tests.helpers import synthetic_ticks as made
 
 ANNA, BEN, NOWHERE = (60.0, 50.0, 40.0, 170.0), (220.0, 50.0, 40.0, 170.0), (140.0, 20.0, 20.0, 60.0)
@@ -119,14 +118,12 @@ def _tick(frame: int, boxes: Boxes, hidden: float) -> Tick:
             ben, box=None, whole_box=None, visible_box=None, whole_px=0, visible_fraction=0.0, hidden_by={}
         )
     people = (_at(made.person(1, "anna", 4.0), ANNA), ben)
-    tracks = tuple(_track(number, box) for number, box in boxes.items())
-    return replace(tick, truth=replace(tick.truth, people=people), tracks=tracks)
+    tracks = tuple(replace(made.TRACK, id=number, box=box) for number, box in boxes.items())
+    ellipses = {number: replace(made.ELLIPSE, x=box[0] + box[2] / 2.0) for number, box in boxes.items()}
+    explanation = replace(made.explain(tracks), ellipses=ellipses)
+    truth = replace(tick.truth, people=people)
+    return replace(tick, truth=truth, tracks=tracks, explanation=explanation)
 
 
 def _at(person: PersonTruth, box: tuple[float, float, float, float]) -> PersonTruth:
     return replace(person, box=box, whole_box=box, visible_box=box)
-
-
-def _track(number: int, box: tuple[float, float, float, float]) -> Track:
-    ellipse = replace(made.ELLIPSE, x=box[0] + box[2] / 2.0)
-    return replace(made.TRACK, id=number, box=box, ellipse=ellipse)

@@ -41,7 +41,12 @@ def overview() -> Figure:
     """Draw one instant of a crossing of four people."""
     *_, (_, tick) = ticks(SCENARIO, SEED, FRAME)
     figure, (thermal, colour, truth, plan) = panels(TITLES, 8.7, columns=2)
-    show(thermal, draw_tracks(enlarge(show_thermal(tick.observation.thermal), SCALE), tick.tracks, SCALE))
+    show(
+        thermal,
+        draw_tracks(
+            enlarge(show_thermal(tick.observation.thermal), SCALE), tick.tracks, SCALE, tick.explanation
+        ),
+    )
     show(colour, tick.observation.colour)
     _draw_truth(truth, tick.truth)
     _draw_plan(plan, load_scenario(SCENARIO), tick)

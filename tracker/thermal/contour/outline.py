@@ -19,7 +19,7 @@ from peopleboy.tracker.thermal.contour.contour import (
     head_points,
     section_angles,
 )
-from peopleboy.tracker.track import Ellipse
+from peopleboy.tracker.thermal.ellipse import Ellipse
 
 Box = tuple[float, float, float, float]
 

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.thermal.config import BoxConfig, ContourConfig
-from peopleboy.tracker.thermal.contour.ellipse import box_of, outline
+from peopleboy.tracker.thermal.contour.outline import box_of, outline
+from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.variants import PAPER, THESIS
-from peopleboy.tracker.track import Ellipse
 
 ELLIPSE = Ellipse(x=100, y=120, w=12, h=44, d=3, vx=0, vy=0, vw=0, vh=0)
 
