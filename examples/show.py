@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from peopleboy.scenarios.running.compare_controllers import bootstrap
+from peopleboy.scenarios.scores.bootstrap import bootstrap
 
 FIGURES = {
     "reward": ("reward of an episode", 1.0, ""),

@@ -28,7 +28,7 @@ from examples.show import Controller, Figures, play, print_figures
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.running.compare_controllers import bootstrap
+from peopleboy.scenarios.scores.bootstrap import bootstrap
 
 FIRST_SEED = 1000  # of the worlds in which they are compared
 

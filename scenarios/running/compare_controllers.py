@@ -19,11 +19,10 @@ from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.oracle_tracker import check_eyes
 from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 GROUPS = ("following", "corridor")  # of metrics.json: how the robot drove
-DRAWS = 2000
-LEVEL = 0.95
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,15 +35,6 @@ class Controller:
     def __str__(self) -> str:
         """Leave the usual tracker out."""
         return self.behaviour if self.eyes == DEFAULT_TRACKER else f"{self.behaviour}@{self.eyes}"
-
-
-@dataclass(frozen=True, slots=True)
-class Interval:
-    """A mean and where it lies with a confidence of 95 %; NaN where nothing was measured."""
-
-    mean: float
-    low: float
-    high: float
 
 
 Figures = Mapping[str, float]
@@ -101,19 +91,6 @@ def compare(
         ):
             found[controller].append(future.result())
     return found
-
-
-def bootstrap(values: Sequence[float], rng: np.random.Generator) -> Interval:
-    """Give the mean of some values and the percentiles of the means of resamples; NaN are left out.
-
-    Source: B. Efron, Bootstrap methods: another look at the jackknife, Annals of Statistics 7, 1979.
-    """
-    known = np.array([value for value in values if not math.isnan(value)])
-    if known.size == 0:
-        return Interval(math.nan, math.nan, math.nan)
-    means = known[rng.integers(0, known.size, (DRAWS, known.size))].mean(axis=1)
-    low, high = np.quantile(means, [(1.0 - LEVEL) / 2.0, (1.0 + LEVEL) / 2.0])
-    return Interval(float(known.mean()), float(low), float(high))
 
 
 def intervals(runs: Sequence[Figures], rng: np.random.Generator) -> dict[str, Interval]:

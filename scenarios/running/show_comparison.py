@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from rich.console import Console
 from rich.table import Table
 
-from peopleboy.scenarios.running.compare_controllers import Controller, Figures, Interval, intervals
+from peopleboy.scenarios.running.compare_controllers import Controller, Figures, intervals
+from peopleboy.scenarios.scores.bootstrap import Interval
 
 _SHARES = {
     "found", "followed", "in_band", "facing", "in_band_and_facing", "followed_to_end", "path_efficiency"
