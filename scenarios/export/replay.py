@@ -33,10 +33,11 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
     Raises:
         BadInput: the world does not come out as it was in the run.
     """
-    tracks, people = run.tracks(), run.truth_rows()
+    files = run.files()
+    tracks, people = files.tracks_by_frame(), files.people_by_frame()
     with World(run.world) as world:
         stage = FaultySensors(world, run.scenario.spec.faults, run.robot.sonar.farthest_m)
-        for row in run.robot_rows():
+        for row in files.robot.to_pylist():
             frame = row["frame"]
             command = _command(row)
             tick = Tick(
@@ -91,8 +92,6 @@ def _numbers(rows: Sequence[Row]) -> NDArray[np.float64]:
 
 def _why(run: FinishedRun) -> str:
     """Name the packages that have changed since."""
-    now = versions()
-    changed = [
-        f"{name} {was}, now {now[name]}" for name, was in run.versions.items() if now.get(name, was) != was
-    ]
+    before, now = run.about.versions, versions()
+    changed = [f"{name} {was}, now {now[name]}" for name, was in before.items() if now.get(name, was) != was]
     return f" (made with {'; '.join(changed)})" if changed else ""

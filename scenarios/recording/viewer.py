@@ -14,7 +14,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.evaluate_runs import runs_in
+from peopleboy.scenarios.run_folder.finished_run import runs_in
 
 LOOPBACK = "127.0.0.1"
 NO_SCREEN = "no screen here: --web serves it to a browser"
