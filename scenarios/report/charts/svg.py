@@ -34,7 +34,6 @@ lettered = matplotlib.rc_context(
         "ytick.color": SOFT,
         "xtick.labelcolor": INK,
         "ytick.labelcolor": INK,
-        "hatch.linewidth": 1.4,
     }
 )
 """A decorator of functions that draw."""

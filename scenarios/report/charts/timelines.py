@@ -21,7 +21,7 @@ from peopleboy.scenarios.drawing.palette import TRACK_COLOURS, track_colour
 from peopleboy.scenarios.report.charts.svg import INK, LINE, SOFT, inline, lettered, new_figure, says
 from peopleboy.scenarios.report.columns import Column, are_same_scene
 from peopleboy.scenarios.report.findings.sentences import listed, seconds, spoken
-from peopleboy.scenarios.report.findings.spans import settle, spans
+from peopleboy.scenarios.report.findings.spans import Floats, settle, spans
 from peopleboy.scenarios.report.findings.story import Hold, PersonView, Story
 from peopleboy.scenarios.report.findings.summary import RunFindings
 
@@ -29,23 +29,24 @@ ASIDE: Final = ", not counted (nearer than 3 m or farther than 10 m)"
 _LOOKS: Final[dict[str, dict[str, Any]]] = {
     "seen": {"fc": "#cfdce8"},
     "uncounted": {"fc": "#f1f4f7", "ec": "#b9c4cf", "lw": 0.8},
-    "partly": {"fc": "#dfe7ef", "ec": "#8ba3ba", "hatch": "/////"},
+    "partly": {"fc": "#dfe7ef"},
     "wholly": {"fc": "#3b4654"},
     "adrift": {"fc": "#ffffff", "ec": "#7a6a00", "lw": 1.1, "ls": (0, (2.2, 1.4))},
-    "missed": {"fc": "#ffffff", "ec": "#d55e00", "lw": 0.8, "hatch": "\\\\\\\\\\"},
+    "missed": {"fc": "#ffffff", "ec": "#d55e00", "lw": 0.8},
     "stray": {"fc": "#f2d4c2", "ec": "#a83c00", "lw": 0.8},
     "mode0": {"fc": "#d8dee6"},
     "mode1": {"fc": "#bcd6c9"},
     "mode2": {"fc": "#e6d7ae"},
     "mode3": {"fc": "#d9c7de"},
 }
+_STRIPES: Final = {"partly": ("#8ba3ba", -1.0), "missed": ("#d55e00", 1.0)}  # colour, and 1 if they fall
 _HIDDEN: Final = {PersonView.PARTLY: "partly", PersonView.WHOLLY: "wholly"}
 _CHANGE: Final = "#a83c00"
 _EDGES: Final = ("", "-", "--")  # of a track's bar; nothing for no line
 
 # All in points. A page shows the wide drawing on a desk and on paper, the narrow one on a phone.
 _WIDE, _NARROW, _LABELS, _RIGHT = 620.0, 270.0, 46.0, 10.0
-_ROW, _BAR, _ABOVE, _AXIS, _BESIDE = 18.0, 14.0, 4.0, 16.0, 7.0
+_ROW, _BAR, _ABOVE, _AXIS, _BESIDE, _STRIPE = 18.0, 14.0, 4.0, 16.0, 7.0, 4.0
 
 
 class Look(NamedTuple):
@@ -165,9 +166,9 @@ def swatch(kind: str, track: int = 0) -> Markup:
     """Draw a bar of a kind for the key, or a track's."""
     figure = new_figure(22.0, 11.0)
     axes = figure.add_axes((0.02, 0.04, 0.96, 0.92))
-    axes.set(xlim=(0.0, 1.0), ylim=(1.0, 0.0))
+    axes.set(xlim=(0.0, 1.0), ylim=(11.0, 0.0))
     axes.set_axis_off()
-    _draw_bar(axes, (0.0, 1.0), Look(kind, "", track=track), 0.0, 1.0)
+    _draw_bar(axes, (0.0, 1.0), Look(kind, "", track=track), 0.0, 11.0, 22.0)
     return inline(figure, f"key {kind} {track}")
 
 
@@ -269,7 +270,7 @@ def _draw_row(axes: Axes, row: TimelineRow, top: float, points_per_s: float) -> 
     axes.annotate(label, (0.0, middle), (-4.0, 0.0), size=7.5, color=SOFT, ha="right", **beside)
     axes.axhline(middle, color=LINE, lw=0.8)
     for start, end, look in row.bars:
-        _draw_bar(axes, (start, end), look, top + (_ROW - _BAR) / 2.0, _BAR)
+        _draw_bar(axes, (start, end), look, top + (_ROW - _BAR) / 2.0, _BAR, points_per_s)
         if look.text and (end - start) * points_per_s > _width_pt(look.text) + _BESIDE:
             plate = {"fc": "#ffffff", "alpha": 0.85, "lw": 0.0, "pad": 1.2} if look.kind == "partly" else None
             colour = "#ffffff" if look.kind == "wholly" else INK
@@ -282,14 +283,32 @@ def _draw_row(axes: Axes, row: TimelineRow, top: float, points_per_s: float) -> 
         says(mark, words)
 
 
-def _draw_bar(axes: Axes, span_s: tuple[float, float], look: Look, top: float, height: float) -> None:
+def _draw_bar(
+    axes: Axes, span_s: tuple[float, float], look: Look, top: float, height: float, points_per_s: float
+) -> None:
     start, end = span_s
     style = {"fc": rgb(look.track)} if look.track else _LOOKS[look.kind]
     box = Rectangle((start, top), end - start, height, zorder=2, clip_on=False, **({"lw": 0.0} | style))
     says(axes.add_patch(box), f"{start:.1f} to {end:.1f} s {look.words}")
+    if look.kind in _STRIPES:
+        colour, falls = _STRIPES[look.kind]
+        across, down = _diagonals((end - start) * points_per_s, height)
+        x, y = start + across / points_per_s, top + height / 2.0 + falls * down
+        axes.plot(x, y, color=colour, lw=1.4, solid_capstyle="butt", zorder=2.5)
     for edge, share in zip(track_edges(max(look.track, 1)), (0.93, 0.07), strict=True):
         if edge:
-            axes.plot(span_s, [top + share * height] * 2, edge, color=INK, lw=0.14 * _BAR, zorder=3)
+            axes.plot(span_s, [top + share * height] * 2, edge, color=INK, lw=0.14 * height, zorder=3)
+
+
+def _diagonals(width: float, height: float) -> tuple[Floats, Floats]:
+    """Lines that fall at 45 degrees through a box: from its left, and from its middle down, with gaps of NaN.
+
+    They are no pattern of the page, which browsers print as large images.
+    """
+    starts = np.arange(_STRIPE - height, width, _STRIPE)
+    left, right = np.maximum(starts, 0.0), np.minimum(starts + height, width)
+    across = np.stack([left, right, np.full(len(starts), np.nan)], axis=1)
+    return across.ravel(), (across - starts[:, None] - height / 2.0).ravel()
 
 
 @cache

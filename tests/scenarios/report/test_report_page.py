@@ -297,6 +297,7 @@ def test_the_page_prints(pages: dict[str, Path], tmp_path: Path) -> None:
     browse(tmp_path, f"--print-to-pdf={tmp_path / 'page.pdf'}", pages["one"].as_uri())
     pdf = (tmp_path / "page.pdf").read_bytes()
     assert pdf.startswith(b"%PDF")
+    assert len(pdf) < MOST_BYTES
     assert 3 <= len(re.findall(rb"/Type\s*/Page\b", pdf)) <= 12
 
 
