@@ -1,4 +1,4 @@
-"""How sure a mean is: its bootstrap interval."""
+"""How sure a mean is: the bootstrap."""
 
 from __future__ import annotations
 
