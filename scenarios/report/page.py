@@ -16,7 +16,7 @@ from peopleboy.scenarios.report.charts.thermal_stills import Origin
 from peopleboy.scenarios.report.charts.timelines import swatch, timelines
 from peopleboy.scenarios.report.charts.ways import draw_ways
 from peopleboy.scenarios.report.columns import Column, lacking, read_columns
-from peopleboy.scenarios.report.findings.sentences import listed, seconds
+from peopleboy.scenarios.report.findings.sentences import listed
 from peopleboy.scenarios.report.page_file import check_place, write_page
 from peopleboy.scenarios.report.pictures import PicturedMoment, contact_sheet, pictured_moments
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
@@ -59,7 +59,6 @@ def render(columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: 
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["seconds"] = seconds
     singles = [column for column in columns if column.is_single]
     return environment.get_template("page.html.jinja").render(
         columns=columns,

@@ -35,7 +35,7 @@ class Origin(StrEnum):
     FRAMES = "the run's own image"
     REPLAY = "rendered again from scenario.yaml"
     CHANGED = "boxes only, as this scene cannot be rendered again as it was"
-    NO_PHYSICS = "boxes only, as images are rendered again by PyBullet, which is not installed"
+    NO_PHYSICS = "boxes only, as PyBullet is not installed"
 
 
 class DrawnFrame(NamedTuple):
