@@ -33,12 +33,11 @@ def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -
     from peopleboy.scenarios.export.formats import export as write
     from peopleboy.scenarios.export.replay import counted
     from peopleboy.scenarios.progress_bar import progress_bar
-    from peopleboy.scenarios.run_folder.finished_run import open_runs
-    from peopleboy.scenarios.scores.evaluate_runs import runs_in
+    from peopleboy.scenarios.run_folder.finished_run import open_whole_runs, runs_in
 
     for folder in runs:
         refuse_unfinished(folder)
-    opened = open_runs([run for folder in runs for run in runs_in(folder)])
+    opened = open_whole_runs([run for folder in runs for run in runs_in(folder)])
     first = opened[0].folder
     name = f"{first.name}-{form}" if len(opened) == 1 else f"export-{form}"
     folder = out if out is not None else first.parent / name

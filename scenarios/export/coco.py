@@ -178,7 +178,7 @@ def _video(number: int, run: FinishedRun) -> dict[str, Any]:
         "id": number,
         "name": run.name,
         "scenario": run.scenario.name,
-        "seed": run.seed,
+        "seed": run.about.seed,
         "frames": run.frames,
         "rate_hz": run.rate_hz,
         "thermal_span_c": [thermal.lowest_c, thermal.highest_c],

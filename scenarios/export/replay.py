@@ -35,10 +35,12 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
     """
     from peopleboy.sim.world import World  # here, as what is written can be exported without PyBullet
 
-    tracks, explanations, people = run.tracks(), run.explanations(), run.truth_rows()
+    files = run.files()
+    tracks, people = files.tracks_by_frame(), files.people_by_frame()
+    explanations = files.explanations_by_frame(run.about.tracker)
     with World(run.world) as world:
         stage = FaultySensors(world, run.scenario.spec.faults, run.robot.sonar.farthest_m)
-        for row in run.robot_rows():
+        for row in files.robot.to_pylist():
             frame = row["frame"]
             command = _command(row)
             tick = Tick(
@@ -105,8 +107,6 @@ def _numbers(rows: Sequence[Row]) -> NDArray[np.float64]:
 
 def _why(run: FinishedRun) -> str:
     """Name the packages that have changed since."""
-    now = versions()
-    changed = [
-        f"{name} {was}, now {now[name]}" for name, was in run.versions.items() if now.get(name, was) != was
-    ]
+    before, now = run.about.versions, versions()
+    changed = [f"{name} {was}, now {now[name]}" for name, was in before.items() if now.get(name, was) != was]
     return f" (made with {'; '.join(changed)})" if changed else ""

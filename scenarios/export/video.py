@@ -49,7 +49,7 @@ def _write_film(path: Path, run: FinishedRun, play: Play) -> None:
         stream = film.add_stream("libx264", rate=run.rate_hz, options={"crf": _QUALITY, "preset": "veryfast"})
         stream.pix_fmt = "yuv420p"
         for tick in play(run):
-            picture = draw_film_frame(tick, run.robot, f"{run.scenario.name}, seed {run.seed}")
+            picture = draw_film_frame(tick, run.robot, run.title)
             if tick.frame == 1:
                 stream.height, stream.width = picture.shape[:2]
             film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.evaluate_runs import runs_in
+from peopleboy.scenarios.run_folder.finished_run import runs_in
 
 # What a file of rerun's begins with, and what ends one that was closed.
 _HEAD, _FOOT, _FOOT_BYTES = b"RRF2", b"RRF2FOOT", 12

@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from numpy.typing import NDArray
 
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.explained import COLUMNS, SPREAD, STATE, explained
@@ -85,6 +87,12 @@ MAY_BE_EMPTY = frozenset(
 def truth_rows(tick: Tick) -> list[Row]:
     """Rows of the truth table for one tick: one per person present."""
     return [_person_row(tick, person) for person in tick.truth.people]
+
+
+def is_in_image(people: pa.Table) -> NDArray[np.bool_]:
+    """(N,) whether any of the silhouette lies inside the image."""
+    outside = np.array([dict(shares).get("border", 0.0) for shares in people["hidden_by"].to_pylist()])
+    return np.asarray((people["whole_px"].to_numpy() > 0) & (outside.reshape(-1) < 1.0))
 
 
 def track_rows(tick: Tick) -> list[Row]:

@@ -14,7 +14,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.scores.suite_table import add_up, count, is_in_image
+from peopleboy.scenarios.run_folder.tables import is_in_image
+from peopleboy.scenarios.scores.suite_table import add_up, count
 
 VISIBLE_EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 DISTANCE_EDGES_M = (0.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, np.inf)

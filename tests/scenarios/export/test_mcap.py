@@ -112,7 +112,7 @@ def test_the_frames_lead_from_the_camera_to_where_the_robot_truly_is(
     camera = pose(next(t.transform for t in fixed.transforms if t.child_frame_id == "thermal_optical"))
     run = open_run(crossing)
     assert camera == pytest.approx(run.robot.thermal.camera.robot_from_camera)
-    for message, row in zip(messages["/tf"], run.robot_rows(), strict=True):
+    for message, row in zip(messages["/tf"], run.files().robot.to_pylist(), strict=True):
         frames = {
             one.child_frame_id: (one.header.frame_id, pose(one.transform)) for one in message.transforms
         }
