@@ -111,11 +111,12 @@ def draw_tracks(
         colour = track_colour(track.id) if is_sure else faded(track_colour(track.id), _DIM)
         box = map_box(track.box, mapping)
         around = outlines.get(track.id, ())
-        lines = [box_corners(box), *(line @ mapping[:, :2].T + mapping[:, 2] for line in around)]
+        lines = [(box_corners(box), 1 if around else body)]
+        lines += [(line @ mapping[:, :2].T + mapping[:, 2], body) for line in around]
         # Dark edges set the lines off from garments of their own colour.
         for shade, extra in ((_EDGE, 1), (colour, 0)):
-            for number, line in enumerate(lines):
-                draw_line(canvas, line, shade, scale, (body if number else 1) + extra)
+            for line, thickness in lines:
+                draw_line(canvas, line, shade, scale, thickness + extra)
     for track in tracks:
         box = map_box(track.box, mapping)
         if _is_inside(box, canvas, scale):

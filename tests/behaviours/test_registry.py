@@ -10,9 +10,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import STOP, Command
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.behaviours.scripted import Scripted
-from tests.helpers.percepts import free
-from tests.helpers.refused import refused
-from tests.helpers.toy_world import FRONT, HALF_WIDTH, Toy, drive, wall
+from tests.helpers.calls.refused import refused
+from tests.helpers.percepts.percepts import free
+from tests.helpers.percepts.toy_world import FRONT, HALF_WIDTH, Toy, drive, wall
 
 SCRIPT = (
     (1.0, Command(linear_m_s=0.3, angular_rad_s=0.0)),

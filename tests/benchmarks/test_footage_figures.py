@@ -3,7 +3,7 @@ import numpy as np
 from click.testing import CliRunner
 
 from benchmarks.footage import main
-from tests.helpers.refused import assert_names
+from tests.helpers.calls.refused import assert_names
 
 
 def write_clip(folder, *, with_truth):

@@ -20,8 +20,8 @@ from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.world import World, light_level
-from tests.helpers.refused import refused
-from tests.helpers.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
+from tests.helpers.calls.refused import refused
+from tests.helpers.worlds.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
 
 QUIET = replace(NO_NOISE, camera=SMALL)
 WALKERS = (

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import Frame
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 GREY = np.zeros((240, 320), dtype=np.uint8)
 

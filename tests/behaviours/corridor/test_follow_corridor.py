@@ -8,8 +8,8 @@ from peopleboy.behaviours.corridor.corridor_lane import LaneConfig, best_lane
 from peopleboy.behaviours.corridor.corridor_pose import Corridor
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
 from peopleboy.behaviours.registry import make_behaviour
-from tests.helpers.drawn_corridors import CAMERA, drawn_corridor, percept_of, sonar_in_corridor
-from tests.helpers.toy_world import SONAR_ANGLE, Toy, drive, wall
+from tests.helpers.images.drawn_corridors import CAMERA, drawn_corridor, percept_of, sonar_in_corridor
+from tests.helpers.percepts.toy_world import SONAR_ANGLE, Toy, drive, wall
 
 STRAIGHT = Corridor(offset_m=0.0, heading_rad=0.0, width_m=3.0)
 

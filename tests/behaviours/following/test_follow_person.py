@@ -12,8 +12,8 @@ from peopleboy.behaviours.following.reidentification import recognise
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.behaviours.safety.limits import SafetyConfig
 from peopleboy.scenarios.scores.following_metrics import FollowingRun, score_following
-from tests.helpers.percepts import percept, person
-from tests.helpers.toy_world import STEP_S, Toy, drive, room, straight, wall
+from tests.helpers.percepts.percepts import percept, person
+from tests.helpers.percepts.toy_world import STEP_S, Toy, drive, room, straight, wall
 
 CONFIG = FollowConfig()
 

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
-from tests.helpers.percepts import free
-from tests.helpers.toy_world import Toy, room, straight
+from tests.helpers.percepts.percepts import free
+from tests.helpers.percepts.toy_world import Toy, room, straight
 
 CONFIG = EchoMemoryConfig()
 

@@ -10,8 +10,8 @@ from PIL import Image
 from peopleboy.scenarios.drawing.contact_sheet import COLUMNS, MOMENTS, WIDTH_PX, ContactSheet, read_tiles
 from peopleboy.scenarios.drawing.key_moments import KeyMoments
 from peopleboy.scenarios.drawing.palette import track_colour
-from tests.helpers import synthetic_ticks as made
-from tests.helpers.refused import assert_names, refused
+from tests.helpers.calls.refused import assert_names, refused
+from tests.helpers.runs import synthetic_ticks as made
 
 
 def sheet(frames: int = 75) -> ContactSheet:

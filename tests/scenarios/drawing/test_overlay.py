@@ -22,7 +22,7 @@ from peopleboy.scenarios.drawing.overlay import (
 from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
 from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.track import Status
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 GREY = np.full((480, 640, 3), 60, np.uint8)
 

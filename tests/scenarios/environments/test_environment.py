@@ -18,7 +18,7 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.observations import KINDS
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.world import World
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 README = Path(__file__).parents[3] / "README.md"
 SMALL = (80, 60)

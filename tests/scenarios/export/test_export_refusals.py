@@ -11,9 +11,9 @@ from peopleboy.scenarios.commands.export import FORMATS
 from peopleboy.scenarios.export import coco
 from peopleboy.scenarios.export.formats import WRITERS
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
-from tests.helpers.command_line import refusal, run_cli
-from tests.helpers.exported import export
-from tests.helpers.refused import assert_names
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names
+from tests.helpers.runs.exported import export
 
 FORM = ("--format", "viper")
 

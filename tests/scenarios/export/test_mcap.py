@@ -22,7 +22,7 @@ from scipy.spatial.transform import Rotation
 from peopleboy.scenarios.export.ros_messages import drift
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.sim.geometry.planar import Planar
-from tests.helpers.exported import export
+from tests.helpers.runs.exported import export
 
 TOPICS = {
     "/thermal/image/compressed", "/colour/image/compressed", "/thermal/camera_info", "/colour/camera_info",

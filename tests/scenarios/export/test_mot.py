@@ -14,9 +14,9 @@ from trackeval.metrics import CLEAR, HOTA, Identity
 
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
 from peopleboy.tracker.evaluation.evaluate import Scores
-from tests.helpers.command_line import refusal, run_cli
-from tests.helpers.exported import SCENE, export, make_run
-from tests.helpers.refused import assert_names
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names
+from tests.helpers.runs.exported import SCENE, export, make_run
 
 
 @pytest.fixture(scope="module")

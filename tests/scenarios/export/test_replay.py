@@ -15,7 +15,7 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.run_folder.tables import TRACKS, robot_row, track_rows, truth_rows
 from peopleboy.sim.cameras.thermal import encode_16bit
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 
 def images(run: Path, tick: Tick) -> list[np.ndarray]:

@@ -13,9 +13,9 @@ from trackers.eval import evaluate_mot_sequences
 from trackeval.datasets import MotChallenge2DBox
 
 from peopleboy.scenarios.export.dataset.splits import SPLITS
-from tests.helpers.command_line import refusal, run_cli
-from tests.helpers.exported import SCENE, export
-from tests.helpers.refused import assert_names
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names
+from tests.helpers.runs.exported import SCENE, export
 
 FRAMES = 6
 SHORT = SCENE | {"name": "short", "duration_s": FRAMES / 15}

@@ -15,7 +15,7 @@ from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import json_schema
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.timetable import timetable
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 NAMES = sorted(path.stem for path in LIBRARY.glob("*.yaml"))
 every_scenario = pytest.mark.parametrize("name", NAMES)

@@ -6,7 +6,7 @@ import pytest
 
 from peopleboy.scenarios.files import load
 from peopleboy.scenarios.files.load import load_scenario
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 WHOLE = """
 name: whole

@@ -16,7 +16,7 @@ from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.finished import is_finished
 from peopleboy.scenarios.running.frame_cache import film_key
 from peopleboy.scenarios.running.run import RunOptions, run
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 CAMERA = {"width_px": 80, "height_px": 60}
 SCENE: dict[str, Any] = {

@@ -7,7 +7,7 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.read_yaml import read_yaml
-from tests.helpers.refused import assert_names, refused
+from tests.helpers.calls.refused import assert_names, refused
 
 
 def refusal(folder: Path, text: str | bytes) -> str:

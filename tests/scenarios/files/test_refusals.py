@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
-from tests.helpers.refused import assert_names, refused
+from tests.helpers.calls.refused import assert_names, refused
 
 Data = dict[str, Any]
 Change = Callable[[Data], object]

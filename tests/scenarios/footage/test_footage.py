@@ -16,9 +16,9 @@ from peopleboy.tracker.footage.grey import AutomaticGrey, Radiometry, parse_scal
 from peopleboy.tracker.footage.picture_names import natural_order
 from peopleboy.tracker.footage.pictures import open_footage
 from peopleboy.tracker.footage.truth_files import find_truth, load_truth
-from tests.helpers.footage_calls import call, refusal
-from tests.helpers.footage_files import SIZE, box, walker, write_counts, write_folder, write_video
-from tests.helpers.refused import assert_names, refused
+from tests.helpers.calls.footage_calls import call, refusal
+from tests.helpers.calls.refused import assert_names, refused
+from tests.helpers.images.footage_files import SIZE, box, walker, write_counts, write_folder, write_video
 
 REAL_CLIP = os.environ.get("PEOPLEBOY_REAL_CLIP", "")
 

@@ -6,9 +6,9 @@ from peopleboy.scenarios.footage.outcome import outcome_lines
 from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
 from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.trackers import TRACKERS
-from tests.helpers.footage_calls import call
-from tests.helpers.footage_files import box, write_empty, write_folder
-from tests.helpers.refused import assert_names
+from tests.helpers.calls.footage_calls import call
+from tests.helpers.calls.refused import assert_names
+from tests.helpers.images.footage_files import box, write_empty, write_folder
 
 START = ",".join(str(edge) for edge in box(0))
 

@@ -3,9 +3,9 @@ import pytest
 
 from peopleboy.tracker.footage.grey import CENTIKELVIN, Radiometry
 from peopleboy.tracker.footage.plausible import check_plausible
-from tests.helpers.footage_calls import call, call_afresh, refusal
-from tests.helpers.footage_files import write_counts, write_folder
-from tests.helpers.refused import assert_names, refused
+from tests.helpers.calls.footage_calls import call, call_afresh, refusal
+from tests.helpers.calls.refused import assert_names, refused
+from tests.helpers.images.footage_files import write_counts, write_folder
 
 
 @pytest.mark.parametrize(

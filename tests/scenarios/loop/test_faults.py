@@ -8,7 +8,7 @@ from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.faults import active
 from peopleboy.scenarios.running.run import RunOptions, run
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 FROM_S = 8.0
 SCENE = {

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from peopleboy.scenarios.loop.track_events import TrackEvent, TrackEvents
 from peopleboy.tracker.track import Status, Track
-from tests.helpers import synthetic_ticks as made
-from tests.helpers.refused import assert_names
+from tests.helpers.calls.refused import assert_names
+from tests.helpers.runs import synthetic_ticks as made
 
 WIDTH = 320
 

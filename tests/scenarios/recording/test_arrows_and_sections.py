@@ -17,7 +17,7 @@ from peopleboy.tracker.thermal.contour.contour import SECTIONS
 from peopleboy.tracker.thermal.contour.section_evidence import Evidence
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import TRACKERS
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 PEOPLEBOY = TRACKERS["peopleboy"]
 BEHIND = replace(made.with_box((200.0, 60.0, 30.0, 120.0)), id=2, occluder=1, status=Status.PARTLY_OCCLUDED)

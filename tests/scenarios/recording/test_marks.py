@@ -16,7 +16,7 @@ from peopleboy.scenarios.recording.marks import (
     truth_boxes,
 )
 from peopleboy.tracker.track import Status
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 
 def test_boxes_of_tracks_say_the_id_and_what_is_unusual() -> None:

@@ -23,7 +23,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.thermal.contour.outline import section_lines
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 THERMAL, COLOUR = "/world/robot/thermal", "/world/robot/colour"
 FRAMES = 75
@@ -218,7 +218,7 @@ _KILLED = """
 import os, signal, sys
 from pathlib import Path
 from peopleboy.scenarios.recording.recorder import Recorder
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 recorder = Recorder(Path(sys.argv[1]), made.config(), title="killed")
 for tick, events in made.make_run(55):

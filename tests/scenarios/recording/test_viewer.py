@@ -18,8 +18,8 @@ import pytest
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.recording.recording_file import is_whole
 from peopleboy.scenarios.recording.viewer import live_viewer
-from tests.helpers import synthetic_ticks as made
-from tests.helpers.command_line import refusal
+from tests.helpers.calls.command_line import refusal
+from tests.helpers.runs import synthetic_ticks as made
 
 LISTENING = "0A"  # in Linux's table of sockets
 ON_LINUX = pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="reads Linux's table of sockets")

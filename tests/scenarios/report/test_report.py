@@ -31,7 +31,7 @@ from peopleboy.scenarios.report.tables import drive_figures, plain_figures
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
-from tests.helpers import toy_runs as toy
+from tests.helpers.runs import toy_runs as toy
 
 CODES = st.lists(st.integers(0, 3), max_size=60).map(lambda values: np.array(values, np.int64))
 

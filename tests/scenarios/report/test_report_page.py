@@ -15,7 +15,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.report.charts.thermal_stills import Origin
 from peopleboy.scenarios.report.page import write_report
 from peopleboy.scenarios.run_folder.folder import versions
-from tests.helpers import toy_runs as toy
+from tests.helpers.runs import toy_runs as toy
 
 WORDS = Path(__file__).parent / "words"
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)

@@ -17,7 +17,7 @@ from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.report import report
 from peopleboy.scenarios.run_folder.finished_run import open_run, runs_in
 from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
-from tests.helpers.toy_runs import write_run
+from tests.helpers.runs.toy_runs import write_run
 
 Damage = Callable[[Path], object]
 TABLES = {"truth.parquet": TRUTH, "tracks.parquet": TRACKS, "robot.parquet": ROBOT}

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from peopleboy.scenarios.running.compare_controllers import Controller, compare, intervals, parse_controller
 from peopleboy.scenarios.running.show_comparison import show_comparison
 from peopleboy.scenarios.scores.bootstrap import bootstrap
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 NAN = math.nan
 

@@ -10,7 +10,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.finished import is_finished
 from peopleboy.scenarios.running.run import RunOptions
-from tests.helpers import toy_runs as toy
+from tests.helpers.runs import toy_runs as toy
 
 SCENARIO = load_scenario("crossing_2")
 

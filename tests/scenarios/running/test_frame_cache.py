@@ -13,7 +13,7 @@ from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
 from peopleboy.sim.world import World
 from peopleboy.tracker.frame import Frame
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 SCENARIO = load_scenario("fast_turn").lasting(2.6)
 

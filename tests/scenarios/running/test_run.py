@@ -13,8 +13,8 @@ from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
 from peopleboy.tracker.trackers import TRACKERS
-from tests.helpers.command_line import refusal, run_cli
-from tests.helpers.refused import assert_names, refused
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names, refused
 
 SCENE = {
     "name": "tiny",

@@ -16,8 +16,8 @@ from peopleboy.sim.people.body.clothes import (
 from peopleboy.sim.people.person import PersonConfig, Posture, Waypoint
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import PatternKind
-from tests.helpers.refused import refused
-from tests.helpers.walkers import make_person, settle
+from tests.helpers.calls.refused import refused
+from tests.helpers.worlds.walkers import make_person, settle
 
 HERE = (Waypoint(at_m=(0.0, 0.0)),)
 

@@ -10,7 +10,7 @@ from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 CUBE = Shape(kind=ShapeKind.BOX, size=(1.0, 1.0, 1.0))
 TILTED: Quaternion = (0.1, 0.5, -0.1, math.sqrt(1.0 - 0.27))

@@ -11,8 +11,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.places.floor_plan import LOBBY_MARGIN_M, WALL_M, Door, FloorPlan, check_doors
 from peopleboy.sim.places.rectangle import Rectangle, subtract
 from peopleboy.sim.places.rooms import build_place, l_corridor, straight_corridor, t_corridor
-from tests.helpers.boxes import fighting_faces, first_hit, world_boxes
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
+from tests.helpers.worlds.boxes import fighting_faces, first_hit, world_boxes
 
 sizes = st.floats(3.0, 12.0).map(lambda size: round(size, 2))
 widths = st.floats(1.6, 2.9).map(lambda width: round(width, 2))

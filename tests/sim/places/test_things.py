@@ -13,8 +13,8 @@ from peopleboy.sim.places.pieces import SINK_M
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.places.things import KINDS, Thing, build_thing
 from peopleboy.sim.places.urdf import find_urdf
-from tests.helpers.boxes import Box, fighting_faces, piece_boxes
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
+from tests.helpers.worlds.boxes import Box, fighting_faces, piece_boxes
 
 kinds = pytest.mark.parametrize("kind", KINDS)
 

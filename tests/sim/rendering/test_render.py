@@ -19,7 +19,7 @@ from peopleboy.sim.rendering.render import render
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import make_shape_table
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 ROOM = {
     "floor": ((0.0, 0.0, -0.05), (30.0, 6.0, 0.1)),

@@ -11,7 +11,7 @@ from peopleboy.sim.rendering.render import render
 from peopleboy.sim.shapes.meshes import load_triangles
 from peopleboy.sim.shapes.shape_table import make_shape_table
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 
 @pytest.mark.parametrize("ending", ["obj", "stl", "dae"])

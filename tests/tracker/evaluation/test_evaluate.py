@@ -13,8 +13,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.evaluate import combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread, to_json
-from tests.helpers.random_sequences import sequences, tracks_of, truth_of
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
+from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
 PERSON, FAR = (0, 0, 20, 60), (100, 0, 8, 20)
 TRUTH = truth_of([(1, 1, *PERSON), (2, 1, *PERSON), (1, 2, *FAR)], [True, True, False])

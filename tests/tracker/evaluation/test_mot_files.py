@@ -5,8 +5,8 @@ from numpy.testing import assert_allclose
 
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth, write_tracks, write_truth
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from tests.helpers.random_sequences import sequences, tracks_of, truth_of
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
+from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
 GOOD_TRUTH = "1,1,10.00,20.00,30.00,80.00,1,1,0.5000\n"
 GOOD_TRACKS = "1,1,10.00,20.00,30.00,80.00,0.9000,-1,-1,-1\n"

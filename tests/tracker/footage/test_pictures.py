@@ -9,9 +9,9 @@ from PIL import Image
 
 from peopleboy.tracker.footage.picture_names import jumps, pictures_in
 from peopleboy.tracker.footage.pictures import open_footage
-from tests.helpers.footage_calls import call, refusal
-from tests.helpers.footage_files import walker, write_folder
-from tests.helpers.refused import assert_names, refused
+from tests.helpers.calls.footage_calls import call, refusal
+from tests.helpers.calls.refused import assert_names, refused
+from tests.helpers.images.footage_files import walker, write_folder
 
 
 def named(*stems):

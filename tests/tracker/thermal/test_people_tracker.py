@@ -12,8 +12,8 @@ from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
-from tests.helpers.contours import middle, semi_height
-from tests.helpers.drawn_people import blank, draw_person
+from tests.helpers.images.contours import middle, semi_height
+from tests.helpers.images.drawn_people import blank, draw_person
 
 APART = replace(PEOPLEBOY, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
 

@@ -12,9 +12,9 @@ from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
-from tests.helpers.contours import head_top, middle, semi_height
-from tests.helpers.drawn_people import RADIATOR, blank, draw_person, person_frame
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
+from tests.helpers.images.contours import head_top, middle, semi_height
+from tests.helpers.images.drawn_people import RADIATOR, blank, draw_person, person_frame
 
 SEEDS = range(3)
 
@@ -147,7 +147,7 @@ def test_the_same_seed_gives_the_same_tracks_and_another_seed_does_not(name):
 
 def test_a_fresh_process_gives_the_same_tracks():
     code = (
-        "from tests.helpers.drawn_people import person_frame; "
+        "from tests.helpers.images.drawn_people import person_frame; "
         "from tests.tracker.thermal.test_single_person import make; t = make(seed=5); "
         "print([t.update(person_frame(i / 15, 60 + i)) for i in range(20)])"
     )

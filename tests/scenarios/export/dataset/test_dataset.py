@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from peopleboy.scenarios.export.dataset.splits import SPLITS, lacking_splits, split_lines, split_of
 from peopleboy.tracker.evaluation.mot_files import read_truth
-from tests.helpers.command_line import refusal, run_cli
-from tests.helpers.refused import assert_names
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names
 
 SCENE = """
 name: tiny

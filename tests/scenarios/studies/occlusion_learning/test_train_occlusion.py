@@ -20,8 +20,8 @@ from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import (
     share_right,
 )
 from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
-from tests.helpers.refused import refused
-from tests.helpers.synthetic_ticks import person
+from tests.helpers.calls.refused import refused
+from tests.helpers.runs.synthetic_ticks import person
 
 
 def examples(count: int, seed: int) -> list[PairExample]:

@@ -23,8 +23,8 @@ from peopleboy.scenarios.studies.reproduce.showing.source import Claim, source_t
 from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, write_page
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
-from tests.helpers.command_line import run_cli
-from tests.helpers.refused import refused
+from tests.helpers.calls.command_line import run_cli
+from tests.helpers.calls.refused import refused
 from tests.helpers.visible_text import assert_reads_as
 
 FIGURES = ("4.8", "4.9a", "4.9b", "5.4", "5.5a", "5.5b", "5.6", "6.4", "6.5", "6.6", "7.3")

@@ -19,7 +19,7 @@ from peopleboy.tracker.thermal.colour_config import (
     THESIS_AFFINE,
     ColourConfig,
 )
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 SHAPE = (240, 320)
 SAME = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)

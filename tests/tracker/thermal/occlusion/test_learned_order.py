@@ -10,7 +10,7 @@ from peopleboy.tracker.thermal.occlusion.learned_order import LearnedOrder, ship
 from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable, WeakClassifier
 from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
 from peopleboy.tracker.thermal.occlusion.weak_classifiers import weighted_sums
-from tests.helpers.refused import refused
+from tests.helpers.calls.refused import refused
 
 WEAK = (
     WeakClassifier(weights={"top": 1.0}, threshold=0.5, parity=1, importance=2.0),

@@ -13,7 +13,7 @@ from peopleboy.scenarios.loop.run_events import RunEvents
 from peopleboy.scenarios.run_folder.folder import RunFolder
 from peopleboy.scenarios.scores.score import score_run
 from peopleboy.sim.truth.truth import PersonTruth
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 ANNA, BEN, NOWHERE = (60.0, 50.0, 40.0, 170.0), (220.0, 50.0, 40.0, 170.0), (140.0, 20.0, 20.0, 60.0)
 FRAMES = 90

@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from tests.helpers.command_line import run_cli
+from tests.helpers.calls.command_line import run_cli
 
 CAMERA = {"width_px": 160, "height_px": 120}
 SCENE: dict[str, Any] = {

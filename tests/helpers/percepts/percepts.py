@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from peopleboy.behaviours.percept import Percept, SeenPerson
-from tests.helpers.toy_world import SONAR_ANGLE
+from tests.helpers.percepts.toy_world import SONAR_ANGLE
 
 
 def percept_of(ranges_m, **changes):

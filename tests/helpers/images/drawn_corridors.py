@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.behaviours.corridor.corridor_from_image import CameraView
 from peopleboy.behaviours.percept import Percept
-from tests.helpers.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
+from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 CAMERA = CameraView(focal_px=356.0, position_m=(0.14, 0.06, 1.2))
 
