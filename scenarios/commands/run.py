@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from peopleboy.scenarios.files.scenario import Scenario
     from peopleboy.scenarios.loop.loop import Tick
     from peopleboy.scenarios.running.run import RunOptions
-    from peopleboy.scenarios.scores.score import RunScores
+    from peopleboy.scenarios.scores.run_scores import RunScores
 
 
 @click.command()

@@ -30,7 +30,7 @@ from peopleboy.scenarios.environments.situation import Episode
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import make_frame
-from peopleboy.scenarios.scores.score import following_task
+from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.geometry.planar import Planar

@@ -18,7 +18,7 @@ from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rectangle import Rectangle
-from peopleboy.sim.places.things import KINDS
+from peopleboy.sim.places.thing_kinds import KINDS
 
 BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
 ROBOT_M = 0.27  # radius of the circle around the robot

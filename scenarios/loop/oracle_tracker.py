@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from peopleboy.bad_input import BadInput
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.trackers import TRACKERS, Tracker, make_tracker
 
 TRUTH = "truth"
 SEEN = 0.3  # share of a silhouette above which a person counts as seen
@@ -43,23 +40,3 @@ class OracleTracker:
             status=Status.TRACKED if is_seen else Status.TOTALLY_OCCLUDED,
             age_s=time_s - self._first_s.setdefault(person.id, time_s),
         )
-
-
-def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
-    """Make a tracker by its name; "truth" is none, but knows.
-
-    Raises:
-        BadInput: an unknown name.
-    """
-    check_eyes(name)
-    return OracleTracker(truth) if name == TRUTH else make_tracker(name, stream(seed, "tracker"))
-
-
-def check_eyes(name: str) -> None:
-    """Refuse the name of a tracker that there is not.
-
-    Raises:
-        BadInput: an unknown name.
-    """
-    if name not in (*TRACKERS, TRUTH):
-        raise BadInput(f"unknown tracker {name!r}; there are: {', '.join((*TRACKERS, TRUTH))}")

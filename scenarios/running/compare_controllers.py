@@ -15,7 +15,7 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.oracle_tracker import check_eyes
+from peopleboy.scenarios.loop.tracker_by_name import check_eyes
 from peopleboy.scenarios.progress_bar import each_shown
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap

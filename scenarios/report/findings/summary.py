@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import cached_property
 
 from peopleboy.scenarios.loop.run_events import LogLine
-from peopleboy.scenarios.report.findings.identities import (
+from peopleboy.scenarios.report.findings.losses_and_swaps import (
     Change,
     Ending,
     Fleeting,

@@ -11,7 +11,7 @@ from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import RunEvents
 from peopleboy.scenarios.run_folder.folder import RunFolder
-from peopleboy.scenarios.scores.score import score_run
+from peopleboy.scenarios.scores.run_scores import score_run
 from peopleboy.sim.truth.truth import PersonTruth
 from tests.helpers.runs import synthetic_ticks as made
 

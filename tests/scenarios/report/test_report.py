@@ -21,7 +21,7 @@ from peopleboy.scenarios.report.charts.error_curves import DISTANCES_M, curve, s
 from peopleboy.scenarios.report.charts.thermal_stills import Origin, show_frames
 from peopleboy.scenarios.report.charts.timelines import ASIDE, rgb, track_edges, track_row, truth_row
 from peopleboy.scenarios.report.columns import are_same_scene, lacking, read_columns
-from peopleboy.scenarios.report.findings.identities import Ending
+from peopleboy.scenarios.report.findings.losses_and_swaps import Ending
 from peopleboy.scenarios.report.findings.spans import between, settle, spans
 from peopleboy.scenarios.report.findings.story import Hold, PersonView
 from peopleboy.scenarios.report.findings.summary import RunFindings, headline_of_many, look_into

@@ -1,16 +1,12 @@
-"""The scores of a run: how well people were found, and how well one was followed."""
+"""The scores of following one person, from a run's ticks and what the robot was asked."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import (
     FollowingRun,
     FollowingScore,
@@ -21,38 +17,9 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.robot.robot_body import outline_gap
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.evaluation.boxes import iou
-from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
-from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
-from peopleboy.tracker.evaluation.table import to_json
 from peopleboy.tracker.track import Status, Track
 
 BAND_M = 1.2
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class RunScores:
-    """Scores of one run.
-
-    Attributes:
-        people: detection, localisation and identity; from the files of the run.
-        following: of the first person in the scenario; None if the robot was not to follow anybody.
-        corridor: of the way along corridors; None if the robot was not to follow any.
-    """
-
-    people: Scores
-    following: FollowingScore | None
-    corridor: CorridorScore | None = None
-
-    def to_json(self) -> dict[str, Any]:
-        """Give all figures as JSON can hold them: None for what is undefined."""
-        groups: dict[str, Any] = dict(to_json(self.people))
-        for group, score in (("following", self.following), ("corridor", self.corridor)):
-            if score is not None:
-                groups[group] = {
-                    name: None if isinstance(value, float) and math.isnan(value) else value
-                    for name, value in asdict(score).items()
-                }
-        return groups
 
 
 class FollowingLog:
@@ -117,11 +84,3 @@ def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:
     shown_px = keep_height * camera.height
     keep_m = camera.focal_px * config.people[0].height_m / shown_px + camera.position_m[0]
     return FollowingTask(keep_m=keep_m, band_m=(keep_m - BAND_M, keep_m + BAND_M))
-
-
-def score_run(
-    folder: Path, frames: int, following: FollowingScore | None, corridor: CorridorScore | None = None
-) -> RunScores:
-    """Score a run from the truth and tracks in its folder."""
-    truth, tracks = read_truth(folder / "truth" / "gt.txt"), read_tracks(folder / "tracks.txt")
-    return RunScores(evaluate(truth, tracks, frames=frames), following, corridor)

@@ -1,6 +1,6 @@
 """Furniture at room temperature, pillars, and what hangs on walls.
 
-Builders as in `warm_things`: size [m], temperature [degC] and colour of the main piece, which comes first.
+Builders as in `warm_pieces`: size [m], temperature [degC] and colour of the main piece, which comes first.
 """
 
 from __future__ import annotations
