@@ -13,24 +13,38 @@ from peopleboy.behaviours.percept import Percept, Points
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """A short drive.
+    """A short drive at constant speeds.
 
     Attributes:
-        way_m: [m] driven, forward positive.
-        turn_rad: [rad] turned meanwhile, left positive.
+        linear_m_s: [m/s] forward positive.
+        angular_rad_s: [rad/s] left positive.
+        step_s: [s] how long it took.
     """
 
-    way_m: float
-    turn_rad: float
+    linear_m_s: float
+    angular_rad_s: float
+    step_s: float
 
     @classmethod
     def of(cls, percept: Percept, step_s: float) -> Self:
-        """Tell how far the wheels' present speeds bring the robot in step_s [s]."""
-        return cls(percept.linear_m_s * step_s, percept.angular_rad_s * step_s)
+        """Take the wheels' present speeds for those of the last step_s [s]."""
+        return cls(percept.linear_m_s, percept.angular_rad_s, step_s)
+
+    @property
+    def way_m(self) -> float:
+        """How far [m] it led."""
+        return self.linear_m_s * self.step_s
+
+    @property
+    def turn_rad(self) -> float:
+        """By how much [rad] it turned the robot."""
+        return self.angular_rad_s * self.step_s
 
     def carry(self, points: Points) -> Points:
         """Express points (N, 2) [m] of the robot's frame before the drive in its frame after it."""
-        x = points[:, 0] - self.way_m * math.cos(self.turn_rad / 2.0)
-        y = points[:, 1] - self.way_m * math.sin(self.turn_rad / 2.0)
-        cosine, sine = math.cos(self.turn_rad), math.sin(self.turn_rad)
-        return np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=1)
+        turn = self.turn_rad
+        shift = self.way_m * np.array([math.cos(turn / 2.0), math.sin(turn / 2.0)])
+        cosine, sine = math.cos(turn), math.sin(turn)
+        before_from_after = np.array([[cosine, -sine], [sine, cosine]])
+        carried: Points = (points - shift) @ before_from_after
+        return carried

@@ -19,14 +19,15 @@ from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood
 from peopleboy.tracker.thermal.contour.coverage import covered_by, seen_shares
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.explanation import DETECTOR_KEY
 from peopleboy.tracker.thermal.filter.motion import predict
 from peopleboy.tracker.thermal.filter.particles import mean_state, resample
 from peopleboy.tracker.thermal.interaction import overlap_shares, person_factor, regions_of
 from peopleboy.tracker.thermal.particle_filter import FrameView, view_frame, weigh
-from peopleboy.tracker.thermal.people_tracker import DETECTOR_KEY
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status
-from peopleboy.tracker.trackers import DEFAULT_TRACKER, Tracker, make_tracker
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 SCENARIO = "crossing_4"  # they hide each other, partly and wholly
 MOST = 4
@@ -118,8 +119,8 @@ def _crowd_time(film: Sequence[Frame], people: int) -> CrowdTime:
     return CrowdTime(people=people, frame_ms=median(times), frames=len(times), tracked=mean(tracked))
 
 
-def _people_in(tracker: Tracker) -> list[int]:
-    return [key for key in tracker.particles if key != DETECTOR_KEY]
+def _people_in(tracker: PeopleTracker) -> list[int]:
+    return [key for key in tracker.explanation.particles if key != DETECTOR_KEY]
 
 
 def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
@@ -145,9 +146,9 @@ def _model_of(height_px: int, width_px: int) -> ContourModel:
     return ContourModel.build((height_px, width_px), PEOPLEBOY.contour)
 
 
-def _person_works(tracker: Tracker, number: int, view: FrameView) -> dict[str, Callable[[], object]]:
+def _person_works(tracker: PeopleTracker, number: int, view: FrameView) -> dict[str, Callable[[], object]]:
     config, rng = PEOPLEBOY, stream(0, "tracker")
-    clouds = tracker.particles
+    clouds = tracker.explanation.particles
     cloud, state = clouds[number], clouds[number].state
     estimate = mean_state(cloud)
     others = [mean_state(clouds[other]) for other in _people_in(tracker) if other != number]

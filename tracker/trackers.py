@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import (
@@ -31,10 +30,20 @@ class Tracker(Protocol):
         """Take in the next frame and tell who is seen."""
         ...
 
+
+@runtime_checkable
+class Explains(Protocol):
+    """A tracker that tells more than its tracks."""
+
     @property
-    def particles(self) -> Mapping[int, Particles]:
-        """The samples by track id; key 0 is the detector's cloud."""
+    def explanation(self) -> object:
+        """What it believes beyond the tracks of the last frame; others draw it by its type."""
         ...
+
+
+def explanation_of(tracker: Tracker) -> object:
+    """Ask a tracker what it believes beyond its tracks; None where it tells nothing."""
+    return tracker.explanation if isinstance(tracker, Explains) else None
 
 
 TRACKERS: Mapping[str, TrackerConfig] = {

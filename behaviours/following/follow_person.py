@@ -211,7 +211,7 @@ def _update_target(state: FollowState, percept: Percept, step_s: float, config: 
         state = replace(state, target=None, others=frozenset(), place=None)
     else:
         motion = Motion.of(percept, step_s)
-        known = carry_on(known, motion, step_s)
+        known = carry_on(known, motion)
         place = None if state.place is None else carry_place(state.place, motion)
         gone = forget_drift(known, step_s, config.target)
         if config.max_age_s < percept.time_s - known.seen_s < config.patience_s:

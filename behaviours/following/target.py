@@ -63,9 +63,9 @@ def first_sight(person: SeenPerson, time_s: float, config: TargetConfig) -> Targ
     )
 
 
-def carry_on(target: Target, motion: Motion, step_s: float) -> Target:
-    """Predict the bearing after a step in which the robot moved; nothing else changes."""
-    moved = target.bearing_rad + target.drift_rad_s * step_s - motion.turn_rad
+def carry_on(target: Target, motion: Motion) -> Target:
+    """Predict the bearing after the robot has moved; nothing else changes."""
+    moved = target.bearing_rad + (target.drift_rad_s - motion.angular_rad_s) * motion.step_s
     return replace(target, bearing_rad=math.remainder(moved, math.tau))
 
 

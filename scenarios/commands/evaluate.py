@@ -34,7 +34,8 @@ def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None, min_
     A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs give mean and
     standard deviation over them, beside the figure of all their frames.
     """
-    from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs, runs_in
+    from peopleboy.scenarios.run_folder.finished_run import runs_in
+    from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
 
     if bool(runs) == (truth is not None or tracks is not None):
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")

@@ -26,21 +26,23 @@ def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -
     the runs of each.
 
     mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. viper: ViPER XML. mcap: ROS 2 bags. mp4:
-    films. Images and masks are rendered again, and are those of the run. mcap and mp4 need the
-    extra `export`.
+    films. Images and masks are rendered again, and are those of the run. coco, mcap and mp4 need
+    the extra `export`.
     """
     from peopleboy.scenarios.export.dataset.splits import refuse_unfinished
     from peopleboy.scenarios.export.formats import export as write
-    from peopleboy.scenarios.export.progress import bar
-    from peopleboy.scenarios.run_folder.finished_run import open_runs
-    from peopleboy.scenarios.scores.evaluate_runs import runs_in
+    from peopleboy.scenarios.export.replay import counted
+    from peopleboy.scenarios.progress_bar import progress_bar
+    from peopleboy.scenarios.run_folder.finished_run import open_whole_runs, runs_in
 
     for folder in runs:
         refuse_unfinished(folder)
-    opened = open_runs([run for folder in runs for run in runs_in(folder)])
+    opened = open_whole_runs([run for folder in runs for run in runs_in(folder)])
     first = opened[0].folder
     name = f"{first.name}-{form}" if len(opened) == 1 else f"export-{form}"
     folder = out if out is not None else first.parent / name
-    with bar(form, opened) as play:
+    frames = sum(run.frames for run in opened)
+    with progress_bar(form, unit="frames") as show:
+        play = counted(lambda frame: show(frame, frames))
         write(opened, form, folder, play, overwrite=overwrite)
     click.echo(folder)

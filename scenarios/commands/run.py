@@ -15,7 +15,9 @@ from peopleboy.scenarios.scores.show_scores import print_corridor, print_followi
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.files.scenario import Scenario
+    from peopleboy.scenarios.loop.loop import Tick
     from peopleboy.scenarios.running.run import RunOptions
+    from peopleboy.scenarios.scores.run_scores import RunScores
 
 
 @click.command()
@@ -86,10 +88,9 @@ def run(
 
 
 def _run_one(scenario: Scenario, options: RunOptions) -> None:
-    from peopleboy.scenarios.running.progress import run_with_progress
     from peopleboy.scenarios.scores.headline import headline
 
-    scores = run_with_progress(scenario, options)
+    scores = _run_shown(scenario, options)
     print_scores(scores.people)
     if scores.following is not None:
         print_following(scores.following)
@@ -99,6 +100,23 @@ def _run_one(scenario: Scenario, options: RunOptions) -> None:
     click.echo(f"{options.out / 'contact_sheet.png'} shows the key moments.")
     if options.record:
         click.echo(f"peopleboy view {options.out} plays the recording.")
+
+
+def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
+    """Run a scenario with a bar that tells frames, frame rate and what the robot does."""
+    from rich.console import Console
+
+    from peopleboy.scenarios.progress_bar import progress_bar
+    from peopleboy.scenarios.running.run import run as run_scenario
+
+    preparing = Console(stderr=True).status("building the world; the very first time takes a minute")
+    with preparing, progress_bar(scenario.name, unit="frames") as show:
+
+        def report(tick: Tick, frames: int) -> None:
+            preparing.stop()
+            show(tick.frame, frames, tick.mode)
+
+        return run_scenario(scenario, options, report)
 
 
 def _run_suite(name: str, options: RunOptions) -> None:

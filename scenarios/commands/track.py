@@ -72,10 +72,8 @@ def track(
     Leaves tracks.txt (MOTChallenge), tracks.parquet, run.json and contact_sheet.png; metrics.json if there is
     truth. Without temperatures the grey follows the scene's contrast.
     """
-    from rich.console import Console
-    from rich.progress import Progress
-
     from peopleboy.scenarios.footage.track_footage import TrackOptions, track_footage
+    from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.tracker.footage.grey import Radiometry, parse_scale
 
     options = TrackOptions(
@@ -95,13 +93,8 @@ def track(
         film=film,
         overwrite=overwrite,
     )
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task(footage.name, total=None)
-        tracked = track_footage(
-            options,
-            lambda frame, expected: progress.update(task, completed=frame, total=max(expected, frame)),
-        )
+    with progress_bar(footage.name, unit="frames") as show:
+        tracked = track_footage(options, lambda frame, expected: show(frame, max(expected, frame)))
     _tell(tracked, options)
 
 

@@ -30,7 +30,6 @@ from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.tracker.thermal.config import ContourConfig
 from peopleboy.wording import counted
 
 WIDTH_PX: Final = 1600
@@ -58,15 +57,11 @@ class ContactSheet:
     Args:
         title: what stands above them.
         robot: whose cameras they are; the default robot's if None.
-        contour: proportions of the outlines to draw; the default ones if None.
     """
 
-    def __init__(
-        self, title: str, robot: RobotConfig | None = None, contour: ContourConfig | None = None
-    ) -> None:
+    def __init__(self, title: str, robot: RobotConfig | None = None) -> None:
         self._title = title
         self._robot = RobotConfig() if robot is None else robot
-        self._contour = ContourConfig() if contour is None else contour
         self._moments = KeyMoments()
         self._last: Tick | None = None
 
@@ -134,14 +129,14 @@ class ContactSheet:
         scale = _TILE / moment.thermal.shape[1]
         picture = enlarge(show_thermal(moment.thermal), scale)
         plates: list[Plate] = []
-        picture = draw_tracks(picture, moment.tracks, scale, self._contour, plates=plates)
+        picture = draw_tracks(picture, moment.tracks, scale, moment.explanation, plates=plates)
         return draw_truth(picture, moment.people, scale, plates=plates)
 
     def _colour_picture(self, moment: Moment) -> Picture:
         scale = _TILE / moment.colour.shape[1]
         cameras = self._robot.cameras
         affine = affine_between(cameras["thermal"].camera, cameras["colour"].camera, _TYPICAL_DEPTH_M)
-        return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, self._contour, affine)
+        return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, moment.explanation, affine)
 
 
 def read_tiles(path: Path) -> list[Tile]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -43,7 +43,7 @@ class Moment:
     Attributes:
         frame, time_s, mode: as in the tick.
         thermal, colour: (H, W) and (H, W, 3) what the cameras saw.
-        tracks: what the tracker made of it.
+        tracks, explanation: what the tracker made of it, and told beyond that.
         people: what was true.
         words: what happened, the most telling first.
     """
@@ -54,6 +54,7 @@ class Moment:
     thermal: NDArray[np.uint8]
     colour: NDArray[np.uint8]
     tracks: tuple[Track, ...]
+    explanation: object
     people: tuple[PersonTruth, ...]
     words: tuple[str, ...] = ()
 
@@ -179,6 +180,7 @@ def _moment(tick: Tick) -> Moment:
         thermal=senses.images["thermal"],
         colour=senses.images["colour"],
         tracks=tick.tracks,
+        explanation=tick.explanation,
         people=tick.truth.people,
     )
 
@@ -189,13 +191,4 @@ def _with_words(moment: Moment, words: tuple[str, ...]) -> Moment:
         seen = sum(person.visible_px > 0 for person in moment.people)
         sure = sum(track.status is not Status.TENTATIVE for track in moment.tracks)
         words = (f"{seen} in view, {sure} tracked",)
-    return Moment(
-        frame=moment.frame,
-        time_s=moment.time_s,
-        mode=moment.mode,
-        thermal=moment.thermal,
-        colour=moment.colour,
-        tracks=moment.tracks,
-        people=moment.people,
-        words=words,
-    )
+    return replace(moment, words=words)

@@ -14,10 +14,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.drawing.contour_lines import lines_of
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.tracker.thermal.config import ContourConfig
-from peopleboy.tracker.thermal.contour.ellipse import outline
 from peopleboy.tracker.track import Status, Track
 
 Picture = NDArray[np.uint8]  # (H, W, 3) RGB
@@ -86,11 +85,11 @@ def draw_tracks(
     picture: Picture,
     tracks: Iterable[Track],
     scale: float = SCALE,
-    contour: ContourConfig | None = None,
+    explanation: object = None,
     affine: Matrix | None = None,
     plates: list[Plate] | None = None,
 ) -> Picture:
-    """Draw ellipses, boxes, ids, confidence and status of tracks.
+    """Draw boxes, ids, confidence and status of tracks, and what their tracker explains of them.
 
     Tentative ones are dim, and their label is their id with a question mark.
 
@@ -98,7 +97,7 @@ def draw_tracks(
         picture: the camera's image, `scale` times enlarged; it stays as it is.
         tracks: what to draw.
         scale: how much the picture is enlarged.
-        contour: whose outline to draw; the default proportions if None.
+        explanation: what their tracker told beyond them; None to draw the boxes alone.
         affine: (2, 3) thermal pixels to the picture's, before enlarging; None for the thermal image itself.
         plates: where labels are already, which these give way to; theirs are added.
     """
@@ -106,15 +105,17 @@ def draw_tracks(
     taken = [] if plates is None else plates
     mapping = _UNTURNED if affine is None else affine
     body = max(round(scale), 1)
+    outlines = lines_of(explanation)
     for track in tracks:
         is_sure = track.status is not Status.TENTATIVE
         colour = track_colour(track.id) if is_sure else faded(track_colour(track.id), _DIM)
         box = map_box(track.box, mapping)
-        outlines = outline(track.ellipse, ContourConfig() if contour is None else contour)
-        lines = [box_corners(box), *(line @ mapping[:, :2].T + mapping[:, 2] for line in outlines)]
+        around = outlines.get(track.id, ())
+        lines = [(box_corners(box), 1 if around else body)]
+        lines += [(line @ mapping[:, :2].T + mapping[:, 2], body) for line in around]
         # Dark edges set the lines off from garments of their own colour.
         for shade, extra in ((_EDGE, 1), (colour, 0)):
-            for line, thickness in zip(lines, (1, body, body), strict=True):
+            for line, thickness in lines:
                 draw_line(canvas, line, shade, scale, thickness + extra)
     for track in tracks:
         box = map_box(track.box, mapping)

@@ -30,7 +30,7 @@ from peopleboy.scenarios.environments.situation import Episode
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import make_frame
-from peopleboy.scenarios.scores.score import following_task
+from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation, Senses
@@ -40,7 +40,7 @@ from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track
-from peopleboy.tracker.trackers import DEFAULT_TRACKER, Tracker, make_tracker
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, Tracker, explanation_of, make_tracker
 
 SMALLEST_PX: Final = (80, 60)
 LARGEST_PX: Final = (1280, 960)
@@ -179,7 +179,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             return None
         self._running(even_over=True)
         assert isinstance(self._senses, Observation)
-        return self._picture.draw(self._senses, self._scene, self._tracks)
+        return self._picture.draw(self._senses, self._scene, self._tracks, explanation_of(self._tracker))
 
     def close(self) -> None:
         """Free the physics world."""

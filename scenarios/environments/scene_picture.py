@@ -37,13 +37,14 @@ class ScenePicture:
         self._corner = np.array([place.bounds[0], place.bounds[3]])  # [m] of the plan's top-left pixel
         self._plan = _draw_place(plan, place)
 
-    def draw(self, observation: Observation, scene: ImageFreeTruth, tracks: Sequence[Track]) -> Picture:
-        """Draw an instant: (360, 1440, 3)."""
+    def draw(
+        self, observation: Observation, scene: ImageFreeTruth, tracks: Sequence[Track], explanation: object
+    ) -> Picture:
+        """Draw an instant, with tracks and what their tracker explains of them: (360, 1440, 3)."""
         thermal, colour = observation.images["thermal"], observation.images["colour"]
         scale = HEIGHT_PX / thermal.shape[0]
-        seen = draw_tracks(_fit(show_thermal(thermal)), tracks, scale)
-        panels = (seen, _fit(colour), self._draw_plan(scene))
-        return np.concatenate(panels, axis=1)
+        seen = draw_tracks(_fit(show_thermal(thermal)), tracks, scale, explanation)
+        return np.concatenate((seen, _fit(colour), self._draw_plan(scene)), axis=1)
 
     def _draw_plan(self, scene: ImageFreeTruth) -> Picture:
         """The plan with the robot in the middle, north up, and everybody who is present."""

@@ -26,8 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.export.by_split import by_split
+from peopleboy.scenarios.export.extra import need
 from peopleboy.scenarios.export.replay import Play
-from peopleboy.scenarios.export.run_lengths import encode_lengths, run_lengths
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file, make_image_folders, write_images
@@ -51,8 +51,9 @@ def write_coco(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
     """Write runs as one set, or each split of theirs as one; each run is a video.
 
     Raises:
-        BadInput: the runs cannot be sorted by split.
+        BadInput: the runs cannot be sorted by split, or the package that encodes masks is not installed.
     """
+    need("pycocotools", "coco")
     for split, own in by_split(runs).items():
         for camera, content in _write_set(own, folder / "images" / (split or ""), play).items():
             path = folder / annotations_file(split, camera)
@@ -121,13 +122,20 @@ def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, An
         "iscrowd": 0,
         "bbox": from_corner(person.visible_box),
         "area": person.visible_px,
-        "segmentation": {"size": list(mask.shape), "counts": encode_lengths(run_lengths(mask))},
+        "segmentation": _encoded(mask),
         "keypoints": [number for point in keypoints for number in point],
         "num_keypoints": sum(point[2] > 0 for point in keypoints),
         "whole_bbox": from_corner(person.whole_box),
         "body_bbox": from_corner(person.box),
         **_truth(person),
     }
+
+
+def _encoded(mask: NDArray[np.bool_]) -> dict[str, Any]:
+    """Encode a mask (H, W) by the lengths of its runs, column by column, as text."""
+    from pycocotools.mask import encode
+
+    return {"size": list(mask.shape), "counts": encode(np.asfortranarray(mask, np.uint8))["counts"].decode()}
 
 
 def from_corner(box: Box | None) -> list[float] | None:
@@ -202,7 +210,7 @@ def _video(number: int, run: FinishedRun) -> dict[str, Any]:
         "id": number,
         "name": run.name,
         "scenario": run.scenario.name,
-        "seed": run.seed,
+        "seed": run.about.seed,
         "frames": run.frames,
         "rate_hz": run.rate_hz,
         "thermal_span_c": [thermal.lowest_c, thermal.highest_c],

@@ -70,18 +70,19 @@ def _sequences(runs: Sequence[FinishedRun]) -> _Sequences:
     """Sort runs by sequence and tracker."""
     found: _Sequences = {}
     for run in runs:
-        own = found.setdefault(f"{run.scenario.name}-{run.seed}", {})
-        if run.tracker in own:
+        tracker = run.about.tracker
+        own = found.setdefault(f"{run.scenario.name}-{run.about.seed}", {})
+        if tracker in own:
             raise BadInput(
-                f"{run.folder}: same scenario, seed and tracker as {own[run.tracker].folder}; leave one out"
+                f"{run.folder}: same scenario, seed and tracker as {own[tracker].folder}; leave one out"
             )
         if any(gt_text(run) != gt_text(other) for other in own.values()):
             raise BadInput(
-                f"{run.folder}: with tracker {run.tracker} the robot went elsewhere, so the images differ; "
+                f"{run.folder}: with tracker {tracker} the robot went elsewhere, so the images differ; "
                 "export one tracker at a time"
             )
-        own[run.tracker] = run
-    everybody = {run.tracker for run in runs}
+        own[tracker] = run
+    everybody = {run.about.tracker for run in runs}
     for name, own in found.items():
         for lacking in sorted(everybody - own.keys()):
             raise BadInput(

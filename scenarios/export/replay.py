@@ -7,6 +7,7 @@ versions give the same bytes. No tracker is needed for that: commands and tracks
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,17 +28,19 @@ _TOLERANCE = 0.01
 
 
 def replay(run: FinishedRun) -> Iterator[Tick]:
-    """Yield the ticks of a finished run, with images and masks, but without particles.
+    """Yield the ticks of a finished run, with images and masks, and explanations as far as it kept them.
 
     Raises:
         BadInput: the world does not come out as it was in the run, or PyBullet is not installed.
     """
     from peopleboy.sim.world import World  # here, as what is written can be exported without PyBullet
 
-    tracks, people = run.tracks(), run.truth_rows()
+    files = run.files()
+    tracks, people = files.tracks_by_frame(), files.people_by_frame()
+    explanations = files.explanations_by_frame(run.about.tracker)
     with World(run.world) as world:
         stage = FaultySensors(world, run.scenario.spec.faults, run.robot.sonar.farthest_m)
-        for row in run.robot_rows():
+        for row in files.robot.to_pylist():
             frame = row["frame"]
             command = _command(row)
             tick = Tick(
@@ -45,7 +48,7 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
                 observation=stage.observe(),
                 truths=stage.truths(),
                 tracks=tuple(tracks[frame]),
-                particles={},
+                explanation=explanations[frame],
                 mode=row["mode"],
                 command=command,
             )
@@ -53,6 +56,18 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
             yield tick
             if frame < run.frames:
                 stage.step(command.linear_m_s, command.angular_rad_s, is_emergency=command.is_emergency)
+
+
+def counted(report: Callable[[int], None]) -> Play:
+    """Give a `replay` that reports each tick by its number, counted on over all runs."""
+    number = count(1)
+
+    def play(run: FinishedRun) -> Iterator[Tick]:
+        for tick in replay(run):
+            report(next(number))
+            yield tick
+
+    return play
 
 
 def _command(row: Row) -> Command:
@@ -92,8 +107,6 @@ def _numbers(rows: Sequence[Row]) -> NDArray[np.float64]:
 
 def _why(run: FinishedRun) -> str:
     """Name the packages that have changed since."""
-    now = versions()
-    changed = [
-        f"{name} {was}, now {now[name]}" for name, was in run.versions.items() if now.get(name, was) != was
-    ]
+    before, now = run.about.versions, versions()
+    changed = [f"{name} {was}, now {now[name]}" for name, was in before.items() if now.get(name, was) != was]
     return f" (made with {'; '.join(changed)})" if changed else ""

@@ -47,7 +47,7 @@ def _write_film(path: Path, run: FinishedRun, play: Play) -> None:
         stream = film.add_stream("libx264", rate=run.rate_hz, options={"crf": _QUALITY, "preset": "veryfast"})
         stream.pix_fmt = "yuv420p"
         for tick in play(run):
-            picture = draw_film_frame(tick, run.robot, f"{run.scenario.name}, seed {run.seed}")
+            picture = draw_film_frame(tick, run.robot, run.title)
             if tick.frame == 1:
                 stream.height, stream.width = picture.shape[:2]
             film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
@@ -73,7 +73,7 @@ def _thermal(tick: Tick) -> Picture:
     thermal = tick.observation.images["thermal"]
     scale = HEIGHT_PX / thermal.shape[0]
     picture, plates = enlarge(show_thermal(thermal), scale), list[Plate]()
-    picture = draw_tracks(picture, tick.tracks, scale, plates=plates)
+    picture = draw_tracks(picture, tick.tracks, scale, tick.explanation, plates=plates)
     return _even(draw_truth(picture, tick.truth.people, scale, plates=plates))
 
 
@@ -83,7 +83,7 @@ def _colour(tick: Tick, robot: RobotConfig) -> Picture:
     colour = tick.observation.images["colour"]
     scale = HEIGHT_PX / colour.shape[0]
     picture, plates = enlarge(colour, scale), list[Plate]()
-    picture = draw_tracks(picture, tick.tracks, scale, affine=affine, plates=plates)
+    picture = draw_tracks(picture, tick.tracks, scale, tick.explanation, affine, plates)
     return _even(draw_truth(picture, tick.truths["colour"].people, scale, plates=plates))
 
 

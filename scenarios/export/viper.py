@@ -13,8 +13,9 @@ from xml.etree import ElementTree
 
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.run_files import RunFiles
 from peopleboy.sim.truth.truth import Box
-from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
+from peopleboy.tracker.evaluation.sequence import TrackBoxes
 
 VIPER, DATA = "http://lamp.cfar.umd.edu/viper#", "http://lamp.cfar.umd.edu/viperdata#"
 
@@ -53,8 +54,9 @@ def write_viper(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None: 
     ElementTree.register_namespace("data", DATA)
     for run in runs:
         (folder / run.name).mkdir()
-        _write(folder / run.name / "truth.xgtf", run, _people(run), TRUTH)
-        _write(folder / run.name / "tracks.xgtf", run, _tracks(run), TRACK)
+        files = run.files()
+        _write(folder / run.name / "truth.xgtf", run, _people(files), TRUTH)
+        _write(folder / run.name / "tracks.xgtf", run, _tracks(files.tracks), TRACK)
 
 
 def whole_pixels(box: Box, width: int, height: int) -> tuple[int, int, int, int] | None:
@@ -65,9 +67,9 @@ def whole_pixels(box: Box, width: int, height: int) -> tuple[int, int, int, int]
     return (x, y, w, h) if w > 0 and h > 0 else None
 
 
-def _people(run: FinishedRun) -> dict[int, _Person]:
-    truth = read_truth(run.folder / "truth" / "gt.txt")
-    names = {row["id"]: row["name"] for rows in run.truth_rows().values() for row in rows}
+def _people(files: RunFiles) -> dict[int, _Person]:
+    truth = files.truth
+    names = dict(zip(files.people["id"].to_pylist(), files.people["name"].to_pylist(), strict=True))
     found: dict[int, _Person] = {}
     columns = (truth.frame, truth.id, truth.box, truth.counted, truth.visible)
     for frame, number, box, counted, visible in zip(*columns, strict=True):
@@ -76,8 +78,7 @@ def _people(run: FinishedRun) -> dict[int, _Person]:
     return found
 
 
-def _tracks(run: FinishedRun) -> dict[int, _Person]:
-    tracks = read_tracks(run.folder / "tracks.txt")
+def _tracks(tracks: TrackBoxes) -> dict[int, _Person]:
     found: dict[int, _Person] = {}
     for frame, number, box, confidence in zip(
         tracks.frame, tracks.id, tracks.box, tracks.confidence, strict=True

@@ -23,7 +23,7 @@ from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rectangle import Rectangle
-from peopleboy.sim.places.things import KINDS
+from peopleboy.sim.places.thing_kinds import KINDS
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things

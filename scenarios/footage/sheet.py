@@ -24,7 +24,6 @@ from peopleboy.scenarios.drawing.overlay import (
 )
 from peopleboy.scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, draw_head
 from peopleboy.tracker.footage.grey import Grey
-from peopleboy.tracker.thermal.config import ContourConfig
 from peopleboy.tracker.track import Track
 
 FILM_PX: Final = 480
@@ -50,13 +49,13 @@ def draw_frame(
     grey: Grey,
     tracks: Sequence[Track],
     people: Sequence[Annotated],
-    contour: ContourConfig,
+    explanation: object,
     scale: float,
     words: str,
 ) -> Picture:
     """Draw one frame `scale` times enlarged: tracks solid, truth dashed, and a word in the corner."""
     plates: list[Plate] = []
-    picture = draw_tracks(enlarge(show_thermal(grey), scale), tracks, scale, contour, plates=plates)
+    picture = draw_tracks(enlarge(show_thermal(grey), scale), tracks, scale, explanation, plates=plates)
     picture = draw_truth(picture, people, scale, plates=plates)
     for shade, thickness in (((20, 20, 20), 3), ((240, 240, 240), 1)):
         cv2.putText(picture, words, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.45, shade, thickness, cv2.LINE_AA)

@@ -34,7 +34,7 @@ from peopleboy.tracker.footage.truth_files import KEPT_SINGLE, GivenTruth, find_
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.trackers import FOOTAGE_TRACKER, TRACKERS, make_tracker
+from peopleboy.tracker.trackers import FOOTAGE_TRACKER, make_tracker
 from peopleboy.wording import counted
 
 COLOUR_TRACKER: Final = "colour"
@@ -117,7 +117,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
         log = _Log(folder, options, truth, rate)
         with log:
             for frame in _frames(footage, colour, options, rate):
-                log.add(frame, tracker.update(frame))
+                log.add(frame, tracker.update(frame), tracker.explanation)
                 report(log.frames, footage.expected)
         scores = log.finish()
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
@@ -224,7 +224,6 @@ class _Log:
 
     def __init__(self, folder: Path, options: TrackOptions, truth: GivenTruth | None, rate_hz: float) -> None:
         self._folder, self._truth = folder, truth
-        self._contour = TRACKERS[options.tracker].contour
         self._sheet = Sheet(options.footage.resolve().name, has_truth=truth is not None)
         self._means = f"at {rate_hz:g} Hz, tracker {options.tracker}"
         self._stack = ExitStack()
@@ -250,11 +249,11 @@ class _Log:
         """How many people were confirmed."""
         return len(self._ids)
 
-    def add(self, frame: Frame, tracks: tuple[Track, ...]) -> None:
+    def add(self, frame: Frame, tracks: tuple[Track, ...], explanation: object) -> None:
         """Write one frame."""
         self.frames += 1
         self.size = frame.thermal.shape
-        self._rows += [track_row(self.frames, frame.time_s, track) for track in tracks]
+        self._rows += [track_row(self.frames, frame.time_s, track, explanation) for track in tracks]
         sure = [track for track in tracks if track.status is not Status.TENTATIVE]
         self._ids |= {track.id for track in sure}
         self._results.writelines(
@@ -262,13 +261,13 @@ class _Log:
         )
         height, width = frame.thermal.shape
         if self._film is not None:
-            self._film.add(self._drawn(frame.thermal, tracks, math.ceil(FILM_PX / height)))
+            self._film.add(self._drawn(frame.thermal, tracks, explanation, math.ceil(FILM_PX / height)))
         if self._sheet.wants(self.frames):
-            self._sheet.add(self.frames, self._drawn(frame.thermal, tracks, TILE_PX / width))
+            self._sheet.add(self.frames, self._drawn(frame.thermal, tracks, explanation, TILE_PX / width))
 
-    def _drawn(self, grey: Grey, tracks: tuple[Track, ...], scale: float) -> Picture:
+    def _drawn(self, grey: Grey, tracks: tuple[Track, ...], explanation: object, scale: float) -> Picture:
         words = f"frame {self.frames}"
-        return draw_frame(grey, tracks, self._people(), self._contour, scale, words)
+        return draw_frame(grey, tracks, self._people(), explanation, scale, words)
 
     def _people(self) -> list[Annotated]:
         if self._truth is None:

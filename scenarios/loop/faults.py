@@ -17,9 +17,8 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Track
-from peopleboy.tracker.trackers import Tracker
+from peopleboy.tracker.trackers import Tracker, explanation_of
 
 JUMP_EVERY_S = 1.0
 JUMP = Planar(x=0.7, y=-0.4, heading=math.radians(50.0))
@@ -74,9 +73,9 @@ class FaultyTracker:
         self._faults = faults
 
     @property
-    def particles(self) -> Mapping[int, Particles]:
-        """Those of the tracker."""
-        return self._tracker.particles
+    def explanation(self) -> object:
+        """That of the tracker."""
+        return explanation_of(self._tracker)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Take in the next frame, or fail.

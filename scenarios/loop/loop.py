@@ -19,9 +19,8 @@ from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.trackers import Tracker
+from peopleboy.tracker.trackers import Tracker, explanation_of
 
 # Ways between two images beyond what the drive can do in a quarter of a second are jumps of the odometry.
 FARTHEST_TURN_RAD = math.radians(40.0)
@@ -38,7 +37,7 @@ class Tick:
         truths: what was true, by camera that took an image at this instant; those of other cameras than
             `thermal` are made when first asked for, which must be before the next tick.
         tracks: what the tracker made of the images.
-        particles: its samples by track id, 0 being the detector's.
+        explanation: what it told beyond its tracks, to be drawn by its type; None for nothing.
         mode: what the behaviour was doing, such as "search" or "follow".
         command: what the robot was told to do next.
         reason: why the behaviour was doing that.
@@ -49,7 +48,7 @@ class Tick:
     observation: Observation
     truths: Mapping[str, Truth]
     tracks: tuple[Track, ...]
-    particles: Mapping[int, Particles]
+    explanation: object
     mode: str
     command: Command
     reason: str = ""
@@ -121,7 +120,7 @@ def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: in
             observation=observation,
             truths=world.truths(),
             tracks=eyes.tracks,
-            particles=tracker.particles,
+            explanation=explanation_of(tracker),
             mode=behaviour.mode,
             command=command,
             reason=behaviour.reason,

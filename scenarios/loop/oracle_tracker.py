@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
-from peopleboy.bad_input import BadInput
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.filter.particles import Particles
-from peopleboy.tracker.track import Ellipse, Status, Track
-from peopleboy.tracker.trackers import TRACKERS, Tracker, make_tracker
+from peopleboy.tracker.track import Status, Track
 
 TRUTH = "truth"
 SEEN = 0.3  # share of a silhouette above which a person counts as seen
@@ -26,11 +22,6 @@ class OracleTracker:
         self._truth = truth
         self._first_s: dict[int, float] = {}
 
-    @property
-    def particles(self) -> Mapping[int, Particles]:
-        """None: nothing is sampled."""
-        return {}
-
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Look at the truth instead of the frame."""
         return tuple(
@@ -41,37 +32,11 @@ class OracleTracker:
 
     def _track(self, person: PersonTruth, time_s: float) -> Track:
         assert person.box is not None
-        left, top, width, height = person.box
         is_seen = person.visible_fraction > SEEN
         return Track(
             id=person.id,
-            ellipse=Ellipse(
-                x=left + width / 2.0, y=top + 0.56 * height, w=width / 2.0, h=0.44 * height, d=0.0,
-                vx=0.0, vy=0.0, vw=0.0, vh=0.0,
-            ),
             box=person.box,
             confidence=1.0,
             status=Status.TRACKED if is_seen else Status.TOTALLY_OCCLUDED,
             age_s=time_s - self._first_s.setdefault(person.id, time_s),
-            uncertainty_px2=0.0,
-        )  # fmt: skip
-
-
-def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
-    """Make a tracker by its name; "truth" is none, but knows.
-
-    Raises:
-        BadInput: an unknown name.
-    """
-    check_eyes(name)
-    return OracleTracker(truth) if name == TRUTH else make_tracker(name, stream(seed, "tracker"))
-
-
-def check_eyes(name: str) -> None:
-    """Refuse the name of a tracker that there is not.
-
-    Raises:
-        BadInput: an unknown name.
-    """
-    if name not in (*TRACKERS, TRUTH):
-        raise BadInput(f"unknown tracker {name!r}; there are: {', '.join((*TRACKERS, TRUTH))}")
+        )

@@ -16,8 +16,6 @@ from peopleboy.scenarios.drawing.palette import ROBOT, TRUTH, Rgb, person_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.thermal.config import ContourConfig
-from peopleboy.tracker.thermal.contour.ellipse import outline
 from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Status, Track
 
@@ -85,12 +83,6 @@ def track_label(track: Track) -> str:
     standing = _STANDINGS.get(track.status, "")
     behind = "" if track.occluder is None else f"behind {track.occluder}"
     return " ".join(word for word in (str(track.id), standing, behind) if word)
-
-
-def track_contours(tracks: Sequence[Track], contour: ContourConfig) -> Lines:
-    """Give the outlines of body and head of every track."""
-    lines = [line for track in tracks for line in outline(track.ellipse, contour, count=20)]
-    return Lines(lines_of(lines, 2), colours_of(track_colour(track.id) for track in tracks for _ in range(2)))
 
 
 def truth_boxes(people: Iterable[PersonTruth], affine_at: Callable[[float], Matrix] | None = None) -> Boxes:

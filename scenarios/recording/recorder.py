@@ -27,19 +27,17 @@ from peopleboy.scenarios.recording.entities import (
     camera_path,
     person_path,
 )
+from peopleboy.scenarios.recording.explanations import explained_lines, explained_points
 from peopleboy.scenarios.recording.layout import lay_out
 from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
 from peopleboy.scenarios.recording.rows import RowBuffer
-from peopleboy.scenarios.recording.sections import section_marks
 from peopleboy.scenarios.recording.still import Still
 from peopleboy.sim.cameras.kinds import kind_of, with_boxes
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.tracker.thermal.config import ContourConfig, TrackerConfig
-from peopleboy.tracker.thermal.contour.section_evidence import evidence_of
 
 APPLICATION = "peopleboy"
 
@@ -62,8 +60,6 @@ class Recorder:
         path: the file to write.
         config: the world that is recorded.
         title: name of the recording; the same title gives the same recording id.
-        tracker: settings of the tracker, by which the evidence for its contours is measured; None for one
-            that measures no contours, whose tracks are drawn without.
         viewer: address of a viewer that is to show it at once; None for none.
     """
 
@@ -73,10 +69,8 @@ class Recorder:
         config: WorldConfig,
         *,
         title: str,
-        tracker: TrackerConfig | None = None,
         viewer: str | None = None,
     ) -> None:
-        self._tracker = tracker
         self._cameras = config.robot.cameras
         self._boxed = with_boxes(self._cameras)
         self._thermal = self._cameras["thermal"].camera
@@ -110,7 +104,7 @@ class Recorder:
         self._rows.begin(tick.frame, tick.observation.time_s)
         self._log_images(tick)
         self._log_tracks(tick)
-        self._log_particles(tick)
+        self._log_points(tick)
         self._log_truth(tick)
         self._log_world(tick)
         self._log_curves(tick)
@@ -141,7 +135,7 @@ class Recorder:
             self._rows.add(f"{camera_path(name)}/image", rr.EncodedImage, blob=[blob])
 
     def _log_tracks(self, tick: Tick) -> None:
-        contours = self._contours(tick)
+        contours = explained_lines(tick.explanation, tick)
         strips, colours = _from_corner(contours.line), contours.colour
         self._rows.add(f"{THERMAL}/tracks/contours", rr.LineStrips2D, strips=strips, colors=colours)
         on_thermal = marks.track_boxes(tick.tracks)
@@ -150,25 +144,16 @@ class Recorder:
             self._log_boxes(f"{path}/tracks/boxes", boxes, labels=boxes.label)
         self._log_arrows("tracks/occlusions", believed_arrows(tick.tracks))
 
-    def _contours(self, tick: Tick) -> marks.Lines:
-        if self._tracker is None:
-            return marks.track_contours(tick.tracks, ContourConfig())
-        evidence = evidence_of(tick.observation.images["thermal"], tick.tracks, self._tracker)
-        return section_marks(tick.tracks, evidence, self._tracker)
-
     def _log_arrows(self, layer: str, arrows: Arrows) -> None:
         self._rows.add(
             f"{THERMAL}/{layer}", rr.Arrows2D, origins=_from_corner(arrows.start),
             vectors=rounded(arrows.vector, PIXEL_STEP), colors=arrows.colour, labels=arrows.label,
         )  # fmt: skip
 
-    def _log_particles(self, tick: Tick) -> None:
-        people = {number: cloud for number, cloud in tick.particles.items() if number > 0}
-        detector = {number: cloud for number, cloud in tick.particles.items() if number == 0}
-        for name, clouds in (("people", people), ("detector", detector)):
-            points = marks.particle_points(clouds)
+    def _log_points(self, tick: Tick) -> None:
+        for layer, points in explained_points(tick.explanation).items():
             place, colour = _from_corner(points.place), points.colour
-            self._rows.add(f"{THERMAL}/particles/{name}", rr.Points2D, positions=place, colors=colour)
+            self._rows.add(f"{THERMAL}/{layer}", rr.Points2D, positions=place, colors=colour)
 
     def _log_truth(self, tick: Tick) -> None:
         for name in (name for name in self._boxed if name in tick.truths):

@@ -1,4 +1,8 @@
-"""Rerun's viewer: in a window, or as a page that only this machine can open."""
+"""Rerun's viewer: in a window, or as a page that only this machine can open.
+
+What rerun offers to Python, `spawn`, `serve_grpc` and `serve_web_viewer`, listens at every address of the
+machine. Its program can be told not to.
+"""
 
 from __future__ import annotations
 
@@ -9,23 +13,21 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from urllib.parse import quote
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.evaluate_runs import runs_in
 
 LOOPBACK = "127.0.0.1"
 NO_SCREEN = "no screen here: --web serves it to a browser"
 
-# What a file of rerun's begins with, and what ends one that was closed.
-_HEAD, _FOOT, _FOOT_BYTES = b"RRF2", b"RRF2FOOT", 12
-
+# `-m rerun_cli` hides how the program ended.
+_PROGRAM = "import sys; from rerun_cli.__main__ import main; sys.exit(main())"
 _START_S = 30.0  # within which a viewer is there, or fails
 _POLL_S = 0.1
-# It tells every step of its work otherwise.
-_QUIET = {"RUST_LOG": "error"}
+# It tells every step of its work otherwise, and over the network how it is used, unless on a build machine.
+_QUIET = {"RUST_LOG": "error", "CI": "true"}
 
 
 def has_screen() -> bool:
@@ -35,59 +37,31 @@ def has_screen() -> bool:
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def recording_in(folder: Path) -> Path:
-    """Find the recording of a run, of one that was cut off too.
-
-    Raises:
-        BadInput: there is no such folder, it holds no run or several, or the run was not recorded.
-    """
-    inner = runs_in(folder)
-    if inner != [folder]:
-        raise BadInput(f"{folder}: holds {len(inner)} runs; give one of them, such as {inner[0]}")
-    recording = folder / "recording.rrd"
-    if not recording.is_file() and not (folder / "run.json").is_file():
-        raise BadInput(f"{folder}: holds no run and no recording; give the folder of a run")
-    return recording
-
-
-def is_whole(recording: Path) -> bool:
-    """Tell whether a recording was closed; one that was cut off opens too, and lacks its end.
-
-    Raises:
-        BadInput: there is no such recording, or the file is none.
-    """
-    _check(recording)
-    with recording.open("rb") as file:
-        file.seek(-min(_FOOT_BYTES, recording.stat().st_size), os.SEEK_END)
-        return _FOOT in file.read()
-
-
 def open_viewer(recording: Path) -> None:
     """Show a recording in a window, and wait until it is closed.
 
     Raises:
-        BadInput: there is no such recording, no screen, or the viewer fails.
+        BadInput: there is no screen, or the viewer fails.
     """
-    _check(recording)
     if not has_screen():
         raise BadInput(NO_SCREEN)
-    with _rerun(str(recording), "--port", str(_free_port())) as viewer:
+    with _rerun("--new", str(recording)) as viewer:
         if viewer.wait() != 0:
             raise BadInput(f"{recording}: {_complaint(viewer)}")
 
 
-def serve(recording: Path, say: Callable[[str], None]) -> None:
+def serve(recording: Path, say: Callable[[str], None], port: int | None = None) -> None:
     """Serve a recording to browsers of this machine, until interrupted.
 
     Args:
         recording: the file.
         say: is told the page's address once it is there.
+        port: of the page; its data comes from the next one. None for any two that are free.
 
     Raises:
-        BadInput: there is no such recording, or the server fails.
+        BadInput: a port is taken, or the server fails.
     """
-    _check(recording)
-    with _page(str(recording)) as (viewer, address, _):
+    with _page(port, str(recording)) as (viewer, address, _):
         say(address)
         _wait(viewer)
 
@@ -105,34 +79,33 @@ def live_viewer(say: Callable[[str], None]) -> Iterator[str]:
         BadInput: the viewer fails.
     """
     if not has_screen():
-        with _page() as (viewer, address, source):
+        with _page(None) as (viewer, address, source):
             say(f"{address} shows the run as it goes.")
             yield source
             say(f"{address} still shows it; Ctrl-C ends that.")
             _wait(viewer)
         return
-    port = _free_port()
+    port, _ = _ports(None)
     with _rerun("--port", str(port), "--expect-data-soon", is_left_open=True) as viewer:
         _wait_for(port, viewer)
         yield _source(port)
 
 
 @contextmanager
-def _page(*recordings: str) -> Iterator[tuple[subprocess.Popen[bytes], str, str]]:
+def _page(first: int | None, *recordings: str) -> Iterator[tuple[subprocess.Popen[bytes], str, str]]:
     """Serve the viewer as a page; yield its process, the page's address, and where it takes data."""
-    port, web_port = _free_port(), _free_port()
-    with _rerun(
-        *recordings, "--serve-web", "--port", str(port), "--web-viewer-port", str(web_port)
-    ) as viewer:
-        for each in (port, web_port):
-            _wait_for(each, viewer)
-        yield viewer, f"http://{LOOPBACK}:{web_port}/?url={quote(_source(port), safe='')}", _source(port)
+    web, data = _ports(first)
+    ports = ("--port", str(data), "--web-viewer-port", str(web))
+    with _rerun(*recordings, "--serve-web", *ports) as viewer:
+        _wait_for(data, viewer)
+        _wait_for(web, viewer)
+        yield viewer, f"http://{LOOPBACK}:{web}/?url={quote(_source(data), safe='')}", _source(data)
 
 
 @contextmanager
 def _rerun(*arguments: str, is_left_open: bool = False) -> Iterator[subprocess.Popen[bytes]]:
     """Start rerun's program, for this machine alone; end it afterwards, unless it is left open."""
-    command = [sys.executable, "-m", "rerun_cli", "--bind", LOOPBACK, *arguments]
+    command = [sys.executable, "-c", _PROGRAM, "--bind", LOOPBACK, *arguments]
     # In a session of its own, an interrupt reaches it through us, and all of it can be ended.
     viewer = subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
@@ -187,24 +160,19 @@ def _complaint(viewer: subprocess.Popen[bytes]) -> str:
     return f"rerun's viewer failed: {lines[-1] if lines else f'exit code {viewer.returncode}'}"
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind((LOOPBACK, 0))
-        port: int = probe.getsockname()[1]
-        return port
+def _ports(first: int | None) -> tuple[int, int]:
+    """Give a port and the next, or any two, at which nothing listens."""
+    wanted = (0, 0) if first is None else (first, first + 1)
+    with ExitStack() as held:
+        try:
+            found = [held.enter_context(socket.create_server((LOOPBACK, port))) for port in wanted]
+        except OSError as error:
+            raise BadInput(
+                f"--port {first}: {wanted[0]} and {wanted[1]} are not both free; leave it out for any two"
+            ) from error
+        one, other = (each.getsockname()[1] for each in found)
+    return one, other
 
 
 def _source(port: int) -> str:
     return f"rerun+http://{LOOPBACK}:{port}/proxy"
-
-
-def _check(recording: Path) -> None:
-    if not recording.is_file():
-        raise BadInput(f"{recording}: there is no recording; run the scenario without --no-rrd")
-    try:
-        with recording.open("rb") as file:
-            is_recording = file.read(len(_HEAD)) == _HEAD
-    except OSError as error:
-        raise BadInput(f"{recording}: cannot be read: {error.strerror}") from error
-    if not is_recording:
-        raise BadInput(f"{recording}: is no rerun recording; run the scenario again")

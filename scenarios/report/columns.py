@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.report.findings.finished_run import FinishedRun, read_finished
-from peopleboy.scenarios.report.findings.summary import Outcome, headline, headline_of_many, look_into
-from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs, runs_in
+from peopleboy.scenarios.report.findings.summary import RunFindings, headline, headline_of_many, look_into
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_run, runs_in
+from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
 from peopleboy.wording import counted
@@ -26,39 +25,35 @@ class Column:
 
     Attributes:
         label: by which it is told from the others.
-        outcomes: at least one.
+        runs: at least one.
         scores: of each run.
         occlusions: total ones, of each run.
     """
 
     label: str
-    outcomes: tuple[Outcome, ...]
+    runs: tuple[RunFindings, ...]
     scores: tuple[Scores, ...]
     occlusions: tuple[tuple[Occlusion, ...], ...]
 
     @property
     def is_single(self) -> bool:
         """Whether it is one run only."""
-        return len(self.outcomes) == 1
+        return len(self.runs) == 1
 
     @property
-    def run(self) -> FinishedRun:
+    def found(self) -> RunFindings:
         """Its first run."""
-        return self.outcomes[0].run
+        return self.runs[0]
 
     @property
     def headline(self) -> str:
         """What came out, in a sentence."""
-        return headline(self.outcomes[0]) if self.is_single else headline_of_many(self.outcomes)
+        return headline(self.found) if self.is_single else headline_of_many(self.runs)
 
-    def by_badness(self) -> list[tuple[Outcome, Scores]]:
+    def by_badness(self) -> list[tuple[RunFindings, Scores]]:
         """Its runs with their scores, most lost identities first."""
-        pairs = zip(self.outcomes, self.scores, strict=True)
+        pairs = zip(self.runs, self.scores, strict=True)
         return sorted(pairs, key=lambda pair: (-len(pair[0].lost), pair[1].mot.identity.idf1))
-
-    def name_of(self, person: int) -> str:
-        """Name a person of the first run."""
-        return next(story.name for story in self.outcomes[0].stories if story.id == person)
 
 
 def read_columns(paths: Sequence[Path]) -> list[Column]:
@@ -72,11 +67,11 @@ def read_columns(paths: Sequence[Path]) -> list[Column]:
     """
     folders = [runs_in(path) for path in paths]
     _refuse_repeats([folder for of_path in folders for folder in of_path])
-    groups = [[read_finished(folder) for folder in of_path] for of_path in folders]
+    groups = [[open_run(folder) for folder in of_path] for of_path in folders]
     if len(paths) > MOST_BESIDE:
         by_tracker: dict[str, list[FinishedRun]] = {}
         for run in (run for group in groups for run in group):
-            by_tracker.setdefault(str(run.about["tracker"]), []).append(run)
+            by_tracker.setdefault(run.about.tracker, []).append(run)
         groups = list(by_tracker.values())
     if len(groups) > MOST_BESIDE:
         raise BadInput(f"report: runs of {len(groups)} trackers; at most {MOST_BESIDE} stand side by side")
@@ -86,14 +81,15 @@ def read_columns(paths: Sequence[Path]) -> list[Column]:
 
 def are_same_scene(columns: Sequence[Column]) -> bool:
     """Tell whether all are single runs of one scenario and seed."""
-    return all(column.is_single for column in columns) and len({column.run.name for column in columns}) == 1
+    titles = {column.found.run.title for column in columns}
+    return all(column.is_single for column in columns) and len(titles) == 1
 
 
 def lacking(columns: Sequence[Column]) -> list[str]:
     """Say, in a line a column, what a page cannot show since a scenario file is missing or spoilt."""
     lines = []
     for column in columns:
-        faults = [outcome.run.fault for outcome in column.outcomes if outcome.run.fault]
+        faults = [fault for fault in map(_fault, column.runs) if fault]
         if faults:
             more = f" (and {counted(len(faults) - 1, 'run')} more)" if len(faults) > 1 else ""
             lines.append(
@@ -101,6 +97,15 @@ def lacking(columns: Sequence[Column]) -> list[str]:
                 "run the scenario again for them"
             )
     return lines
+
+
+def _fault(found: RunFindings) -> str:
+    """Why a run's scenario cannot be loaded, in a line; empty if it can."""
+    try:
+        _ = found.run.scenario
+    except BadInput as error:
+        return str(error)
+    return ""
 
 
 def _refuse_repeats(folders: Sequence[Path]) -> None:
@@ -112,35 +117,31 @@ def _refuse_repeats(folders: Sequence[Path]) -> None:
 
 
 def _column(label: str, runs: Sequence[FinishedRun]) -> Column:
-    outcomes = tuple(look_into(run) for run in runs)
+    found = tuple(look_into(run) for run in runs)
     return Column(
         label=label,
-        outcomes=outcomes,
+        runs=found,
         scores=tuple(evaluate_runs([run.folder for run in runs])),
-        occlusions=tuple(_occlusions(outcome) for outcome in outcomes),
+        occlusions=tuple(_occlusions(of_run) for of_run in found),
     )
 
 
-def _occlusions(outcome: Outcome) -> tuple[Occlusion, ...]:
+def _occlusions(found: RunFindings) -> tuple[Occlusion, ...]:
     """Score the total occlusions of a run; its truth file has nobody who is outside the image."""
-    run = outcome.run
-    occluded = {story.id: story.occluded for story in outcome.stories}
-    rows = zip(run.truth.id.tolist(), run.truth.frame.tolist(), strict=True)
+    truth, tracks = found.files.truth, found.files.tracks
+    occluded = {person.id: person.occluded for person in found.people}
+    rows = zip(truth.id.tolist(), truth.frame.tolist(), strict=True)
     hidden = np.array([occluded[person][frame - 1] for person, frame in rows], np.float64)
-    in_image = np.isfinite(hidden)
-    return tuple(score_occlusions(run.truth, run.tracks, np.nan_to_num(hidden), in_image, run.rate_hz))
+    return tuple(
+        score_occlusions(truth, tracks, np.nan_to_num(hidden), np.isfinite(hidden), found.run.rate_hz)
+    )
 
 
 def _labels(groups: Sequence[Sequence[FinishedRun]], paths: Sequence[Path]) -> list[str]:
     """Name columns by the first thing in which they differ: tracker, scenario, folder."""
-
-    def common(group: Sequence[FinishedRun], key: str) -> Any:
-        values = {str(run.about[key]) for run in group}
-        return values.pop() if len(values) == 1 else ""
-
     choices = [
-        [common(group, "tracker") for group in groups],
-        [group[0].name if len(group) == 1 else common(group, "scenario") for group in groups],
+        [_common([run.about.tracker for run in group]) for group in groups],
+        [g[0].title if len(g) == 1 else _common([run.about.scenario for run in g]) for g in groups],
     ]
     if len(paths) == len(groups):
         choices += [[path.name for path in paths], [str(path) for path in paths]]
@@ -148,3 +149,7 @@ def _labels(groups: Sequence[Sequence[FinishedRun]], paths: Sequence[Path]) -> l
         if all(labels) and len(set(labels)) == len(labels):
             return labels
     return [f"{number}: {group[0].folder}" for number, group in enumerate(groups, start=1)]
+
+
+def _common(values: Sequence[str]) -> str:
+    return values[0] if len(set(values)) == 1 else ""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from contextlib import suppress
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.run_folder.out_folder import writing_to
 
 _ENDINGS = (".html", ".htm")
 _REPORT = re.compile(rb"<title>[^<]*: PeopleBoy report</title>")
@@ -19,18 +19,13 @@ def check_place(out: Path) -> None:
     Raises:
         BadInput: it is a folder, does not end in .html or .htm, or holds something else than a report.
     """
-    try:
-        if out.is_dir():
-            raise BadInput(f"{out}: is a folder; give --out a file that ends in .html")
-        is_other = out.exists() and not _is_report(out)
-    except OSError as error:
-        raise _cannot(out, error) from error
-    is_page = out.suffix.lower() in _ENDINGS
-    if is_other:
+    with writing_to(out):
+        is_other = out.is_dir() or (out.exists() and not _is_report(out))
+    is_page = out.suffix.lower() in _ENDINGS and not out.is_dir()
+    what = "is a folder" if out.is_dir() else "is no report and will not be replaced" if is_other else ""
+    if what or not is_page:
         advice = "give another --out" if is_page else "give --out a file that ends in .html"
-        raise BadInput(f"{out}: is no report and will not be replaced; {advice}")
-    if not is_page:
-        raise BadInput(f"{out}: a report is a page; give --out a file that ends in .html")
+        raise BadInput(f"{out}: {what or 'a report is a page'}; {advice}")
 
 
 def write_page(text: str, out: Path) -> None:
@@ -40,20 +35,15 @@ def write_page(text: str, out: Path) -> None:
         BadInput: it cannot be written there.
     """
     part = out.with_name(f"{out.name}.part")
-    try:
-        part.write_text(text, encoding="utf-8")
-        part.replace(out)
-    except OSError as error:
-        with suppress(OSError):
-            part.unlink()
-        raise _cannot(out, error) from error
+    with writing_to(out):
+        try:
+            part.write_text(text, encoding="utf-8")
+            part.replace(out)
+        finally:
+            part.unlink(missing_ok=True)
 
 
 def _is_report(path: Path) -> bool:
     """Whether a file begins as reports do, those of earlier versions too."""
     with path.open("rb") as file:
         return _REPORT.search(file.read(_HEAD_BYTES)) is not None
-
-
-def _cannot(out: Path, error: OSError) -> BadInput:
-    return BadInput(f"{out}: cannot write the page: {error.strerror}; give another --out")

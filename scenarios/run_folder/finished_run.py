@@ -1,51 +1,65 @@
-"""A finished run as it lies on disk: its scenario, and its tables by frame."""
+"""A finished run as it lies on disk: what run.json says at once, all else when it is asked for."""
 
 from __future__ import annotations
 
-from collections import defaultdict
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.run_folder.run_files import RunFiles, read_about, read_files, read_run
-from peopleboy.scenarios.run_folder.tables import Row, track_of
+from peopleboy.scenarios.files.schema_errors import explain
+from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.run_folder.run_files import RunFiles, read_files
+from peopleboy.scenarios.run_folder.tables import ROBOT, TRUTH
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.tracker.track import Track
 
 _FILES = (
     "scenario.yaml", "truth/gt.txt", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",
 )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+class About(BaseModel):
+    """What run.json must say of a run of a scenario; it may say more."""
+
+    model_config = ConfigDict(strict=True, frozen=True)
+
+    scenario: str
+    seed: Annotated[int, Field(ge=0)]
+    tracker: str
+    renderer: Literal["raycast", "bullet"]
+    rate_hz: Annotated[int, Field(ge=1)]
+    frames: Annotated[int, Field(ge=0)]
+    versions: dict[str, str]
+    images: bool = False
+
+
+@dataclass(frozen=True, eq=False)
 class FinishedRun:
-    """One complete run.
+    """One complete run of a scenario.
+
+    Each attribute but the first two is read when it is first asked for.
 
     Attributes:
         folder: where it lies.
-        scenario: what was played, everything drawn.
-        seed: of the run.
-        tracker: its name.
-        frames: how many.
-        rate_hz: frames a second.
-        versions: packages that made it, by name.
-        world: settings of its world.
+        about: what run.json says.
+
+    Raises:
+        BadInput: in what is asked for, a file is missing or spoilt.
     """
 
     folder: Path
-    scenario: Scenario
-    seed: int
-    tracker: str
-    frames: int
-    rate_hz: int
-    versions: dict[str, str]
-    world: WorldConfig
+    about: About
 
     @property
     def name(self) -> str:
@@ -53,35 +67,115 @@ class FinishedRun:
         return self.folder.resolve().name
 
     @property
+    def title(self) -> str:
+        """Scenario and seed."""
+        return f"{self.about.scenario}, seed {self.about.seed}"
+
+    @property
+    def frames(self) -> int:
+        """How many there are; the first is 1."""
+        return self.about.frames
+
+    @property
+    def rate_hz(self) -> int:
+        """Frames a second."""
+        return self.about.rate_hz
+
+    def time_s(self, frame: int) -> float:
+        """When a frame was taken, from the start."""
+        return (frame - 1) / self.rate_hz
+
+    @cached_property
+    def played(self) -> Mapping[str, Any]:
+        """What scenario.yaml says, everything drawn."""
+        return read_yaml(self.folder / "scenario.yaml")
+
+    @cached_property
+    def scenario(self) -> Scenario:
+        """The same as a scenario."""
+        return load_scenario(self.folder / "scenario.yaml")
+
+    @cached_property
+    def world(self) -> WorldConfig:
+        """Settings of its world."""
+        return self.scenario.world(self.about.seed, self.about.renderer)
+
+    @property
     def robot(self) -> RobotConfig:
         """The robot and its cameras."""
         return self.world.robot
 
-    def truth_rows(self) -> dict[int, list[Row]]:
-        """Give the rows of truth.parquet, by frame."""
-        return _by_frame(self._files().people.to_pylist())
+    @cached_property
+    def metrics(self) -> Mapping[str, Any]:
+        """What metrics.json says, by group."""
+        path = self.folder / "metrics.json"
+        try:
+            data = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise BadInput(f"{path}: cannot be read; give the folder of a finished run") from error
+        if not isinstance(data, dict):
+            raise BadInput(
+                f"{path}: holds a {type(data).__name__}, not figures by name; run the scenario again"
+            )
+        return data
 
-    def robot_rows(self) -> list[Row]:
-        """Give the rows of robot.parquet, one a frame."""
-        rows: list[Row] = self._files().robot.to_pylist()
-        return rows
+    @cached_property
+    def events(self) -> tuple[LogLine, ...]:
+        """What events.jsonl says."""
+        path = self.folder / "events.jsonl"
+        try:
+            lines = path.read_text(encoding="utf-8").splitlines()
+            return tuple(LogLine(**json.loads(line)) for line in lines)
+        except (OSError, ValueError, TypeError) as error:
+            raise BadInput(f"{path}: cannot be read as an event log; run the scenario again") from error
 
-    def tracks(self) -> dict[int, list[Track]]:
-        """Give what the tracker said, by frame, tentative tracks too."""
-        rows = _by_frame(self._files().beliefs.to_pylist())
-        return defaultdict(list, {frame: [track_of(row) for row in here] for frame, here in rows.items()})
-
-    def _files(self) -> RunFiles:
-        return read_files(self.folder, self.frames)
+    def files(self, people: Sequence[str] = TRUTH.names, robot: Sequence[str] = ROBOT.names) -> RunFiles:
+        """Read truth and tracks, with these columns; they are not kept, so that many runs can be open."""
+        return read_files(self.folder, self.frames, people, robot)
 
 
-def open_runs(folders: Sequence[Path]) -> list[FinishedRun]:
-    """Open complete runs by their folders.
+def read_run(folder: Path) -> dict[str, Any]:
+    """Read what run.json says of a complete run, of footage too.
 
     Raises:
-        BadInput: there is no complete run in a folder, or two have the same name.
+        BadInput: there is no run, or it is not complete.
     """
-    runs = [open_run(folder) for folder in folders]
+    path = folder / "run.json"
+    try:
+        about = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BadInput(f"{path}: cannot be read as a run; give the folder of a finished run") from error
+    if not isinstance(about, dict) or about.get("status") != "complete":
+        raise BadInput(
+            f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
+        )
+    if not isinstance(about.get("frames"), int):
+        raise BadInput(f"{path}: frames: must be a whole number, got {about.get('frames')!r}; run it again")
+    return about
+
+
+def open_run(folder: Path) -> FinishedRun:
+    """Open a complete run of a scenario by its folder.
+
+    Raises:
+        BadInput: there is none.
+    """
+    data = read_run(folder)
+    if "footage" in data:
+        raise BadInput(f"{folder}: is a run of footage; only runs of scenarios can be looked into so")
+    try:
+        return FinishedRun(folder, About.model_validate(data))
+    except ValidationError as error:
+        raise BadInput(f"{folder / 'run.json'}: {explain(error, About)}; run the scenario again") from error
+
+
+def open_whole_runs(folders: Sequence[Path]) -> list[FinishedRun]:
+    """Open runs of which all is there that is needed to play them again, and look at all of it once.
+
+    Raises:
+        BadInput: there is no such run in a folder, or two have the same name.
+    """
+    runs = [_open_whole(folder) for folder in folders]
     seen: dict[str, Path] = {}
     for run in runs:
         if run.name in seen:
@@ -92,31 +186,29 @@ def open_runs(folders: Sequence[Path]) -> list[FinishedRun]:
     return runs
 
 
-def open_run(folder: Path) -> FinishedRun:
-    """Open a complete run by its folder.
+def runs_in(folder: Path) -> list[Path]:
+    """List the folders of runs that a folder stands for: itself, or those in it.
 
     Raises:
-        BadInput: there is none.
+        BadInput: there is no such folder.
     """
+    if not folder.is_dir():
+        raise BadInput(f"{folder}: there is no such folder; give the folder of a finished run")
+    inner = sorted(path.parent for path in folder.glob("*/run.json"))
+    return inner if inner and not (folder / "run.json").exists() else [folder]
+
+
+def _open_whole(folder: Path) -> FinishedRun:
     read_run(folder)
     for name in _FILES:
         if not (folder / name).is_file():
             raise BadInput(
                 f"{folder / name}: there is no such file; only whole runs of scenarios can be exported"
             )
-    about = read_about(folder)
-    scenario = load_scenario(folder / "scenario.yaml")
-    read_files(folder, about.frames)
-    return FinishedRun(
-        folder=folder,
-        scenario=scenario,
-        seed=about.seed,
-        tracker=about.tracker,
-        frames=about.frames,
-        rate_hz=about.rate_hz,
-        versions=about.versions,
-        world=scenario.world(about.seed, about.renderer),
-    )
+    run = open_run(folder)
+    _ = run.world
+    run.files()
+    return run
 
 
 def cameras_of(folder: Path) -> Mapping[str, CameraConfig]:
@@ -126,10 +218,3 @@ def cameras_of(folder: Path) -> Mapping[str, CameraConfig]:
         BadInput: there is no scenario of a run.
     """
     return equip_robot(load_scenario(folder / "scenario.yaml").robot).cameras
-
-
-def _by_frame(rows: Sequence[Row]) -> dict[int, list[Row]]:
-    found: dict[int, list[Row]] = defaultdict(list)
-    for row in rows:
-        found[row["frame"]].append(row)
-    return found

@@ -1,48 +1,39 @@
-"""What a finished run of a scenario left: its files, held against what they must be, and against each other.
+"""Truth and tracks that a finished run left, held against what they must be, and against each other.
 
 A run of another version, or one whose files were changed since, is refused here with one line.
 """
 
 from __future__ import annotations
 
-import json
+from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
 
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.files.schema_errors import explain
-from peopleboy.scenarios.run_folder.tables import MAY_BE_EMPTY, ROBOT, TRACKS, TRUTH
-from peopleboy.scenarios.scores.suite_table import is_in_image
+from peopleboy.scenarios.run_folder.explained import read_explanation
+from peopleboy.scenarios.run_folder.tables import (
+    MAY_BE_EMPTY,
+    ROBOT,
+    TRACKS,
+    TRUTH,
+    Row,
+    is_in_image,
+    track_of,
+)
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 from peopleboy.tracker.evaluation.sequence import Rows, TrackBoxes, TrueBoxes
-from peopleboy.tracker.track import Status
+from peopleboy.tracker.track import Status, Track
 
 _AGAIN = "run the scenario again"
 _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
 # What tells which rows of the tables are in the text files too.
 _WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
 _WRITTEN_TRACKS = ("frame", "id", "status")
-
-
-class About(BaseModel):
-    """What run.json must say of a run of a scenario; it may say more."""
-
-    model_config = ConfigDict(strict=True, frozen=True)
-
-    scenario: str
-    seed: Annotated[int, Field(ge=0)]
-    tracker: str
-    renderer: Literal["raycast", "bullet"]
-    rate_hz: Annotated[int, Field(ge=1)]
-    frames: Annotated[int, Field(ge=0)]
-    versions: dict[str, str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -60,40 +51,19 @@ class RunFiles:
     beliefs: pa.Table
     robot: pa.Table
 
+    def people_by_frame(self) -> dict[int, list[Row]]:
+        """Give the rows of truth.parquet."""
+        return _by_frame(self.people)
 
-def read_run(folder: Path) -> dict[str, Any]:
-    """Read what run.json says of a complete run.
+    def tracks_by_frame(self) -> dict[int, list[Track]]:
+        """Give what the tracker said, tentative tracks too."""
+        found = _by_frame(self.beliefs).items()
+        return defaultdict(list, {frame: [track_of(row) for row in rows] for frame, rows in found})
 
-    Raises:
-        BadInput: there is no run, or it is not complete.
-    """
-    path = folder / "run.json"
-    try:
-        about = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: cannot be read as a run; give the folder of a finished run") from error
-    if not isinstance(about, dict) or about.get("status") != "complete":
-        raise BadInput(
-            f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
-        )
-    if not isinstance(about.get("frames"), int):
-        raise BadInput(f"{path}: frames: must be a whole number, got {about.get('frames')!r}; run it again")
-    return about
-
-
-def read_about(folder: Path) -> About:
-    """Read what run.json says of a complete run of a scenario.
-
-    Raises:
-        BadInput: there is no such run.
-    """
-    data = read_run(folder)
-    if "footage" in data:
-        raise BadInput(f"{folder}: is a run of footage; only runs of scenarios can be looked into so")
-    try:
-        return About.model_validate(data)
-    except ValidationError as error:
-        raise BadInput(f"{folder / 'run.json'}: {explain(error, About)}; {_AGAIN}") from error
+    def explanations_by_frame(self, tracker: str) -> dict[int, object]:
+        """Give what the tracker of that name explained, as far as the table holds it; None where nothing."""
+        found = _by_frame(self.beliefs).items()
+        return defaultdict(lambda: None, {frame: read_explanation(tracker, rows) for frame, rows in found})
 
 
 def read_files(
@@ -190,6 +160,13 @@ def _written_truth(people: pa.Table) -> pa.Table:
 def _written_tracks(beliefs: pa.Table) -> pa.Table:
     """Keep the rows of tracks that have a line in tracks.txt."""
     return beliefs.filter(pc.not_equal(beliefs["status"], str(Status.TENTATIVE)))
+
+
+def _by_frame(table: pa.Table) -> dict[int, list[Row]]:
+    found: dict[int, list[Row]] = defaultdict(list)
+    for row in table.to_pylist():
+        found[row["frame"]].append(row)
+    return found
 
 
 def _check_rows(rows: Rows, path: Path, table: pa.Table) -> None:

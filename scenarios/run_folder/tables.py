@@ -6,12 +6,15 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from numpy.typing import NDArray
 
 from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.explained import COLUMNS, SPREAD, STATE, explained
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.track import Ellipse, Status, Track
+from peopleboy.tracker.track import Status, Track
 
 Row = dict[str, Any]
 
@@ -25,7 +28,6 @@ def _floats(*names: str) -> list[pa.Field]:
 
 
 _EDGES = ("left_px", "top_px", "width_px", "height_px")
-_STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
 _INSTANT = [pa.field("frame", pa.int64()), pa.field("time_s", pa.float64())]
 
 TRUTH = pa.schema(
@@ -56,9 +58,9 @@ TRACKS = pa.schema(
         *_INSTANT,
         pa.field("id", pa.int64()),
         pa.field("status", pa.string()),
-        *_floats("confidence", "age_s", "uncertainty_px2"),
+        *_floats("confidence", "age_s", SPREAD),
         *_box_fields(""),
-        *_floats(*_STATE),
+        *_floats(*STATE),
         pa.field("occluder", pa.int64()),
     ]
 )
@@ -77,7 +79,7 @@ ROBOT = pa.schema(
 )
 
 MAY_BE_EMPTY = frozenset(
-    ("occluder", *(f"{prefix}{edge}" for prefix in ("", "whole_", "visible_") for edge in _EDGES))
+    ("occluder", *COLUMNS, *(f"{prefix}{edge}" for prefix in ("", "whole_", "visible_") for edge in _EDGES))
 )
 """Columns that have no value where there is nobody or nothing to tell of."""
 
@@ -87,9 +89,15 @@ def truth_rows(tick: Tick, camera: str = "thermal") -> list[Row]:
     return [_person_row(tick, person) for person in tick.truths[camera].people]
 
 
+def is_in_image(people: pa.Table) -> NDArray[np.bool_]:
+    """(N,) whether any of the silhouette lies inside the image."""
+    outside = np.array([dict(shares).get("border", 0.0) for shares in people["hidden_by"].to_pylist()])
+    return np.asarray((people["whole_px"].to_numpy() > 0) & (outside.reshape(-1) < 1.0))
+
+
 def track_rows(tick: Tick) -> list[Row]:
     """Rows of the tracks table for one tick: one per track, tentative ones too."""
-    return [track_row(tick.frame, tick.truth.time_s, track) for track in tick.tracks]
+    return [track_row(tick.frame, tick.truth.time_s, track, tick.explanation) for track in tick.tracks]
 
 
 def robot_row(tick: Tick) -> Row:
@@ -157,19 +165,22 @@ def _person_row(tick: Tick, person: PersonTruth) -> Row:
     return _instant(tick) | row | boxes
 
 
-def track_row(frame: int, time_s: float, track: Track) -> Row:
-    """Row of the tracks table for one track at one instant."""
-    ellipse = track.ellipse
-    state = {name: getattr(ellipse, name) for name in _STATE}
+def track_row(frame: int, time_s: float, track: Track, explanation: object) -> Row:
+    """Row of the tracks table for one track at one instant, with what the tracker explained of it."""
     row = {
         "id": track.id,
         "status": str(track.status),
         "confidence": track.confidence,
         "age_s": track.age_s,
-        "uncertainty_px2": track.uncertainty_px2,
     }
     hider = {"occluder": track.occluder}
-    return {"frame": frame, "time_s": time_s} | row | _box("", track.box) | state | hider
+    return (
+        {"frame": frame, "time_s": time_s}
+        | row
+        | _box("", track.box)
+        | hider
+        | dict(explained(explanation, track.id))
+    )
 
 
 def track_of(row: Mapping[str, Any]) -> Track:
@@ -177,11 +188,9 @@ def track_of(row: Mapping[str, Any]) -> Track:
     left, top, width, height = (row[edge] for edge in _EDGES)
     return Track(
         id=row["id"],
-        ellipse=Ellipse(**{name: row[name] for name in _STATE}),
         box=(left, top, width, height),
         confidence=row["confidence"],
         status=Status(row["status"]),
         age_s=row["age_s"],
-        uncertainty_px2=row["uncertainty_px2"],
         occluder=row["occluder"],
     )

@@ -11,13 +11,12 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
-from rich.progress import track
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.oracle_tracker import check_eyes
+from peopleboy.scenarios.loop.tracker_by_name import check_eyes
+from peopleboy.scenarios.progress_bar import each_shown
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
@@ -86,9 +85,7 @@ def compare(
             pool.submit(_run_one, scenario, controller.behaviour, options) for controller, options in runs
         ]
         names = [controller for controller, _ in runs]
-        for controller, future in zip(
-            names, track(done, scenario, console=Console(stderr=True)), strict=True
-        ):
+        for controller, future in zip(names, each_shown(done, scenario), strict=True):
             found[controller].append(future.result())
     return found
 

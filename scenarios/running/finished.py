@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import json
+from pathlib import Path
 
 import yaml
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.own_files import are_kept
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.run import RunOptions
 
@@ -19,28 +20,32 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
     Never, if it is to be replaced.
 
     Raises:
-        BadInput: it holds a complete run of another scenario, seed, tracker or version.
+        BadInput: it holds a complete run of another scenario, seed, tracker or version, or a spoilt one.
     """
-    try:
-        about = json.loads((options.out / "run.json").read_text(encoding="utf-8"))
-        played = yaml.safe_load((options.out / "scenario.yaml").read_text(encoding="utf-8"))
-    except (OSError, ValueError, yaml.YAMLError):
+    if options.overwrite or not _is_complete(options.out):
         return False
-    if options.overwrite or about.get("status") != "complete":
-        return False
-    if about["tracker"] != options.tracker:
+    run = open_run(options.out)
+    if run.about.tracker != options.tracker:
         raise BadInput(
-            f"{options.out}: was run with tracker {about['tracker']!r}; give --overwrite, or another --out"
+            f"{options.out}: was run with tracker {run.about.tracker!r}; give --overwrite, or another --out"
         )
-    if options.frames and not about["images"]:
+    if options.frames and not run.about.images:
         return False
     resolved = _as_read(scenario.resolved(options.seed, versions()))
-    if (played, about["renderer"]) != (resolved, options.renderer) or not are_kept(
+    if (run.played, run.about.renderer) != (resolved, options.renderer) or not are_kept(
         scenario.kept_files(), options.out
     ):
         raise BadInput(
             f"{options.out}: is a run of another scenario or version; give --overwrite, or another --out"
         )
+    return True
+
+
+def _is_complete(folder: Path) -> bool:
+    try:
+        read_run(folder)
+    except BadInput:
+        return False
     return True
 
 

@@ -29,7 +29,6 @@ from peopleboy.sim.observation import Observation
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Track
 
 SEEN = ("thermal", "colour")  # cameras whose images trackers are given
@@ -136,10 +135,6 @@ def film_key(scenario: Scenario, seed: int) -> str:
 
 class _Blind:
     """A tracker that sees nobody."""
-
-    @property
-    def particles(self) -> Mapping[int, Particles]:
-        return {}
 
     def update(self, frame: Frame) -> tuple[Track, ...]:  # noqa: ARG002
         return ()

@@ -12,13 +12,13 @@ from peopleboy.scenarios.files.own_files import keep_own_files
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.scenarios.loop.oracle_tracker import check_eyes, make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import check_eyes, make_eyes
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.running.watchers import Watchers
-from peopleboy.scenarios.scores.score import RunScores, following_task, score_run
+from peopleboy.scenarios.scores.following_score import following_task
+from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.sim.world import World
-from peopleboy.tracker.trackers import TRACKERS
 
 FOLLOWERS = ("follow_person", "patrol")
 
@@ -93,7 +93,6 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
                     options.out / "recording.rrd",
                     config,
                     title=title,
-                    tracker=TRACKERS.get(options.tracker),
                     viewer=options.viewer,
                 )
             )

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
 from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
-from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.progress_bar import progress_bar
 from peopleboy.scenarios.running.finished import is_finished
 from peopleboy.scenarios.running.frame_cache import Film, film
 from peopleboy.scenarios.running.run import RunOptions, run
@@ -36,11 +34,14 @@ def run_suite(name: str, options: RunOptions) -> list[Path]:
     runs = list(runs_of(load_suite(name)))
     own = [replace(options, seed=one.seed, out=options.out / one.name, record=False) for one in runs]
     waiting = [pair for pair in zip(runs, own, strict=True) if not is_finished(pair[0].scenario, pair[1])]
-    with _bar() as progress:
-        task = progress.add_task(name, total=sum(_frames(one) for one, _ in waiting), run="")
+    total, frame = sum(_frames(one) for one, _ in waiting), count(1)
+    with progress_bar(name, unit="frames") as show:
+
+        def run_one(one: SuiteRun, its: RunOptions) -> None:
+            run(one.scenario, replace(its, overwrite=True), lambda *_: show(next(frame), total, one.name))
+
         for one, its in waiting:
-            progress.update(task, run=one.name)
-            run(one.scenario, replace(its, overwrite=True), _advance(progress, task))
+            run_one(one, its)
     return [its.out for its in own]
 
 
@@ -52,19 +53,3 @@ def films_of(name: str, folder: Path) -> Iterator[Film]:
 
 def _frames(one: SuiteRun) -> int:
     return round(one.scenario.duration_s * _RATE_HZ)
-
-
-def _advance(progress: Progress, task: object) -> Callable[[Tick, int], None]:
-    return lambda _tick, _frames: progress.advance(task)  # type: ignore[arg-type]
-
-
-def _bar() -> Progress:
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[run]}"),
-        TimeRemainingColumn(),
-        console=Console(stderr=True),
-        refresh_per_second=5,
-    )

@@ -9,11 +9,9 @@ from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 
-from rich.console import Console
-from rich.progress import track
-
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.progress_bar import each_shown
 from peopleboy.scenarios.running.finished import is_finished
 from peopleboy.scenarios.running.run import RunOptions, run
 
@@ -64,7 +62,7 @@ def run_jobs(jobs: Sequence[Job], processes: int, title: str) -> None:
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
         done = [pool.submit(_run_one, job) for job in jobs]
         try:
-            for future in track(done, description=title, console=Console(stderr=True)):
+            for future in each_shown(done, title):
                 future.result()
         except BrokenProcessPool as error:
             raise BadInput(

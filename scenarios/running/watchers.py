@@ -9,7 +9,7 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.scores.corridor_score import CorridorLog
-from peopleboy.scenarios.scores.score import FollowingLog
+from peopleboy.scenarios.scores.following_score import FollowingLog
 from peopleboy.sim.config import WorldConfig
 
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.run_files import check_end, check_whole, read_run
+from peopleboy.scenarios.run_folder.finished_run import read_run
+from peopleboy.scenarios.run_folder.run_files import check_end, check_whole
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
@@ -33,18 +34,6 @@ def evaluate_runs(folders: Sequence[Path], min_visible: float = MIN_VISIBLE) -> 
             one of footage without truth.
     """
     return [_evaluate_run(folder, min_visible) for folder in folders]
-
-
-def runs_in(folder: Path) -> list[Path]:
-    """List the folders of runs that a folder stands for: itself, or those in it.
-
-    Raises:
-        BadInput: there is no such folder.
-    """
-    if not folder.is_dir():
-        raise BadInput(f"{folder}: there is no such folder; give the folder of a finished run")
-    inner = sorted(path.parent for path in folder.glob("*/run.json"))
-    return inner if inner and not (folder / "run.json").exists() else [folder]
 
 
 def _evaluate_run(folder: Path, min_visible: float) -> Scores:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.scores.contacts import count_contacts, count_starts
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -187,7 +188,7 @@ def score_following(run: FollowingRun, task: FollowingTask | None = None) -> Fol
         mean_distance_error_m=_mean(error),
         rms_distance_error_m=math.sqrt(_mean(error**2)),
         min_distance_m=float(np.min(distance[is_there])) if is_there.any() else math.nan,
-        collisions=_count_starts(run.is_contact),
+        collisions=count_contacts(run.is_contact),
         times_lost=int(np.sum(lost >= task.lost_s)),
         longest_lost_s=float(np.max(lost, initial=0.0)),
         followed_to_end=_is_at_end(run, task.reached_s),
@@ -236,7 +237,7 @@ def _changes(track: NDArray[np.int64]) -> int:
 
 def _intrusions(gap_m: Floats | None, space_m: float) -> int:
     """Count how often the gap falls below a space."""
-    return 0 if gap_m is None else _count_starts(gap_m < space_m)
+    return 0 if gap_m is None else count_starts(gap_m < space_m)
 
 
 def _person_from_robot(robot: Floats, person: Floats) -> tuple[Floats, Floats]:
@@ -248,11 +249,6 @@ def _person_from_robot(robot: Floats, person: Floats) -> tuple[Floats, Floats]:
 
 def _mean(values: Floats | Flags) -> float:
     return float(np.mean(values)) if values.size else math.nan
-
-
-def _count_starts(flags: Flags) -> int:
-    """Count the runs of true values."""
-    return int(np.sum(flags & ~np.concatenate([[False], flags[:-1]])))
 
 
 def _periods(time_s: Floats, flags: Flags) -> Floats:

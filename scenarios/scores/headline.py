@@ -6,7 +6,7 @@ import math
 
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
-from peopleboy.scenarios.scores.score import RunScores
+from peopleboy.scenarios.scores.run_scores import RunScores
 from peopleboy.tracker.evaluation.evaluate import Scores
 
 

@@ -16,6 +16,8 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.run_folder.tables import is_in_image
+
 GAP_S = 0.5
 HIDDEN = 0.15  # as an occlusion starts in the event log
 
@@ -86,12 +88,6 @@ def add_up(contents: Iterable[Content]) -> Content:
     rows = np.array([astuple(content) for content in contents])
     totals = [*rows[:, :-1].sum(axis=0), rows[:, -1].max()]
     return Content(**{field.name: int(total) for field, total in zip(fields(Content), totals, strict=True)})
-
-
-def is_in_image(people: pa.Table) -> NDArray[np.bool_]:
-    """(N,) whether any of the silhouette lies inside the image."""
-    outside = np.array([dict(shares).get("border", 0.0) for shares in people["hidden_by"].to_pylist()])
-    return np.asarray((people["whole_px"].to_numpy() > 0) & (outside.reshape(-1) < 1.0))
 
 
 def _runs(frames: NDArray[np.int64], gap: int) -> int:

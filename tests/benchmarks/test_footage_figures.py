@@ -3,6 +3,7 @@ import numpy as np
 from click.testing import CliRunner
 
 from benchmarks.footage import main
+from tests.helpers.calls.refused import assert_names
 
 
 def write_clip(folder, *, with_truth):
@@ -30,4 +31,4 @@ def test_a_clip_without_truth_is_refused(tmp_path):
     clip = write_clip(tmp_path / "clip", with_truth=False)
     result = CliRunner().invoke(main, ["--clip", str(clip), "--seeds", "1"])
     assert result.exit_code == 2
-    assert "there is no truth beside the pictures" in result.output
+    assert_names(result.output.splitlines()[-1], clip)

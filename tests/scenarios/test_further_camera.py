@@ -16,7 +16,7 @@ from rerun.chunk import RrdReader
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.world import World
-from tests.helpers.exported import SCENE, export, run_cli
+from tests.helpers.runs.exported import SCENE, export, run_cli
 
 # It looks back, where only carl is, at every third instant.
 REAR = {"kind": "thermal", "width_px": 160, "height_px": 120, "mount_m": [-0.3, 0.0, 1.3], "yaw_deg": 180.0}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -10,9 +9,10 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.contour.ellipse import box_of
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.filter.particles import Particles, W, ellipse_of
+from peopleboy.tracker.thermal.contour.outline import box_of
+from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
+from peopleboy.tracker.thermal.filter.particles import W, ellipse_of
 from peopleboy.tracker.thermal.filter.prior import draw_around
 from peopleboy.tracker.thermal.interaction import detector_factor, least_overlaps, regions_of
 from peopleboy.tracker.thermal.joint_update import follow
@@ -32,7 +32,6 @@ from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.track import Status, Track
 
 FIRST_STEP_S = 1 / 15
-DETECTOR_KEY = 0
 
 
 class PeopleTracker:
@@ -51,6 +50,7 @@ class PeopleTracker:
         self._hits = 0
         self._persons: tuple[TrackedPerson, ...] = ()
         self._memories: tuple[TrackedPerson, ...] = ()
+        self._told: tuple[TrackedPerson, ...] = ()
         self._born = 0
         self._introduced: tuple[float, float, float, float] | None = None
 
@@ -62,10 +62,17 @@ class PeopleTracker:
         self._introduced = box
 
     @property
-    def particles(self) -> Mapping[int, Particles]:
-        """The samples by track id; key 0 is the detector's cloud."""
+    def explanation(self) -> ContourExplanation:
+        """Contours and samples behind the tracks of the last frame."""
         clouds = {person.id: person.belief.particles for person in self._persons}
-        return clouds if self._detector is None else {DETECTOR_KEY: self._detector.particles, **clouds}
+        if self._detector is not None:
+            clouds = {DETECTOR_KEY: self._detector.particles, **clouds}
+        return ContourExplanation(
+            config=self._config,
+            ellipses={person.id: ellipse_of(person.shown) for person in self._told},
+            spread_px2={person.id: person.belief.uncertainty_px2 for person in self._told},
+            particles=clouds,
+        )
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Take in the next frame and tell who is seen.
@@ -87,12 +94,10 @@ class PeopleTracker:
             self._meet(self._introduced, view, frame.time_s)
             self._introduced = None
         newcomer = self._search(view, frame.time_s)
-        tracks = [
-            self._track(person, frame.time_s)
-            for person in (*self._persons, *self._memories)
-            if not person.is_hidden or self._is_shown(person, view)
-        ]
-        return (*tracks, *newcomer)
+        known = (*self._persons, *self._memories)
+        shown = [person for person in known if not person.is_hidden or self._is_shown(person, view)]
+        self._told = (*shown, *newcomer)
+        return tuple(self._track(person, frame.time_s) for person in self._told)
 
     def _time_step(self, time_s: float) -> float:
         if self._last_s is None:
@@ -130,8 +135,12 @@ class PeopleTracker:
     def _is_remembered(self, person: TrackedPerson) -> bool:
         return person.is_hidden or (self._config.occlusion.remembers_lost and person.is_settled)
 
-    def _search(self, view: FrameView, time_s: float) -> tuple[Track, ...]:
-        """Carry the detector on; a person is born when it has settled on one for long enough."""
+    def _search(self, view: FrameView, time_s: float) -> tuple[TrackedPerson, ...]:
+        """Carry the detector on; a person is born when it has settled on one for long enough.
+
+        Returns:
+            Who may be born next, tentative; nobody if none is in view.
+        """
         config = self._config
         if sum(not person.is_hidden for person in self._persons) >= config.interaction.max_persons:
             self._detector = None
@@ -142,7 +151,7 @@ class PeopleTracker:
             return ()
         found = self._newborn(self._detector, view, time_s)
         if self._hits < config.life.birth_frames:
-            return (self._track(replace(found, status=Status.TENTATIVE), time_s),)
+            return (replace(found, status=Status.TENTATIVE),)
         self._hits, self._detector = 0, None
         lost = (*self._memories, *(person for person in self._persons if person.is_hidden))
         known = recognised(found, lost, view, config)
@@ -211,11 +220,9 @@ class PeopleTracker:
         ellipse = ellipse_of(person.shown)
         return Track(
             id=person.id,
-            ellipse=ellipse,
             box=box_of(ellipse, self._config.box, self._config.contour.head_divisor),
             confidence=person.belief.confidence,
             status=person.status,
             age_s=time_s - person.born_s,
-            uncertainty_px2=person.belief.uncertainty_px2,
             occluder=person.occluder,
         )

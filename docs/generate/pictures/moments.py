@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
-from peopleboy.tracker.track import Track
+from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.trackers import make_tracker
 
 CROSSING = ("crossing_2", 3)
@@ -37,11 +37,15 @@ def world_at(scenario: str, seed: int, time_s: float) -> World:
     return world
 
 
-def state_of(track: Track) -> NDArray[np.float64]:
+def explained(tick: Tick) -> ContourExplanation:
+    """Give what the contour tracker explains at a tick."""
+    assert isinstance(tick.explanation, ContourExplanation)
+    return tick.explanation
+
+
+def state_of(tick: Tick, track: int) -> NDArray[np.float64]:
     """Give a track's contour as a state (9,)."""
-    ellipse = track.ellipse
-    order = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
-    return np.array([getattr(ellipse, name) for name in order])
+    return np.array(astuple(explained(tick).ellipses[track]))
 
 
 @dataclass(slots=True)

@@ -7,15 +7,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from docs.generate.pictures.moments import CROSSING, History, state_of, ticks
+from docs.generate.pictures.moments import CROSSING, History, explained, state_of, ticks
 from docs.generate.pictures.paper import panels, plot, show, zoom
 from docs.generate.pictures.tracker import place_probes
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.tracker.thermal.contour.contour import COVERED, pixels_under
 from peopleboy.tracker.thermal.contour.coverage import covered_by
-from peopleboy.tracker.thermal.contour.ellipse import outline
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status, Track
 
@@ -38,16 +38,16 @@ def explained_away() -> Figure:
     tracks = {track.id: track for track in tick.tracks}
     model = ContourModel.build(tick.observation.images["thermal"].shape, PEOPLEBOY.contour)
     image = model.prepare(tick.observation.images["thermal"])
-    front = [state_of(tracks[NEAR])]
+    front = [state_of(tick, NEAR)]
     marked = covered_by(image, front, PEOPLEBOY.contour, PEOPLEBOY.occlusion.growth)
     figure, axes = panels(("two people, two tracks", "what the filter of the one behind is shown"), 5.0)
     show(axes[0], image)
     for track in tracks.values():
-        _outlined(axes[0], track)
+        _outlined(axes[0], tick, track)
     picture = np.stack([marked] * 3, axis=-1)
     picture[marked == COVERED] = (40, 60, 110)
     show(axes[1], picture)
-    state = state_of(tracks[FAR])
+    state = state_of(tick, FAR)
     at = pixels_under(state.astype(np.float32), model.probes, marked.shape)
     is_open = (at >= 0) & (marked.reshape(-1)[at] != COVERED)
     pairs = is_open[: len(is_open) // 2] & is_open[len(is_open) // 2 :]
@@ -95,7 +95,7 @@ def timeline() -> Figure:
 def _moment(panel: Axes, tick: Tick) -> None:
     show(panel, tick.observation.images["thermal"])
     for track in tick.tracks:
-        _outlined(panel, track)
+        _outlined(panel, tick, track)
     olaf = next(person for person in tick.truth.people if person.name == "olaf")
     says = next((track.status.value for track in tick.tracks if track.id == FAR), NOWHERE)
     seen = f"{tick.truth.time_s:.1f} s: {olaf.visible_fraction:.0%} of olaf is seen"
@@ -104,10 +104,10 @@ def _moment(panel: Axes, tick: Tick) -> None:
     panel.set_ylim(235, 65)
 
 
-def _outlined(panel: Axes, track: Track) -> None:
+def _outlined(panel: Axes, tick: Tick, track: Track) -> None:
     """Draw a contour; dashed if its person is hidden."""
     style = ":" if track.status is Status.TOTALLY_OCCLUDED else "-"
-    for line in outline(track.ellipse, PEOPLEBOY.contour):
+    for line in outline(explained(tick).ellipses[track.id], PEOPLEBOY.contour):
         panel.plot(*line.T, style, color=_hex(track.id), linewidth=1.8)
     left, top, *_ = track.box
     panel.text(left, top - 3, str(track.id), color=_hex(track.id), fontsize=11, fontweight="bold")

@@ -43,7 +43,12 @@ def overview() -> Figure:
     figure, (thermal, colour, truth, plan) = panels(TITLES, 8.7, columns=2)
     show(
         thermal,
-        draw_tracks(enlarge(show_thermal(tick.observation.images["thermal"]), SCALE), tick.tracks, SCALE),
+        draw_tracks(
+            enlarge(show_thermal(tick.observation.images["thermal"]), SCALE),
+            tick.tracks,
+            SCALE,
+            tick.explanation,
+        ),
     )
     show(colour, tick.observation.images["colour"])
     _draw_truth(truth, tick.truth)

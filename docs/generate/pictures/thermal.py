@@ -13,7 +13,7 @@ from docs.generate.pictures.paper import panels, plot, show
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.thermal import band_radiance, detect, encode_8bit, make_detector, surface_image
 from peopleboy.sim.people.body.clothes import BOTTOMS, SKIN_C, TOPS
-from peopleboy.sim.places.things import KINDS
+from peopleboy.sim.places.thing_kinds import KINDS
 
 SCALE = {"cmap": "inferno", "vmin": 18.0, "vmax": 38.0}
 ROOM_C = 21.0

@@ -11,14 +11,14 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from docs.generate.pictures.moments import CROSSING, state_of, ticks
+from docs.generate.pictures.moments import CROSSING, explained, state_of, ticks
 from docs.generate.pictures.paper import panels, show, zoom
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.tracker.thermal.contour.contour import Probes
-from peopleboy.tracker.thermal.contour.ellipse import outline
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.contour.outline import outline
+from peopleboy.tracker.thermal.explanation import DETECTOR_KEY
 from peopleboy.tracker.thermal.filter.particles import Particles
-from peopleboy.tracker.thermal.people_tracker import DETECTOR_KEY
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 
 SHOWN = (1, 3, 4, 24)
@@ -39,7 +39,7 @@ def contour() -> Figure:
     """The points that a contour is compared at, and what each section says, of a good sample and another."""
     *_, (_, tick) = ticks(*CROSSING, frames=FRAME)
     track = min(tick.tracks, key=lambda one: one.id)
-    good = state_of(track)
+    good = state_of(tick, track.id)
     shifted = good + np.array([-1.2 * good[2], *np.zeros(8)])
     figure, axes = panels(("a sample on the person", "one beside the person"), 5.0)
     model = ContourModel.build(tick.observation.images["thermal"].shape, PEOPLEBOY.contour)
@@ -87,10 +87,10 @@ def _judged(
 
 def _cloud(panel: Axes, tick: Tick) -> None:
     show(panel, tick.observation.images["thermal"])
-    for key, cloud in tick.particles.items():
+    for key, cloud in explained(tick).particles.items():
         _samples(panel, cloud, "#56b4e9" if key == DETECTOR_KEY else "#e69f00")
     for track in tick.tracks:
-        for line in outline(track.ellipse, PEOPLEBOY.contour):
+        for line in outline(explained(tick).ellipses[track.id], PEOPLEBOY.contour):
             panel.plot(*line.T, color="#e69f00", linewidth=1.4)
     panel.set_xlim(-0.5, 319.5)
     panel.set_ylim(239.5, -0.5)

@@ -15,7 +15,8 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.run_folder.finished_run import cameras_of
-from peopleboy.scenarios.scores.suite_table import add_up, count, is_in_image
+from peopleboy.scenarios.run_folder.tables import is_in_image
+from peopleboy.scenarios.scores.suite_table import add_up, count
 from peopleboy.sim.cameras.kinds import kind_of
 
 VISIBLE_EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)

@@ -17,7 +17,7 @@ from peopleboy.scenarios.files.schema.values import (
     Size,
     Strict,
 )
-from peopleboy.sim.places.things import KINDS
+from peopleboy.sim.places.thing_kinds import KINDS
 
 
 class PatternSpec(Strict):

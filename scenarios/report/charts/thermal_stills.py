@@ -1,16 +1,17 @@
 """What the thermal camera saw at some frames of a run, with truth and tracks drawn in.
 
 The images are those of the run's folder if it was run with frames. Else the scene is played again with the
-commands that the robot was given, which gives the same images; where that is not possible any more, as with
-another version, boxes alone are drawn.
+commands that the robot was given, which gives the same images; where that is not possible, as with another
+version or without a physics engine, boxes alone are drawn.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from contextlib import suppress
 from enum import StrEnum
-from typing import Any
+from importlib.util import find_spec
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
@@ -18,13 +19,13 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
-from peopleboy.scenarios.export.replay import replay
-from peopleboy.scenarios.report.findings.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.run_folder.tables import track_of
+from peopleboy.scenarios.report.findings.summary import RunFindings
+from peopleboy.scenarios.run_folder.explained import read_explanation
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.tables import Row, track_of
 
 SCALE = 2
-_EMPTY_GREY = 40
+_EMPTY = np.full((240, 320), 40, np.uint8)
 
 Thermal = NDArray[np.uint8]
 
@@ -34,19 +35,19 @@ class Origin(StrEnum):
 
     FRAMES = "the run's own image"
     REPLAY = "rendered again from scenario.yaml"
-    NONE = "boxes only, as this scene cannot be rendered again as it was"
+    CHANGED = "boxes only, as this scene cannot be rendered again as it was"
+    NO_PHYSICS = "boxes only, as PyBullet is not installed"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Shown:
-    """A picture of one frame, and where it is from."""
+class DrawnFrame(NamedTuple):
+    """A picture of one frame, when it was taken, and where it is from."""
 
     picture: Picture
+    time_s: float
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
-class _Truth:
+class _Truth(NamedTuple):
     """What is drawn of a person's truth."""
 
     name: str
@@ -54,23 +55,31 @@ class _Truth:
     visible_fraction: float
 
 
-def show_frames(run: FinishedRun, frames: Sequence[int]) -> dict[int, Shown]:
+def show_frames(found: RunFindings, frames: Sequence[int]) -> dict[int, DrawnFrame]:
     """Draw some frames (from 1) of a run."""
-    images = _stored(run, frames)
-    origin = Origin.FRAMES
-    if len(images) < len(frames):
-        images, origin = dict(_replay(run, frames)), Origin.REPLAY
-    return {frame: _draw(run, frame, images.get(frame), origin) for frame in frames}
+    stored = _stored(found.run, frames)
+    missing = [frame for frame in frames if frame not in stored]
+    has_physics = find_spec("pybullet") is not None
+    again = _again(found.run, missing) if missing and has_physics else {}
+    origins = dict.fromkeys(frames, Origin.CHANGED if has_physics else Origin.NO_PHYSICS)
+    origins |= dict.fromkeys(again, Origin.REPLAY) | dict.fromkeys(stored, Origin.FRAMES)
+    images = stored | again
+    return {
+        frame: DrawnFrame(_draw(found, frame, images.get(frame, _EMPTY)), found.run.time_s(frame), origin)
+        for frame, origin in origins.items()
+    }
 
 
-def _draw(run: FinishedRun, frame: int, image: Thermal | None, origin: Origin) -> Shown:
-    if image is None:
-        image, origin = np.full((240, 320), _EMPTY_GREY, np.uint8), Origin.NONE
-    people = [_truth(row) for row in _rows(run.people, frame)]
-    tracks = [track_of(row) for row in _rows(run.beliefs, frame)]
+def _draw(found: RunFindings, frame: int, image: Thermal) -> Picture:
+    people = [_truth(row) for row in _rows(found.files.people, frame)]
+    believed = _rows(found.files.beliefs, frame)
+    tracks, explanation = (
+        [track_of(row) for row in believed],
+        read_explanation(found.run.about.tracker, believed),
+    )
     plates: list[Plate] = []
-    canvas = draw_tracks(enlarge(show_thermal(image), SCALE), tracks, SCALE, plates=plates)
-    return Shown(draw_truth(canvas, people, SCALE, plates=plates), origin)
+    canvas = draw_tracks(enlarge(show_thermal(image), SCALE), tracks, SCALE, explanation, plates=plates)
+    return draw_truth(canvas, people, SCALE, plates=plates)
 
 
 def _stored(run: FinishedRun, frames: Sequence[int]) -> dict[int, Thermal]:
@@ -84,27 +93,25 @@ def _stored(run: FinishedRun, frames: Sequence[int]) -> dict[int, Thermal]:
     return images
 
 
-def _replay(run: FinishedRun, frames: Sequence[int]) -> Iterator[tuple[int, Thermal]]:
-    """Play the scene again as far as the last frame wanted; yields nothing more once it goes another way."""
-    try:
-        for tick in replay(open_run(run.folder)):
+def _again(run: FinishedRun, frames: Sequence[int]) -> dict[int, Thermal]:
+    """Play the scene again as far as the last frame wanted, or until it goes another way."""
+    from peopleboy.scenarios.export.replay import replay
+
+    images = {}
+    with suppress(BadInput):
+        for tick in replay(run):
             if tick.frame in frames:
-                yield tick.frame, tick.observation.images["thermal"]
+                images[tick.frame] = tick.observation.images["thermal"]
             if tick.frame >= max(frames):
-                return
-    except BadInput:
-        return
+                break
+    return images
 
 
-def _rows(table: Any, frame: int) -> list[dict[str, Any]]:
-    rows: list[dict[str, Any]] = table.filter(np.asarray(table["frame"].to_numpy() == frame)).to_pylist()
+def _rows(table: Any, frame: int) -> list[Row]:
+    rows: list[Row] = table.filter(np.asarray(table["frame"].to_numpy() == frame)).to_pylist()
     return rows
 
 
-def _truth(row: Mapping[str, Any]) -> _Truth:
-    box = None if row["left_px"] is None else _box(row)
-    return _Truth(row["name"], box, row["visible_fraction"])
-
-
-def _box(row: Mapping[str, Any]) -> tuple[float, float, float, float]:
-    return row["left_px"], row["top_px"], row["width_px"], row["height_px"]
+def _truth(row: Row) -> _Truth:
+    box = (row["left_px"], row["top_px"], row["width_px"], row["height_px"])
+    return _Truth(row["name"], None if row["left_px"] is None else box, row["visible_fraction"])

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from peopleboy.scenarios.report.findings.finished_run import FinishedRun
 from peopleboy.scenarios.report.findings.spans import Flags, Floats, Ints, between, settle
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.run_files import RunFiles
 from peopleboy.sim.truth.events import (
     LEAVES_INSIDE,
     OCCLUSION_ENDS,
@@ -21,9 +24,15 @@ from peopleboy.sim.truth.truth import BORDER
 from peopleboy.tracker.evaluation.association import associate, pair_up
 
 STEADY_S = 0.3  # a number that lies on a person for less is fleeting
+_BOX = ("left_px", "top_px", "width_px", "height_px")
+_PEOPLE = (
+    *("frame", "id", "name", "x_m", "y_m", "distance_m", "is_counted", *_BOX, "whole_px"),
+    *("visible_fraction", "occluded_fraction", "occluder", "hidden_by"),
+)
+_ROBOT = ("frame", "x_m", "y_m", "mode")
 
 
-class Sight(IntEnum):
+class PersonView(IntEnum):
     """What there is to be seen of a person."""
 
     AWAY = 0
@@ -43,42 +52,27 @@ class Hold(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Story:
-    """One person in one run; all columns have F rows, one a frame.
-
-    Attributes:
-        id, name: of the person.
-        position_m: (F, 2) world frame; NaN where the person is not present.
-        distance_m: from the camera; NaN as above.
-        visible: share of the whole silhouette; 0 as above.
-        occluded: share hidden of what lies inside the image; NaN outside it.
-        hider: who or what hides most of the person; empty for nobody.
-        is_counted: 3 to 10 m away.
-        sight: `Sight`, with the thresholds of the event log.
-        matched: number of the track whose box lies on the person (IoU above 0.5), or 0.
-        track: the same without fleeting ones and short breaks.
-        iou, offset_px: of that box: overlap, and distance of the middles; NaN without one.
-        hold: `Hold`.
-    """
+    """One person in one run; all columns have F rows, one a frame."""
 
     id: int
     name: str
-    position_m: Floats
-    distance_m: Floats
-    visible: Floats
-    occluded: Floats
-    hider: tuple[str, ...]
-    is_counted: Flags
-    sight: Ints
-    matched: Ints
-    track: Ints
-    iou: Floats
-    offset_px: Floats
-    hold: Ints
+    position_m: Floats  # (F, 2) world frame; NaN where the person is not present
+    distance_m: Floats  # from the camera; NaN as above
+    visible: Floats  # share of the whole silhouette; 0 as above
+    occluded: Floats  # share hidden of what lies inside the image; NaN outside it
+    hider: tuple[str, ...]  # who or what hides most of the person; empty for nobody
+    is_counted: Flags  # 3 to 10 m away
+    view: Ints  # `PersonView`, with the thresholds of the event log
+    matched: Ints  # number of the track whose box lies on the person (IoU above 0.5), or 0
+    track: Ints  # the same without fleeting ones and short breaks
+    iou: Floats  # of that box; NaN without one
+    offset_px: Floats  # of its middle from the truth's; NaN as above
+    hold: Ints  # `Hold`
 
     @property
     def is_due(self) -> Flags:
         """Where the person counts and can be seen: (F,)."""
-        return np.asarray(self.is_counted & np.isin(self.sight, (Sight.SEEN, Sight.PARTLY)))
+        return _is_due(self.is_counted, self.view)
 
     def hider_in(self, start: int, end: int) -> str:
         """Name who hides the person most often in some frames; empty for nobody."""
@@ -86,99 +80,109 @@ class Story:
         return names.most_common(1)[0][0] if names else ""
 
 
-def tell_stories(run: FinishedRun) -> list[Story]:
-    """Tell the story of everybody in a run, in the scenario's order."""
-    lie = _lie(run)
-    alive = present_tracks(run)
-    who, first = np.unique(run.people["id"].to_numpy(), return_index=True)
-    names = [run.people["name"][int(row)].as_py() for row in first]
-    return [_tell(run, int(person), name, lie, alive) for person, name in zip(who, names, strict=True)]
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RunStory:
+    """A run, its tables as far as they are needed, and everybody's story in it."""
+
+    run: FinishedRun
+    files: RunFiles
+
+    @property
+    def steady(self) -> int:
+        """How many frames `STEADY_S` has."""
+        return max(round(STEADY_S * self.run.rate_hz), 1)
+
+    @cached_property
+    def shown(self) -> dict[int, Flags]:
+        """For each confirmed track the frames (F,) in which it is shown."""
+        every, tracks = np.arange(1, self.run.frames + 1), self.files.tracks
+        return {n: np.isin(every, tracks.frame[tracks.id == n]) for n in np.unique(tracks.id).tolist()}
+
+    @cached_property
+    def people(self) -> tuple[Story, ...]:
+        """The story of everybody, in the scenario's order."""
+        lying = _lying(self.files)
+        return tuple(_tell(self, who, lying) for who in np.unique(self.files.people["id"]).tolist())
+
+    def called(self, name: str) -> Story:
+        """The story of somebody."""
+        return next(person for person in self.people if person.name == name)
 
 
-def present_tracks(run: FinishedRun) -> dict[int, Flags]:
-    """Give for each confirmed track the frames (F,) in which it is shown."""
-    shown = {}
-    for number in np.unique(run.tracks.id).tolist():
-        frames = np.zeros(run.frames, np.int64)
-        frames[run.tracks.frame[run.tracks.id == number] - 1] = 1
-        shown[number] = frames > 0
-    return shown
+def read_files(run: FinishedRun) -> RunFiles:
+    """Read of a run's tables what stories need.
+
+    Raises:
+        BadInput: a table is missing or spoilt.
+    """
+    return run.files(_PEOPLE, _ROBOT)
 
 
-def steady_frames(run: FinishedRun) -> int:
-    """How many frames `STEADY_S` has."""
-    return max(round(STEADY_S * run.rate_hz), 1)
-
-
-def _lie(run: FinishedRun) -> dict[tuple[int, int], tuple[int, float, float]]:
-    """Which track lies on whom: (frame, person) to number, IoU and offset [px]."""
-    pairs = pair_up(run.truth, run.tracks)
-    found = {}
-    for pair in associate(pairs).tolist():
-        target, candidate = pairs.target[pair], pairs.candidate[pair]
-        true, given = run.truth.box[target], run.tracks.box[candidate]
-        offset = np.hypot(*(true[:2] + true[2:] / 2.0 - given[:2] - given[2:] / 2.0))
-        key = int(run.truth.frame[target]), int(run.truth.id[target])
-        found[key] = int(run.tracks.id[candidate]), float(pairs.iou[pair]), float(offset)
-    return found
-
-
-def _tell(
-    run: FinishedRun,
-    person: int,
-    name: str,
-    lie: dict[tuple[int, int], tuple[int, float, float]],
-    alive: dict[int, Flags],
-) -> Story:
-    rows = run.people.filter(np.asarray(run.people["id"].to_numpy() == person))
-    at = rows["frame"].to_numpy() - 1
-    shares = [dict(hidden) for hidden in rows["hidden_by"].to_pylist()]
-    is_ahead = rows["whole_px"].to_numpy() > 0
-    inside = _column(run, at, is_ahead * [1.0 - share.get(BORDER, 0.0) for share in shares])
-    occluded = _column(run, at, rows["occluded_fraction"].to_numpy())
-    counted = _column(run, at, rows["is_counted"].to_numpy(zero_copy_only=False)) > 0.0
-    hider = [""] * run.frames
-    for frame, word in zip(at.tolist(), rows["occluder"].to_pylist(), strict=True):
-        hider[frame] = word or ""
-    sight = _sight(occluded, ~(inside < LEAVES_INSIDE) & np.isfinite(inside))
-    found = [lie.get((frame, person), (0, np.nan, np.nan)) for frame in range(1, run.frames + 1)]
-    matched = np.array([number for number, _, _ in found], np.int64)
-    track = settle(matched, steady_frames(run))
-    is_due = counted & np.isin(sight, (Sight.SEEN, Sight.PARTLY))
-    return Story(
-        id=person,
-        name=name,
-        position_m=np.stack([_column(run, at, rows[key].to_numpy()) for key in ("x_m", "y_m")], axis=1),
-        distance_m=_column(run, at, rows["distance_m"].to_numpy()),
-        visible=np.nan_to_num(_column(run, at, rows["visible_fraction"].to_numpy())),
-        occluded=occluded,
-        hider=tuple(hider),
-        is_counted=counted,
-        sight=sight,
-        matched=matched,
-        track=track,
-        iou=np.array([iou for _, iou, _ in found]),
-        offset_px=np.array([offset for _, _, offset in found]),
-        hold=_hold(track, is_due, alive),
+def _lying(files: RunFiles) -> Any:
+    """Which track lies on whom: records frame (from 0), person, number, iou, offset [px]."""
+    pairs = pair_up(files.truth, files.tracks)
+    chosen = associate(pairs)
+    target, candidate = pairs.target[chosen], pairs.candidate[chosen]
+    true, given = files.truth.box[target], files.tracks.box[candidate]
+    offset = np.hypot(*(true[:, :2] + true[:, 2:] / 2.0 - given[:, :2] - given[:, 2:] / 2.0).T)
+    columns = (files.truth.frame[target] - 1, files.truth.id[target], files.tracks.id[candidate])
+    return np.rec.fromarrays(
+        [*columns, pairs.iou[chosen], offset],
+        dtype=[("frame", int), ("person", int), ("number", int), ("iou", float), ("offset", float)],
     )
 
 
-def _column(run: FinishedRun, at: Ints, values: object) -> Floats:
-    """Spread values over all frames (F,); NaN elsewhere."""
-    column = np.full(run.frames, np.nan)
-    column[at] = values
-    return column
+def _tell(story: RunStory, person: int, lying: Any) -> Story:
+    frames, people = story.run.frames, story.files.people
+    rows = people.filter(np.asarray(people["id"].to_numpy() == person))
+    at = rows["frame"].to_numpy() - 1
+    mine = lying[lying.person == person]
+
+    def spread(values: object, at: Ints = at) -> Floats:
+        """Spread values over all frames (F,); NaN elsewhere."""
+        column = np.full(frames, np.nan)
+        column[at] = values
+        return column
+
+    beyond = [dict(hidden).get(BORDER, 0.0) for hidden in rows["hidden_by"].to_pylist()]
+    inside = spread((rows["whole_px"].to_numpy() > 0) * (1.0 - np.array(beyond)))
+    occluded = spread(rows["occluded_fraction"].to_numpy())
+    is_counted = spread(rows["is_counted"].to_numpy(zero_copy_only=False)) > 0.0
+    hider = dict(zip(at.tolist(), rows["occluder"].to_pylist(), strict=True))
+    view = _view(occluded, ~(inside < LEAVES_INSIDE) & np.isfinite(inside))
+    matched = np.nan_to_num(spread(mine.number, mine.frame)).astype(np.int64)
+    track = settle(matched, story.steady)
+    return Story(
+        id=person,
+        name=rows["name"][0].as_py(),
+        position_m=np.stack([spread(rows[key].to_numpy()) for key in ("x_m", "y_m")], axis=1),
+        distance_m=spread(rows["distance_m"].to_numpy()),
+        visible=np.nan_to_num(spread(rows["visible_fraction"].to_numpy())),
+        occluded=occluded,
+        hider=tuple(hider.get(frame) or "" for frame in range(frames)),
+        is_counted=is_counted,
+        view=view,
+        matched=matched,
+        track=track,
+        iou=spread(mine.iou, mine.frame),
+        offset_px=spread(mine.offset, mine.frame),
+        hold=_hold(track, _is_due(is_counted, view), story.shown),
+    )
 
 
-def _sight(occluded: Floats, is_inside: Flags) -> Ints:
+def _is_due(is_counted: Flags, view: Ints) -> Flags:
+    return np.asarray(is_counted & np.isin(view, (PersonView.SEEN, PersonView.PARTLY)))
+
+
+def _view(occluded: Floats, is_inside: Flags) -> Ints:
     hidden = np.where(is_inside, occluded, np.nan)
-    sight = np.where(is_inside, Sight.SEEN, Sight.AWAY)
-    sight[between(hidden, OCCLUSION_STARTS, OCCLUSION_ENDS)] = Sight.PARTLY
-    sight[between(hidden, TOTAL_STARTS, TOTAL_ENDS)] = Sight.WHOLLY
-    return np.asarray(sight, np.int64)
+    view = np.where(is_inside, PersonView.SEEN, PersonView.AWAY)
+    view[between(hidden, OCCLUSION_STARTS, OCCLUSION_ENDS)] = PersonView.PARTLY
+    view[between(hidden, TOTAL_STARTS, TOTAL_ENDS)] = PersonView.WHOLLY
+    return np.asarray(view, np.int64)
 
 
-def _hold(track: Ints, is_due: Flags, alive: dict[int, Flags]) -> Ints:
+def _hold(track: Ints, is_due: Flags, shown: dict[int, Flags]) -> Ints:
     """What the tracker has: a person's number is the last that lay on the person."""
     hold = np.zeros(len(track), np.int64)
     last = 0
@@ -187,5 +191,5 @@ def _hold(track: Ints, is_due: Flags, alive: dict[int, Flags]) -> Ints:
         if number:
             hold[k] = Hold.ON
         elif is_due[k]:
-            hold[k] = Hold.ADRIFT if last and alive[last][k] else Hold.MISSED
+            hold[k] = Hold.ADRIFT if last and shown[last][k] else Hold.MISSED
     return hold

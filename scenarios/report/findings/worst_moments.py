@@ -2,145 +2,92 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from peopleboy.scenarios.report.findings.sentences import seconds, spoken
-from peopleboy.scenarios.report.findings.spans import Flags, spans
+from peopleboy.scenarios.report.findings.spans import spans
 from peopleboy.scenarios.report.findings.story import Hold, Story
-from peopleboy.scenarios.report.findings.summary import Outcome
+from peopleboy.scenarios.report.findings.summary import RunFindings
 
 _WELL_VISIBLE = 0.3
 _APART_S = 1.0  # two moments of one person nearer than this are one
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BadMoment:
-    """What went wrong, and when.
+class BadMoment(NamedTuple):
+    """What went wrong, and when."""
 
-    Attributes:
-        badness: to choose by: a lost identity is worst, then contacts, tracks on nobody, people not found.
-        frames: one or two to look at, from 1.
-        title: what it is about.
-        text: what happened.
-        who: the person or thing that it is about.
-    """
-
+    # To choose by: a lost identity is worst, then contacts, tracks on nobody, people not found.
     badness: float
-    frames: tuple[int, ...]
+    frames: tuple[int, ...]  # one or two to look at, from 1
     title: str
     text: str
-    who: str
+    who: str  # the person or thing that it is about
 
 
-def worst_moments(outcome: Outcome, count: int) -> list[BadMoment]:
+def worst_moments(found: RunFindings, count: int) -> list[BadMoment]:
     """Choose at most `count` moments, in time; where nothing went wrong, the boxes that fit worst."""
-    found = [*_changes(outcome), *_contacts(outcome), *_strays(outcome)]
-    for story in outcome.stories:
-        found += _gaps(outcome, story)
-    if len(found) < count:
-        found += [_worst_fit(story) for story in outcome.stories if np.isfinite(story.iou).any()]
+    moments = [*_changes(found), *_contacts(found), *_strays(found)]
+    for person in found.people:
+        moments += _gaps(found, person)
+    if len(moments) < count:
+        moments += [_worst_fit(person) for person in found.people if np.isfinite(person.iou).any()]
     chosen: list[BadMoment] = []
-    for moment in sorted(found, key=lambda moment: -moment.badness):
-        if len(chosen) < count and not any(_is_same(outcome, moment, other) for other in chosen):
+    for moment in sorted(moments, key=lambda moment: -moment.badness):
+        if len(chosen) < count and not any(_is_same(found, moment, other) for other in chosen):
             chosen.append(moment)
     return sorted(chosen, key=lambda moment: moment.frames)
 
 
-def _is_same(outcome: Outcome, one: BadMoment, other: BadMoment) -> bool:
-    gap = abs(one.frames[-1] - other.frames[-1]) / outcome.run.rate_hz
+def _is_same(found: RunFindings, one: BadMoment, other: BadMoment) -> bool:
+    gap = abs(one.frames[-1] - other.frames[-1]) / found.run.rate_hz
     return one.who == other.who and gap < _APART_S
 
 
-def _changes(outcome: Outcome) -> list[BadMoment]:
-    moments = []
-    for change in outcome.changes:
+def _changes(found: RunFindings) -> Iterator[BadMoment]:
+    for change in found.changes:
         whose = f", which was {spoken(change.taken_from)}'s" if change.taken_from else ""
-        name = spoken(change.person)
-        moments.append(
-            BadMoment(
-                badness=40.0 if change.is_return else 100.0,
-                frames=(change.last_frame, change.first_frame),
-                title=f"{name} loses number {change.old}",
-                text=f"{name} {change.why}, and was then number {change.new}{whose}.",
-                who=change.person,
-            )
-        )
-    return moments
+        name, badness = spoken(change.person), 40.0 if change.is_return else 100.0
+        text = f"{name} {change.why}, and was then number {change.new}{whose}."
+        frames = (change.last_frame, change.first_frame)
+        yield BadMoment(badness, frames, f"{name} loses number {change.old}", text, change.person)
 
 
-def _contacts(outcome: Outcome) -> list[BadMoment]:
-    return [
-        BadMoment(
-            badness=90.0,
-            frames=(line.frame,),
-            title=f"Contact with {spoken(line.other)}",
-            text=f"The robot touches {spoken(line.other)}.",
-            who=line.other,
-        )
-        for line in outcome.run.events
-        if line.kind == "contact starts"
-    ]
+def _contacts(found: RunFindings) -> Iterator[BadMoment]:
+    for line in found.contacts:
+        name = spoken(line.other)
+        yield BadMoment(90.0, (line.frame,), f"Contact with {name}", f"The robot touches {name}.", line.other)
 
 
-def _strays(outcome: Outcome) -> list[BadMoment]:
-    moments = []
-    for stray in outcome.strays:
-        lasts_s = (stray.last_frame - stray.first_frame + 1) / outcome.run.rate_hz
-        moments.append(
-            BadMoment(
-                badness=min(lasts_s * 10.0, 80.0),
-                frames=((stray.first_frame + stray.last_frame) // 2,),
-                title=f"Number {stray.track} is on nobody",
-                text=f"This track lasts {seconds(lasts_s)} and never lies on a person.",
-                who=f"track {stray.track}",
-            )
-        )
-    return moments
+def _strays(found: RunFindings) -> Iterator[BadMoment]:
+    for stray in found.strays:
+        lasts_s = (stray.last_frame - stray.first_frame + 1) / found.run.rate_hz
+        frames = ((stray.first_frame + stray.last_frame) // 2,)
+        text = f"This track lasts {seconds(lasts_s)} and never lies on a person."
+        title, who = f"Number {stray.track} is on nobody", f"track {stray.track}"
+        yield BadMoment(min(lasts_s * 10.0, 80.0), frames, title, text, who)
 
 
-def _gaps(outcome: Outcome, story: Story) -> list[BadMoment]:
+def _gaps(found: RunFindings, person: Story) -> Iterator[BadMoment]:
     """Times at which a person who could be seen well had no box."""
-    moments = []
-    rate, name = outcome.run.rate_hz, spoken(story.name)
-    for span in spans(story.hold):
-        seen = story.visible[span.start : span.end]
-        if span.value not in (Hold.MISSED, Hold.ADRIFT) or seen.max(initial=0.0) < _WELL_VISIBLE:
+    name = spoken(person.name)
+    for span in spans(person.hold):
+        seen = person.visible[span.start : span.end]
+        well = np.flatnonzero(seen >= _WELL_VISIBLE).tolist()
+        if span.value not in (Hold.MISSED, Hold.ADRIFT) or not well:
             continue
-        lasts_s = span.length / rate
-        is_missed = span.value == Hold.MISSED
+        lasts_s, is_missed = span.length / found.run.rate_hz, span.value == Hold.MISSED
+        title = f"{name} {'is not found' if is_missed else 'is left by the box'}"
         has = "has no track" if is_missed else "has a track whose box lies elsewhere"
-        moments.append(
-            BadMoment(
-                badness=min(lasts_s * (8.0 if is_missed else 4.0), 50.0),
-                frames=(span.start + _middle_of(seen >= _WELL_VISIBLE) + 1,),
-                title=f"{name} {'is not found' if is_missed else 'is left by the box'}",
-                text=f"{name} {has} for {seconds(lasts_s)} while up to {seen.max():.0%} visible.",
-                who=story.name,
-            )
-        )
-    return moments
+        text = f"{name} {has} for {seconds(lasts_s)} while up to {seen.max():.0%} visible."
+        badness = min(lasts_s * (8.0 if is_missed else 4.0), 50.0)
+        yield BadMoment(badness, (span.start + well[len(well) // 2] + 1,), title, text, person.name)
 
 
-def _middle_of(flags: Flags) -> int:
-    at = np.flatnonzero(flags)
-    return int(at[len(at) // 2])
-
-
-def _worst_fit(story: Story) -> BadMoment:
-    at = int(np.nanargmin(story.iou))
-    name = spoken(story.name)
-    return BadMoment(
-        badness=1.0 - float(story.iou[at]),
-        frames=(at + 1,),
-        title=f"The box that fits {name} worst",
-        text=f"Box and truth overlap by {story.iou[at]:.0%}; {story.visible[at]:.0%} of {name} is visible.",
-        who=story.name,
-    )
-
-
-def common_frames(moments: Sequence[BadMoment]) -> list[int]:
-    """All frames to be looked at, in order, each once."""
-    return sorted({frame for moment in moments for frame in moment.frames})
+def _worst_fit(person: Story) -> BadMoment:
+    at, name = int(np.nanargmin(person.iou)), spoken(person.name)
+    iou, visible = float(person.iou[at]), person.visible[at]
+    text = f"Box and truth overlap by {iou:.0%}; {visible:.0%} of {name} is visible."
+    return BadMoment(1.0 - iou, (at + 1,), f"The box that fits {name} worst", text, person.name)

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
+from peopleboy.scenarios.progress_bar import progress_bar
 from peopleboy.scenarios.studies.reproduce.experiments.catalogue import choose
 from peopleboy.scenarios.studies.reproduce.measuring.workload import full_plan, quick_plan
 from peopleboy.scenarios.studies.reproduce.reproduce import Means, reproduce
@@ -39,13 +39,10 @@ def reproduce_with_progress(
     means = Means(
         out=out, jobs=-1 if jobs is None else jobs, scheduler=scheduler, command=_command(names, quick=quick)
     )
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), refresh_per_second=2) as progress:
-        task = progress.add_task("beginning", total=None)
+    with progress_bar("reproduce") as show:
 
         def report(finished: int, total: int, last: str) -> None:
-            kind = last.split(" ")[0] if last else "working"
-            progress.update(task, completed=finished, total=total, description=kind)
+            show(finished, total, last.split(" ")[0])
 
         return reproduce(experiments, plan, means, report)
 

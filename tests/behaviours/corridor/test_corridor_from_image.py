@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from peopleboy.behaviours.corridor.corridor_from_image import corridor_from_image
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
-from tests.helpers.drawn_corridors import CAMERA, drawn_corridor
+from tests.helpers.images.drawn_corridors import CAMERA, drawn_corridor
 
 
 @settings(deadline=None, max_examples=30)

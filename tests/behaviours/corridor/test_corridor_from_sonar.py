@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.helpers.percepts.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 from peopleboy.behaviours.corridor.corridor_from_sonar import corridor_from_sonar
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
 from peopleboy.behaviours.dead_reckoning import Motion
 from peopleboy.behaviours.sonar.sonar_ring import mounts
-from tests.helpers.drawn_corridors import percept_of, sonar_in_corridor
-from tests.helpers.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
+from tests.helpers.images.drawn_corridors import percept_of, sonar_in_corridor
 
 places = {
     "share": st.floats(-0.5, 0.5),  # of the room beside the robot
@@ -73,7 +73,7 @@ def test_where_nothing_is_heard_no_corridor_is_told_and_why(reading):
 
 def test_dead_reckoning_follows_the_arc_and_blending_goes_a_share_of_the_way():
     start = Corridor(offset_m=0.1, heading_rad=0.0, width_m=3.0)
-    turned = drive_on(start, Motion(1.0, 0.2))
+    turned = drive_on(start, Motion(1.0, 0.2, 1.0))
     assert turned.offset_m == pytest.approx(0.1 + (1.0 - math.cos(0.2)) / 0.2, abs=1e-3)  # a circle's
     assert turned.heading_rad == 0.2
     assert blend(start, dataclasses.replace(start, offset_m=0.5), 0.25).offset_m == pytest.approx(0.2)

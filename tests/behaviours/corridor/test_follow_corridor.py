@@ -2,14 +2,14 @@ import math
 
 import numpy as np
 import pytest
+from tests.helpers.percepts.percepts.toy_world import SONAR_ANGLE, Toy, drive, wall
 
 from peopleboy.behaviours.corridor.corridor_end import EndConfig, open_room, wall_ahead
 from peopleboy.behaviours.corridor.corridor_lane import LaneConfig, best_lane
 from peopleboy.behaviours.corridor.corridor_pose import Corridor
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
 from peopleboy.behaviours.registry import make_behaviour
-from tests.helpers.drawn_corridors import CAMERA, drawn_corridor, percept_of, sonar_in_corridor
-from tests.helpers.toy_world import SONAR_ANGLE, Toy, drive, wall
+from tests.helpers.images.drawn_corridors import CAMERA, drawn_corridor, percept_of, sonar_in_corridor
 
 STRAIGHT = Corridor(offset_m=0.0, heading_rad=0.0, width_m=3.0)
 
@@ -124,7 +124,7 @@ def test_in_the_dark_the_sonars_take_over_and_the_reason_says_so():
         dark = drawn_corridor(0.2, 0.0, 3.0, light=0.0)
         command = behaviour.command(percept_of(ranges, 1.0 + step / 15.0, colour=dark))
     assert behaviour.mode == "sonar"
-    assert behaviour.reason == "the image does not tell: too dark"
+    assert "too dark" in behaviour.reason
     assert behaviour.state.corridor.offset_m == pytest.approx(0.4, abs=0.03)  # the sonars'
     assert command.linear_m_s > 0.0
 

@@ -20,10 +20,9 @@ from peopleboy.scenarios.drawing.overlay import (
     show_thermal,
 )
 from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
-from peopleboy.tracker.thermal.config import ContourConfig
-from peopleboy.tracker.thermal.contour.ellipse import outline
+from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.track import Status
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 GREY = np.full((480, 640, 3), 60, np.uint8)
 
@@ -39,8 +38,8 @@ def is_coloured(
 
 
 def test_the_outline_of_a_track_has_its_colour_all_around() -> None:
-    picture = draw_tracks(GREY, [made.TRACK])
-    for line in outline(made.ELLIPSE, ContourConfig(), 200):
+    picture = draw_tracks(GREY, [made.TRACK], explanation=made.explain())
+    for line in outline(made.ELLIPSE, made.explain().config.contour, 200):
         assert is_coloured(picture, line, track_colour(1))
 
 

@@ -3,8 +3,8 @@ from PIL import Image, ImageDraw
 
 from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
 from peopleboy.scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, STRONG, cut, draw_head, font
-from tests.helpers.footage_calls import call
-from tests.helpers.footage_files import box, write_folder
+from tests.helpers.calls.footage_calls import call
+from tests.helpers.images.footage_files import box, write_folder
 
 
 def head(title="clip", length="12 frames", **options):

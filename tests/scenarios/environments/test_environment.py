@@ -18,6 +18,7 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.observations import KINDS
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.world import World
+from tests.helpers.calls.refused import refused
 
 README = Path(__file__).parents[3] / "README.md"
 SMALL = (80, 60)
@@ -205,38 +206,34 @@ def test_options_change_what_they_name_for_one_episode(scene: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "message"),
+    ("options", "named"),
     [
-        ({"lihgt": 0.5}, "unknown key 'lihgt'; did you mean 'light'"),
-        ({"light": 3.0}, r"light 3.0 must be a number or a pair, within 0 .. 2"),
-        ({"light": [1.0, 0.5]}, "light"),
-        ({"people": 1.5}, "people 1.5 must be a whole number"),
-        ({"noise": float("nan")}, "noise nan"),
+        ({"lihgt": 0.5}, ("'lihgt'", "'light'")),
+        ({"light": 3.0}, ("light 3.0", "0 .. 2")),
+        ({"light": [1.0, 0.5]}, ("light",)),
+        ({"people": 1.5}, ("people 1.5", "whole")),
+        ({"noise": float("nan")}, ("noise nan",)),
     ],
 )
-def test_wrong_options_are_refused_in_one_line(options: dict, message: str, scene: Path) -> None:
+def test_wrong_options_are_refused_in_one_line(options: dict, named: tuple[str, ...], scene: Path) -> None:
     env = PeopleBoyEnv(scene, observation="truth")
-    with pytest.raises(BadInput, match=message) as refused:
+    with refused(*named):
         env.reset(options=options)
-    assert "\n" not in str(refused.value)
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("arguments", "named"),
     [
-        (
-            {"observation": "sound"},
-            "observation 'sound': there is no such; choose from pixels, tracks, truth",
-        ),
-        ({"task": "dance"}, "task 'dance'"),
-        ({"image_size": (40, 30)}, r"image_size \(40, 30\) must be"),
-        ({"tracker": "none"}, "unknown tracker"),
-        ({"render_mode": "human"}, "render_mode"),
-        ({"scenario": "singel_follow"}, "did you mean 'single_follow'"),
+        ({"observation": "sound"}, ("observation 'sound'", "pixels, tracks, truth")),
+        ({"task": "dance"}, ("task 'dance'",)),
+        ({"image_size": (40, 30)}, ("image_size (40, 30)",)),
+        ({"tracker": "none"}, ("'none'", "peopleboy")),
+        ({"render_mode": "human"}, ("render_mode", "'human'")),
+        ({"scenario": "singel_follow"}, ("'singel_follow'", "'single_follow'")),
     ],
 )
-def test_wrong_arguments_are_refused(arguments: dict, message: str) -> None:
-    with pytest.raises(BadInput, match=message):
+def test_wrong_arguments_are_refused(arguments: dict, named: tuple[str, ...]) -> None:
+    with refused(*named):
         PeopleBoyEnv(**arguments)
 
 

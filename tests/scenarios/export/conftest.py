@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.exported import FOLLOWING, SCENE, export, make_run
+from tests.helpers.runs.exported import FOLLOWING, SCENE, export, make_run
 
 
 @pytest.fixture(scope="session")

@@ -11,18 +11,11 @@ from peopleboy.scenarios.commands.export import FORMATS
 from peopleboy.scenarios.export import coco
 from peopleboy.scenarios.export.formats import WRITERS
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
-from tests.helpers.exported import export, run_cli
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names
+from tests.helpers.runs.exported import export
 
 FORM = ("--format", "viper")
-
-
-def refusal(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
-    """The one line that a call ends with."""
-    capsys.readouterr()
-    assert run_cli("export", *arguments) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1, told
-    return told
 
 
 def copy(run: Path, to: Path) -> Path:
@@ -35,12 +28,12 @@ def test_the_command_offers_what_there_is() -> None:
 
 
 def test_bad_input_is_one_line(crossing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert "there is no such folder" in refusal(capsys, tmp_path / "nothing", *FORM)
     (tmp_path / "empty").mkdir()
-    assert "give the folder of a finished run" in refusal(capsys, tmp_path / "empty", *FORM)
-    assert "'mp3' is not one of" in refusal(capsys, crossing, "--format", "mp3")
-    assert "Missing argument" in refusal(capsys, *FORM)
-    assert "Missing option '--format'" in refusal(capsys, crossing)
+    for name in ("nothing", "empty"):
+        assert_names(refusal(capsys, "export", tmp_path / name, *FORM), tmp_path / name)
+    assert_names(refusal(capsys, "export", crossing, "--format", "mp3"), "--format", "'mp3'", *FORMATS)
+    assert_names(refusal(capsys, "export", *FORM), "RUNS")
+    assert_names(refusal(capsys, "export", crossing), "--format", *FORMATS)
 
 
 def test_a_run_that_was_cut_off_is_refused(
@@ -49,7 +42,7 @@ def test_a_run_that_was_cut_off_is_refused(
     run = copy(crossing, tmp_path / "run")
     about = json.loads((run / "run.json").read_text()) | {"status": "cut off"}
     (run / "run.json").write_text(json.dumps(about))
-    assert "this run was cut off" in refusal(capsys, run, *FORM)
+    assert_names(refusal(capsys, "export", run, *FORM), run, "cut off")
 
 
 def test_files_that_are_missing_or_broken_are_named(
@@ -57,14 +50,14 @@ def test_files_that_are_missing_or_broken_are_named(
 ) -> None:
     run = copy(crossing, tmp_path / "run")
     (run / "truth.parquet").write_bytes(b"PAR1 but no table")
-    assert "truth.parquet: cannot be read as a table of a run" in refusal(capsys, run, *FORM)
+    assert_names(refusal(capsys, "export", run, *FORM), run / "truth.parquet")
     (run / "tracks.txt").unlink()
-    assert "tracks.txt: there is no such file" in refusal(capsys, run, "--format", "mot")
+    assert_names(refusal(capsys, "export", run, "--format", "mot"), run / "tracks.txt")
     (run / "tracks.txt").touch()
     (run / "run.json").write_text('{"status": "complete", "frames": 60}')
-    assert "run.json: missing key 'scenario'; missing key 'seed'" in refusal(capsys, run, *FORM)
+    assert_names(refusal(capsys, "export", run, *FORM), run / "run.json", "'scenario'", "'seed'")
     (run / "scenario.yaml").unlink()
-    assert "scenario.yaml: there is no such file" in refusal(capsys, run, *FORM)
+    assert_names(refusal(capsys, "export", run, *FORM), run / "scenario.yaml")
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
@@ -72,20 +65,20 @@ def test_two_runs_of_one_name_are_refused(
     crossing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     again = copy(crossing, tmp_path / crossing.name)
-    assert "is called tiny-3 too" in refusal(capsys, crossing, again, *FORM)
+    assert_names(refusal(capsys, "export", crossing, again, *FORM), again, "tiny-3")
 
 
 def test_nothing_is_replaced_but_an_export_and_that_only_if_asked(
     crossing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = export(crossing, "viper", tmp_path / "out")
-    assert "exists already; give --overwrite" in refusal(capsys, crossing, *FORM, "--out", out)
+    assert_names(refusal(capsys, "export", crossing, *FORM, "--out", out), out, "--overwrite")
     assert run_cli("export", crossing, *FORM, "--out", out, "--overwrite") == 0
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.tex").write_text("years of work")
-    assert "is no export" in refusal(capsys, crossing, *FORM, "--out", tmp_path / "mine", "--overwrite")
+    for place in (tmp_path / "mine", tmp_path / "mine" / "thesis.tex"):
+        assert_names(refusal(capsys, "export", crossing, *FORM, "--out", place, "--overwrite"), place)
     assert (tmp_path / "mine" / "thesis.tex").read_text() == "years of work"
-    assert "is no export" in refusal(capsys, crossing, *FORM, "--out", tmp_path / "mine" / "thesis.tex")
 
 
 def test_an_export_that_fails_leaves_nothing_and_keeps_the_earlier_one(
@@ -99,8 +92,8 @@ def test_an_export_that_fails_leaves_nothing_and_keeps_the_earlier_one(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(coco, "write_images", fail)
-    told = refusal(capsys, crossing, "--format", "coco", "--out", out, "--overwrite")
-    assert "No space left on device" in told
+    told = refusal(capsys, "export", crossing, "--format", "coco", "--out", out, "--overwrite")
+    assert_names(told, "No space left on device")
     assert [path.name for path in tmp_path.iterdir()] == ["coco"]
     assert sorted(path.name for path in out.iterdir()) == ["earlier", "export.json"]
 
@@ -108,10 +101,11 @@ def test_an_export_that_fails_leaves_nothing_and_keeps_the_earlier_one(
 def test_a_missing_package_is_named_with_the_extra_that_brings_it(
     crossing: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for form, package in (("mp4", "av"), ("mcap", "rosbags")):
+    for form, package in (("coco", "pycocotools"), ("mp4", "av"), ("mcap", "rosbags")):
         monkeypatch.setitem(sys.modules, package, None)
-        told = refusal(capsys, crossing, "--format", form, "--out", tmp_path / form)
-        assert f"--format {form} needs the package {package}: pip install '.[export]'" in told
+        told = refusal(capsys, "export", crossing, "--format", form, "--out", tmp_path / form)
+        assert_names(told, f"--format {form}", package, "pip install '.[export]'")
+        assert not list(tmp_path.iterdir())
 
 
 def test_a_folder_of_runs_is_exported_whole_beside_them(crossing: Path, tmp_path: Path) -> None:

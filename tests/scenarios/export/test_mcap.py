@@ -22,7 +22,7 @@ from scipy.spatial.transform import Rotation
 from peopleboy.scenarios.export.ros_messages import drift
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.sim.geometry.planar import Planar
-from tests.helpers.exported import export
+from tests.helpers.runs.exported import export
 
 TOPICS = {
     "/thermal/image/compressed", "/colour/image/compressed", "/thermal/camera_info", "/colour/camera_info",
@@ -117,7 +117,7 @@ def test_the_frames_lead_from_the_camera_to_where_the_robot_truly_is(
     camera = pose(next(t.transform for t in fixed.transforms if t.child_frame_id == "thermal_optical"))
     run = open_run(crossing)
     assert camera == pytest.approx(run.robot.cameras["thermal"].camera.robot_from_camera)
-    for message, row in zip(messages["/tf"], run.robot_rows(), strict=True):
+    for message, row in zip(messages["/tf"], run.files().robot.to_pylist(), strict=True):
         frames = {
             one.child_frame_id: (one.header.frame_id, pose(one.transform)) for one in message.transforms
         }

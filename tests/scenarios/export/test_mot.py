@@ -14,7 +14,9 @@ from trackeval.metrics import CLEAR, HOTA, Identity
 
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
 from peopleboy.tracker.evaluation.evaluate import Scores
-from tests.helpers.exported import SCENE, export, make_run, run_cli
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names
+from tests.helpers.runs.exported import SCENE, export, make_run
 
 
 @pytest.fixture(scope="module")
@@ -134,16 +136,16 @@ def test_a_second_run_of_the_same_seed_and_tracker_is_refused(
     crossing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shutil.copytree(crossing, tmp_path / "again")
-    assert run_cli("export", crossing, tmp_path / "again", "--format", "mot", "--out", tmp_path / "mot") == 2
-    assert "same scenario, seed and tracker" in capsys.readouterr().err
+    order = (crossing, tmp_path / "again", "--format", "mot", "--out", tmp_path / "mot")
+    assert_names(refusal(capsys, "export", *order), tmp_path / "again", crossing)
     assert [path.name for path in tmp_path.iterdir()] == ["again"]
 
 
 def test_trackers_that_have_not_seen_the_same_sequences_are_refused(
     thesis: Path, following: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run_cli("export", thesis, following, "--format", "mot", "--out", tmp_path / "mot") == 2
-    assert "there is no run of it with tracker" in capsys.readouterr().err
+    told = refusal(capsys, "export", thesis, following, "--format", "mot", "--out", tmp_path / "mot")
+    assert_names(told, "tiny-3", "tracker peopleboy")
 
 
 def test_a_sequence_is_exported_without_its_frames_too(thesis: Path, folder: Path, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 from peopleboy.scenarios.export.replay import replay
 from peopleboy.scenarios.export.video import BAR_PX, HEIGHT_PX, draw_film_frame
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from tests.helpers.exported import export
+from tests.helpers.runs.exported import export
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,9 @@ from trackers.eval import evaluate_mot_sequences
 from trackeval.datasets import MotChallenge2DBox
 
 from peopleboy.scenarios.export.dataset.splits import SPLITS
-from tests.helpers.exported import SCENE, export, run_cli
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names
+from tests.helpers.runs.exported import SCENE, export
 
 FRAMES = 6
 SHORT = SCENE | {"name": "short", "duration_s": FRAMES / 15}
@@ -29,12 +31,6 @@ def people(tmp_path_factory: pytest.TempPathFactory) -> Path:
     order = (home / "short.yaml", "--seeds", 7, "--jobs", 1, "--out", home / "people")
     assert run_cli("render", *order) == 0
     return home / "people"
-
-
-def refusal(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
-    capsys.readouterr()
-    assert run_cli("export", *arguments) == 2
-    return capsys.readouterr().err
 
 
 def test_coco_has_annotations_and_images_of_each_split_apart(
@@ -116,13 +112,13 @@ def test_a_run_without_split_is_not_mixed_with_those_of_a_set(
     people: Path, crossing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     order = ("--format", "viper", "--out", tmp_path / "viper")
-    assert "tiny-3: lies in no rendered set" in refusal(capsys, people, crossing, *order)
+    assert_names(refusal(capsys, "export", people, crossing, *order), crossing)
     shutil.copytree(people, tmp_path / "people")
     shutil.copytree(people / "short-0", tmp_path / "people" / "short-9")
-    assert "short-9: must be in one split, is in none of" in refusal(capsys, tmp_path / "people", *order)
+    assert_names(refusal(capsys, "export", tmp_path / "people", *order), "short-9", "none")
     (tmp_path / "people" / "splits" / "val.txt").write_text("short-0\n")
-    told = refusal(capsys, tmp_path / "people" / "short-0", *order)
-    assert "short-0: must be in one split, is in train and val of" in told
+    told = refusal(capsys, "export", tmp_path / "people" / "short-0", *order)
+    assert_names(told, "short-0", "train", "val")
     assert [path.name for path in tmp_path.iterdir()] == ["people"]
 
 
@@ -132,8 +128,7 @@ def test_a_set_that_was_cut_off_is_refused_but_its_runs_are_not(
     shutil.copytree(people, tmp_path / "people")
     (tmp_path / "people" / "dataset.json").unlink()
     order = ("--format", "viper", "--out", tmp_path / "viper")
-    assert "people: this set is not finished; the same `peopleboy render`" in refusal(
-        capsys, tmp_path / "people", *order
-    )
+    told = refusal(capsys, "export", tmp_path / "people", *order)
+    assert_names(told, tmp_path / "people", "peopleboy render")
     assert run_cli("export", tmp_path / "people" / "short-5", *order) == 0
     assert json.loads((tmp_path / "viper" / "export.json").read_text())["splits"] == {"val": ["short-5"]}

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.scenarios.export.viper import whole_pixels
-from tests.helpers.exported import export
+from tests.helpers.runs.exported import export
 
 V, D = "{http://lamp.cfar.umd.edu/viper#}", "{http://lamp.cfar.umd.edu/viperdata#}"
 # By ViPER's schema.

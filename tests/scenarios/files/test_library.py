@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 import yaml
 
-from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.plan import draw_plan
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
 from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import json_schema
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.timetable import timetable
+from tests.helpers.calls.refused import refused
 
 NAMES = sorted(path.stem for path in LIBRARY.glob("*.yaml"))
 every_scenario = pytest.mark.parametrize("name", NAMES)
@@ -142,9 +142,14 @@ def test_a_following_robot_and_a_scripted_one_get_their_behaviour() -> None:
         assert scenario.robot.behaviour in get_args(RobotSpec.model_fields["behaviour"].annotation)
 
 
-@pytest.mark.parametrize(("seed", "renderer"), [(-1, "raycast"), (0, "opengl")])
-def test_a_negative_seed_and_an_unknown_renderer_are_refused(seed: int, renderer: str) -> None:
-    with pytest.raises(BadInput, match=r"must be 0 or more|raycast, bullet"):
+@pytest.mark.parametrize(
+    ("seed", "renderer", "named"),
+    [(-1, "raycast", ("seed", "-1")), (0, "opengl", ("opengl", "raycast, bullet"))],
+)
+def test_a_negative_seed_and_an_unknown_renderer_are_refused(
+    seed: int, renderer: str, named: tuple[str, ...]
+) -> None:
+    with refused(*named):
         load_scenario("empty_room").world(seed, renderer)
 
 
@@ -172,5 +177,5 @@ def test_a_file_that_is_like_another_replaces_whole_keys_and_keeps_the_rest() ->
 
 def test_a_file_that_is_like_nothing_known_is_refused() -> None:
     data = {"name": "x", "description": "x", "like": "crosing_2"}
-    with pytest.raises(BadInput, match=r"x\.yaml: like: unknown scenario 'crosing_2'; did you mean"):
+    with refused("x.yaml: like: ", "'crosing_2'", "'crossing_2'"):
         parse_scenario(data, source="x.yaml", folder=LIBRARY)

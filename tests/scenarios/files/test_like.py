@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files import load
 from peopleboy.scenarios.files.load import load_scenario
+from tests.helpers.calls.refused import refused
 
 WHOLE = """
 name: whole
@@ -35,5 +35,5 @@ def test_what_is_left_out_comes_from_farther_down_the_chain() -> None:
 
 @pytest.mark.usefixtures("shelf")
 def test_a_scenario_that_is_like_itself_in_the_end_is_refused() -> None:
-    with pytest.raises(BadInput, match="'there' is like itself, by way of there, here"):
+    with refused("'there'", "there, here"):
         load_scenario("here")

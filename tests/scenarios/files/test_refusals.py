@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
+from tests.helpers.calls.refused import assert_names, refused
 
 Data = dict[str, Any]
 Change = Callable[[Data], object]
@@ -37,10 +38,8 @@ GOOD: Data = {
 def refusal(data: Data, folder: Path = Path("/nowhere")) -> str:
     with pytest.raises(BadInput) as caught:
         parse_scenario(data, source="my.yaml", folder=folder)
-    message = str(caught.value)
-    assert "\n" not in message
-    assert message.startswith("my.yaml: ")
-    return message
+    assert_names(str(caught.value), "my.yaml: ")
+    return str(caught.value)
 
 
 def test_the_scenario_that_the_other_tests_break_is_good() -> None:
@@ -50,92 +49,159 @@ def test_the_scenario_that_the_other_tests_break_is_good() -> None:
 MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     "misspelt key": (
         lambda d: d["people"][0]["path"][1].update(speed_ms=1.0),
-        ("people[0].path[1]: unknown key 'speed_ms'", "did you mean 'speed_m_s'?"),
+        ("people[0].path[1]: ", "'speed_ms'", "'speed_m_s'"),
     ),
     "misspelt key at the top": (
         lambda d: d.update(peple=[]),
-        ("unknown key 'peple'", "did you mean 'people'?"),
+        ("'peple'", "'people'"),
     ),
     "misspelt key of a place": (
         lambda d: d["place"].update(lenght_m=3.0),
-        ("place: unknown key 'lenght_m'", "'length_m'"),
+        ("place: ", "'lenght_m'", "'length_m'"),
     ),
-    "missing key": (lambda d: d["place"].pop("width_m"), ("place: missing key 'width_m'",)),
-    "missing kind": (lambda d: d["place"].pop("kind"), ("place: missing key 'kind'",)),
-    "unknown place": (lambda d: d["place"].update(kind="rooom"), ("unknown place 'rooom'", "'room'")),
+    "missing key": (
+        lambda d: d["place"].pop("width_m"),
+        (
+            "place: ",
+            "'width_m'",
+        ),
+    ),
+    "missing kind": (
+        lambda d: d["place"].pop("kind"),
+        (
+            "place: ",
+            "'kind'",
+        ),
+    ),
+    "unknown place": (lambda d: d["place"].update(kind="rooom"), ("place", "'rooom'", "'room'")),
     "unknown thing": (
         lambda d: d["things"][3].update(kind="radiatr"),
-        ("things[3].kind: unknown", "'radiator'"),
+        ("things[3].kind: ", "'radiatr'", "'radiator'"),
     ),
     "unknown garment": (
         lambda d: d["people"][0].update(clothes={"top": "t_shrt"}),
-        ("people[0].clothes.top: unknown top 't_shrt'", "'t_shirt'"),
+        ("people[0].clothes.top: ", "'t_shrt'", "'t_shirt'"),
     ),
     "unknown colour": (
         lambda d: d["people"][0].update(clothes={"top_colour": "rad"}),
-        ("people[0].clothes.top_colour: unknown top_colour 'rad'", "'red'"),
+        ("people[0].clothes.top_colour: ", "'rad'", "'red'"),
     ),
     "unknown colour of a wall": (
         lambda d: d["place"].update(colours={"walls": "gren"}),
-        ("place.colours.walls: unknown walls 'gren'", "'green'"),
+        ("place.colours.walls: ", "'gren'", "'green'"),
     ),
     "unknown posture": (
         lambda d: d["people"][1]["path"][0].update(posture="siting"),
-        ("people[1].path[0].posture: unknown posture 'siting'", "'sitting'"),
+        ("people[1].path[0].posture: ", "'siting'", "'sitting'"),
     ),
     "unknown wall of a door": (
         lambda d: d["place"]["doors"][0].update(wall="nort"),
-        ("place.doors[0].wall: unknown wall 'nort'", "'north'"),
+        ("place.doors[0].wall: ", "'nort'", "'north'"),
     ),
     "unknown wall of a thing": (
         lambda d: d["things"][3].update(wall="eastt"),
-        ("things[3].wall: unknown wall 'eastt'", "'east'"),
+        ("things[3].wall: ", "'eastt'", "'east'"),
     ),
     "unknown wall of a temperature": (
         lambda d: d["place"].update(temperatures={"single_walls_c": {"up": 20.0}}),
-        ("place.temperatures.single_walls_c: unknown wall 'up'", "east, north, south, west"),
+        ("place.temperatures.single_walls_c: ", "'up'", "east, north, south, west"),
     ),
     "unknown thing below": (
         lambda d: d["things"][1].update(on_top_of="tabel_1"),
-        ("things[1].on_top_of: unknown thing 'tabel_1'", "'table_1'"),
+        ("things[1].on_top_of: ", "'tabel_1'", "'table_1'"),
     ),
     "unknown face": (
         lambda d: d["people"][1]["path"][0].update(face="ana"),
-        ("people[1].path[0].face: unknown name 'ana'", "'anna'"),
+        ("people[1].path[0].face: ", "'ana'", "'anna'"),
     ),
-    "NaN": (lambda d: d.update(duration_s=float("nan")), ("duration_s: must be a finite number, got nan",)),
+    "NaN": (
+        lambda d: d.update(duration_s=float("nan")),
+        (
+            "duration_s: ",
+            "finite",
+            "nan",
+        ),
+    ),
     "infinity": (
         lambda d: d["robot"].update(at_m=[float("inf"), 0.0]),
-        ("robot.at_m[0]: must be a finite number, got inf",),
+        (
+            "robot.at_m[0]: ",
+            "finite",
+            "inf",
+        ),
     ),
     "negative speed": (
         lambda d: d["people"][0]["path"][1].update(speed_m_s=-1.0),
-        ("people[0].path[1].speed_m_s: must be at least 0.1, got -1.0",),
+        (
+            "people[0].path[1].speed_m_s: ",
+            "0.1",
+            "got -1.0",
+        ),
     ),
-    "no duration": (lambda d: d.update(duration_s=0), ("duration_s: must be greater than 0, got 0",)),
-    "number as text": (lambda d: d.update(duration_s="20"), ("duration_s: must be a number, got '20'",)),
-    "yes as a number": (lambda d: d.update(duration_s=True), ("duration_s: must be a number, got True",)),
-    "point of one number": (lambda d: d["robot"].update(at_m=[1.0]), ("robot.at_m[1]: missing value",)),
-    "no path": (lambda d: d["people"][0].update(path=[]), ("people[0].path: must have at least 1 ",)),
+    "no duration": (
+        lambda d: d.update(duration_s=0),
+        (
+            "duration_s: ",
+            "than 0",
+            "got 0",
+        ),
+    ),
+    "number as text": (
+        lambda d: d.update(duration_s="20"),
+        (
+            "duration_s: ",
+            "number",
+            "'20'",
+        ),
+    ),
+    "yes as a number": (
+        lambda d: d.update(duration_s=True),
+        (
+            "duration_s: ",
+            "number",
+            "True",
+        ),
+    ),
+    "point of one number": (lambda d: d["robot"].update(at_m=[1.0]), ("robot.at_m[1]: ",)),
+    "no path": (
+        lambda d: d["people"][0].update(path=[]),
+        (
+            "people[0].path: ",
+            "at least 1 ",
+        ),
+    ),
     "leave before enter": (
         lambda d: d["people"][1].update(leave_s=1.0),
-        ("people[1].leave_s: 1 must be after enter_s 2",),
+        (
+            "people[1].leave_s: 1 ",
+            "enter_s 2",
+        ),
     ),
     "enter after the end": (
         lambda d: d["people"][0].update(enter_s=20.0),
-        ("people[0].enter_s: 20 must be before the end",),
+        ("people[0].enter_s: 20 ",),
     ),
     "two people of one name": (
         lambda d: d["people"][1].update(name="anna"),
-        ("people[1]: name 'anna' is also that of people[0]",),
+        (
+            "people[1]: ",
+            "'anna'",
+            "people[0]",
+        ),
     ),
     "person called robot": (
         lambda d: d["people"][1].update(name="robot"),
-        ("people[1]: name 'robot' is taken",),
+        (
+            "people[1]: ",
+            "'robot'",
+        ),
     ),
     "two things of one name": (
         lambda d: d["things"][2].update(name="table_1"),
-        ("things[2].name: 'table_1' is also things[0]",),
+        (
+            "things[2].name: 'table_1'",
+            "things[0]",
+        ),
     ),
     "waypoint in a wall": (
         lambda d: d["people"][0]["path"][0].update(at_m=[3.0, 3.05]),
@@ -147,19 +213,19 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "waypoint outside": (
         lambda d: d["people"][0]["path"][0].update(at_m=[30.0, 0.0]),
-        ("people[0].path[0].at_m: (30, 0) is outside the floor", "x 0 to 8"),
+        ("people[0].path[0].at_m: (30, 0)", "x 0 to 8"),
     ),
     "way through a wall": (
         lambda d: d["people"][0]["path"][1].update(at_m=[3.5, 2.0]),
-        ("people[0].path[2].at_m: the straight way from (3.5, 2) to (5, 4)", "'wall_north'"),
+        ("people[0].path[2].at_m: ", "(3.5, 2)", "(5, 4)", "'wall_north'"),
     ),
     "way through a thing": (
         lambda d: d["people"][0]["path"].insert(1, {"at_m": [6.0, -2.7]}),
-        ("people[0].path[1].at_m: the straight way from (3, 1) to (6, -2.7)", "'table_1'"),
+        ("people[0].path[1].at_m: ", "(3, 1)", "(6, -2.7)", "'table_1'"),
     ),
     "the same point twice": (
         lambda d: d["people"][0]["path"].insert(1, {"at_m": [3.0, 1.0]}),
-        ("people[0].path[1].at_m: it is the point before", "pause_s"),
+        ("people[0].path[1].at_m: ", "pause_s"),
     ),
     "robot in a thing": (
         lambda d: d["robot"].update(at_m=[6.0, -1.2]),
@@ -169,46 +235,68 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d["robot"].update(at_m=[0.1, 0.0]),
         ("robot.at_m: (0.1, 0)", "'wall_west'"),
     ),
-    "robot outside": (lambda d: d["robot"].update(at_m=[-5.0, 0.0]), ("robot.at_m: (-5, 0) is outside",)),
+    "robot outside": (
+        lambda d: d["robot"].update(at_m=[-5.0, 0.0]),
+        (
+            "robot.at_m: (-5, 0)",
+            "x 0 to 8",
+        ),
+    ),
     "person in the robot": (
         lambda d: d["people"][1]["path"][0].update(at_m=[1.3, 0.0]),
-        ("people[1].path[0].at_m: 'ben' starts 0.3 m from the robot's middle",),
+        (
+            "people[1].path[0].at_m: 'ben'",
+            "0.3 m",
+        ),
     ),
     "commands for a standing robot": (
         lambda d: d["robot"].update(commands=[{"from_s": 0.0}]),
-        ("robot.commands: a robot that is to stand takes none; use 'scripted'",),
+        (
+            "robot.commands: ",
+            "'scripted'",
+        ),
     ),
     "commands out of order": (
         lambda d: d["robot"].update(behaviour="scripted", commands=[{"from_s": 2.0}, {"from_s": 1.0}]),
-        ("robot.commands[1].from_s: 1 must be after 2 before it",),
+        (
+            "robot.commands[1].from_s: 1 ",
+            "2",
+        ),
     ),
     "unknown behaviour": (
         lambda d: d["robot"].update(behaviour="folow_person"),
-        ("robot.behaviour: unknown behaviour 'folow_person'", "'follow_person'"),
+        ("robot.behaviour: ", "'folow_person'", "'follow_person'"),
     ),
     "lights out of order": (
         lambda d: d.update(lights=[{"at_s": 5.0, "level": 0.0}, {"at_s": 5.0, "level": 1.0}]),
-        ("lights[1].at_s: 5 must be after",),
+        ("lights[1].at_s: 5 ",),
     ),
     "door beyond its wall": (
         lambda d: d["place"]["doors"][0].update(along_m=7.9),
-        ("place.doors[0].along_m: 7.9 does not leave room", "'north'"),
+        ("place.doors[0].along_m: 7.9 ", "'north'"),
     ),
     "door as high as the ceiling": (
         lambda d: d["place"]["doors"][0].update(height_m=2.7),
-        ("place.doors[0].height_m: 2.7 is too high",),
+        ("place.doors[0].height_m: 2.7 ",),
     ),
     "thing without a place": (
         lambda d: d["things"][0].pop("at_m"),
-        ("things[0]: missing key 'at_m'", "'wall' and 'along_m'"),
+        ("things[0]: ", "'at_m'", "'wall' and 'along_m'"),
     ),
     "thing outside": (
         lambda d: d["things"][2].update(at_m=[40.0, 0.0]),
-        ("things[2].at_m: (40, 0) is outside the floor",),
+        (
+            "things[2].at_m: (40, 0)",
+            "x 0 to 8",
+        ),
     ),
     "thing with two places": (
         lambda d: d["things"][3].update(at_m=[1.0, 1.0]),
-        ("things[3].wall: give either 'wall' with 'along_m', or 'at_m'",),
+        (
+            "things[3].wall: ",
+            "'along_m'",
+            "'at_m'",
+        ),
     ),
     "group in a wall": (
         lambda d: d.update(groups=[{"names": ["x", "y"], "path": [{"at_m": [3, 2.5]}, {"at_m": [4, 2.5]}]}]),
@@ -216,15 +304,21 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "absolute URDF": (
         lambda d: d["things"].append({"kind": "urdf", "at_m": [4, 2], "urdf": "/etc/passwd"}),
-        ("things[4].urdf: '/etc/passwd' must be a file of pybullet_data",),
+        (
+            "things[4].urdf: '/etc/passwd'",
+            "pybullet_data",
+        ),
     ),
     "URDF that climbs out": (
         lambda d: d["things"].append({"kind": "urdf", "at_m": [4, 2], "urdf": "../../secret.urdf"}),
-        ("things[4].urdf: '../../secret.urdf' must be", "no '..'"),
+        ("things[4].urdf: '../../secret.urdf'", "'..'"),
     ),
     "unknown URDF": (
         lambda d: d["things"].append({"kind": "urdf", "at_m": [4, 2], "urdf": "tabel.urdf"}),
-        ("things[4].urdf: 'tabel.urdf' is neither in pybullet_data nor",),
+        (
+            "things[4].urdf: 'tabel.urdf'",
+            "pybullet_data",
+        ),
     ),
 }
 
@@ -235,8 +329,7 @@ def test_a_mistake_is_refused_with_file_key_and_what_would_be_right(mistake: str
     data = copy.deepcopy(GOOD)
     change(data)
     message = refusal(data)
-    for part in expected:
-        assert part in message
+    assert_names(message, *expected)
 
 
 def test_several_mistakes_come_on_one_line_the_misspelt_key_first() -> None:
@@ -246,7 +339,8 @@ def test_several_mistakes_come_on_one_line_the_misspelt_key_first() -> None:
     for person in data["people"]:
         person["height_m"] = 9.0
     message = refusal(data)
-    assert message.startswith("my.yaml: robot: unknown key 'comands'; did you mean 'commands'?; duration_s:")
+    misspelt, wrong = message.index("robot: "), message.index("duration_s: ")
+    assert_names(message[misspelt:wrong], "'comands'", "'commands'")
     assert message.endswith("; and 1 more")
 
 
@@ -278,7 +372,7 @@ def test_a_urdf_that_reads_a_mesh_elsewhere_is_refused(tmp_path: Path) -> None:
     )
     data = copy.deepcopy(GOOD)
     data["things"].append({"kind": "urdf", "at_m": [4.0, 2.0], "urdf": "spy.urdf"})
-    assert "outside the file's folder" in refusal(data, tmp_path)
+    assert_names(refusal(data, tmp_path), "things[4].urdf: ", "spy.urdf", "key.obj")
 
 
 def test_a_link_that_leads_out_of_the_folder_is_refused(tmp_path: Path) -> None:
@@ -288,11 +382,11 @@ def test_a_link_that_leads_out_of_the_folder_is_refused(tmp_path: Path) -> None:
     (home / "near.urdf").symlink_to(tmp_path / "far.urdf")
     data = copy.deepcopy(GOOD)
     data["things"].append({"kind": "urdf", "at_m": [4.0, 2.0], "urdf": "near.urdf"})
-    assert "neither in pybullet_data nor" in refusal(data, home)
+    assert_names(refusal(data, home), "things[4].urdf: 'near.urdf'", "pybullet_data")
 
 
 def test_an_unknown_library_name_gets_a_hint() -> None:
-    with pytest.raises(BadInput, match=r"unknown scenario 'pas_behind'; did you mean 'pass_behind'\?"):
+    with refused("'pas_behind'", "'pass_behind'"):
         load_scenario("pas_behind")
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.faults import active
 from peopleboy.scenarios.running.run import RunOptions, run
+from tests.helpers.calls.refused import refused
 
 FROM_S = 8.0
 SCENE = {
@@ -98,6 +98,6 @@ def test_faults_last_as_long_as_they_should():
 
 
 def test_an_unknown_fault_is_refused_with_those_there_are(tmp_path):
-    with pytest.raises(BadInput, match="camera_frozen"):
+    with refused("'fire'", "camera_frozen"):
         parse_scenario(broken({"kind": "fire", "from_s": 1.0}), source="test", folder=tmp_path)
     assert load_scenario("single_follow").spec.faults == ()

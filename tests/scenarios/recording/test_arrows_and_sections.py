@@ -7,12 +7,17 @@ import pytest
 
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.recording.arrows import believed_arrows, true_arrows
-from peopleboy.scenarios.recording.sections import OUT_OF_VIEW, section_marks
+from peopleboy.scenarios.recording.explanations import (
+    OUT_OF_VIEW,
+    explained_lines,
+    explained_points,
+    section_marks,
+)
 from peopleboy.tracker.thermal.contour.contour import SECTIONS
 from peopleboy.tracker.thermal.contour.section_evidence import Evidence
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import TRACKERS
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 PEOPLEBOY = TRACKERS["peopleboy"]
 BEHIND = replace(made.with_box((200.0, 60.0, 30.0, 120.0)), id=2, occluder=1, status=Status.PARTLY_OCCLUDED)
@@ -42,7 +47,7 @@ def test_there_is_no_arrow_from_an_occluder_who_is_no_longer_there() -> None:
 def test_sections_go_from_red_to_blue_with_the_evidence() -> None:
     threshold = PEOPLEBOY.likelihood.threshold
     shades = [
-        section_marks([made.TRACK], evidence(factor * threshold), PEOPLEBOY).colour.astype(int)
+        section_marks([made.TRACK], evidence(factor * threshold), made.explain()).colour.astype(int)
         for factor in (-1.0, 0.5, 1.0, 1.5, 3.0)
     ]
     assert [len(shade) for shade in shades] == [SECTIONS + 1] * 5
@@ -53,9 +58,16 @@ def test_sections_go_from_red_to_blue_with_the_evidence() -> None:
 
 
 def test_a_section_that_is_mostly_hidden_is_grey_whatever_was_measured() -> None:
-    marks = section_marks([made.TRACK], evidence(np.nan, seen=0.2), PEOPLEBOY)
+    marks = section_marks([made.TRACK], evidence(np.nan, seen=0.2), made.explain())
     assert marks.colour.tolist() == [list(OUT_OF_VIEW)] * SECTIONS + [list(track_colour(1))]
 
 
 def test_a_tracker_that_looks_at_no_feet_has_seven_sections() -> None:
-    assert len(section_marks([made.TRACK], evidence(0.5), TRACKERS["thesis"]).line) == 7 + 1
+    explanation = replace(made.explain(), config=TRACKERS["thesis"])
+    assert len(section_marks([made.TRACK], evidence(0.5), explanation).line) == 7 + 1
+
+
+def test_a_tracker_that_explains_nothing_has_neither_lines_nor_points() -> None:
+    tick = replace(made.make_tick(10), explanation=None)
+    assert explained_lines(tick.explanation, tick).line.shape == (0, 2, 2)
+    assert explained_points(tick.explanation) == {}

@@ -12,13 +12,11 @@ from peopleboy.scenarios.recording.marks import (
     Trails,
     particle_points,
     track_boxes,
-    track_contours,
     track_offset,
     truth_boxes,
 )
-from peopleboy.tracker.thermal.config import ContourConfig
 from peopleboy.tracker.track import Status
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 
 def test_boxes_of_tracks_say_the_id_and_what_is_unusual() -> None:
@@ -43,11 +41,6 @@ def test_true_boxes_are_mapped_at_the_distance_of_each_person() -> None:
     assert boxes.label == ["anna 100%", "ben 100%"]
 
 
-def test_every_track_has_an_outline_of_body_and_head() -> None:
-    lines = track_contours([made.TRACK, made.TRACK], ContourConfig())
-    assert len(lines.line) == len(lines.colour) == 4
-
-
 def test_the_offset_is_one_at_the_right_edge_of_the_image() -> None:
     _, top, width, height = made.TRACK.box
     at_edge = made.with_box((319.5 - width / 2.0, top, width, height))
@@ -55,12 +48,12 @@ def test_the_offset_is_one_at_the_right_edge_of_the_image() -> None:
 
 
 def test_many_filters_share_the_particles_that_are_shown() -> None:
-    cloud = made.make_tick(10).particles[1]
+    cloud = made.make_tick(10).explanation.particles[1]
     assert len(particle_points(dict.fromkeys(range(1, 6), cloud)).place) == PARTICLES_AT_MOST
 
 
 def test_the_strongest_particles_are_shown_brightest() -> None:
-    cloud = made.make_tick(10).particles[1]
+    cloud = made.make_tick(10).explanation.particles[1]
     weight = np.linspace(0.0, 2.0 / len(cloud), len(cloud), dtype=np.float32)
     points = particle_points({1: type(cloud)(cloud.state, weight)})
     assert len(points.place) == PARTICLES_A_FILTER
@@ -70,7 +63,7 @@ def test_the_strongest_particles_are_shown_brightest() -> None:
 
 
 def test_few_particles_are_all_shown_and_none_are_none() -> None:
-    cloud = made.make_tick(10).particles[1]
+    cloud = made.make_tick(10).explanation.particles[1]
     few = type(cloud)(cloud.state[:7], np.full(7, 1 / 7, np.float32))
     assert len(np.unique(particle_points({1: few}).place, axis=0)) == 7
     assert particle_points({}).place.shape == (0, 2)

@@ -12,7 +12,7 @@ from peopleboy.scenarios.recording.solids import fixture_solids, group_fixtures,
 from peopleboy.sim.places.extent import fixture_extent
 from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import ShapeKind
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 
 @given(arrays(np.float64, (5, 3), elements=st.floats(-2.0, 2.0)))

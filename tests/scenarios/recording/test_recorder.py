@@ -22,9 +22,9 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
-from peopleboy.tracker.thermal.contour.ellipse import section_lines
+from peopleboy.tracker.thermal.contour.outline import section_lines
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 THERMAL, COLOUR = "/world/robot/thermal", "/world/robot/colour"
 FRAMES = 75
@@ -50,9 +50,7 @@ class Recording:
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     path = tmp_path_factory.mktemp("run") / "recording.rrd"
-    with Recorder(
-        path, made.config(), title="made, seed 7, tracker peopleboy", tracker=TRACKERS["peopleboy"]
-    ) as recorder:
+    with Recorder(path, made.config(), title="made, seed 7, tracker peopleboy") as recorder:
         for tick, events in made.make_run(FRAMES):
             recorder.log(tick, events)
     return Recording(path)
@@ -194,7 +192,7 @@ def test_a_world_without_people_and_tracks_is_recorded(tmp_path: Path) -> None:
 
 def _written(path: Path, config: WorldConfig, ticks: list[Tick]) -> int:
     """Record ticks and return the bytes of the file."""
-    with Recorder(path, config, title="size", tracker=TRACKERS["peopleboy"]) as recorder:
+    with Recorder(path, config, title="size") as recorder:
         for tick in ticks:
             recorder.log(tick, [])
     return path.stat().st_size
@@ -225,7 +223,7 @@ _KILLED = """
 import os, signal, sys
 from pathlib import Path
 from peopleboy.scenarios.recording.recorder import Recorder
-from tests.helpers import synthetic_ticks as made
+from tests.helpers.runs import synthetic_ticks as made
 
 recorder = Recorder(Path(sys.argv[1]), made.config(), title="killed")
 for tick, events in made.make_run(55):

@@ -4,27 +4,22 @@ from __future__ import annotations
 
 import re
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from urllib.parse import unquote
 from urllib.request import urlopen
 
 import pytest
 
-from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.cli import main
 from peopleboy.scenarios.recording.recorder import Recorder
-from peopleboy.scenarios.recording.viewer import (
-    NO_SCREEN,
-    is_whole,
-    live_viewer,
-    open_viewer,
-    recording_in,
-    serve,
-)
-from tests.helpers import synthetic_ticks as made
+from peopleboy.scenarios.recording.recording_file import is_whole
+from peopleboy.scenarios.recording.viewer import live_viewer
+from tests.helpers.calls.command_line import refusal
+from tests.helpers.runs import synthetic_ticks as made
 
 LISTENING = "0A"  # in Linux's table of sockets
 ON_LINUX = pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="reads Linux's table of sockets")
@@ -47,9 +42,21 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def page(run: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def port() -> int:
+    """A port that is free, and so is the next."""
+    while True:
+        with ExitStack() as held, socket.create_server(("127.0.0.1", 0)) as first:
+            try:
+                held.enter_context(socket.create_server(("127.0.0.1", first.getsockname()[1] + 1)))
+            except (OSError, OverflowError):
+                continue
+            return int(first.getsockname()[1])
+
+
+@pytest.fixture
+def page(run: Path, port: int) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """`peopleboy view --web` in a process of its own, and the address that it prints."""
-    command = [sys.executable, "-m", "peopleboy", "view", str(run), "--web"]
+    command = [sys.executable, "-m", "peopleboy", "view", str(run), "--web", "--port", str(port)]
     process = subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[3]
     )
@@ -72,18 +79,35 @@ def listeners(port: int) -> set[str]:
 
 
 @ON_LINUX
-def test_a_recording_is_served_to_this_machine_alone_until_interrupted(
-    page: tuple[subprocess.Popen[str], str],
+def test_a_recording_is_served_at_two_ports_to_this_machine_alone_until_interrupted(
+    page: tuple[subprocess.Popen[str], str], port: int
 ) -> None:
     process, address = page
     assert b"<html" in urlopen(address, timeout=10).read().lower()
-    ports = [int(port) for port in re.findall(r"127\.0\.0\.1:(\d+)", unquote(address))]
-    assert len(ports) == 2
+    ports = [int(found) for found in re.findall(r"127\.0\.0\.1:(\d+)", unquote(address))]
+    assert ports == [port, port + 1]
     assert {address for port in ports for address in listeners(port)} == {"0100007F"}
     process.send_signal(signal.SIGTERM)
     assert process.communicate(timeout=20) == ("", "")
     assert process.returncode == 0
     assert [listeners(port) for port in ports] == [set(), set()]
+
+
+@pytest.mark.parametrize("taken", [0, 1])
+def test_a_port_that_is_taken_is_refused(
+    run: Path, port: int, taken: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with socket.create_server(("127.0.0.1", port + taken)):
+        told = refusal(capsys, "view", run, "--web", "--port", port)
+    assert f"--port {port}" in told
+    assert str(port + 1) in told
+
+
+@pytest.mark.parametrize("arguments", [("--port", "9090"), ("--web", "--port", "65535")])
+def test_a_port_needs_a_page_and_the_next_port(
+    run: Path, arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "--port" in refusal(capsys, "view", run, *arguments)
 
 
 def test_a_viewer_shows_a_run_while_it_is_recorded_and_the_file_is_written_too(tmp_path: Path) -> None:
@@ -104,35 +128,40 @@ def test_a_viewer_shows_a_run_while_it_is_recorded_and_the_file_is_written_too(t
     assert path.stat().st_size > 100_000
 
 
-def test_without_a_screen_the_native_viewer_says_so_in_one_line(run: Path) -> None:
-    with pytest.raises(BadInput, match=f"^{NO_SCREEN}$"):
-        open_viewer(run / "recording.rrd")
+def test_without_a_screen_the_window_s_refusal_names_the_other_way(
+    run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "--web" in refusal(capsys, "view", run)
+
+
+def test_a_viewer_that_fails_is_told_from_one_that_was_closed(
+    run: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("DISPLAY", ":9999")
+    assert str(run / "recording.rrd") in refusal(capsys, "view", run)
 
 
 @pytest.mark.parametrize("arguments", [("crossing_2", "--no-rrd"), ("dataset1",)])
 def test_there_is_nothing_to_show_live_without_the_recording_of_one_run(
     arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with pytest.raises(SystemExit) as stop:
-        main(["run", "--live", *arguments])
-    assert stop.value.code == 2
-    assert capsys.readouterr().err.startswith("peopleboy: --live: shows the recording of one run")
+    assert "--live" in refusal(capsys, "run", "--live", *arguments)
 
 
 @pytest.mark.parametrize(
-    ("made_of", "why"),
+    ("made_of", "named"),
     [
-        ("nothing", "there is no such folder; give the folder of a finished run"),
-        ("a file", "there is no such folder; give the folder of a finished run"),
-        ("an empty folder", "holds no run and no recording; give the folder of a run"),
-        ("runs", "holds 2 runs; give one of them, such as"),
-        ("a run", "there is no recording; run the scenario without --no-rrd"),
-        ("text", "is no rerun recording; run the scenario again"),
-        ("an empty file", "is no rerun recording; run the scenario again"),
+        ("nothing", "given"),
+        ("a file", "given"),
+        ("an empty folder", "given"),
+        ("runs", "given/a"),
+        ("a run", "given/recording.rrd"),
+        ("text", "given/recording.rrd"),
+        ("an empty file", "given/recording.rrd"),
     ],
 )
-def test_what_holds_no_recording_is_refused_with_what_it_is(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], made_of: str, why: str
+def test_what_holds_no_recording_is_refused_and_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], made_of: str, named: str
 ) -> None:
     folder = tmp_path / "given"
     if made_of == "a file":
@@ -144,28 +173,16 @@ def test_what_holds_no_recording_is_refused_with_what_it_is(
         (folder / inner / "run.json").touch()
     for content in {"text": ["# Read me\n"], "an empty file": [""]}.get(made_of, []):
         (folder / "recording.rrd").write_text(content)
-    with pytest.raises(SystemExit) as stop:
-        main(["view", str(folder), "--web"])
-    assert stop.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert why in line
+    assert str(tmp_path / named) in refusal(capsys, "view", folder, "--web")
 
 
 def test_a_recording_that_was_cut_off_is_told_from_a_whole_one_and_shown(
     run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert is_whole(recording_in(run))
+    assert is_whole(run / "recording.rrd")
     part = tmp_path / "recording.rrd"
     part.write_bytes((run / "recording.rrd").read_bytes()[:-1000])
     assert not is_whole(part)
-    with pytest.raises(SystemExit):
-        main(["view", str(tmp_path)])
-    cut_off, screen = capsys.readouterr().err.splitlines()
-    assert cut_off == f"peopleboy: {part}: was cut off; what it holds is shown"
-    assert screen == f"peopleboy: {NO_SCREEN}"
-
-
-def test_a_missing_recording_is_a_user_s_mistake(tmp_path: Path) -> None:
-    for show in (open_viewer, lambda path: serve(path, print)):
-        with pytest.raises(BadInput, match="there is no recording"):
-            show(tmp_path / "recording.rrd")
+    cut_off, screen = refusal(capsys, "view", tmp_path, lines=2).splitlines()
+    assert str(part) in cut_off
+    assert "--web" in screen

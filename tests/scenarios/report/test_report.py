@@ -3,9 +3,11 @@ from __future__ import annotations
 import json
 import math
 import shutil
+import sys
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from statistics import fmean, stdev
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -15,20 +17,21 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.report.charts.charts import rgb, track_edges
+from peopleboy.scenarios.report.charts.error_curves import DISTANCES_M, curve, samples
 from peopleboy.scenarios.report.charts.thermal_stills import Origin, show_frames
+from peopleboy.scenarios.report.charts.timelines import ASIDE, rgb, track_edges, track_row, truth_row
 from peopleboy.scenarios.report.columns import are_same_scene, lacking, read_columns
-from peopleboy.scenarios.report.figure_tables import plain_lines
-from peopleboy.scenarios.report.findings.errors import DISTANCES_M, curve, distance, found_share
-from peopleboy.scenarios.report.findings.finished_run import read_finished
-from peopleboy.scenarios.report.findings.identities import count_fleeting, find_losses
+from peopleboy.scenarios.report.findings.losses_and_swaps import Ending
 from peopleboy.scenarios.report.findings.spans import between, settle, spans
-from peopleboy.scenarios.report.findings.story import Hold, Sight
-from peopleboy.scenarios.report.findings.summary import Outcome, headline, headline_of_many, look_into
+from peopleboy.scenarios.report.findings.story import Hold, PersonView
+from peopleboy.scenarios.report.findings.summary import RunFindings, headline_of_many, look_into
 from peopleboy.scenarios.report.findings.worst_moments import worst_moments
+from peopleboy.scenarios.report.page import write_report
+from peopleboy.scenarios.report.tables import drive_figures, plain_figures
+from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
-from tests.helpers import toy_runs as toy
+from tests.helpers.runs import toy_runs as toy
 
 CODES = st.lists(st.integers(0, 3), max_size=60).map(lambda values: np.array(values, np.int64))
 
@@ -44,8 +47,13 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     }
 
 
-def outcome(folder: Path) -> Outcome:
-    return look_into(read_finished(folder))
+def found_in(folder: Path) -> RunFindings:
+    return look_into(open_run(folder))
+
+
+def endings(found: RunFindings) -> list[list[str]]:
+    """Who was tracked to the end, hidden until then, and lost."""
+    return [found.who_ended(ending) for ending in (Ending.TRACKED, Ending.HIDDEN, Ending.LOST)]
 
 
 @given(CODES)
@@ -72,14 +80,14 @@ def test_hysteresis_goes_in_above_one_threshold_and_out_below_the_other() -> Non
     assert between(values, 0.15, 0.05).tolist() == [False, True, True, False, False, False, True]
 
 
-def test_when_nothing_goes_wrong_the_headline_says_so(folders: dict[str, Path]) -> None:
-    found = outcome(folders["steady"])
-    assert headline(found) == "2 people, both tracked to the end; no identity lost."
-    assert (found.changes, found.losses, found.strays) == ((), (), ())
+def test_when_nothing_goes_wrong_nothing_is_found(folders: dict[str, Path]) -> None:
+    found = found_in(folders["steady"])
+    assert endings(found) == [["Anna", "Ben"], [], []]
+    assert (found.changes, found.losses, found.strays) == ([], [], [])
 
 
 def test_swapped_numbers_are_two_changes_that_name_each_other(folders: dict[str, Path]) -> None:
-    changes = outcome(folders["swapped"]).changes
+    changes = found_in(folders["swapped"]).changes
     assert [(c.person, c.old, c.new, c.taken_from) for c in changes] == [
         ("anna", 1, 2, "ben"),
         ("ben", 2, 1, "anna"),
@@ -88,89 +96,80 @@ def test_swapped_numbers_are_two_changes_that_name_each_other(folders: dict[str,
     assert {change.why for change in changes} == {"was in plain sight"}
 
 
-def test_who_hid_a_person_whose_number_was_lost_is_in_the_headline(folders: dict[str, Path]) -> None:
-    found = outcome(folders["renumbered"])
-    expected = (
-        "2 people, both tracked to the end; identity lost once, at 4.0 s, when Ben was wholly hidden "
-        "by Anna; 1 track on nobody."
-    )
-    assert headline(found).replace("\u00a0", " ") == expected
+def test_a_lost_number_tells_who_hid_the_person_and_what_came_then(folders: dict[str, Path]) -> None:
+    found = found_in(folders["renumbered"])
+    assert endings(found) == [["Anna", "Ben"], [], []]
+    (change,) = found.lost
+    assert (change.person, change.old, change.new, change.last_frame, change.first_frame) == (
+        "ben", 2, 3, 39, 61,
+    )  # fmt: skip
+    assert change.why == "was wholly hidden by Anna"
     lost = {loss.track: loss for loss in found.losses}
-    assert lost[2].frame == 40
-    assert lost[2].owner == "ben"
-    assert lost[2].why == "was wholly hidden by Anna; its confidence was still 0.90"
-    assert lost[2].afterwards.replace("\u00a0", " ") == "Ben was found after 1.4 s as number 3"
-    assert lost[2].is_bad
+    assert (lost[2].frame, lost[2].owner, lost[2].is_bad) == (40, "ben", True)
+    assert lost[2].why.startswith(f"{change.why}; ")
+    assert "0.90" in lost[2].why
+    assert "number 3" in lost[2].afterwards
     assert lost[4].owner == ""
     assert [(stray.track, stray.first_frame, stray.last_frame) for stray in found.strays] == [(4, 70, 79)]
 
 
 def test_a_new_number_after_a_long_absence_is_no_lost_identity(tmp_path: Path) -> None:
-    found = outcome(toy.write_run(tmp_path / "run", toy.away_and_back, toy.behind_from_35_to_70))
-    assert headline(found) == (
-        "2 people, both tracked to the end; no identity lost; once somebody came back into the image under "
-        "a new number."
-    )
+    found = found_in(toy.write_run(tmp_path / "run", toy.away_and_back, toy.behind_from_35_to_70))
+    assert endings(found) == [["Anna", "Ben"], [], []]
+    assert (len(found.lost), len(found.returned)) == (0, 1)
     (loss,) = found.losses
     assert loss.why.startswith("left the image")
     assert not loss.is_bad
 
 
 def test_losses_that_are_listed_and_left_out_are_those_of_the_log(tmp_path: Path) -> None:
-    found = outcome(toy.write_run(tmp_path / "run", toy.flickering))
+    found = found_in(toy.write_run(tmp_path / "run", toy.flickering))
     assert [(loss.track, loss.frame) for loss in found.losses] == [(2, 50)]
     assert (found.fleeting.breaks, found.fleeting.ends) == (1, 1)
     assert sum(line.kind == "lost" for line in found.run.events) == 3
-    assert found.fleeting.words == (
-        "Losses of less than 0.3 s (1 of them) are left out: the same number was shown again. "
-        "Ends of tracks that had been shown for less than 0.3 s (1 of them) are left out. "
-        "All of them are in events.jsonl."
-    )
 
 
 @given(steps=st.lists(st.tuples(st.integers(1, 8), st.booleans()), min_size=1, max_size=25))
 def test_no_loss_of_the_log_is_counted_twice_or_not_at_all(
     folders: dict[str, Path], steps: list[tuple[int, bool]]
 ) -> None:
-    steady = read_finished(folders["steady"])
-    shown = np.concatenate([np.full(length, is_shown) for length, is_shown in steps])[: steady.frames]
+    steady = found_in(folders["steady"])
+    tracks = steady.files.tracks
+    shown = np.concatenate([np.full(length, is_shown) for length, is_shown in steps])[: steady.run.frames]
     frames = np.flatnonzero(shown) + 1
-    at = np.flatnonzero((steady.tracks.id == 2) & np.isin(steady.tracks.frame, frames))
-    columns = {name: getattr(steady.tracks, name)[at] for name in ("frame", "id", "box", "confidence")}
-    run = replace(steady, tracks=TrackBoxes(**columns))
+    at = np.flatnonzero((tracks.id == 2) & np.isin(tracks.frame, frames))
+    columns = {name: getattr(tracks, name)[at] for name in ("frame", "id", "box", "confidence")}
+    found = RunFindings(run=steady.run, files=replace(steady.files, tracks=TrackBoxes(**columns)))
     lost = sum(before and frame not in frames for frame, before in enumerate(np.isin(range(91), frames), 1))
-    fleeting, listed = count_fleeting(run), find_losses(run, [])
-    ends_with_run = int(run.frames in frames)
-    assert len(listed) + fleeting.breaks + fleeting.ends == lost - ends_with_run
+    ends_with_run = int(found.run.frames in frames)
+    assert len(found.losses) + found.fleeting.breaks + found.fleeting.ends == lost - ends_with_run
 
 
 def test_a_loss_gives_the_tracker_s_own_reason_and_names_on_whom_the_other_track_lay(tmp_path: Path) -> None:
     path = toy.write_run(tmp_path / "run", toy.until_75, toy.hidden_from_75) / "events.jsonl"
-    assert outcome(path.parent).losses[0].believed == "the contour is gone, confidence 0.90"
+    assert found_in(path.parent).losses[0].believed == "the contour is gone, confidence 0.90"
     hidden = "hidden by track 1 for too long to know where"
     path.write_text(path.read_text().replace("the contour is gone, confidence 0.90", hidden))
-    (loss,) = outcome(path.parent).losses
+    (loss,) = found_in(path.parent).losses
     assert loss.believed == "hidden by number 1 (on Anna) for too long to know where"
 
 
 def test_who_is_hidden_until_the_end_is_neither_tracked_to_the_end_nor_lost(tmp_path: Path) -> None:
-    found = outcome(toy.write_run(tmp_path / "run", toy.until_75, toy.hidden_from_75))
-    assert headline(found) == (
-        "2 people, all but Ben tracked to the end (Ben hidden until the end); no identity lost."
-    )
-    assert "of 2 people 1 tracked to the end, 1 hidden until the end" in headline_of_many([found])
+    found = found_in(toy.write_run(tmp_path / "run", toy.until_75, toy.hidden_from_75))
+    assert endings(found) == [["Anna"], ["Ben"], []]
+    assert "1 tracked to the end, 1 hidden until the end" in headline_of_many([found])
     (loss,) = found.losses
-    assert (loss.afterwards, loss.is_bad) == ("Ben was hidden until the end", False)
+    assert (loss.owner, loss.is_bad) == ("ben", False)
 
 
 def test_who_is_lost_in_the_last_second_is_not_said_to_be_lost_for_good(tmp_path: Path) -> None:
-    found = outcome(toy.write_run(tmp_path / "run", lambda frame: toy.until_75(frame - 6)))
-    assert headline(found) == "2 people, both tracked to the end; no identity lost."
+    found = found_in(toy.write_run(tmp_path / "run", lambda frame: toy.until_75(frame - 6)))
+    assert endings(found) == [["Anna", "Ben"], [], []]
     (loss,) = found.losses
-    assert loss.afterwards.replace("\u00a0", " ") == "the run ended 0.7 s later"
-    early = outcome(toy.write_run(tmp_path / "early", toy.until_75))
-    assert headline(early) == "2 people, all but Ben tracked to the end; no identity lost."
-    assert early.losses[0].afterwards == "Ben was not found again"
+    assert not loss.is_bad
+    early = found_in(toy.write_run(tmp_path / "early", toy.until_75))
+    assert endings(early) == [["Anna"], [], ["Ben"]]
+    assert early.losses[0].is_bad
 
 
 def test_numbers_of_one_colour_have_different_edges() -> None:
@@ -179,37 +178,65 @@ def test_numbers_of_one_colour_have_different_edges() -> None:
 
 
 def test_a_story_tells_what_could_be_seen_and_what_the_tracker_had(folders: dict[str, Path]) -> None:
-    ben = outcome(folders["renumbered"]).stories[1]
-    assert [(Sight(s.value), s.start, s.end) for s in spans(ben.sight)] == [
-        (Sight.SEEN, 0, 39),
-        (Sight.WHOLLY, 39, 59),
-        (Sight.SEEN, 59, 90),
+    found = found_in(folders["renumbered"])
+    ben = found.called("ben")
+    assert [(PersonView(s.value), s.start, s.end) for s in spans(ben.view)] == [
+        (PersonView.SEEN, 0, 39),
+        (PersonView.WHOLLY, 39, 59),
+        (PersonView.SEEN, 59, 90),
     ]
     assert [Hold(span.value) for span in spans(ben.hold)] == [
         Hold.ON, Hold.NOTHING_DUE, Hold.MISSED, Hold.ON
     ]  # fmt: skip
     assert ben.hider_in(39, 59) == "anna"
+    assert [(start, end, look.kind, look.text) for start, end, look in truth_row(found, ben).bars] == [
+        (0.0, 39 / 15, "seen", "seen"),
+        (39 / 15, 59 / 15, "wholly", "by Anna"),
+        (59 / 15, 6.0, "seen", "seen"),
+    ]
+    row = track_row(found, ben)
+    assert [(look.kind, look.track) for _, _, look in row.bars] == [("on", 2), ("missed", 0), ("on", 3)]
+    assert [time_s for time_s, _ in row.marks] == [4.0]
+
+
+@given(data=st.data())
+def test_the_bars_of_a_row_lie_end_to_end_where_there_is_something(
+    folders: dict[str, Path], data: st.DataObject
+) -> None:
+    found = found_in(folders["renumbered"])
+    view = np.array(data.draw(st.lists(st.integers(0, 3), min_size=90, max_size=90)), np.int64)
+    is_counted = np.array(data.draw(st.lists(st.booleans(), min_size=90, max_size=90)))
+    row = truth_row(found, replace(found.called("ben"), view=view, is_counted=is_counted))
+    kinds, asides = np.full(90, "nothing"), np.zeros(90, np.bool_)
+    for start, end, look in row.bars:
+        here = slice(round(start * 15), round(end * 15))
+        assert (kinds[here] == "nothing").all()
+        kinds[here], asides[here] = look.kind, ASIDE in look.words
+    is_there = view != PersonView.AWAY
+    assert np.array_equal(kinds != "nothing", is_there)
+    assert np.array_equal(kinds == "wholly", view == PersonView.WHOLLY)
+    assert np.array_equal(asides, is_there & ~is_counted)
 
 
 def test_the_worst_moments_are_in_time_and_a_lost_identity_is_among_them(folders: dict[str, Path]) -> None:
-    moments = worst_moments(outcome(folders["renumbered"]), 3)
+    moments = worst_moments(found_in(folders["renumbered"]), 3)
     assert [moment.frames for moment in moments] == sorted(moment.frames for moment in moments)
     assert (39, 61) in [moment.frames for moment in moments]
 
 
 def test_a_run_without_faults_shows_the_boxes_that_fit_worst(folders: dict[str, Path]) -> None:
-    assert len(worst_moments(outcome(folders["steady"]), 6)) == 2
+    assert len(worst_moments(found_in(folders["steady"]), 6)) == 2
 
 
 def test_curves_average_over_runs(folders: dict[str, Path]) -> None:
-    outcomes = [outcome(folders[name]) for name in ("steady", "renumbered")]
-    points = curve("all", outcomes, distance, found_share, DISTANCES_M).points
+    runs = [found_in(folders[name]) for name in ("steady", "renumbered")]
+    points = curve([samples(found) for found in runs], "distance", "found", DISTANCES_M)
     # Anna is 4 m away and always found; ben is 6 m away and seen in 70 frames, in 69 of which he has a box.
     assert [point.x for point in points] == [4.5, 6.5]
     assert points[0].mean == 100.0
     assert points[1].mean == pytest.approx((100.0 + 100.0 * 69 / 70) / 2.0)
     assert points[1].sd == pytest.approx(100.0 / 70 / math.sqrt(2.0))
-    assert points[1].frames == 90 + 70
+    assert points[1].boxes == 90 + 70
 
 
 def test_columns_are_named_by_what_tells_them_apart(folders: dict[str, Path]) -> None:
@@ -237,34 +264,51 @@ def test_a_run_is_not_held_against_itself(folders: dict[str, Path]) -> None:
 
 def test_a_folder_of_runs_is_one_column_with_mean_and_spread(folders: dict[str, Path]) -> None:
     (column,) = read_columns([folders["steady"].parent])
-    assert len(column.outcomes) == 3
-    assert headline_of_many(column.outcomes).startswith("3 runs: of 6 people 6 tracked to the end; identity")
-    found = next(line for line in plain_lines([column]) if "(CR)" in line.name)
-    assert "±" in found.cells[0]
+    assert len(column.runs) == 3
+    assert column.headline.startswith("3 runs: of 6 people 6 tracked to the end; ")
+    row = next(row for row in plain_figures([column]).rows if "(CR)" in row[0])
+    values = [scores.thesis.cr for scores in column.scores]
+    assert row[1] == f"{fmean(values):.1f} ± {stdev(values):.1f} %"
+
+
+def test_two_sweeps_give_the_difference_of_their_pairs_with_an_interval(tmp_path: Path) -> None:
+    for seed in range(4):
+        toy.write_run(tmp_path / "one" / str(seed), toy.renumbered, seed=seed)
+        toy.write_run(tmp_path / "two" / str(seed), tracker="thesis", seed=seed)
+    columns = read_columns([tmp_path / "one", tmp_path / "two"])
+    row = next(row for row in plain_figures(columns).rows if "(CR)" in row[0])
+    mean = columns[1].scores[0].thesis.cr - columns[0].scores[0].thesis.cr
+    assert row[3] == f"{mean:+.1f} [{mean:+.1f}, {mean:+.1f}]"  # each pair differs alike
 
 
 def test_more_than_four_runs_are_taken_together_by_tracker(folders: dict[str, Path], tmp_path: Path) -> None:
     again = [shutil.copytree(folders[name], tmp_path / name) for name in ("steady", "swapped")]
     columns = read_columns([*folders.values(), *again])
-    assert {column.label: len(column.outcomes) for column in columns} == {"peopleboy": 3, "thesis": 2}
+    assert {column.label: len(column.runs) for column in columns} == {"peopleboy": 3, "thesis": 2}
 
 
 def test_what_cannot_be_rendered_again_is_drawn_as_boxes(folders: dict[str, Path]) -> None:
-    shown = show_frames(read_finished(folders["steady"]), [5])
-    assert shown[5].origin is Origin.NONE
+    shown = show_frames(found_in(folders["steady"]), [5])
+    assert shown[5].origin is Origin.CHANGED
     assert len(np.unique(shown[5].picture.reshape(-1, 3), axis=0)) > 3
 
 
-def test_images_rendered_again_are_those_that_the_run_wrote(tmp_path: Path) -> None:
+def test_images_are_the_run_s_own_else_rendered_again_else_boxes_where_pybullet_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     scenario = load_scenario("crossing_2").lasting(0.6)
     run(scenario, RunOptions(seed=3, out=tmp_path / "run", frames=True, record=False), lambda *_: None)
-    finished = read_finished(tmp_path / "run")
-    own = show_frames(finished, [2, 9])
-    (tmp_path / "run" / "thermal").rename(tmp_path / "moved")
-    again = show_frames(finished, [2, 9])
-    assert {shown.origin for shown in own.values()} == {Origin.FRAMES}
-    assert {shown.origin for shown in again.values()} == {Origin.REPLAY}
+    found = found_in(tmp_path / "run")
+    own = show_frames(found, [2, 9])
+    (tmp_path / "run" / "thermal" / "000009.png").rename(tmp_path / "moved.png")
+    again = show_frames(found, [2, 9])
+    assert {still.origin for still in own.values()} == {Origin.FRAMES}
+    assert [again[frame].origin for frame in (2, 9)] == [Origin.FRAMES, Origin.REPLAY]
     assert all(np.array_equal(own[frame].picture, again[frame].picture) for frame in (2, 9))
+    monkeypatch.setitem(sys.modules, "pybullet", None)
+    without = show_frames(found, [2, 9])
+    assert [without[frame].origin for frame in (2, 9)] == [Origin.FRAMES, Origin.NO_PHYSICS]
+    assert np.array_equal(own[2].picture, without[2].picture)
 
 
 @pytest.mark.parametrize(
@@ -282,7 +326,8 @@ def test_a_spoilt_run_is_refused_with_the_file_s_name(tmp_path: Path, file: str,
     folder = toy.write_run(tmp_path / "run")
     (folder / file).write_text(content)
     with pytest.raises(BadInput, match=file.replace(".", r"\.")):
-        read_finished(folder)
+        write_report([folder], tmp_path / "page.html")
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
 @pytest.mark.parametrize("content", [None, "- 1\n", "{", "name: toy\n"])
@@ -306,4 +351,11 @@ def test_a_table_of_another_version_is_refused_with_the_column_that_it_lacks(tmp
     path = toy.write_run(tmp_path / "run") / "truth.parquet"
     pq.write_table(pq.read_table(path).drop_columns(["occluder"]), path)
     with pytest.raises(BadInput, match="has no column 'occluder'"):
-        read_finished(path.parent)
+        found_in(path.parent)
+
+
+def test_metrics_of_another_version_are_refused_with_their_group(tmp_path: Path) -> None:
+    path = toy.write_run(tmp_path / "run") / "metrics.json"
+    path.write_text(json.dumps({"following": {"unheard_of": 1.0}}))
+    with pytest.raises(BadInput, match=r"metrics\.json: following: not the figures of this version"):
+        drive_figures(read_columns([path.parent]), "following")

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -14,9 +15,9 @@ from click.testing import CliRunner
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.report import report
-from peopleboy.scenarios.run_folder.run_files import read_about, read_files
+from peopleboy.scenarios.run_folder.finished_run import open_run, runs_in
 from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
-from tests.helpers.toy_runs import write_run
+from tests.helpers.runs.toy_runs import write_run
 
 Damage = Callable[[Path], object]
 TABLES = {"truth.parquet": TRUTH, "tracks.parquet": TRACKS, "robot.parquet": ROBOT}
@@ -28,7 +29,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def read(folder: Path) -> object:
-    return read_files(folder, read_about(folder).frames)
+    return open_run(folder).files()
 
 
 def damaged(whole: Path, to: Path, file: str, damage: Damage) -> Path:
@@ -79,7 +80,7 @@ def with_line(line: str) -> Damage:
 
 
 def test_a_whole_run_is_read(whole: Path) -> None:
-    files = read_files(whole, read_about(whole).frames)
+    files = open_run(whole).files()
     assert len(files.truth)
     assert len(files.tracks)
     assert [table.column_names for table in (files.people, files.beliefs, files.robot)] == [
@@ -165,3 +166,40 @@ def test_scores_are_refused_for_boxes_after_the_run_s_end(whole: Path, tmp_path:
     (run / other).write_text("")
     result = CliRunner().invoke(evaluate, [str(run)])
     assert f"{name}: must end with frame 3, the run's last, got" in str(result.exception)
+
+
+def test_a_run_is_opened_by_its_run_json_alone_and_the_rest_is_missed_when_asked_for(
+    whole: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "run"
+    folder.mkdir()
+    shutil.copy(whole / "run.json", folder)
+    run = open_run(folder)
+    assert (run.name, run.title, run.frames, run.time_s(16)) == ("run", "toy, seed 0", 90, 1.0)
+    for ask, file in (
+        (lambda: run.played, "scenario.yaml"),
+        (lambda: run.scenario, "scenario.yaml"),
+        (lambda: run.metrics, "metrics.json"),
+        (lambda: run.events, "events.jsonl"),
+        (run.files, "gt.txt"),
+    ):
+        with pytest.raises(BadInput, match=re.escape(file)):
+            ask()
+
+
+def test_only_the_columns_asked_for_are_read_and_none_is_kept(whole: Path) -> None:
+    run = open_run(whole)
+    files = run.files(("frame", "id", "left_px", "whole_px", "hidden_by"), ("frame", "mode"))
+    assert (files.people.num_columns, files.robot.num_columns) == (5, 2)
+    assert run.files() is not run.files()
+    assert [len(rows) for rows in run.files().people_by_frame().values()] == [2] * 90
+    assert [track.id for track in run.files().tracks_by_frame()[1]] == [1, 2]
+    assert run.files().tracks_by_frame()[91] == []
+
+
+def test_a_folder_stands_for_its_runs_or_for_itself(whole: Path, tmp_path: Path) -> None:
+    assert runs_in(whole) == [whole]
+    assert runs_in(whole.parent) == [whole]
+    assert runs_in(tmp_path) == [tmp_path]
+    with pytest.raises(BadInput, match="there is no such folder"):
+        runs_in(tmp_path / "nothing")

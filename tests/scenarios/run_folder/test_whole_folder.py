@@ -15,8 +15,8 @@ from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 from peopleboy.scenarios.running.frame_cache import film
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
 from peopleboy.scenarios.studies.reproduce.measuring.store import Store
-from tests.helpers.footage_calls import refusal
-from tests.helpers.footage_files import write_folder
+from tests.helpers.calls.footage_calls import refusal
+from tests.helpers.images.footage_files import write_folder
 
 WAIT = """
 import sys, time

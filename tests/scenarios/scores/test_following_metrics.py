@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.scores.following_metrics import FollowingRun, FollowingTask, score_following
-from peopleboy.scenarios.scores.score import following_task
+from peopleboy.scenarios.scores.following_score import following_task
 
 STEP_S = 0.5
 

@@ -8,7 +8,7 @@ import pytest
 
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.headline import headline
-from peopleboy.scenarios.scores.score import RunScores
+from peopleboy.scenarios.scores.run_scores import RunScores
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 

@@ -3,7 +3,6 @@ import math
 import numpy as np
 import pytest
 
-from peopleboy.bad_input import BadInput
 from peopleboy.sim.people.body.clothes import (
     BOTTOMS,
     COLOURS,
@@ -17,53 +16,53 @@ from peopleboy.sim.people.body.clothes import (
 from peopleboy.sim.people.person import PersonConfig, Posture, Waypoint
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import PatternKind
-from tests.helpers.walkers import make_person, settle
+from tests.helpers.calls.refused import refused
+from tests.helpers.worlds.walkers import make_person, settle
 
 HERE = (Waypoint(at_m=(0.0, 0.0)),)
 
 
 @pytest.mark.parametrize(
-    ("settings", "message"),
+    ("settings", "named"),
     [
-        ({"name": ""}, "name"),
-        ({"height_m": 1.4}, r"height_m 1.4 must be 1.5 .. 2.0"),
-        ({"height_m": 2.1}, "height_m 2.1"),
-        ({"height_m": math.nan}, "height_m nan"),
-        ({"sex": "x"}, "sex 'x' must be one of female, male"),
-        ({"build": "tall"}, "build 'tall'"),
-        ({"arms": "waving"}, "arms 'waving'"),
-        ({"enter_s": -1.0}, "enter_s -1.0"),
-        ({"enter_s": math.nan}, "enter_s nan"),
-        ({"enter_s": 5.0, "leave_s": 5.0}, "leave_s 5.0 must be after enter_s 5.0"),
-        ({"path": ()}, "at least one waypoint"),
-        ({"path": (Waypoint(at_m=(math.nan, 0.0)),)}, r"path\[0\]: at_m"),
-        ({"path": (*HERE, Waypoint(at_m=(1.0, 0.0), speed_m_s=-1.0))}, r"path\[1\]: speed_m_s -1.0"),
-        ({"path": (*HERE, Waypoint(at_m=(1.0, 0.0), speed_m_s=math.nan))}, "speed_m_s nan"),
-        ({"path": (Waypoint(at_m=(0.0, 0.0), pause_s=-1.0),)}, "pause_s -1.0"),
-        ({"path": (Waypoint(at_m=(0.0, 0.0), face=(math.inf, 0.0)),)}, "face"),
-        ({"path": (*HERE, *HERE)}, r"path\[1\]: at_m \(0.0, 0.0\) is where path\[0\] is"),
+        ({"name": ""}, ("name",)),
+        ({"height_m": 1.4}, ("height_m 1.4", "1.5 .. 2.0")),
+        ({"height_m": 2.1}, ("height_m 2.1",)),
+        ({"height_m": math.nan}, ("height_m nan",)),
+        ({"sex": "x"}, ("sex 'x'", "female, male")),
+        ({"build": "tall"}, ("build 'tall'",)),
+        ({"arms": "waving"}, ("arms 'waving'",)),
+        ({"enter_s": -1.0}, ("enter_s -1.0",)),
+        ({"enter_s": math.nan}, ("enter_s nan",)),
+        ({"enter_s": 5.0, "leave_s": 5.0}, ("leave_s 5.0", "enter_s 5.0")),
+        ({"path": ()}, ("path",)),
+        ({"path": (Waypoint(at_m=(math.nan, 0.0)),)}, ("path[0]: at_m",)),
+        ({"path": (*HERE, Waypoint(at_m=(1.0, 0.0), speed_m_s=-1.0))}, ("path[1]: speed_m_s -1.0",)),
+        ({"path": (*HERE, Waypoint(at_m=(1.0, 0.0), speed_m_s=math.nan))}, ("speed_m_s nan",)),
+        ({"path": (Waypoint(at_m=(0.0, 0.0), pause_s=-1.0),)}, ("pause_s -1.0",)),
+        ({"path": (Waypoint(at_m=(0.0, 0.0), face=(math.inf, 0.0)),)}, ("face",)),
+        ({"path": (*HERE, *HERE)}, ("path[1]: at_m (0.0, 0.0)", "path[0]")),
     ],
 )
-def test_a_person_that_cannot_be_is_refused_in_one_line(settings, message):
-    with pytest.raises(BadInput, match=message) as caught:
+def test_a_person_that_cannot_be_is_refused_in_one_line(settings, named):
+    with refused(*named):
         PersonConfig(**({"name": "ann", "path": HERE} | settings))
-    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("settings", "message"),
+    ("settings", "named"),
     [
-        ({"top": "t_shrit"}, "top: unknown 't_shrit'; did you mean 't_shirt'"),
-        ({"bottom": "kilt"}, "bottom: unknown 'kilt'.*known: jeans"),
-        ({"shoes": "clogs"}, "shoes"),
-        ({"hair": "green"}, "hair"),
-        ({"top_colour": "bleu"}, "top_colour: unknown 'bleu'; did you mean 'blue'"),
-        ({"bottom_colour": (0.1, 0.2, 1.2)}, "bottom_colour"),
-        ({"hair_colour": (math.nan, 0.0, 0.0)}, "hair_colour"),
+        ({"top": "t_shrit"}, ("'t_shrit'", "'t_shirt'")),
+        ({"bottom": "kilt"}, ("'kilt'", "jeans")),
+        ({"shoes": "clogs"}, ("'clogs'",)),
+        ({"hair": "green"}, ("'green'",)),
+        ({"top_colour": "bleu"}, ("'bleu'", "'blue'")),
+        ({"bottom_colour": (0.1, 0.2, 1.2)}, ()),
+        ({"hair_colour": (math.nan, 0.0, 0.0)}, ()),
     ],
 )
-def test_unknown_clothes_are_refused_with_a_hint(settings, message):
-    with pytest.raises(BadInput, match=message):
+def test_unknown_clothes_are_refused_with_a_hint(settings, named):
+    with refused(*settings, *named):
         Clothes(**settings)
 
 

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
+from tests.helpers.calls.refused import refused
 
 CUBE = Shape(kind=ShapeKind.BOX, size=(1.0, 1.0, 1.0))
 TILTED: Quaternion = (0.1, 0.5, -0.1, math.sqrt(1.0 - 0.27))
@@ -19,11 +19,11 @@ TILTED: Quaternion = (0.1, 0.5, -0.1, math.sqrt(1.0 - 0.27))
 def test_names_are_taken_once_and_unknown_ones_are_refused() -> None:
     with Bullet() as bullet:
         bullet.add_part("cube", [CUBE])
-        with pytest.raises(BadInput, match="'cube': there is one already"):
+        with refused("'cube'"):
             bullet.add_part("cube", [CUBE])
-        with pytest.raises(BadInput, match="no body is called 'ball'; there are: cube"):
+        with refused("'ball'", "cube"):
             bullet.pose("ball")
-        with pytest.raises(BadInput, match="no joint 'elbow'"):
+        with refused("'elbow'"):
             bullet.set_joint_speeds("cube", {"elbow": 1.0}, 1.0)
 
 
@@ -38,9 +38,8 @@ def test_shapes_and_files_that_cannot_be_used_are_refused_in_one_line(tmp_path: 
             lambda: bullet.add_part("a", [mesh]),
             lambda: bullet.add_part("a", []),
         ):
-            with pytest.raises(BadInput) as refusal:
+            with refused():
                 add()
-            assert "\n" not in str(refusal.value)
         assert bullet.parts() == ()
 
 
@@ -178,7 +177,7 @@ def test_a_hidden_body_keeps_its_place_and_may_be_moved_meanwhile() -> None:
         assert bullet.part_poses()[0, 2, 3] < -100.0
         bullet.set_hidden("cube", False)
         assert bullet.part_poses()[0, 0, 3] == 2.0
-        with pytest.raises(BadInput, match="'free' is not fixed"):
+        with refused("'free'"):
             bullet.set_hidden("free", True)
 
 

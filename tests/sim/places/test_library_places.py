@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.files.load import LIBRARY, load_scenario
-from tests.helpers.boxes import fighting_faces, first_hit, upright_boxes
+from tests.helpers.worlds.boxes import fighting_faces, first_hit, upright_boxes
 
 every_scenario = pytest.mark.parametrize("name", sorted(path.stem for path in LIBRARY.glob("*.yaml")))
 

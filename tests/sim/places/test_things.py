@@ -8,13 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.bad_input import BadInput
 from peopleboy.sim.places.extent import fixture_extent, urdf_extent
 from peopleboy.sim.places.pieces import SINK_M
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.places.things import KINDS, Thing, build_thing
+from peopleboy.sim.places.thing_kinds import KINDS
+from peopleboy.sim.places.things import Thing, build_thing
 from peopleboy.sim.places.urdf import find_urdf
-from tests.helpers.boxes import Box, fighting_faces, piece_boxes
+from tests.helpers.calls.refused import refused
+from tests.helpers.worlds.boxes import Box, fighting_faces, piece_boxes
 
 kinds = pytest.mark.parametrize("kind", KINDS)
 
@@ -109,5 +110,5 @@ def test_furniture_of_many_links_is_measured_in_its_rest_pose() -> None:
 def test_a_file_without_shapes_is_no_furniture(tmp_path: Path) -> None:
     path = tmp_path / "bare.urdf"
     path.write_text('<robot name="bare"><link name="base"/></robot>')
-    with pytest.raises(BadInput, match="no visible shapes"):
+    with refused(path):
         urdf_extent(path)

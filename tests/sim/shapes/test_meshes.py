@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import trimesh
 
-from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.physics.model_files import find_model
@@ -12,6 +11,7 @@ from peopleboy.sim.rendering.render import render
 from peopleboy.sim.shapes.meshes import load_triangles
 from peopleboy.sim.shapes.shape_table import make_shape_table
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
+from tests.helpers.calls.refused import refused
 
 
 @pytest.mark.parametrize("ending", ["obj", "stl", "dae"])
@@ -32,7 +32,7 @@ def test_every_format_gives_the_triangles_that_were_written(ending: str, tmp_pat
 def test_a_mesh_without_proper_triangles_is_refused(content: str, tmp_path: Path) -> None:
     file = tmp_path / "broken.obj"
     file.write_text(content)
-    with pytest.raises(BadInput, match=r"broken\.obj"):
+    with refused(file):
         load_triangles(file)
 
 
@@ -41,7 +41,7 @@ def test_a_mesh_without_proper_triangles_is_refused(content: str, tmp_path: Path
 def test_a_file_that_is_no_mesh_is_refused(text: str, ending: str, tmp_path: Path) -> None:
     file = tmp_path / f"broken.{ending}"
     file.write_text(text)
-    with pytest.raises(BadInput, match="broken"):
+    with refused(file):
         load_triangles(file)
 
 

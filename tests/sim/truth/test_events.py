@@ -5,7 +5,7 @@ import pytest
 
 from peopleboy.sim.truth.events import CONTACT_ENDS_S, Event, EventLog
 from peopleboy.sim.world import World
-from tests.helpers.small_worlds import box_thing, config, hall, person, pillar, robot
+from tests.helpers.worlds.small_worlds import box_thing, config, hall, person, pillar, robot
 
 
 @dataclass

@@ -11,7 +11,7 @@ from peopleboy.sim.people.person import PART_CLASSES
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
 from peopleboy.sim.world import World
-from tests.helpers.small_worlds import SMALL, box_thing, config, hall, person, pillar, robot
+from tests.helpers.worlds.small_worlds import SMALL, box_thing, config, hall, person, pillar, robot
 
 CAMERA = Camera()
 # The same camera, with one more image beyond each border.

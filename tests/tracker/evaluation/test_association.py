@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from peopleboy.tracker.evaluation.association import GATE, associate, pair_up
 from peopleboy.tracker.evaluation.boxes import iou
-from tests.helpers.random_sequences import sequences, tracks_of, truth_of
+from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
 
 def best_sum(overlap: np.ndarray, gate: float) -> float:

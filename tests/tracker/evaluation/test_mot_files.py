@@ -3,10 +3,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from numpy.testing import assert_allclose
 
-from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth, write_tracks, write_truth
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from tests.helpers.random_sequences import sequences, tracks_of, truth_of
+from tests.helpers.calls.refused import refused
+from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
 GOOD_TRUTH = "1,1,10.00,20.00,30.00,80.00,1,1,0.5000\n"
 GOOD_TRACKS = "1,1,10.00,20.00,30.00,80.00,0.9000,-1,-1,-1\n"
@@ -55,33 +55,31 @@ def test_spaces_windows_line_ends_and_a_missing_last_newline_are_fine(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("line", "says"),
+    ("line", "named"),
     [
-        ("1,1,10,20,30,80,1,1", "must have 9 numbers"),
-        ("", "must have 9 numbers"),
-        ("1,2,10,twenty,30,80,1,1,1", "must be numbers"),
-        ("1,2,10,,30,80,1,1,1", "must be numbers"),
-        ("0,2,10,20,30,80,1,1,1", "frame must be a whole number from 1, got 0"),
-        ("1.5,2,10,20,30,80,1,1,1", "frame must be a whole number from 1, got 1.5"),
-        ("1e300,2,10,20,30,80,1,1,1", "frame must be a whole number"),
-        ("1,-2,10,20,30,80,1,1,1", "id must be a whole number from 0, got -2"),
-        ("1,2,nan,20,30,80,1,1,1", "must be within .* got nan, 20, 30, 80"),
-        ("1,2,10,inf,30,80,1,1,1", "must be within"),
-        ("1,2,10,20,-30,80,1,1,1", "width and height must be 0 or more, got 10, 20, -30, 80"),
-        ("1,1,11,20,30,80,1,1,1", "an id must occur once in a frame, got 1"),
-        ("1,2,10,20,30,80,2,1,1", "counted must be 0 or 1, got 2"),
-        ("1,2,10,20,30,80,1,14,1", "class must be 1 .person. to 13, got 14"),
-        ("1,2,10,20,30,80,1,1,1.1", "visible fraction must be 0 to 1, got 1.1"),
-        ("1,2,10,20,30,80,1,1,nan", "visible fraction must be 0 to 1, got nan"),
+        ("1,1,10,20,30,80,1,1", ("9 numbers",)),
+        ("", ("9 numbers",)),
+        ("1,2,10,twenty,30,80,1,1,1", ("numbers",)),
+        ("1,2,10,,30,80,1,1,1", ("numbers",)),
+        ("0,2,10,20,30,80,1,1,1", ("frame", "from 1", "got 0")),
+        ("1.5,2,10,20,30,80,1,1,1", ("frame", "whole", "got 1.5")),
+        ("1e300,2,10,20,30,80,1,1,1", ("frame", "whole")),
+        ("1,-2,10,20,30,80,1,1,1", ("id", "from 0", "got -2")),
+        ("1,2,nan,20,30,80,1,1,1", ("nan, 20, 30, 80",)),
+        ("1,2,10,inf,30,80,1,1,1", ("10, inf, 30, 80",)),
+        ("1,2,10,20,-30,80,1,1,1", ("width", "height", "10, 20, -30, 80")),
+        ("1,1,11,20,30,80,1,1,1", ("id", "once", "got 1")),
+        ("1,2,10,20,30,80,2,1,1", ("counted", "0 or 1", "got 2")),
+        ("1,2,10,20,30,80,1,14,1", ("class", "13", "got 14")),
+        ("1,2,10,20,30,80,1,1,1.1", ("visible fraction", "0 to 1", "1.1")),
+        ("1,2,10,20,30,80,1,1,nan", ("visible fraction", "0 to 1", "nan")),
     ],
 )
-def test_a_malformed_truth_line_is_refused_by_path_line_and_value(tmp_path, line, says):
+def test_a_malformed_truth_line_is_refused_by_path_line_and_value(tmp_path, line, named):
     path = tmp_path / "gt.txt"
     path.write_text(f"{GOOD_TRUTH}{line}\n2,1,10,20,30,80,1,1,1\n")
-    with pytest.raises(BadInput, match=says) as refusal:
+    with refused(f"{path}:2: ", *named):
         read_truth(path)
-    assert str(refusal.value).startswith(f"{path}:2: ")
-    assert "\n" not in str(refusal.value)
 
 
 @pytest.mark.parametrize(
@@ -90,7 +88,7 @@ def test_a_malformed_truth_line_is_refused_by_path_line_and_value(tmp_path, line
 def test_a_malformed_tracks_line_is_refused_by_path_and_line(tmp_path, line):
     path = tmp_path / "tracks.txt"
     path.write_text(f"{GOOD_TRACKS}{line}\n")
-    with pytest.raises(BadInput, match=r"tracks\.txt:2: "):
+    with refused(f"{path}:2: "):
         read_tracks(path)
 
 
@@ -98,13 +96,14 @@ def test_a_malformed_tracks_line_is_refused_by_path_and_line(tmp_path, line):
 def test_a_missing_file_a_folder_and_bytes_that_are_not_text_are_refused(tmp_path, read):
     (tmp_path / "image.png").write_bytes(b"\x89PNG\xff\xfe")
     for name in ("none.txt", ".", "image.png"):
-        with pytest.raises(BadInput, match="cannot be read as MOTChallenge text"):
+        with refused(tmp_path / name):
             read(tmp_path / name)
 
 
 def test_a_file_that_cannot_be_written_is_refused(tmp_path):
-    with pytest.raises(BadInput, match="cannot be written"):
-        write_tracks(tmp_path / "no such folder" / "tracks.txt", tracks_of([]))
+    path = tmp_path / "no such folder" / "tracks.txt"
+    with refused(path):
+        write_tracks(path, tracks_of([]))
 
 
 def test_arrays_are_copied_sorted_and_read_only():
@@ -119,9 +118,9 @@ def test_arrays_are_copied_sorted_and_read_only():
 
 def test_impossible_arrays_are_refused_by_column_or_row():
     one = {"frame": [1], "id": [1], "box": [[0, 0, 1, 1]], "counted": [True], "visible": [1.0]}
-    with pytest.raises(BadInput, match=r"column 'box' must have shape \(1, 4\), got \(4,\)"):
+    with refused("'box'", "(1, 4)", "(4,)"):
         TrueBoxes(**one | {"box": [0, 0, 1, 1]})
-    with pytest.raises(BadInput, match="truth: row 0: the visible fraction must be 0 to 1, got 2"):
+    with refused("truth: row 0", "visible fraction", "0 to 1", "got 2"):
         TrueBoxes(**one | {"visible": [2.0]})
 
 

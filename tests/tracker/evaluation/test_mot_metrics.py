@@ -11,7 +11,7 @@ from trackeval.metrics import CLEAR, HOTA, Identity
 from peopleboy.tracker.evaluation.association import pair_up
 from peopleboy.tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from tests.helpers.random_sequences import as_tracks, sequences, tracks_of, truth_of
+from tests.helpers.images.random_sequences import as_tracks, sequences, tracks_of, truth_of
 
 REFERENCES = (HOTA(), CLEAR({"PRINT_CONFIG": False}), Identity({"PRINT_CONFIG": False}))
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from peopleboy.tracker.evaluation.evaluate import evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
-from tests.helpers.random_sequences import as_tracks, sequences, tracks_of, truth_of
+from tests.helpers.images.random_sequences import as_tracks, sequences, tracks_of, truth_of
 
 THESIS = ("cr", "cp", "ca", "ar", "ap", "aa")
 PAPER = ("oc", "dc", "ocr", "ocp", "oca", "oar", "bap", "adc")

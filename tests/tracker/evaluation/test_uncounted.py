@@ -5,7 +5,7 @@ from hypothesis import given
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.association import associate, pair_up
 from peopleboy.tracker.evaluation.uncounted import ignore_uncounted, settle_uncounted
-from tests.helpers.random_sequences import sequences, tracks_of, truth_of
+from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
 NEAR, FAR = (1, 1, 0, 0, 40, 100), (1, 2, 200, 0, 20, 50)
 

@@ -8,7 +8,7 @@ from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import FOOTAGE
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import make_tracker
-from tests.helpers.drawn_people import blank, draw_person
+from tests.helpers.images.drawn_people import blank, draw_person
 
 GREY, RED, BLUE = (120, 120, 120), (200, 30, 30), (30, 30, 200)
 

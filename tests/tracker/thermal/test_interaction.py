@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.thermal.config import InteractionConfig, TrackerConfig
-from peopleboy.tracker.thermal.contour.ellipse import box_of
+from peopleboy.tracker.thermal.contour.outline import box_of
 from peopleboy.tracker.thermal.filter.particles import ellipse_of
 from peopleboy.tracker.thermal.interaction import detector_factor, overlap_shares, person_factor, regions_of
 

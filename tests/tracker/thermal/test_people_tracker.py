@@ -12,7 +12,8 @@ from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
-from tests.helpers.drawn_people import blank, draw_person
+from tests.helpers.images.contours import middle, semi_height
+from tests.helpers.images.drawn_people import blank, draw_person
 
 APART = replace(PEOPLEBOY, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
 
@@ -40,14 +41,14 @@ def test_the_detector_finds_three_people_one_after_the_other(seed):
         counts.append(len(confirmed(tracks)))
     assert all(later - earlier <= 1 for earlier, later in pairwise(counts))
     assert counts[-1] == 3
-    assert sorted(track.ellipse.x for track in confirmed(tracks)) == pytest.approx([60, 150, 250], abs=5)
+    assert sorted(middle(track) for track in confirmed(tracks)) == pytest.approx([60, 150, 250], abs=5)
 
 
 def test_who_is_no_longer_seen_is_given_up_and_the_others_stay():
     tracker = PeopleTracker(APART, np.random.default_rng(0))
     for i in range(60):
         tracks = tracker.update(frame(i, *THREE))
-    gone = min(confirmed(tracks), key=lambda track: track.ellipse.x).id
+    gone = min(confirmed(tracks), key=middle).id
     for i in range(60, 90):
         tracks = tracker.update(frame(i, *THREE[1:]))
     left = {track.id for track in confirmed(tracks)}
@@ -76,7 +77,7 @@ def test_the_image_is_measured_once_for_each_person_and_once_for_the_detector(mo
     tracker = PeopleTracker(APART, np.random.default_rng(0))
     for i in range(60):
         calls.clear()
-        before = len(tracker.particles.keys() - {0})
+        before = len(tracker.explanation.particles.keys() - {0})
         tracker.update(frame(i, *THREE))
         assert calls == [1000] * (before + 1)
 
@@ -86,7 +87,7 @@ def test_shared_samples_are_divided_evenly():
     tracker = PeopleTracker(config, np.random.default_rng(0))
     for i in range(60):
         tracker.update(frame(i, *THREE))
-    assert [len(cloud) for key, cloud in tracker.particles.items() if key] == [300] * 3
+    assert [len(cloud) for key, cloud in tracker.explanation.particles.items() if key] == [300] * 3
 
 
 BLUE, RED = (30, 60, 200), (200, 40, 40)
@@ -121,7 +122,7 @@ def passing(i):
 
 
 def identity_at(tracks, x):
-    near = [track for track in tracks if abs(track.ellipse.x - x) < 12 and track.ellipse.h < 30]
+    near = [track for track in tracks if abs(middle(track) - x) < 12 and semi_height(track) < 30]
     return near[0].id if near else None
 
 
@@ -133,7 +134,7 @@ def test_a_person_keeps_its_identity_through_a_total_occlusion(seed):
     assert before is not None
     assert after == before
     hidden = [t for frame in tracks for t in frame if t.status is Status.TOTALLY_OCCLUDED]
-    front = next(track.id for track in tracks[45] if track.ellipse.h > 35)
+    front = next(track.id for track in tracks[45] if semi_height(track) > 35)
     assert {t.id for t in hidden} == {before}
     assert {t.occluder for t in hidden} <= {front, None}
 

@@ -12,7 +12,7 @@ from peopleboy.tracker.thermal.reidentification import most_alike_and_nearest, r
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.thermal.variants import FOOTAGE, PEOPLEBOY, THESIS_OCCLUSION
 from peopleboy.tracker.track import Status
-from tests.helpers.drawn_people import blank
+from tests.helpers.images.drawn_people import blank
 
 VIEW = view_frame(
     Frame(thermal=blank(), time_s=1.0),

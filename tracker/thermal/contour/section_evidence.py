@@ -9,11 +9,13 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.config import ContourConfig, TrackerConfig
+from peopleboy.tracker.thermal.config import ContourConfig
 from peopleboy.tracker.thermal.contour.contour import FEET, section_differences
 from peopleboy.tracker.thermal.contour.coverage import covered_by, seen_shares
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.track import Ellipse, Track
+from peopleboy.tracker.thermal.ellipse import Ellipse
+from peopleboy.tracker.thermal.explanation import ContourExplanation
+from peopleboy.tracker.track import Track
 
 _NOTHING = 1e-6  # share of a section that counts as none
 
@@ -33,18 +35,19 @@ class Evidence:
 
 
 def evidence_of(
-    thermal: NDArray[np.uint8], tracks: Sequence[Track], config: TrackerConfig
+    thermal: NDArray[np.uint8], tracks: Sequence[Track], explanation: ContourExplanation
 ) -> Mapping[int, Evidence]:
     """Measure the contours of tracks in their frame, by track id; whom a track names as occluder covers it.
 
     Args:
         thermal: (H, W) grey, as the tracker got it.
         tracks: what the tracker made of it.
-        config: of that tracker.
+        explanation: its contours of that frame.
     """
+    config = explanation.config
     model = _model((thermal.shape[0], thermal.shape[1]), config.contour)
     image = model.prepare(thermal)
-    states = {track.id: _state(track.ellipse) for track in tracks}
+    states = {track.id: _state(explanation.ellipses[track.id]) for track in tracks}
     evidence = {}
     for track in tracks:
         front = [states[track.occluder]] if track.occluder in states else []

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.track import Ellipse
+from peopleboy.tracker.thermal.ellipse import Ellipse
 
 X: Final = 0
 Y: Final = 1

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.frame_cache import film, frames_of
 from peopleboy.scenarios.studies.reproduce.measuring.store import Result
-from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
-from peopleboy.scenarios.studies.reproduce.measuring.units import play_key
+from peopleboy.scenarios.studies.reproduce.measuring.units import Showing
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.association import GATE
 from peopleboy.tracker.evaluation.boxes import iou
@@ -26,26 +23,13 @@ PLAIN = 0.9  # visible fraction from which a person is in plain view
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DelayUnit:
-    """Switch a tracker on many times in one film, each time while somebody is in plain view.
-
-    Attributes:
-        play: what is on the film.
-        cache: where films are; it is rendered if it is not there.
-        setting: the tracker.
-        repeat: number of the random stream, from 0.
-    """
-
-    play: SuiteRun
-    cache: Path
-    setting: Setting
-    repeat: int
-    is_timing: bool = False
+class DelayUnit(Showing):
+    """Switch a tracker on many times in one film, each time while somebody is in plain view."""
 
     @property
     def key(self) -> str:
-        """Film, tracker and repeat."""
-        return f"delay {play_key(self.play)} | {self.setting.key} | {self.repeat}"
+        """What is shown to whom."""
+        return f"delay {self.parts}"
 
     def run(self) -> Result:
         """Count the starts, and the frames of each that found the person, the one of the start included."""

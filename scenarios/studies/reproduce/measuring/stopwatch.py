@@ -108,10 +108,11 @@ def _time_crowd(setting: Setting, people: int, steps: int) -> float:
     tracker = setting.make(stream(0, "reproduce.timing"))
     image, times = frame_of(people), []
     for number in range(60 * (people + 1) + 10 * steps):
-        before, start = len(tracker.particles), time.process_time_ns()
+        before, start = len(tracker.explanation.particles), time.process_time_ns()
         tracker.update(replace(image, time_s=number / 15))
-        if before == len(tracker.particles) == people + 1:
-            times.append(time.process_time_ns() - start)
+        spent = time.process_time_ns() - start
+        if before == len(tracker.explanation.particles) == people + 1:
+            times.append(spent)
     return median(times[-steps:]) / 1e6 / (people + 1) if len(times) >= steps else float("nan")
 
 

@@ -12,7 +12,6 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.thermal.config import InteractionConfig, OcclusionConfig, TrackerConfig
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
-from peopleboy.tracker.trackers import Tracker
 
 Value = float | int | str | None
 Changes = tuple[tuple[str, Value], ...]
@@ -66,7 +65,7 @@ class Setting:
             config = changed(config, path, value)
         return config
 
-    def make(self, rng: np.random.Generator) -> Tracker:
+    def make(self, rng: np.random.Generator) -> PeopleTracker:
         """Make the tracker."""
         return PeopleTracker(self.config(), rng)
 

@@ -69,8 +69,8 @@ class FilmUnit:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TrackUnit:
-    """Let one tracker, with one stream of random numbers, see one film.
+class Showing:
+    """One film that one tracker, with one stream of random numbers, is to see.
 
     Attributes:
         play: what is on the film.
@@ -86,9 +86,19 @@ class TrackUnit:
     is_timing: bool = False
 
     @property
-    def key(self) -> str:
+    def parts(self) -> str:
         """Film, tracker and repeat."""
-        return f"track {play_key(self.play)} | {self.setting.key} | {self.repeat}"
+        return f"{play_key(self.play)} | {self.setting.key} | {self.repeat}"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackUnit(Showing):
+    """Let a tracker see a film, and score what it finds."""
+
+    @property
+    def key(self) -> str:
+        """What is shown to whom."""
+        return f"track {self.parts}"
 
     def run(self) -> Result:
         """Track, and score by both rules for people who are not counted."""

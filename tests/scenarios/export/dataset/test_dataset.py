@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.scenarios.cli import main
 from peopleboy.scenarios.export.dataset.splits import SPLITS, lacking_splits, split_lines, split_of
 from peopleboy.tracker.evaluation.mot_files import read_truth
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names
 
 SCENE = """
 name: tiny
@@ -26,17 +27,14 @@ robot: {at_m: [0.6, 0.0], cameras: {thermal: {kind: thermal, width_px: 160, heig
 """
 
 
-def render(*arguments: object) -> int:
-    with pytest.raises(SystemExit) as end:
-        main(["render", *map(str, arguments)])
-    return int(end.value.code or 0)
-
-
 @pytest.fixture(scope="module")
 def rendered(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("rendered")
     (home / "tiny.yaml").write_text(SCENE)
-    assert render(home / "tiny.yaml", "--frames", "--seeds", 2, "--jobs", 1, "--out", home / "set") == 0
+    assert (
+        run_cli("render", home / "tiny.yaml", "--frames", "--seeds", 2, "--jobs", 1, "--out", home / "set")
+        == 0
+    )
     return home
 
 
@@ -54,8 +52,9 @@ def test_every_seed_is_in_one_split_and_stays_there(seeds: int) -> None:
 
 
 def test_what_is_lacking_is_said_in_one_line() -> None:
-    assert lacking_splits(3) == "val and test are empty: the first are seeds 5 and 6; give --seeds 7"
-    assert lacking_splits(6) == "test is empty: the first is seed 6; give --seeds 7"
+    assert_names(lacking_splits(3), "val", "test", "5 and 6", "--seeds 7")
+    assert_names(lacking_splits(6), "test", "seed 6", "--seeds 7")
+    assert "val" not in lacking_splits(6)
 
 
 def test_a_set_is_sound_and_its_numbers_are_those_of_its_files(rendered: Path) -> None:
@@ -83,7 +82,7 @@ def test_a_call_that_is_refused_leaves_a_finished_set_as_it_was(rendered: Path) 
     folder = rendered / "set"
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     order = (rendered / "tiny.yaml", "--seeds", 9, "--jobs", 1, "--out", folder)
-    assert render(*order, "--tracker", "thesis") == 2
+    assert run_cli("render", *order, "--tracker", "thesis") == 2
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
 
 
@@ -98,7 +97,7 @@ def test_a_set_grows_without_rendering_again_and_broken_images_are_found(
     with (folder / "export-coco" / "images.bin").open("wb") as export:
         export.truncate(500_000_000)
     order = (rendered / "tiny.yaml", "--frames", "--seeds", 3, "--jobs", 1, "--out", folder)
-    assert render(*order) == 1
+    assert run_cli("render", *order) == 1
     told, sheet = capsys.readouterr().out, (folder / "README.md").read_text()
     assert "FAILS: every image is there" in told
     assert f"\n{lacking_splits(3)}\n" in told
@@ -112,6 +111,5 @@ def test_a_folder_of_something_else_is_refused_and_left_alone(
     rendered: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "thesis.txt").write_text("do not lose me")
-    assert render(rendered / "tiny.yaml", "--out", tmp_path) == 2
-    assert "no rendered set" in capsys.readouterr().err
+    assert_names(refusal(capsys, "render", rendered / "tiny.yaml", "--out", tmp_path), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]

@@ -22,7 +22,7 @@ from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.filter.particles import Particles
-from peopleboy.tracker.track import Ellipse, Status, Track
+from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import Tracker
 
 PLAY = SuiteRun(load_scenario("single_stationary").lasting(9.0), 0)
@@ -65,17 +65,14 @@ class Late:
         self.seen.append(frame)
         number = round(frame.time_s * 15)
         [box] = self.truth.box[self.truth.frame == number]
-        ellipse = Ellipse(x=0.0, y=0.0, w=1.0, h=1.0, d=0.0, vx=0.0, vy=0.0, vw=0.0, vh=0.0)
         status = Status.TRACKED if len(self.seen) >= 3 else Status.TENTATIVE
         left, top, width, height = (float(value) for value in box)
         track = Track(
             id=1,
-            ellipse=ellipse,
             box=(left, top, width, height),
             confidence=1.0,
             status=status,
             age_s=0.0,
-            uncertainty_px2=0.0,
         )
         return (track,)
 

@@ -9,8 +9,8 @@ from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.joints import JOINT_NAMES
 from peopleboy.sim.people.body.skeleton import PARENTS, joint_offsets
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Posture, Waypoint
-from tests.helpers.person_shapes import person_depth, person_points
-from tests.helpers.walkers import make_person, settle, walk
+from tests.helpers.worlds.person_shapes import person_depth, person_points
+from tests.helpers.worlds.walkers import make_person, settle, walk
 
 BARE = Clothes(top="t_shirt", bottom="leggings")
 BODIES = list(itertools.product(("female", "male"), ("slim", "average", "stout")))

@@ -7,7 +7,7 @@ from peopleboy.sim.people.body.body_shapes import sole_points
 from peopleboy.sim.people.body.motion_capture import fourier_basis, load_walking_clip
 from peopleboy.sim.people.body.skeleton import mirror
 from peopleboy.sim.people.person import Posture, Waypoint
-from tests.helpers.walkers import make_person, settle, walk
+from tests.helpers.worlds.walkers import make_person, settle, walk
 
 FOOT_PARTS = ("left_foot", "right_foot")
 

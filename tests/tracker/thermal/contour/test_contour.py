@@ -25,7 +25,7 @@ from peopleboy.tracker.thermal.contour.contour import (
 )
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS
-from tests.helpers.drawn_people import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
+from tests.helpers.images.drawn_people import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
 
 LITERAL = ContourConfig()
 

@@ -12,7 +12,7 @@ from peopleboy.tracker.thermal.contour.coverage import (
 )
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS
-from tests.helpers.drawn_people import blank, draw_person
+from tests.helpers.images.drawn_people import blank, draw_person
 
 MODEL = ContourModel.build((240, 320), PEOPLEBOY.contour)
 

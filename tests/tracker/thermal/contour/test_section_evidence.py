@@ -8,11 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS, SHOULDER_LEFT, SIDE_LEFT, SIDE_RIGHT
-from peopleboy.tracker.thermal.contour.ellipse import outline, section_lines
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.contour.outline import outline, section_lines
 from peopleboy.tracker.thermal.contour.section_evidence import evidence_of
-from peopleboy.tracker.track import Ellipse, Status, Track
+from peopleboy.tracker.thermal.ellipse import Ellipse
+from peopleboy.tracker.thermal.explanation import ContourExplanation
+from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import TRACKERS
 
 PEOPLEBOY = TRACKERS["peopleboy"]
@@ -20,11 +23,21 @@ AT_REST = {"vx": 0.0, "vy": 0.0, "vw": 0.0, "vh": 0.0}
 STANDING = Ellipse(x=160.0, y=120.0, w=20.0, h=45.0, d=0.0, **AT_REST)
 
 
-def track(number: int = 1, ellipse: Ellipse = STANDING, occluder: int | None = None) -> Track:
+def track(number: int = 1, occluder: int | None = None) -> Track:
     return Track(
-        id=number, ellipse=ellipse, box=(0.0, 0.0, 1.0, 1.0), confidence=1.0, status=Status.TRACKED,
-        age_s=1.0, uncertainty_px2=1.0, occluder=occluder,
-    )  # fmt: skip
+        id=number,
+        box=(0.0, 0.0, 1.0, 1.0),
+        confidence=1.0,
+        status=Status.TRACKED,
+        age_s=1.0,
+        occluder=occluder,
+    )
+
+
+def explain(config: TrackerConfig = PEOPLEBOY, *ellipses: Ellipse) -> ContourExplanation:
+    """The explanation of tracks 1, 2, ... with these contours; of one who stands if none are given."""
+    told = dict(enumerate(ellipses or (STANDING,), 1))
+    return ContourExplanation(config=config, ellipses=told, spread_px2=dict.fromkeys(told, 1.0))
 
 
 def person(ellipse: Ellipse = STANDING) -> NDArray[np.uint8]:
@@ -44,7 +57,7 @@ def test_what_is_wholly_in_view_responds_as_the_tracker_measures_it(name: str) -
     model = ContourModel.build((240, 320), config.contour)
     state = np.array([[160.0, 120.0, 20.0, 45.0, 0.0, 0.0, 0.0, 0.0, 0.0]], np.float32)
     measured = model.differences(model.prepare(image), state)[0]
-    evidence = evidence_of(image, [track()], config)[1]
+    evidence = evidence_of(image, [track()], explain(config))[1]
     has_feet = config.contour.feet_weight > 0
     used = slice(None) if has_feet else slice(FEET)
     assert evidence.response[used] == pytest.approx(measured[used], abs=1e-5)
@@ -54,7 +67,8 @@ def test_what_is_wholly_in_view_responds_as_the_tracker_measures_it(name: str) -
 
 def test_an_occluder_s_body_hides_the_sections_on_its_side() -> None:
     front = replace(STANDING, x=185.0)
-    evidence = evidence_of(person(), [track(), track(2, front), track(3, occluder=2)], PEOPLEBOY)
+    tracks = [track(), track(2), track(3, occluder=2)]
+    evidence = evidence_of(person(), tracks, explain(PEOPLEBOY, STANDING, front, STANDING))
     assert evidence[1].seen == pytest.approx(np.ones(8))
     assert evidence[3].seen[SIDE_RIGHT] == pytest.approx(0.0)
     assert np.isnan(evidence[3].response[SIDE_RIGHT])
@@ -63,7 +77,7 @@ def test_an_occluder_s_body_hides_the_sections_on_its_side() -> None:
 
 
 def test_an_empty_image_speaks_for_nobody() -> None:
-    evidence = evidence_of(np.full((240, 320), 40, np.uint8), [track()], PEOPLEBOY)[1]
+    evidence = evidence_of(np.full((240, 320), 40, np.uint8), [track()], explain())[1]
     assert evidence.response == pytest.approx(np.zeros(8))
 
 
@@ -72,7 +86,7 @@ def test_evidence_is_between_minus_one_and_one_or_out_of_view_anywhere(
     x: float, y: float, h: float, d: float
 ) -> None:
     ellipse = Ellipse(x=x, y=y, w=0.4 * h, h=h, d=d, **AT_REST)
-    evidence = evidence_of(person(), [track(ellipse=ellipse)], PEOPLEBOY)[1]
+    evidence = evidence_of(person(), [track()], explain(PEOPLEBOY, ellipse))[1]
     assert ((evidence.seen >= 0) & (evidence.seen <= 1)).all()
     assert np.array_equal(np.isnan(evidence.response), evidence.seen == 0)
     assert (np.abs(evidence.response[~np.isnan(evidence.response)]) <= 1 + 1e-5).all()

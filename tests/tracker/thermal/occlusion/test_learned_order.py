@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,6 +10,7 @@ from peopleboy.tracker.thermal.occlusion.learned_order import LearnedOrder, ship
 from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable, WeakClassifier
 from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
 from peopleboy.tracker.thermal.occlusion.weak_classifiers import weighted_sums
+from tests.helpers.calls.refused import refused
 
 WEAK = (
     WeakClassifier(weights={"top": 1.0}, threshold=0.5, parity=1, importance=2.0),
@@ -94,7 +93,7 @@ def test_a_table_survives_its_file(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ("change", "named"),
     [
         (("parity: -1", "parity: 0"), "classifiers.0.parity"),
         (("top: 1.0, colour: -0.35", "size: 1.0"), "classifiers.0.weights.size"),
@@ -108,20 +107,18 @@ def test_a_table_survives_its_file(tmp_path):
         ((GOOD, "- 1"), "the file"),
     ],
 )
-def test_a_file_that_is_no_table_is_refused_in_one_line(tmp_path, change, message):
+def test_a_file_that_is_no_table_is_refused_in_one_line(tmp_path, change, named):
     path = tmp_path / "order.yaml"
     path.write_text(GOOD)
     LearnedTable.load(path)
     path.write_text(GOOD.replace(*change))
-    with pytest.raises(BadInput, match=message) as error:
+    with refused(path, named):
         LearnedTable.load(path)
-    assert "\n" not in str(error.value)
-    assert str(path) in str(error.value)
 
 
 def test_a_missing_file_is_refused(tmp_path):
-    with pytest.raises(BadInput, match="cannot be read"):
-        LearnedTable.load(Path(tmp_path / "nothing.yaml"))
+    with refused(tmp_path / "nothing.yaml"):
+        LearnedTable.load(tmp_path / "nothing.yaml")
 
 
 @given(st.permutations(range(5)), st.data())

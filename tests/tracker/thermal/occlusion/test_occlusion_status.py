@@ -14,7 +14,7 @@ from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
 from peopleboy.tracker.track import Status
-from tests.helpers.drawn_people import blank
+from tests.helpers.images.drawn_people import blank
 
 
 def person(number, x, h):

@@ -1,0 +1,124 @@
+"""How errors depend on the distance, and on how much of a person is visible."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from textwrap import fill
+from typing import NamedTuple
+
+import numpy as np
+from markupsafe import Markup
+
+from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, lettered, new_figure, says
+from peopleboy.scenarios.report.columns import Column
+from peopleboy.scenarios.report.findings.spans import Floats
+from peopleboy.scenarios.report.findings.summary import RunFindings
+
+DISTANCES_M = (3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0)
+VISIBLE = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+_FEWEST = 5  # boxes in a bin, below which a figure says nothing
+_DASHES = ("-", (0, (4, 2)), (0, (1.4, 2)), (0, (5, 2, 1.4, 2)))
+_WIDTH_PT, _HEIGHT_PT = 280.0, 150.0
+
+Samples = dict[str, Floats]
+"""Of each moment of a person who counts and of whom something is visible, (K,) each.
+
+distance [m], visible: share of the silhouette, found: 100 where a track lies on the person, else 0 [%],
+offset: of the box's middle from the truth's [px], NaN without one.
+"""
+
+
+class CurvePoint(NamedTuple):
+    """One bin of a curve."""
+
+    x: float  # middle of the bin
+    mean: float  # over runs of their means
+    sd: float  # sample standard deviation over runs; 0 for fewer than two
+    boxes: int  # how many are in the bin
+
+
+def samples(found: RunFindings) -> Samples:
+    """Collect what curves are made of."""
+    parts: list[list[Floats]] = [[np.zeros(0)] * 4]
+    for person in found.people:
+        at = person.is_counted & (person.visible > 0.0)
+        hits = np.where(np.isfinite(person.iou), 100.0, 0.0)
+        parts.append([c[at] for c in (person.distance_m, person.visible, hits, person.offset_px)])
+    columns = [np.concatenate(part) for part in zip(*parts, strict=True)]
+    return dict(zip(("distance", "visible", "found", "offset"), columns, strict=True))
+
+
+def curve(runs: Sequence[Samples], over: str, figure: str, edges: Sequence[float]) -> list[CurvePoint]:
+    """Average a figure in bins, the last of them closed, run by run, and then over the runs.
+
+    Bins with fewer than five boxes are left out.
+    """
+    points = []
+    for low, high in pairwise(edges):
+        end = np.inf if high == edges[-1] else high
+        parts = [
+            of[figure][(of[over] >= low) & (of[over] <= high) & (of[over] < end) & np.isfinite(of[figure])]
+            for of in runs
+        ]
+        means = np.array([part.mean() for part in parts if len(part)])
+        boxes = sum(map(len, parts))
+        if boxes >= _FEWEST:
+            sd = float(means.std(ddof=1)) if len(means) > 1 else 0.0
+            points.append(CurvePoint((low + high) / 2.0, float(means.mean()), sd, boxes))
+    return points
+
+
+def draw_error_curves(columns: Sequence[Column]) -> list[tuple[str, Markup]]:
+    """Draw, with their titles, whether people are found and how far off boxes are, for all columns."""
+    runs = {column.label: [samples(found) for found in column.runs] for column in columns}
+    charts = []
+    for figure, title, top, unit in (
+        ("found", "People found", 100.0, "%"),
+        ("offset", "How far the box is off", None, "px"),
+    ):
+        for over, edges, ticks, label, words in (
+            ("distance", DISTANCES_M, DISTANCES_M[1::2], "distance from the camera [m]", "over distance"),
+            ("visible", VISIBLE, VISIBLE, "share of the person that is visible", "over visible share"),
+        ):
+            curves = {name: curve(of, over, figure, edges) for name, of in runs.items()}
+            name = f"{title} {words} [{unit}]"
+            charts.append((name, _draw(name, curves, (label, edges, ticks), top, unit)))
+    return charts
+
+
+@lettered
+def _draw(
+    title: str,
+    curves: dict[str, list[CurvePoint]],
+    across: tuple[str, Sequence[float], Sequence[float]],
+    top: float | None,
+    unit: str,
+) -> Markup:
+    label, edges, ticks = across
+    figure = new_figure(_WIDTH_PT, _HEIGHT_PT)
+    figure.set_layout_engine("constrained")
+    axes = figure.add_subplot()
+    told = []
+    for (name, points), colour, dash in zip(curves.items(), SERIES, _DASHES, strict=False):
+        x, mean, sd = ([getattr(p, key) for p in points] for key in ("x", "mean", "sd"))
+        axes.errorbar(x, mean, sd, color=colour, ls=dash, lw=1.6, elinewidth=1.0, label=fill(name, 48))
+        words = [f"at {p.x:.2g}: {_value(p, unit)} ({p.boxes} boxes)" for p in points]
+        for p, said in zip(points, words, strict=True):
+            (dot,) = axes.plot(p.x, p.mean, "o", ms=5.5, mfc=colour, mec="#ffffff", zorder=3, clip_on=False)
+            says(dot, f"{name} {said}")
+        told.append(f"{name}: {'; '.join(words)}")
+    axes.set(xlim=(edges[0], edges[-1]), xticks=ticks, xlabel=label)
+    axes.set_ylim(0.0, top)
+    axes.locator_params(axis="y", nbins=5)
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.grid(axis="y", color=LINE)
+    axes.spines[:].set_visible(False)
+    axes.tick_params(length=0.0, pad=5.0)
+    if len(curves) > 1:
+        figure.legend(loc="outside upper left", frameon=False, ncols=2)
+    return inline(figure, title, f"{title}. {'. '.join(told)}")
+
+
+def _value(point: CurvePoint, unit: str) -> str:
+    return f"{point.mean:.1f}{f' ± {point.sd:.1f}' if point.sd else ''} {unit}"

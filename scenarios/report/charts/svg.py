@@ -1,0 +1,77 @@
+"""Matplotlib's figures as SVG inside a page: always the same bytes, and no names that could clash."""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import Final
+
+import matplotlib
+from markupsafe import Markup, escape
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+INK: Final = "#1c2430"
+SOFT: Final = "#54606f"
+LINE: Final = "#d5dbe3"
+SERIES: Final = ("#0072b2", "#d55e00", "#009e73", "#a8327a")  # Okabe and Ito; dark enough for lines on white
+
+_PER_INCH: Final = 72.0
+_SAYS: Final = "says "
+_NOTHING: Final = dict.fromkeys(("Creator", "Date", "Format", "Type"))
+
+# A $ in a name begins no formula.
+lettered = matplotlib.rc_context(
+    {
+        "text.parse_math": False,
+        "font.family": "sans-serif",
+        "font.sans-serif": ["DejaVu Sans"],
+        "font.size": 8.5,
+        "text.color": INK,
+        "axes.labelcolor": SOFT,
+        "xtick.color": SOFT,
+        "ytick.color": SOFT,
+        "xtick.labelcolor": INK,
+        "ytick.labelcolor": INK,
+    }
+)
+"""A decorator of functions that draw."""
+
+
+def new_figure(width_pt: float, height_pt: float) -> Figure:
+    """Make an empty figure without paper."""
+    figure = Figure((width_pt / _PER_INCH, height_pt / _PER_INCH), facecolor="none")
+    FigureCanvasSVG(figure)
+    return figure
+
+
+def says(artist: Artist, words: str) -> None:
+    """Let an artist say something when it is pointed at."""
+    artist.set_gid(_SAYS + words)
+
+
+def inline(figure: Figure, name: str, words: str = "") -> Markup:
+    """Give a figure as an element of a page.
+
+    Args:
+        figure: what to show.
+        name: of the figure, another one for each on a page.
+        words: the same for those who do not see it; an ornament has none.
+    """
+    file = io.StringIO()
+    # Letters stay letters, so that they can be found.
+    with matplotlib.rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
+        figure.savefig(file, format="svg", metadata=_NOTHING)
+    drawn = re.sub(r"<(metadata|style).*?</\1>|<g id=[^>]*/>", "", file.getvalue(), flags=re.DOTALL)
+    head, body = re.split(r"<svg[^>]*>", drawn)
+    box = re.search(r'viewBox="[^"]*"', file.getvalue())
+    assert box is not None, head
+    role = f'role="img" aria-label="{escape(words)}"' if words else 'aria-hidden="true"'
+    groups = re.sub(r'<g id="([^"]*)">', _group, body)
+    return Markup(f"<svg {box[0]} {role}>{groups.strip()}")
+
+
+def _group(found: re.Match[str]) -> str:
+    """Begin a group without its name, and with what it says."""
+    return f"<g><title>{found[1].removeprefix(_SAYS)}</title>" if found[1].startswith(_SAYS) else "<g>"

@@ -1,0 +1,227 @@
+"""The tables of a page, with words for readers who do not know the names of figures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from statistics import fmean, stdev
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.report.columns import Column
+from peopleboy.scenarios.report.findings.sentences import seconds, spoken
+from peopleboy.scenarios.report.findings.summary import RunFindings, headline
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.scores.bootstrap import bootstrap
+from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
+from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
+from peopleboy.tracker.evaluation.table import FIGURES, Figure
+
+LONGEST = 40  # runs that are listed one by one
+_FEWEST_PAIRS = 3  # runs of the same scenario and seed, for an interval of their differences
+
+# Name of the figure, what to call it, and what it says to somebody who reads it for the first time.
+PLAIN: Final = (
+    ("CR", "people found", "Of all moments in which somebody was to be found: in how many a box lay there."),
+    ("CP", "boxes on people", "Of all boxes: how many lie on a person. The rest are false alarms."),
+    ("AA", "fit of the boxes", "How well boxes and people cover each other; 100 would be the very same box."),
+    ("IDF1", "who is who", "How constantly one person has one number. Lost or swapped identities lower it."),
+    ("HOTA", "all in one", "Finding people and telling them apart in one, as public benchmarks have it."),
+    ("MOTA", "few mistakes", "100 less all misses, false alarms and switches; it may fall below 0."),
+    ("IDSW", "switches", "How often the number on a person became another, even if only for a moment."),
+    ("false_tracks", "tracks on nobody", "Track numbers that never lay on a person at all."),
+)  # fmt: skip
+_SCORES: Final = {"following": FollowingScore, "corridor": CorridorScore}
+
+
+class Head(NamedTuple):
+    """The head of a column of a table."""
+
+    name: str
+    kind: str = ""  # "n" for numbers, "row" for what names its row, "meaning" for an aside
+    label: str = ""  # stands before a cell where there is no room for heads
+
+
+class Bad(NamedTuple):
+    """A cell that tells of something bad."""
+
+    text: str
+
+
+class PageTable(NamedTuple):
+    """A table; each row has a cell for each head."""
+
+    heads: Sequence[Head]
+    rows: Sequence[tuple[str | Bad, ...]]
+
+
+def losses(found: RunFindings) -> PageTable:
+    """Every time that a track ceased to be shown, and why."""
+    heads = (
+        Head("time", "n"),
+        Head("number", "n", "number"),
+        Head("on", "row", "on"),
+        Head("what happened"),
+        Head("what the tracker believed", label="tracker believed:"),
+        Head("afterwards"),
+    )
+    rows = [
+        (
+            *(seconds(loss.time_s), str(loss.track), spoken(loss.owner) or "nobody", loss.why),
+            *(loss.believed or "not told", Bad(loss.afterwards) if loss.is_bad else loss.afterwards),
+        )
+        for loss in found.losses
+    ]
+    return PageTable(heads, rows)
+
+
+def runs_of(column: Column) -> PageTable:
+    """The runs of a column, one by one, the worst first."""
+    names = ("found", "who is who")
+    heads = (Head("run", "row"), Head("found (CR)", "n", names[0]), Head("who is who (IDF1)", "n", names[1]))
+    rows = [
+        (
+            *(found.run.title, number(scores.thesis.cr, "%"), number(scores.mot.identity.idf1, "%")),
+            Bad(headline(found)) if found.lost else headline(found),
+        )
+        for found, scores in column.by_badness()[:LONGEST]
+    ]
+    return PageTable((*heads, Head("what came out")), rows)
+
+
+def occlusions(column: Column) -> PageTable:
+    """Each time that somebody was wholly hidden and came back in the first run."""
+    names = {person.id: spoken(person.name) for person in column.found.people}
+    heads = ("from", "hidden for", "number before", "after", "found again after")
+    rows = []
+    for one in column.occlusions[0]:
+        before, after = ("none" if n is None else str(n) for n in (one.id_before, one.id_after))
+        is_bad = one.id_before is not None and not one.is_kept
+        start = seconds(column.found.run.time_s(one.start_frame))
+        again = Bad(after) if is_bad else after
+        rows.append(
+            (names[one.person], start, seconds(one.duration_s), before, again, number(one.found_after_s, "s"))
+        )
+    return PageTable((Head("who", "row"), *(Head(name, "n", name) for name in heads)), rows)
+
+
+def identities_kept(columns: Sequence[Column]) -> PageTable:
+    """By how long people were wholly hidden: how many kept their identity, in each column."""
+    tables = [by_length([one for of_run in c.occlusions for one in of_run]) for c in columns]
+    rows = []
+    for index, (low, high) in enumerate(pairwise(LENGTHS_S)):
+        cells = [f"{t[index].kept} of {t[index].occlusions}" if t[index].occlusions else "-" for t in tables]
+        name = f"{low:g} to {high:g} s" if high < LENGTHS_S[-1] else f"over {low:g} s"
+        if any(cell != "-" for cell in cells):
+            rows.append((name, *cells))
+    return PageTable((Head("hidden for", "row"), *_heads(columns)), rows)
+
+
+def modes(found: RunFindings) -> PageTable:
+    """What the robot did, and why."""
+    lines = [line for line in found.run.events if line.kind == "mode"]
+    rows = tuple((seconds(line.time_s), line.other, line.why) for line in lines)
+    return PageTable((Head("time", "n"), Head("mode", "row"), Head("why")), rows)
+
+
+def plain_figures(columns: Sequence[Column]) -> PageTable:
+    """The few figures that say most, under plain names."""
+    by_name = {figure.name: figure for figure in FIGURES}
+    chosen = [(f"{plain} ({name})", meaning, by_name[name]) for name, plain, meaning in PLAIN]
+    return _figures(columns, [(name, meaning, f.unit, _values(columns, f)) for name, meaning, f in chosen])
+
+
+def all_figures(columns: Sequence[Column]) -> PageTable:
+    """Every figure, with its usual name."""
+    return _figures(columns, [(f.name, f.meaning, f.unit, _values(columns, f)) for f in FIGURES])
+
+
+def drive_figures(columns: Sequence[Column], group: str) -> PageTable:
+    """How the robot drove, if any run says: `following` or `corridor`."""
+    rows = [[_rows(found.run, group) for found in column.runs] for column in columns]
+    first = next((of_run for column in rows for of_run in column if of_run), [])
+
+    def value(of_run: Sequence[Row], name: str) -> float:
+        return next((value for other, value, _, _ in of_run if other == name), math.nan)
+
+    lines = [
+        (name, meaning, unit, [[value(of_run, name) for of_run in column] for column in rows])
+        for name, _, unit, meaning in first
+    ]
+    return _figures(columns, lines)
+
+
+def number(value: float, unit: str = "") -> str:
+    """Write a figure."""
+    return "-" if math.isnan(value) else f"{value:{_form(value, unit)}} {unit}".rstrip()
+
+
+def _form(value: float, unit: str) -> str:
+    return ".1f" if unit == "%" else ".0f" if value == int(value) else ".2f"
+
+
+def _rows(run: FinishedRun, group: str) -> list[Row]:
+    figures = run.metrics.get(group)
+    if figures is None:
+        return []
+    score: Callable[..., FollowingScore | CorridorScore] = _SCORES[group]
+    try:
+        return score(**{name: math.nan if v is None else v for name, v in figures.items()}).rows()
+    except (TypeError, AttributeError) as error:
+        path = run.folder / "metrics.json"
+        raise BadInput(f"{path}: {group}: not the figures of this version; run the scenario again") from error
+
+
+def _values(columns: Sequence[Column], figure: Figure) -> list[list[float]]:
+    return [[figure.of(scores) for scores in column.scores] for column in columns]
+
+
+def _figures(
+    columns: Sequence[Column], lines: Sequence[tuple[str, str, str, list[list[float]]]]
+) -> PageTable:
+    """Lay out figures: name, meaning, unit, and the values of the runs of each column."""
+    is_pair = len(columns) == 2
+    heads = (Head("figure", "row"), *_heads(columns), *([Head("difference", "n", "difference")] * is_pair))
+    rows = [
+        (
+            *(name, *(_cell(of, unit) for of in values)),
+            *([_difference(columns, values, unit)] if is_pair else []),
+            meaning,
+        )
+        for name, meaning, unit, values in lines
+    ]
+    return PageTable((*heads, Head("what it says", "meaning")), rows)
+
+
+def _heads(columns: Sequence[Column]) -> list[Head]:
+    is_one = len(columns) == 1 and columns[0].is_single
+    return [Head("value" if is_one else column.label, "n", column.label) for column in columns]
+
+
+def _cell(values: Sequence[float], unit: str) -> str:
+    """One value, or mean and standard deviation over runs."""
+    known = [value for value in values if not math.isnan(value)]
+    if len(values) == 1 or not known:
+        return number(known[0] if known else math.nan, unit)
+    spread = f" ± {stdev(known):.1f}" if len(known) > 1 else ""
+    return f"{fmean(known):.1f}{spread} {unit}".rstrip()
+
+
+def _difference(columns: Sequence[Column], values: Sequence[Sequence[float]], unit: str) -> str:
+    """Second less first: of runs of the same scenario and seed, with an interval where there are enough."""
+    one, other = (
+        dict(zip((found.run.title for found in column.runs), of, strict=True))
+        for column, of in zip(columns, values, strict=True)
+    )
+    both = [other[name] - one[name] for name in one if name in other]
+    known = [value for value in both if not math.isnan(value)]
+    if len(known) >= _FEWEST_PAIRS:
+        interval = bootstrap(known, np.random.default_rng(0))
+        return f"{interval.mean:+.1f} [{interval.low:+.1f}, {interval.high:+.1f}]"
+    if known and len(both) == len(values[0]) == len(values[1]):
+        return f"{fmean(known):+{_form(fmean(known), unit)}}"
+    return "-"

@@ -1,0 +1,50 @@
+"""The scores of a run: how well people were found, and how its robot drove."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.following_metrics import (
+    FollowingScore,
+)
+from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
+from peopleboy.tracker.evaluation.table import to_json
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RunScores:
+    """Scores of one run.
+
+    Attributes:
+        people: detection, localisation and identity; from the files of the run.
+        following: of the first person in the scenario; None if the robot was not to follow anybody.
+        corridor: of the way along corridors; None if the robot was not to follow any.
+    """
+
+    people: Scores
+    following: FollowingScore | None
+    corridor: CorridorScore | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """Give all figures as JSON can hold them: None for what is undefined."""
+        groups: dict[str, Any] = dict(to_json(self.people))
+        for group, score in (("following", self.following), ("corridor", self.corridor)):
+            if score is not None:
+                groups[group] = {
+                    name: None if isinstance(value, float) and math.isnan(value) else value
+                    for name, value in asdict(score).items()
+                }
+        return groups
+
+
+def score_run(
+    folder: Path, frames: int, following: FollowingScore | None, corridor: CorridorScore | None = None
+) -> RunScores:
+    """Score a run from the truth and tracks in its folder."""
+    truth, tracks = read_truth(folder / "truth" / "gt.txt"), read_tracks(folder / "tracks.txt")
+    return RunScores(evaluate(truth, tracks, frames=frames), following, corridor)

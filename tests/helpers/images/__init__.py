@@ -1,0 +1,1 @@
+"""Drawn people, corridors and footage, and what tracks say of them."""

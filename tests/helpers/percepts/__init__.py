@@ -1,0 +1,1 @@
+"""What a behaviour is told, and a flat world to drive in."""

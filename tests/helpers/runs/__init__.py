@@ -1,0 +1,1 @@
+"""Runs made up for tests, and one that was really exported."""

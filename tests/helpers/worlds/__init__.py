@@ -1,0 +1,1 @@
+"""Small worlds, boxes around what stands in them, and who walks there."""
