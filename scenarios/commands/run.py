@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER for another tracker]",
 )
-@click.option("--frames", is_flag=True, help="Write every thermal and colour image as PNG too.")
+@click.option("--frames", is_flag=True, help="Write every image of every camera as PNG too.")
 @tracker_option
 @click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")

@@ -19,12 +19,12 @@ def layers() -> Figure:
     figure, axes = panels(titles, 5.6, columns=3)
     with world_at(*SCENE) as world:
         view = world._see(world.config.robot.cameras["thermal"].camera).view
-        observation, truth = world.observe(), world.truth()
+        images, truth = dict(world.observe().images), world.truth()
     show(axes[0], np.minimum(view.depth, 12.0), cmap="viridis_r")
     show(axes[1], _shuffled(view.part))
     show(axes[2], (view.normal + 1.0) / 2.0)
-    show(axes[3], observation.images["thermal"])
-    show(axes[4], observation.images["colour"])
+    show(axes[3], images["thermal"])
+    show(axes[4], images["colour"])
     show(axes[5], _parts(truth.instance, truth.body_part))
     return figure
 

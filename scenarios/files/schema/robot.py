@@ -19,7 +19,7 @@ from peopleboy.scenarios.files.schema.values import (
 Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
 
 
-class CameraSpec(Strict):
+class _Camera(Strict):
     """What all cameras have; what is left out is as usual for the kind."""
 
     width_px: int | None = Field(
@@ -48,10 +48,10 @@ class CameraSpec(Strict):
     )
 
 
-class ThermalCameraSpec(CameraSpec):
+class ThermalCameraSpec(_Camera):
     """A camera that sees heat; by the name `thermal` it is the one that the tracker looks through."""
 
-    kind: Literal["thermal"]
+    kind: Literal["thermal"] = Field(description="what it sees: heat, 24 to 36 degC in 8 bits")
     blur_px: float | None = Field(
         default=None, ge=0.0, le=20.0, description="blur of the optics, a standard deviation"
     )
@@ -66,13 +66,13 @@ class ThermalCameraSpec(CameraSpec):
     )
 
 
-class ColourCameraSpec(CameraSpec):
+class ColourCameraSpec(_Camera):
     """A camera that sees colours; by the name `colour` it is the one that the tracker looks through."""
 
-    kind: Literal["colour"]
+    kind: Literal["colour"] = Field(description="what it sees: light")
 
 
-AnyCameraSpec = Annotated[ThermalCameraSpec | ColourCameraSpec, Field(discriminator="kind")]
+CameraSpec = ThermalCameraSpec | ColourCameraSpec
 
 
 class CommandSpec(Strict):
@@ -111,7 +111,7 @@ class RobotSpec(Strict):
         default=None,
         description="of a robot in corridors: the sense that tells it the walls; left out, the sonar",
     )
-    cameras: dict[CameraName, AnyCameraSpec] = Field(
+    cameras: dict[CameraName, Annotated[CameraSpec, Field(discriminator="kind")]] = Field(
         default={},
         description="by name; `thermal` and `colour` are there anyway, and what is said of them is what "
         "differs from the usual; any other name is a further camera",

@@ -46,7 +46,61 @@ def test_the_scenario_that_the_other_tests_break_is_good() -> None:
     assert parse_scenario(GOOD, source="my.yaml", folder=Path("/nowhere")).world(0).people[1].name == "ben"
 
 
+def camera(**keys: Any) -> Change:
+    """Give the robot a further camera."""
+    return lambda d: d["robot"].update(cameras={"rear": {"kind": "thermal", **keys}})
+
+
 MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
+    "camera where cameras used to be": (
+        lambda d: d["robot"].update(thermal={"netd_k": 0.1}),
+        ("robot: 'thermal' is a camera", "write cameras: {thermal: {kind: thermal, ...}}"),
+    ),
+    "camera without a kind": (
+        lambda d: d["robot"].update(cameras={"rear": {"yaw_deg": 180.0}}),
+        ("robot.cameras.rear: missing key 'kind'",),
+    ),
+    "camera of an unknown kind": (
+        camera(kind="termal"),
+        ("unknown rear 'termal'", "did you mean 'thermal'?"),
+    ),
+    "misspelt key of a camera": (
+        camera(netd_c=0.1),
+        ("robot.cameras.rear: unknown key 'netd_c'", "did you mean 'netd_k'?"),
+    ),
+    "camera out of its limits": (camera(netd_k=-1.0), ("robot.cameras.rear.netd_k: must be at least 0",)),
+    "rate that does not divide": (
+        camera(rate_hz=4),
+        ("robot.cameras.rear.rate_hz: 4 must divide the control rate, 15 Hz; choose from 1, 3, 5, 15",),
+    ),
+    "slow camera of the tracker": (
+        lambda d: d["robot"].update(cameras={"colour": {"kind": "colour", "rate_hz": 5}}),
+        ("robot.cameras.colour.rate_hz: must be 15",),
+    ),
+    "camera of the tracker of another kind": (
+        lambda d: d["robot"].update(cameras={"thermal": {"kind": "colour"}}),
+        ("robot.cameras.thermal.kind: must be 'thermal'",),
+    ),
+    "name that run folders have for themselves": (
+        lambda d: d["robot"].update(cameras={"truth": {"kind": "thermal"}}),
+        ("robot.cameras.truth: the name is taken",),
+    ),
+    "name of another camera's images": (
+        lambda d: d["robot"].update(cameras={"thermal16": {"kind": "colour"}}),
+        ("robot.cameras: camera 'thermal16': another camera gives images of that name",),
+    ),
+    "camera name that is none": (
+        lambda d: d["robot"].update(cameras={"Rear view": {"kind": "thermal"}}),
+        ("robot.cameras.Rear view", "is not a name"),
+    ),
+    "images that are too large for a tracker": (
+        camera(width_px=4096, height_px=4096),
+        ("robot.cameras: rear: 4096 x 4096 pixels are too many; at most 8388608",),
+    ),
+    "colour camera that looks away": (
+        lambda d: d["robot"].update(cameras={"colour": {"kind": "colour", "yaw_deg": 180.0}}),
+        ("robot.cameras: the colour camera does not see the plane 4.0 m",),
+    ),
     "misspelt key": (
         lambda d: d["people"][0]["path"][1].update(speed_ms=1.0),
         ("people[0].path[1]: ", "'speed_ms'", "'speed_m_s'"),

@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+import pickle
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.kinds import KINDS, CameraKind, image_folders
+from peopleboy.sim.cameras.noise import gaussian, skip_gaussian
+from peopleboy.sim.cameras.sensors import Glimpse
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.world import World
+from tests.helpers.small_worlds import SMALL, config, person, robot
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NearConfig(CameraConfig):
+    """A camera that sees how near things are."""
+
+    kind: ClassVar[str] = "near"
+
+
+class NearSensor:
+    """Gives 255 at the lens, and 0 from 10 m on."""
+
+    def __init__(self, config: NearConfig, name: str, seed: int) -> None:
+        del config, name, seed
+
+    def take(self, glimpse: Glimpse) -> tuple[np.ndarray, ...]:
+        return (np.uint8(255.0 * np.clip(1.0 - glimpse.view.depth / 10.0, 0.0, 1.0)),)
+
+    def skip(self) -> None:
+        pass
+
+
+def seen_by(cameras: Mapping[str, CameraConfig]) -> WorldConfig:
+    """One person before a robot with these cameras."""
+    return config(person("anna", (4.0, 0.0)), robot=RobotConfig(at_m=(1.0, 0.0), cameras=cameras))
+
+
+def test_a_kind_is_added_by_one_entry(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(KINDS, "near", CameraKind(config=NearConfig, sensor=NearSensor))
+    cameras = {**robot().cameras, "scout": NearConfig(camera=SMALL)}
+    with World(
+        config(person("anna", (4.0, 0.0)), robot=RobotConfig(at_m=(1.0, 0.0), cameras=cameras))
+    ) as world:
+        image, truth = world.observe().images["scout"], world.truth("scout")
+    depth = truth.depth_m[truth.instance == 1]
+    assert len(depth) > 100
+    assert image[truth.instance == 1] == pytest.approx(255.0 * (1.0 - depth / 10.0), abs=1.0)
+
+
+def test_the_usual_cameras_have_the_folders_that_they_always_had() -> None:
+    folders = [folder for folder, _, _ in image_folders(RobotConfig().cameras)]
+    assert folders == [
+        "thermal",
+        "thermal16",
+        "colour",
+    ]
+
+
+@pytest.mark.parametrize("name", ["thermal16", "thermal_c", "Rear", "rear view", ""])
+def test_names_that_clash_or_are_none_are_refused(name: str) -> None:
+    with pytest.raises(BadInput, match="camera"):
+        RobotConfig(cameras={"thermal": ThermalConfig(), name: ColourConfig()})
+
+
+def test_a_robot_without_a_thermal_camera_is_refused() -> None:
+    with pytest.raises(BadInput, match="kind 'thermal'"):
+        RobotConfig(cameras={"thermal": ColourConfig()})
+
+
+def test_cameras_cannot_be_changed_and_can_be_sent_to_other_processes() -> None:
+    cameras = {"thermal": ThermalConfig()}
+    one = RobotConfig(cameras=cameras)
+    cameras["colour"] = ColourConfig()
+    assert list(one.cameras) == ["thermal"]
+    with pytest.raises(TypeError):
+        one.cameras["colour"] = ColourConfig()  # type: ignore[index]
+    assert pickle.loads(pickle.dumps(one)) == one
+    assert hash(one) == hash(RobotConfig(cameras={"thermal": ThermalConfig()}))
+
+
+def test_a_rate_that_does_not_divide_is_refused() -> None:
+    cameras = {**robot().cameras, "slow": ThermalConfig(rate_hz=4)}
+    with pytest.raises(BadInput, match="camera 'slow': rate_hz: 4 must divide the control rate, 15 Hz"):
+        config(robot=RobotConfig(cameras=cameras))
+
+
+def test_images_and_truths_of_an_instant_that_is_over_are_refused() -> None:
+    with World(config(person("anna", (4.0, 0.0)))) as world:
+        before, truths = world.observe().images, world.truths()
+        kept = before["thermal"]
+        world.step(0.0, 0.0)
+        assert before["thermal"] is kept
+        with pytest.raises(BadInput, match=r"'colour': .* read it before the next step"):
+            before["colour"]
+        with pytest.raises(BadInput, match="'colour': the truth of an instant that is over"):
+            truths["colour"]
+        with pytest.raises(BadInput, match=r"camera 'rear': .* choose from thermal, colour"):
+            world.truth("rear")
+
+
+def test_a_skipped_image_leaves_the_generator_as_a_drawn_one_does() -> None:
+    one, other = np.random.default_rng(3), np.random.default_rng(3)
+    gaussian((5, 7, 3), one)
+    skip_gaussian((5, 7, 3), other)
+    assert one.bit_generator.state == other.bit_generator.state
+
+
+def test_the_truth_of_a_camera_is_that_of_its_own_image() -> None:
+    high = Camera(width=96, height=64, position_m=(0.14, 0.0, 2.0), pitch_rad=0.3)
+    cameras = {**robot().cameras, "high": ThermalConfig(camera=high)}
+    with World(
+        config(person("anna", (4.0, 0.0)), robot=RobotConfig(at_m=(1.0, 0.0), cameras=cameras))
+    ) as world:
+        truth, usual = world.truth("high"), world.truth()
+    assert truth.instance.shape == (64, 96)
+    assert truth.camera == high
+    rows, columns = np.nonzero(truth.instance)
+    span = (columns.min() - 0.5, rows.min() - 0.5, np.ptp(columns) + 1.0, np.ptp(rows) + 1.0)
+    assert truth.people[0].visible_box == pytest.approx(span)
+    assert truth.people[0].joints_m == pytest.approx(usual.people[0].joints_m)
