@@ -1,8 +1,7 @@
-from tests.helpers.percepts.percepts.percepts import percept, person
-from tests.helpers.percepts.percepts.toy_world import STEP_S
-
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.patrol import Patrol, PatrolConfig
+from tests.helpers.percepts.percepts import percept, person
+from tests.helpers.percepts.toy_world import STEP_S
 
 AHEAD = Command(linear_m_s=0.3, angular_rad_s=0.0)
 CONFIG = PatrolConfig(follow_s=4.0, lost_s=2.0)

@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.helpers.percepts.percepts.percepts import free
-from tests.helpers.percepts.percepts.toy_world import FRONT, HALF_WIDTH, Toy, drive, wall
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import STOP, Command
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.behaviours.scripted import Scripted
 from tests.helpers.calls.refused import refused
+from tests.helpers.percepts.percepts import free
+from tests.helpers.percepts.toy_world import FRONT, HALF_WIDTH, Toy, drive, wall
 
 SCRIPT = (
     (1.0, Command(linear_m_s=0.3, angular_rad_s=0.0)),

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.helpers.percepts.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 from peopleboy.behaviours.corridor.corridor_from_sonar import corridor_from_sonar
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
 from peopleboy.behaviours.dead_reckoning import Motion
 from peopleboy.behaviours.sonar.sonar_ring import mounts
 from tests.helpers.images.drawn_corridors import percept_of, sonar_in_corridor
+from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 places = {
     "share": st.floats(-0.5, 0.5),  # of the room beside the robot

@@ -2,7 +2,6 @@ import math
 
 import numpy as np
 import pytest
-from tests.helpers.percepts.percepts.toy_world import SONAR_ANGLE, Toy, drive, wall
 
 from peopleboy.behaviours.corridor.corridor_end import EndConfig, open_room, wall_ahead
 from peopleboy.behaviours.corridor.corridor_lane import LaneConfig, best_lane
@@ -10,6 +9,7 @@ from peopleboy.behaviours.corridor.corridor_pose import Corridor
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
 from peopleboy.behaviours.registry import make_behaviour
 from tests.helpers.images.drawn_corridors import CAMERA, drawn_corridor, percept_of, sonar_in_corridor
+from tests.helpers.percepts.toy_world import SONAR_ANGLE, Toy, drive, wall
 
 STRAIGHT = Corridor(offset_m=0.0, heading_rad=0.0, width_m=3.0)
 

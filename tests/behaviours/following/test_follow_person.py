@@ -5,8 +5,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.helpers.percepts.percepts.percepts import percept, person
-from tests.helpers.percepts.percepts.toy_world import STEP_S, Toy, drive, room, straight, wall
 
 from peopleboy.behaviours.command import EMERGENCY_STOP, STOP
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson, FollowState, follow
@@ -14,6 +12,8 @@ from peopleboy.behaviours.following.reidentification import recognise
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.behaviours.safety.limits import SafetyConfig
 from peopleboy.scenarios.scores.following_metrics import FollowingRun, score_following
+from tests.helpers.percepts.percepts import percept, person
+from tests.helpers.percepts.toy_world import STEP_S, Toy, drive, room, straight, wall
 
 CONFIG = FollowConfig()
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.helpers.percepts.percepts.percepts import free, percept_of
-from tests.helpers.percepts.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import STOP, Command
 from peopleboy.behaviours.safety.limits import SafetyConfig, limit, safe_speed
 from peopleboy.behaviours.sonar.echo_points import echoes, fill_drop_outs
+from tests.helpers.percepts.percepts import free, percept_of
+from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 CONFIG = SafetyConfig()
 FULL = Command(linear_m_s=0.8, angular_rad_s=0.0)

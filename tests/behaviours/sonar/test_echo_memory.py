@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.helpers.percepts.percepts.percepts import free
-from tests.helpers.percepts.percepts.toy_world import Toy, room, straight
 
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
+from tests.helpers.percepts.percepts import free
+from tests.helpers.percepts.toy_world import Toy, room, straight
 
 CONFIG = EchoMemoryConfig()
 

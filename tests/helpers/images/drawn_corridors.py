@@ -7,10 +7,10 @@ import math
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from tests.helpers.percepts.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 from peopleboy.behaviours.corridor.corridor_from_image import CameraView
 from peopleboy.behaviours.percept import Percept
+from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 CAMERA = CameraView(focal_px=356.0, position_m=(0.14, 0.06, 1.2))
 

@@ -3,9 +3,9 @@
 import dataclasses
 
 import numpy as np
-from tests.helpers.percepts.percepts.toy_world import SONAR_ANGLE
 
 from peopleboy.behaviours.percept import Percept, SeenPerson
+from tests.helpers.percepts.toy_world import SONAR_ANGLE
 
 
 def percept_of(ranges_m, **changes):

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+from tests.helpers.worlds.small_worlds import SMALL, config, person, robot
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
@@ -17,7 +18,6 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
-from tests.helpers.small_worlds import SMALL, config, person, robot
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
