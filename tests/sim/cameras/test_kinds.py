@@ -7,7 +7,6 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from tests.helpers.worlds.small_worlds import SMALL, config, person, robot
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
@@ -18,6 +17,7 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
+from tests.helpers.worlds.small_worlds import SMALL, config, person, robot
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
