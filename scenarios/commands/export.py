@@ -26,8 +26,8 @@ def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -
     the runs of each.
 
     mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. viper: ViPER XML. mcap: ROS 2 bags. mp4:
-    films. Images and masks are rendered again, and are those of the run. coco, mcap and mp4 need
-    the extra `export`.
+    films. Images and masks are rendered again, and are those of the run. mcap and mp4 need the
+    extra `export`.
     """
     from peopleboy.scenarios.export.dataset.splits import refuse_unfinished
     from peopleboy.scenarios.export.formats import export as write

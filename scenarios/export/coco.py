@@ -24,9 +24,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pycocotools.mask import encode
 
 from peopleboy.scenarios.export.by_split import by_split
-from peopleboy.scenarios.export.extra import need
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
@@ -51,9 +51,8 @@ def write_coco(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
     """Write runs as one set, or each split of theirs as one; each run is a video.
 
     Raises:
-        BadInput: the runs cannot be sorted by split, or the package that encodes masks is not installed.
+        BadInput: the runs cannot be sorted by split.
     """
-    need("pycocotools", "coco")
     for split, own in by_split(runs).items():
         for camera, content in _write_set(own, folder / "images" / (split or ""), play).items():
             path = folder / annotations_file(split, camera)
@@ -133,8 +132,6 @@ def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, An
 
 def _encoded(mask: NDArray[np.bool_]) -> dict[str, Any]:
     """Encode a mask (H, W) by the lengths of its runs, column by column, as text."""
-    from pycocotools.mask import encode
-
     return {"size": list(mask.shape), "counts": encode(np.asfortranarray(mask, np.uint8))["counts"].decode()}
 
 

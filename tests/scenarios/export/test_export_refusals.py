@@ -101,7 +101,7 @@ def test_an_export_that_fails_leaves_nothing_and_keeps_the_earlier_one(
 def test_a_missing_package_is_named_with_the_extra_that_brings_it(
     crossing: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for form, package in (("coco", "pycocotools"), ("mp4", "av"), ("mcap", "rosbags")):
+    for form, package in (("mp4", "av"), ("mcap", "rosbags")):
         monkeypatch.setitem(sys.modules, package, None)
         told = refusal(capsys, "export", crossing, "--format", form, "--out", tmp_path / form)
         assert_names(told, f"--format {form}", package, "pip install '.[export]'")
