@@ -5,7 +5,7 @@ Pixels are those of the camera's image: the centre of the top-left one is (0, 0)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,17 +85,14 @@ def track_label(track: Track) -> str:
     return " ".join(word for word in (str(track.id), standing, behind) if word)
 
 
-def truth_boxes(people: Iterable[PersonTruth], affine_at: Callable[[float], Matrix] | None = None) -> Boxes:
-    """Give the true boxes of people, with name and visible share.
+def truth_boxes(people: Iterable[PersonTruth]) -> Boxes:
+    """Give the true boxes of people in one camera's image, with name and visible share.
 
-    Args:
-        people: those behind the camera are left out.
-        affine_at: how to map to the other camera's image at a distance [m]; None for the thermal image.
+    Those behind the camera are left out.
     """
     seen = [(person, person.box) for person in people if person.box is not None]
-    boxes = [box if affine_at is None else map_box(box, affine_at(person.distance_m)) for person, box in seen]
     labels = [f"{person.name} {person.visible_fraction:.0%}" for person, _ in seen]
-    return Boxes(_boxes(boxes), colours_of(TRUTH for _ in seen), labels)
+    return Boxes(_boxes([box for _, box in seen]), colours_of(TRUTH for _ in seen), labels)
 
 
 def particle_points(particles: Mapping[int, Particles]) -> Points:

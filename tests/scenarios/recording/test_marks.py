@@ -27,18 +27,11 @@ def test_boxes_of_tracks_say_the_id_and_what_is_unusual() -> None:
     assert boxes.colour.tolist() == [list(track_colour(1))] * 3
 
 
-def test_true_boxes_are_mapped_at_the_distance_of_each_person() -> None:
-    asked: list[float] = []
-
-    def affine_at(depth_m: float) -> np.ndarray:
-        asked.append(depth_m)
-        return np.array([[1.0, 0.0, depth_m], [0.0, 1.0, 0.0]])
-
-    people = made.make_tick(1).truth.people
-    boxes = truth_boxes(people, affine_at)
-    assert asked == [4.0, 6.0]
-    assert boxes.box[:, 0].tolist() == [144.0, 146.0]
-    assert boxes.label == ["anna 100%", "ben 100%"]
+def test_true_boxes_leave_out_who_is_behind_the_camera() -> None:
+    anna, ben = made.make_tick(1).truth.people
+    boxes = truth_boxes([anna, replace(ben, box=None)])
+    assert boxes.box == pytest.approx(np.array([anna.box]), rel=1e-6)
+    assert boxes.label == ["anna 100%"]
 
 
 def test_the_offset_is_one_at_the_right_edge_of_the_image() -> None:
