@@ -14,7 +14,7 @@ from peopleboy.sim.cameras.rig import Rig
 from peopleboy.sim.cameras.sensors import Glimpse
 from peopleboy.sim.cameras.surfaces import make_material_table
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.people.crowd import Crowd
@@ -221,7 +221,7 @@ class World:
             return
         self._poses = self._bullet.part_poses()
         self._hidden = self._bullet.hidden_parts()
-        self._seen: dict[Camera, _CameraView] = {}
+        self._seen: dict[Pinhole, _CameraView] = {}
         self._rig.forget()
 
     def _check_sight(self) -> None:
@@ -233,7 +233,7 @@ class World:
             raise BadInput(f"camera {camera!r}: the truth of an instant that is over cannot be told any more")
         return self.truth(camera)
 
-    def _see(self, camera: Camera) -> _CameraView:
+    def _see(self, camera: Pinhole) -> _CameraView:
         """Render one camera's view, once an instant.
 
         Raises:
@@ -245,13 +245,13 @@ class World:
             self._seen[camera] = _CameraView(pose, self._render(camera, pose))
         return self._seen[camera]
 
-    def _render(self, camera: Camera, pose: Matrix) -> View:
+    def _render(self, camera: Pinhole, pose: Matrix) -> View:
         return render(
             self.config.renderer, self._bullet, self._table, camera, pose, self._poses,
             self._truth_maker.person_of_part, self._hidden,
         )  # fmt: skip
 
-    def _glimpse(self, camera: Camera) -> Glimpse:
+    def _glimpse(self, camera: Pinhole) -> Glimpse:
         """Tell a sensor what it sees, and all that forms its images from that."""
         seen = self._see(camera)
         return Glimpse(

@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.camera_truth import further_cameras
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
@@ -113,7 +113,7 @@ class Messenger:
         )
         return f"/{camera}/image/compressed", "sensor_msgs/msg/CompressedImage", content
 
-    def _camera_info(self, name: str, camera: Camera, time_s: float) -> Any:
+    def _camera_info(self, name: str, camera: Pinhole, time_s: float) -> Any:
         projection = np.hstack([camera.intrinsics, np.zeros((3, 1))])
         whole = self._make(
             "sensor_msgs/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
@@ -186,7 +186,7 @@ class Messenger:
         turn = Rotation.from_euler("z", pose.heading).as_quat()
         return self._stamped(parent, child, (pose.x, pose.y, 0.0), turn, time_s)
 
-    def _camera_pose(self, name: str, camera: Camera, time_s: float) -> Any:
+    def _camera_pose(self, name: str, camera: Pinhole, time_s: float) -> Any:
         turn = Rotation.from_matrix(camera.robot_from_camera[:3, :3]).as_quat()
         return self._stamped(_BASE, _optical(name), camera.position_m, turn, time_s)
 

@@ -16,7 +16,7 @@ from peopleboy.scenarios.recording.entities import (
     camera_path,
 )
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 
 
 def lay_out(config: WorldConfig) -> rrb.Blueprint:
@@ -47,7 +47,7 @@ def lay_out(config: WorldConfig) -> rrb.Blueprint:
     )
 
 
-def _image_view(path: str, name: str, camera: Camera) -> rrb.Spatial2DView:
+def _image_view(path: str, name: str, camera: Pinhole) -> rrb.Spatial2DView:
     bounds = rrb.VisualBounds2D(x_range=(0.0, camera.width), y_range=(0.0, camera.height))
     return rrb.Spatial2DView(origin=path, name=name, visual_bounds=bounds)
 

@@ -21,7 +21,7 @@ from peopleboy.scenarios.recording.entities import (
 )
 from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import ShapeKind
 
@@ -77,7 +77,7 @@ class Still:
             alike = [solid for solid in solids if solid.kind is kind]
             self._log(f"{path}/{kind.name.lower()}", _shape(kind, alike, fill))
 
-    def _log_camera(self, path: str, camera: Camera, layers: Sequence[str], reach_m: float) -> None:
+    def _log_camera(self, path: str, camera: Pinhole, layers: Sequence[str], reach_m: float) -> None:
         pose, (u, v) = camera.robot_from_camera, camera.centre_px
         pinhole = rr.Pinhole(
             focal_length=camera.focal_px,

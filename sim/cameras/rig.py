@@ -9,7 +9,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import image_names, kind_of
 from peopleboy.sim.cameras.sensors import Glimpse, Image
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.on_demand import OnDemand
 
 
@@ -31,7 +31,7 @@ class Rig:
         cameras: Mapping[str, CameraConfig],
         control_hz: int,
         seed: int,
-        look: Callable[[Camera], Glimpse],
+        look: Callable[[Pinhole], Glimpse],
     ) -> None:
         self._cameras, self._look = cameras, look
         self._sensors = {name: kind_of(one).sensor(one, name, seed) for name, one in cameras.items()}

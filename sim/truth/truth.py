@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.planar import Planar
 
 Box = tuple[float, float, float, float]
@@ -119,7 +119,7 @@ class Truth:
     instance: NDArray[np.uint8]
     body_part: NDArray[np.uint8]
     depth_m: NDArray[np.float32]
-    camera: Camera
+    camera: Pinhole
     world_from_camera: Matrix
     robot: Planar
     robot_velocity: tuple[float, float]

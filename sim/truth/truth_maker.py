@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transform
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
@@ -29,7 +29,7 @@ from peopleboy.sim.truth.truth import (
     is_counted,
 )
 
-_Scene = tuple[ShapeTable, Matrix, Camera, Matrix]
+_Scene = tuple[ShapeTable, Matrix, Pinhole, Matrix]
 _Bounds = tuple[float, float, float, float]
 A = TypeVar("A", bound=NDArray[Any])
 
@@ -68,7 +68,7 @@ class TruthMaker:
         self,
         *,
         time_s: float,
-        camera: Camera,
+        camera: Pinhole,
         view: View,
         world_from_camera: Matrix,
         world_from_part: Matrix,
@@ -148,7 +148,7 @@ class TruthMaker:
         return shares | {BORDER: outside / area} if outside > 0 else shares
 
     def _joints(
-        self, k: int, person: Person, view: View, camera: Camera, world_from_camera: Matrix
+        self, k: int, person: Person, view: View, camera: Pinhole, world_from_camera: Matrix
     ) -> tuple[Matrix, Matrix, NDArray[np.bool_]]:
         joints = person.joints()
         pixels = camera.project(transform(invert_pose(world_from_camera), joints))
@@ -172,7 +172,7 @@ class _Outline:
         self.torso = self.whole & is_torso
 
 
-def _is_inside(bounds: _Bounds, camera: Camera) -> bool:
+def _is_inside(bounds: _Bounds, camera: Pinhole) -> bool:
     left, top, right, bottom = bounds
     return math.isnan(left) or (
         left > -0.5 and top > -0.5 and right < camera.width - 0.5 and bottom < camera.height - 0.5
