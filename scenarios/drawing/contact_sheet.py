@@ -28,7 +28,7 @@ from peopleboy.scenarios.drawing.sheet_head import (
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.out_folder import writing_to
-from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.wording import counted
 
@@ -38,7 +38,6 @@ MOMENTS: Final = 12
 
 _GAP, _CAPTION = 14, 46
 _TILE: Final = (WIDTH_PX - 2 * MARGIN_PX - (COLUMNS - 1) * _GAP) // COLUMNS
-_TYPICAL_DEPTH_M = 4.0
 _NOTE: Final = "Moments"  # of the PNG: where each tile is, and what it shows
 _CHIP: Final[Rgb] = (58, 64, 74)
 
@@ -134,8 +133,7 @@ class ContactSheet:
 
     def _colour_picture(self, moment: Moment) -> Picture:
         scale = _TILE / moment.colour.shape[1]
-        cameras = self._robot.cameras
-        affine = affine_between(cameras["thermal"].camera, cameras["colour"].camera, _TYPICAL_DEPTH_M)
+        affine = colour_from_thermal(self._robot.cameras)
         return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, moment.explanation, affine)
 
 

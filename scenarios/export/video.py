@@ -15,15 +15,13 @@ from peopleboy.scenarios.export.extra import need
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 HEIGHT_PX: Final = 480
 BAR_PX: Final = 32
 
 _QUALITY: Final = "20"  # CRF: 0 loses nothing, 18 nothing to be seen
-# A track has no depth: its box is mapped to the colour image as if the person were so far away.
-_TYPICAL_DEPTH_M: Final = 4.0
 _BAR: Final[Rgb] = (22, 24, 28)
 _WORDS: Final[Rgb] = (225, 225, 225)
 _FONT: Final = cv2.FONT_HERSHEY_SIMPLEX
@@ -78,8 +76,7 @@ def _thermal(tick: Tick) -> Picture:
 
 
 def _colour(tick: Tick, robot: RobotConfig) -> Picture:
-    cameras = robot.cameras
-    affine = affine_between(cameras["thermal"].camera, cameras["colour"].camera, _TYPICAL_DEPTH_M)
+    affine = colour_from_thermal(robot.cameras)
     colour = tick.observation.images["colour"]
     scale = HEIGHT_PX / colour.shape[0]
     picture, plates = enlarge(colour, scale), list[Plate]()

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Pinhole
 
 # The colour camera sits 6 cm to the left of the thermal one and sees an angle narrower by 1.2 (T eq. 6.1).
@@ -33,7 +34,7 @@ class CameraConfig:
 
     kind: ClassVar[str]
 
-    camera: Pinhole = field(default_factory=Pinhole)
+    camera: CameraGeometry = field(default_factory=Pinhole)
     rate_hz: int | None = None
     exposure_s: float = 0.0
 
@@ -61,6 +62,7 @@ class ThermalConfig(CameraConfig):
 
     kind: ClassVar[str] = "thermal"
 
+    camera: Pinhole = field(default_factory=Pinhole)
     exposure_s: float = 0.012
     blur_px: float = 0.7
     netd_k: float = 0.08
