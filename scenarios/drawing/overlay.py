@@ -70,6 +70,11 @@ def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
     return np.asarray(cv2.cvtColor(cv2.applyColorMap(thermal, colours), cv2.COLOR_BGR2RGB), np.uint8)
 
 
+def show_image(image: NDArray[np.uint8]) -> Picture:
+    """Turn a camera's image, (H, W) grey or (H, W, 3) RGB, into a picture of the same size."""
+    return show_thermal(image) if image.ndim == 2 else image
+
+
 def encode_jpeg(image: NDArray[np.uint8], quality: int, *, has_own_codes: bool = True) -> bytes:
     """Encode an (H, W) grey or (H, W, 3) RGB image; quality 0..100.
 
