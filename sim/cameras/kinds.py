@@ -29,11 +29,13 @@ class Layer:
     """One of the images that a camera gives at an instant.
 
     Attributes:
+        what: it holds, in words.
         suffix: of its name, behind that of the camera.
         folder: suffix of the folder that its files lie in, behind the name of the camera.
         encode: gives what a PNG file can hold of it, without loss: (H, W) of 8 or 16 bits, or (H, W, 3) RGB.
     """
 
+    what: str = "8-bit, as the robot sees it"
     suffix: str = ""
     folder: str = ""
     encode: Callable[[Image], Stored] = _as_it_is
@@ -64,9 +66,14 @@ KINDS: Final[dict[str, CameraKind]] = {
     "thermal": CameraKind(
         config=ThermalConfig,
         sensor=ThermalSensor,
-        layers=(Layer(), Layer(suffix="_c", folder="16", encode=encode_16bit)),
+        layers=(
+            Layer(what="8-bit, 24..36 degC, as the robot sees it"),
+            Layer(what="16-bit, hundredths of a kelvin", suffix="_c", folder="16", encode=encode_16bit),
+        ),
     ),
-    "colour": CameraKind(config=ColourConfig, sensor=ColourSensor, channels=3),
+    "colour": CameraKind(
+        config=ColourConfig, sensor=ColourSensor, layers=(Layer(what="8-bit colour"),), channels=3
+    ),
 }
 
 
