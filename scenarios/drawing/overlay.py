@@ -205,7 +205,8 @@ def _label(
     is_below: bool = False,
 ) -> None:
     """Write on a dark plate above or below a box, inside the picture and clear of other plates."""
-    size = max(0.2 * scale, 0.4)
+    # Letters grow with the picture, but a small image that is much enlarged is no larger picture.
+    size = max(min(0.2 * scale, canvas.shape[0] / 1200.0), 0.4)
     (width, height), descent = cv2.getTextSize(text, _FONT, size, 1)
     line = height + descent + 3
     left, top = box[0] * scale, box[1] * scale

@@ -28,7 +28,7 @@ robot:
   at_m: [0.6, 0.0]
   cameras:
     thermal: {kind: thermal, width_px: 160, height_px: 120}
-    rear: {kind: thermal, width_px: 160, height_px: 120, mount_m: [-0.3, 0.0, 1.3], yaw_deg: 180.0, rate_hz: 5}
+    rear: {kind: thermal, width_px: 160, height_px: 120, mount_m: [-0.3, 0, 1.3], yaw_deg: 180, rate_hz: 5}
 """
 
 
