@@ -14,12 +14,13 @@ import click
 import numpy as np
 
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_OCCLUSION
@@ -167,7 +168,7 @@ def record(scenario: str, seed: int) -> Recorded:
         count = round(loaded.duration_s * config.control_hz)
         tracker = make_tracker("peopleboy", stream(seed, "tracker"))
         for tick in closed_loop(world, tracker, loaded.make_behaviour(), count):
-            frames.append(make_frame(tick.observation, before))
+            frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
             before = tick.observation.odometry
             rows += [
                 (tick.frame, person.id, person.box, person.is_counted, person.visible_fraction)
@@ -195,7 +196,7 @@ def replay(run: Recorded, config: TrackerConfig, seed: int) -> Scores:
     tracks = TrackBoxes(
         frame=np.array([number for number, _ in found]),
         id=np.array([track.id for _, track in found]),
-        box=np.array([track.box for _, track in found]).reshape(-1, 4),
+        box=np.array([track.boxes[THERMAL] for _, track in found]).reshape(-1, 4),
         confidence=np.array([track.confidence for _, track in found]),
     )
     return evaluate(run.truth, tracks, frames=len(run.frames))

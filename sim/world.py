@@ -10,6 +10,7 @@ from types import TracebackType
 import numpy as np
 
 from peopleboy.bad_input import BadInput
+from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.rig import Rig
 from peopleboy.sim.cameras.sensors import Glimpse
 from peopleboy.sim.cameras.surfaces import make_material_table
@@ -81,6 +82,11 @@ class World:
         if self.config.renderer != BLIND:
             self._rig.forget()
         self._bullet.close()
+
+    @property
+    def cameras(self) -> Mapping[str, CameraConfig]:
+        """What the robot carries, by name."""
+        return self.config.robot.cameras
 
     @property
     def time_s(self) -> float:

@@ -7,5 +7,8 @@ import click
 SEED = "[default: 0, or that of a run's own scenario.yaml]"
 
 # Spelled out, since the trackers themselves take a second to load, which --help should not.
-TRACKERS = "peopleboy, learned, footage, thesis, colour, thermal, paper, or truth: the true boxes"
+TRACKERS = (
+    "peopleboy, learned, footage, thesis, colour, thermal or paper; truth, which is told; "
+    "or module:Class, your own"
+)
 tracker_option = click.option("--tracker", default="peopleboy", show_default=True, help=f"One of {TRACKERS}.")

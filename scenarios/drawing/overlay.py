@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.contour_lines import lines_of
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
 Picture = NDArray[np.uint8]  # (H, W, 3) RGB
@@ -88,6 +89,7 @@ def draw_tracks(
     explanation: object = None,
     affine: Matrix | None = None,
     plates: list[Plate] | None = None,
+    camera: str = THERMAL,
 ) -> Picture:
     """Draw boxes, ids, confidence and status of tracks, and what their tracker explains of them.
 
@@ -100,16 +102,20 @@ def draw_tracks(
         explanation: what their tracker told beyond them; None to draw the boxes alone.
         affine: (2, 3) thermal pixels to the picture's, before enlarging; None for the thermal image itself.
         plates: where labels are already, which these give way to; theirs are added.
+        camera: whose boxes; tracks without any are left out.
     """
-    canvas, tracks = picture.copy(), tuple(tracks)
+    canvas, placed = (
+        picture.copy(),
+        [(track, track.boxes[camera]) for track in tracks if camera in track.boxes],
+    )
     taken = [] if plates is None else plates
     mapping = _UNTURNED if affine is None else affine
     body = max(round(scale), 1)
     outlines = lines_of(explanation)
-    for track in tracks:
+    for track, own_box in placed:
         is_sure = track.status is not Status.TENTATIVE
         colour = track_colour(track.id) if is_sure else faded(track_colour(track.id), _DIM)
-        box = map_box(track.box, mapping)
+        box = map_box(own_box, mapping)
         around = outlines.get(track.id, ())
         lines = [(box_corners(box), 1 if around else body)]
         lines += [(line @ mapping[:, :2].T + mapping[:, 2], body) for line in around]
@@ -117,8 +123,8 @@ def draw_tracks(
         for shade, extra in ((_EDGE, 1), (colour, 0)):
             for line, thickness in lines:
                 draw_line(canvas, line, shade, scale, thickness + extra)
-    for track in tracks:
-        box = map_box(track.box, mapping)
+    for track, own_box in placed:
+        box = map_box(own_box, mapping)
         if _is_inside(box, canvas, scale):
             _label(canvas, _track_text(track), box, track_colour(track.id), scale, taken)
     return canvas

@@ -29,6 +29,7 @@ from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.environments.situation import Episode
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.sim.config import WorldConfig
@@ -98,10 +99,12 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         _check_word("observation", observation, KINDS)
         _check_word("render_mode", render_mode, (None, *self.metadata["render_modes"]))
         _check_size(image_size)
-        make_tracker(tracker, stream(0, "tracker"))  # refuses an unknown name now
+        usual_tracker = make_tracker(tracker, stream(0, "tracker"))  # refuses an unknown name now
         self._randomise = {} if randomise is None else dict(randomise)
         check_options(self._randomise)
         self._scenario = load_scenario(scenario)
+        if observation == "tracks":
+            self._scenario = self._scenario.mounting(usual_tracker.cameras)
         self._task, self._kind, self._size, self._tracker_name = task, observation, image_size, tracker
         self.render_mode = render_mode
         usual = self._scenario.world(0)
@@ -127,6 +130,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._seed = int(self.np_random.integers(_SEEDS)) if seed is None else seed
         config = self._config(chosen)
         self._world = World(config)
+        self._calibrations = calibrations_of(config.robot.cameras)
         self._limits, self._dt_s = config.robot.drive, 1.0 / config.control_hz
         self._frames = round(self._scenario.duration_s * config.control_hz)
         self._frame = 0
@@ -210,7 +214,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         if self._kind == "pixels":
             self._images |= see_images(self._senses, self._robot)
             return found | self._images
-        self._tracks = self._tracker.update(make_frame(self._senses, before))
+        self._tracks = self._tracker.update(make_frame(self._senses, self._calibrations, before))
         return found | see_tracks(self._tracks, self._robot)
 
     def _info(self, terms: dict[str, float]) -> dict[str, Any]:

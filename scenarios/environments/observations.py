@@ -10,6 +10,8 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.thermal_box import thermal_box
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.geometry.planar import Planar
@@ -17,6 +19,7 @@ from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
 Arrays = dict[str, NDArray[Any]]
@@ -85,10 +88,11 @@ def see_images(observation: Observation, robot: RobotConfig) -> Arrays:
 
 def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> Arrays:
     """Give what the tracker is sure of."""
+    thermal = calibrations_of(robot.cameras)[THERMAL]
     return _table(
-        _row(track.id, track.box, track.confidence, track.status is not Status.TOTALLY_OCCLUDED, robot)
+        _row(track.id, box, track.confidence, track.status is not Status.TOTALLY_OCCLUDED, robot)
         for track in tracks
-        if track.status is not Status.TENTATIVE
+        if track.status is not Status.TENTATIVE and (box := thermal_box(track, thermal)) is not None
     )
 
 

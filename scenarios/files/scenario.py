@@ -25,6 +25,7 @@ from peopleboy.scenarios.files.own_files import read_own_files
 from peopleboy.scenarios.files.schema.people import PersonSpec
 from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import DrawnSpec, ScenarioSpec
+from peopleboy.sim.cameras.kinds import KINDS
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
@@ -106,6 +107,29 @@ class Scenario:
             seed=seed,
             renderer=renderer,
         )
+
+    def mounting(self, cameras: Sequence[str]) -> Scenario:
+        """The same scenario, but its robot also carries these cameras: those that it lacks, with defaults.
+
+        Args:
+            cameras: names, each of a camera that the robot carries or of a kind of camera.
+
+        Raises:
+            BadInput: the robot has no camera of a name, and there is no such kind.
+        """
+        lacking = [name for name in dict.fromkeys(cameras) if name not in equip_robot(self.robot).cameras]
+        if not lacking:
+            return self
+        for name in lacking:
+            if name not in KINDS:
+                raise BadInput(
+                    f"camera {name!r}: the tracker wants it, but no kind of camera has that name "
+                    f"({', '.join(KINDS)} have); mount one in robot.cameras"
+                )
+        mounted = {name: {"kind": name} for name in lacking}
+        data = self.robot.model_dump(exclude_unset=True)
+        robot = RobotSpec.model_validate(data | {"cameras": {**data.get("cameras", {}), **mounted}})
+        return replace(self, spec=self.spec.model_copy(update={"robot": robot}))
 
     def lasting(self, duration_s: float) -> Scenario:
         """The same scenario, but shorter or longer."""

@@ -33,7 +33,7 @@ _AGAIN = "run the scenario again"
 _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
 # What tells which rows of the tables are in the text files too.
 _WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
-_WRITTEN_TRACKS = ("frame", "id", "status")
+_WRITTEN_TRACKS = ("frame", "id", "status", "left_px")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -159,7 +159,8 @@ def _written_truth(people: pa.Table) -> pa.Table:
 
 def _written_tracks(beliefs: pa.Table) -> pa.Table:
     """Keep the rows of tracks that have a line in tracks.txt."""
-    return beliefs.filter(pc.not_equal(beliefs["status"], str(Status.TENTATIVE)))
+    is_sure = pc.not_equal(beliefs["status"], str(Status.TENTATIVE))
+    return beliefs.filter(pc.and_(is_sure, pc.is_valid(beliefs["left_px"])))
 
 
 def _by_frame(table: pa.Table) -> dict[int, list[Row]]:

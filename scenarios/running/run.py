@@ -12,7 +12,7 @@ from peopleboy.scenarios.files.own_files import keep_own_files
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.scenarios.loop.tracker_by_name import check_eyes, make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.running.watchers import Watchers
@@ -61,7 +61,11 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
     """
     if options.seed < 0:
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
-    check_eyes(options.tracker)
+    world: World  # the oracle looks at it only once it is built
+    tracker = make_eyes(options.tracker, options.seed, lambda: world.truth())
+    given = scenario.robot.cameras
+    scenario = scenario.mounting(tracker.cameras)
+    mounted = [name for name in scenario.robot.cameras if name not in given]
     config = scenario.world(options.seed, options.renderer)
     about = {
         "scenario": scenario.name,
@@ -70,10 +74,9 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         "renderer": options.renderer,
         "rate_hz": config.control_hz,
         "images": options.frames,
-    }
+    } | ({"mounted_for_tracker": mounted} if mounted else {})
     with ExitStack() as stack:
         world = stack.enter_context(World(config))
-        tracker = make_eyes(options.tracker, options.seed, world.truth)
         claim_folder(options.out, overwrite=options.overwrite)
         folder = stack.enter_context(
             RunFolder(

@@ -14,9 +14,12 @@ from peopleboy.scenarios.scores.following_metrics import (
     score_following,
 )
 from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import outline_gap
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.evaluation.boxes import iou
+from peopleboy.tracker.evaluation.floor import floor_squares
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
 BAND_M = 1.2
@@ -64,15 +67,21 @@ def _whose_track(tick: Tick) -> tuple[int, bool]:
     people = [person for person in tick.truth.people if person.box is not None]
     mine, is_wrong = (0.5, 0), False
     for track in tracks:
-        covers = [(_overlap(track, person), person.id) for person in people]
+        covers = [(_overlap(track, person, tick.truth.robot), person.id) for person in people]
         overlap, whose = max(covers, default=(0.0, 0))
         is_wrong |= track.id == tick.following and whose != 1 and overlap > 0.5
         mine = max([mine, *((share, track.id) for share, owner in covers if owner == 1)])
     return mine[1], is_wrong
 
 
-def _overlap(track: Track, person: PersonTruth) -> float:
-    return float(iou(np.array(track.box), np.array(person.box)))
+def _overlap(track: Track, person: PersonTruth, robot: Planar) -> float:
+    """Tell how well a track lies on a person, in 0..1: in the thermal image, or else on the floor."""
+    if THERMAL in track.boxes:
+        return float(iou(np.array(track.boxes[THERMAL]), np.array(person.box)))
+    if track.place is None:
+        return 0.0
+    said, true = np.array(track.place.position_m), np.array(robot.locate(person.position_m))
+    return float(iou(floor_squares(said), floor_squares(true)))
 
 
 def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:

@@ -12,11 +12,11 @@ from benchmarks.peers.show import write_results
 from benchmarks.results.measured import take_in
 from benchmarks.results.tables import read_tables
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame
 
 
 def frame(thermal: np.ndarray) -> Frame:
-    return Frame(thermal=thermal, time_s=0.0)
+    return Frame(images={THERMAL: thermal}, time_s=0.0)
 
 
 def test_blobs_find_a_warm_upright_region_and_leave_a_flat_one() -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.appearance.part_appearance import AppearanceView
 from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, FilterConfig, MotionConfig, TrackerConfig
@@ -37,6 +37,7 @@ from peopleboy.tracker.thermal.filter.particles import (
 )
 from peopleboy.tracker.thermal.filter.prior import draw_prior
 
+STANDING = Odometry()
 RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
 
 
@@ -80,15 +81,15 @@ class FrameView:
 def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig) -> FrameView:
     """Prepare a frame for all filters."""
     motion = config.motion
-    turn = frame.turn_rad if motion.uses_odometry and frame.turn_rad is not None else 0.0
-    focal = frame.height_px / 2 / math.tan(math.radians(motion.view_angle_deg) / 2)
-    advance = frame.advance_m if motion.uses_odometry and frame.advance_m is not None else 0.0
-    image = model.prepare(frame.thermal)
+    moved = frame.odometry if motion.uses_odometry and frame.odometry is not None else STANDING
+    thermal = frame.grey(THERMAL)
+    focal = len(thermal) / 2 / math.tan(math.radians(motion.view_angle_deg) / 2)
+    image = model.prepare(thermal)
     colour = None
-    if config.colour is not None and frame.colour is not None:
-        colour = ColourView.build(frame.colour, frame.thermal.shape, config.colour)
+    if config.colour is not None and COLOUR in frame.images:
+        colour = ColourView.build(frame.rgb(COLOUR), thermal.shape, config.colour)
     appearance = None if config.appearance is None else AppearanceView.build(image, colour, config.appearance)
-    return FrameView(image, model, dt_s, turn, focal, colour, appearance, advance_m=advance)
+    return FrameView(image, model, dt_s, moved.turn_rad, focal, colour, appearance, advance_m=moved.advance_m)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.contour.outline import box_of
@@ -27,9 +29,10 @@ from peopleboy.tracker.thermal.particle_filter import (
     view_frame,
     weigh,
 )
+from peopleboy.tracker.thermal.place_on_floor import places_on_floor
 from peopleboy.tracker.thermal.reidentification import recognised, remembered
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 FIRST_STEP_S = 1 / 15
 
@@ -52,9 +55,14 @@ class PeopleTracker:
         self._memories: tuple[TrackedPerson, ...] = ()
         self._told: tuple[TrackedPerson, ...] = ()
         self._born = 0
-        self._introduced: tuple[float, float, float, float] | None = None
+        self._introduced: Box | None = None
 
-    def introduce(self, box: tuple[float, float, float, float]) -> None:
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The thermal camera, and the colour one if colours are looked at; without it, heat must do."""
+        return (THERMAL,) if self._config.colour is None else (THERMAL, COLOUR)
+
+    def introduce(self, box: Box) -> None:
         """Tell that a person is at this box [px] in the next frame, as trackers of single objects are told.
 
         The person's filter starts there, and the detector keeps off it.
@@ -80,7 +88,8 @@ class PeopleTracker:
         Raises:
             BadInput: time that does not go forward.
         """
-        view = view_frame(frame, self._time_step(frame.time_s), self._model_for(frame), self._config)
+        model = self._model_for(frame.grey(THERMAL))
+        view = view_frame(frame, self._time_step(frame.time_s), model, self._config)
         self._last_s = frame.time_s
         self._memories = tuple(
             person
@@ -97,7 +106,7 @@ class PeopleTracker:
         known = (*self._persons, *self._memories)
         shown = [person for person in known if not person.is_hidden or self._is_shown(person, view)]
         self._told = (*shown, *newcomer)
-        return tuple(self._track(person, frame.time_s) for person in self._told)
+        return self._tracks(frame)
 
     def _time_step(self, time_s: float) -> float:
         if self._last_s is None:
@@ -106,8 +115,8 @@ class PeopleTracker:
             raise BadInput(f"time_s must go forward, got {time_s} after {self._last_s}")
         return time_s - self._last_s
 
-    def _model_for(self, frame: Frame) -> ContourModel:
-        shape = (frame.height_px, frame.width_px)
+    def _model_for(self, image: NDArray[np.uint8]) -> ContourModel:
+        shape = (image.shape[0], image.shape[1])
         if self._model is None or self._model.shape != shape:
             self._model = ContourModel.build(shape, self._config.contour)
         return self._model
@@ -170,7 +179,7 @@ class PeopleTracker:
         self._persons = tuple(sorted((*self._persons, found), key=lambda person: person.id))
         return ()
 
-    def _meet(self, box: tuple[float, float, float, float], view: FrameView, time_s: float) -> None:
+    def _meet(self, box: Box, view: FrameView, time_s: float) -> None:
         """Start a filter on samples around a person who is pointed out."""
         state = draw_around(box, self._config, self._rng)
         found = self._newborn(weigh(state, view, self._config.person, self._config), view, time_s)
@@ -216,13 +225,22 @@ class PeopleTracker:
         is_whole = top + height < rows
         return person.hidden_s <= (handling.shown_leaving_s if walks_out and is_whole else handling.shown_s)
 
-    def _track(self, person: TrackedPerson, time_s: float) -> Track:
-        ellipse = ellipse_of(person.shown)
-        return Track(
-            id=person.id,
-            box=box_of(ellipse, self._config.box, self._config.contour.head_divisor),
-            confidence=person.belief.confidence,
-            status=person.status,
-            age_s=time_s - person.born_s,
-            occluder=person.occluder,
+    def _tracks(self, frame: Frame) -> tuple[Track, ...]:
+        config, calibration = self._config, frame.calibrations.get(THERMAL)
+        divisor = config.contour.head_divisor
+        boxes = [box_of(ellipse_of(person.shown), config.box, divisor) for person in self._told]
+        places: Sequence[FloorPlace | None] = [None] * len(boxes)
+        if calibration is not None:
+            places = places_on_floor(boxes, [person.status for person in self._told], calibration)
+        return tuple(
+            Track(
+                id=person.id,
+                boxes={THERMAL: box},
+                place=place,
+                confidence=person.belief.confidence,
+                status=person.status,
+                age_s=frame.time_s - person.born_s,
+                occluder=person.occluder,
+            )
+            for person, box, place in zip(self._told, boxes, places, strict=True)
         )

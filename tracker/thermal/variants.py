@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Final
 
 from peopleboy.tracker.thermal.colour_config import (
     FAR_AFFINE,
@@ -215,3 +217,17 @@ and looks are seen as much as by the floor. A colour picture, if there is one, s
 shows. The box is that of the thesis, whose people were real ones in wide clothes. Values were chosen on
 simulated scenes, with garments warmer and colder than the walls, and on a real clip.
 """
+
+LEARNED: Final = "learned"
+"""The default with a learned order in depth."""
+
+VARIANTS: Final[Mapping[str, TrackerConfig]] = {
+    "peopleboy": PEOPLEBOY,
+    LEARNED: PEOPLEBOY,
+    "footage": FOOTAGE,
+    "thesis": THESIS_OCCLUSION,
+    "thermal": THESIS,
+    "colour": THESIS_COLOUR,
+    "paper": PAPER,
+}
+"""The settings of each tracker by name; the first is the default."""

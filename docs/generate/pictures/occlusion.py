@@ -59,7 +59,7 @@ def explained_away() -> Figure:
             points[~pairs, 0], points[~pairs, 1], s=14, facecolors="none", edgecolors="0.7", linewidths=0.8
         )
     for panel in axes:
-        zoom(panel, tracks[NEAR].box, 16.0, 1.1)
+        zoom(panel, tracks[NEAR].boxes["thermal"], 16.0, 1.1)
     return figure
 
 
@@ -109,7 +109,7 @@ def _outlined(panel: Axes, tick: Tick, track: Track) -> None:
     style = ":" if track.status is Status.TOTALLY_OCCLUDED else "-"
     for line in outline(explained(tick).ellipses[track.id], PEOPLEBOY.contour):
         panel.plot(*line.T, style, color=_hex(track.id), linewidth=1.8)
-    left, top, *_ = track.box
+    left, top, *_ = track.boxes["thermal"]
     panel.text(left, top - 3, str(track.id), color=_hex(track.id), fontsize=11, fontweight="bold")
 
 

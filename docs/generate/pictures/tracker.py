@@ -47,7 +47,7 @@ def contour() -> Figure:
     for panel, state in zip(axes, (good, shifted), strict=True):
         show(panel, image)
         points = _judged(panel, model, image, state)
-        zoom(panel, track.box, 24.0, 0.98)
+        zoom(panel, track.boxes["thermal"], 24.0, 0.98)
     figure.colorbar(
         points, ax=axes, label="what the section says: -1 against a person, 1 for one", shrink=0.8
     )

@@ -62,7 +62,7 @@ def test_a_centre_line_runs_along_the_longer_side():
 
 
 class NoTracker:
-    particles: dict = {}  # noqa: RUF012
+    cameras = ()
 
     def update(self, _frame):
         return ()

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.filter.particles import equally_weighted
@@ -15,7 +15,7 @@ from peopleboy.tracker.track import Status
 from tests.helpers.images.drawn_people import blank
 
 VIEW = view_frame(
-    Frame(thermal=blank(), time_s=1.0),
+    Frame(images={THERMAL: blank()}, time_s=1.0),
     1 / 15,
     ContourModel.build((240, 320), PEOPLEBOY.contour),
     PEOPLEBOY,

@@ -22,7 +22,8 @@ from peopleboy.tracker.evaluation.metrics.sums import Sums
 from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.evaluation.uncounted import Rule
-from peopleboy.tracker.track import Status
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import Tracker
 
 RULES: tuple[Rule, ...] = ("ignore", "absent")
@@ -121,10 +122,9 @@ def play_key(play: SuiteRun) -> str:
 def track_film(shot: Film, tracker: Tracker) -> TrackBoxes:
     """Let a tracker see a film; who is only tentative is not yet claimed."""
     rows = [
-        (number, track.id, track.box, track.confidence)
+        (number, track.id, box, track.confidence)
         for number, frame in enumerate(frames_of(shot), 1)
-        for track in tracker.update(frame)
-        if track.status is not Status.TENTATIVE
+        for track, box in confirmed(tracker.update(frame), THERMAL)
     ]
     frame, identity, box, confidence = zip(*rows, strict=True) if rows else ((), (), (), ())
     return TrackBoxes(

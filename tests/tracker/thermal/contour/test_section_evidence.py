@@ -15,10 +15,10 @@ from peopleboy.tracker.thermal.contour.outline import outline, section_lines
 from peopleboy.tracker.thermal.contour.section_evidence import evidence_of
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import ContourExplanation
+from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.trackers import TRACKERS
 
-PEOPLEBOY = TRACKERS["peopleboy"]
+PEOPLEBOY = VARIANTS["peopleboy"]
 AT_REST = {"vx": 0.0, "vy": 0.0, "vw": 0.0, "vh": 0.0}
 STANDING = Ellipse(x=160.0, y=120.0, w=20.0, h=45.0, d=0.0, **AT_REST)
 
@@ -26,7 +26,7 @@ STANDING = Ellipse(x=160.0, y=120.0, w=20.0, h=45.0, d=0.0, **AT_REST)
 def track(number: int = 1, occluder: int | None = None) -> Track:
     return Track(
         id=number,
-        box=(0.0, 0.0, 1.0, 1.0),
+        boxes={"thermal": (0.0, 0.0, 1.0, 1.0)},
         confidence=1.0,
         status=Status.TRACKED,
         age_s=1.0,
@@ -51,9 +51,9 @@ def person(ellipse: Ellipse = STANDING) -> NDArray[np.uint8]:
     return np.where(body | face | legs, 150, 5).astype(np.uint8)
 
 
-@pytest.mark.parametrize("name", TRACKERS)
+@pytest.mark.parametrize("name", VARIANTS)
 def test_what_is_wholly_in_view_responds_as_the_tracker_measures_it(name: str) -> None:
-    config, image = TRACKERS[name], person()
+    config, image = VARIANTS[name], person()
     model = ContourModel.build((240, 320), config.contour)
     state = np.array([[160.0, 120.0, 20.0, 45.0, 0.0, 0.0, 0.0, 0.0, 0.0]], np.float32)
     measured = model.differences(model.prepare(image), state)[0]

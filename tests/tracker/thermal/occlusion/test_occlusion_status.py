@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.thermal.contour.coverage import covered_by
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.filter.particles import equally_weighted
@@ -28,7 +28,10 @@ def person(number, x, h):
 
 def judged(config, behind, *front):
     view = view_frame(
-        Frame(thermal=blank(), time_s=1.0), 1 / 15, ContourModel.build((240, 320), config.contour), config
+        Frame(images={THERMAL: blank()}, time_s=1.0),
+        1 / 15,
+        ContourModel.build((240, 320), config.contour),
+        config,
     )
     states = [one.belief.estimate for one in front]
     surroundings = Surroundings(
