@@ -28,7 +28,7 @@ from peopleboy.scenarios.scores.show_scores import print_spread
     "--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Runs at the same time."
 )
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
-def sweep(scenario: str, seeds: int, out: Path, tracker: str, jobs: int, overwrite: bool) -> None:
+def sweep(scenario: str, seeds: int, out: Path, tracker: str | None, jobs: int, overwrite: bool) -> None:
     """Run a scenario with many seeds, without recordings, and score them together."""
     from peopleboy.scenarios.running.sweep import run_seeds
     from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs

@@ -11,4 +11,6 @@ TRACKERS = (
     "peopleboy, learned, footage, thesis, colour, thermal or paper; truth, which is told; "
     "or module:Class, your own"
 )
-tracker_option = click.option("--tracker", default="peopleboy", show_default=True, help=f"One of {TRACKERS}.")
+tracker_option = click.option(
+    "--tracker", help=f"One of {TRACKERS}.  [default: the scenario's, or peopleboy]"
+)

@@ -41,7 +41,7 @@ def run(
     seed: int | None,
     out: Path | None,
     frames: bool,
-    tracker: str,
+    tracker: str | None,
     renderer: str,
     no_rrd: bool,
     live: bool,
@@ -56,7 +56,6 @@ def run(
     from peopleboy.scenarios.files.suite import suite_names
     from peopleboy.scenarios.recording.viewer import live_viewer
     from peopleboy.scenarios.running.run import RunOptions
-    from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
     is_suite = scenario in suite_names()
     if is_suite and seed is not None:
@@ -64,8 +63,8 @@ def run(
     loaded = None if is_suite else load_scenario(scenario)
     number = seed if seed is not None else 0 if loaded is None else loaded.seed
     name = scenario if loaded is None else f"{loaded.name}-{number}"
-    if tracker != DEFAULT_TRACKER:
-        name += f"-{tracker}"
+    if tracker is not None and (loaded is None or tracker != loaded.tracker):
+        name += f"-{tracker.replace(':', '.')}"
     options = RunOptions(
         seed=number,
         out=out if out is not None else Path("runs") / name,

@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.place_things import describe_floor, name_things
 from peopleboy.scenarios.files.schema.people import PersonSpec, WaypointSpec
-from peopleboy.scenarios.files.schema.robot import RobotSpec
+from peopleboy.scenarios.files.schema.robot import ORACLE, RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.cameras.camera_config import CameraConfig
@@ -166,9 +166,19 @@ def _check_robot(spec: ScenarioSpec, ground: Ground) -> None:
         )
     if spec.robot.keep_height is not None and spec.robot.behaviour != "follow_person":
         raise BadInput("robot.keep_height: only a robot that is to 'follow_person' takes it")
+    if spec.robot.tracker is not None:
+        _check_tracker(spec.robot.tracker)
     if spec.robot.walls_by is not None and spec.robot.behaviour != "follow_corridor":
         raise BadInput("robot.walls_by: only a robot that is to 'follow_corridor' takes it")
     _check_order("robot.commands", "from_s", [command.from_s for command in spec.robot.commands])
+
+
+def _check_tracker(name: str) -> None:
+    from peopleboy.tracker.trackers import TRACKERS  # here, as they take a second to load
+
+    if name not in (*TRACKERS, ORACLE):
+        known = ", ".join((*TRACKERS, ORACLE))
+        raise BadInput(f"robot.tracker: unknown name {name!r}; there are {known}")
 
 
 def _check_cameras(robot: RobotSpec) -> None:

@@ -79,6 +79,13 @@ class Scenario:
         """What the file says about the robot."""
         return self.spec.robot
 
+    @property
+    def tracker(self) -> str:
+        """Name of the tracker that sees people unless another one is asked for."""
+        from peopleboy.tracker.trackers import DEFAULT_TRACKER  # here, as it takes a second to load
+
+        return self.robot.tracker or DEFAULT_TRACKER
+
     def people(self, seed: int) -> tuple[PersonSpec, ...]:
         """Everybody, groups included, with all that the seed decides.
 

@@ -9,7 +9,6 @@ from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
-TRUTH = "truth"
 SEEN = 0.3  # share of a silhouette above which a person counts as seen
 
 

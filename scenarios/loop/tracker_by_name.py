@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from peopleboy.scenarios.loop.oracle_tracker import TRUTH, OracleTracker
+from peopleboy.scenarios.files.schema.robot import ORACLE
+from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.trackers import Tracker, make_tracker
@@ -16,14 +17,13 @@ def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
     Raises:
         BadInput: an unknown name, or a tracker of your own that cannot be made.
     """
-    return OracleTracker(truth) if name == TRUTH else make_tracker(name, stream(seed, "tracker"))
+    return OracleTracker(truth) if name == ORACLE else make_tracker(name, stream(seed, "tracker"))
 
 
-def check_eyes(name: str) -> None:
-    """Refuse the name of a tracker that there is not.
+def camera_names(name: str) -> tuple[str, ...]:
+    """Name the cameras that the tracker of a name wants.
 
     Raises:
         BadInput: an unknown name, or a tracker of your own that cannot be made.
     """
-    if name != TRUTH:
-        make_tracker(name, stream(0, "tracker"))
+    return () if name == ORACLE else make_tracker(name, stream(0, "tracker")).cameras

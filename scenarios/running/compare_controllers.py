@@ -15,7 +15,7 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.tracker_by_name import check_eyes
+from peopleboy.scenarios.loop.tracker_by_name import camera_names
 from peopleboy.scenarios.progress_bar import each_shown
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
@@ -48,7 +48,7 @@ def parse_controller(text: str) -> Controller:
     behaviour, at, eyes = text.strip().partition("@")
     make_behaviour(behaviour)
     controller = Controller(behaviour, eyes if at else DEFAULT_TRACKER)
-    check_eyes(controller.eyes)
+    camera_names(controller.eyes)  # refuses an unknown name
     return controller
 
 

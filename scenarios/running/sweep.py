@@ -25,7 +25,7 @@ class Job:
 
 
 def run_seeds(
-    scenario: str, seeds: Iterable[int], out: Path, tracker: str, jobs: int, *, overwrite: bool
+    scenario: str, seeds: Iterable[int], out: Path, tracker: str | None, jobs: int, *, overwrite: bool
 ) -> list[Path]:
     """Run a scenario once per seed, without recordings, some runs at the same time.
 

@@ -19,6 +19,10 @@ from peopleboy.scenarios.files.schema.values import (
 Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
 
 
+ORACLE = "truth"
+"""Name of the eyes that are told who is where."""
+
+
 class _Camera(Strict):
     """What all cameras have; what is left out is as usual for the kind."""
 
@@ -110,6 +114,12 @@ class RobotSpec(Strict):
     walls_by: Literal["sonar", "image"] | None = Field(
         default=None,
         description="of a robot in corridors: the sense that tells it the walls; left out, the sonar",
+    )
+    tracker: str | None = Field(
+        default=None,
+        pattern="^[a-z][a-z0-9_-]*$",
+        description="whose eyes the robot sees people with, by a name that `--tracker` takes, and which that "
+        "option overrules; left out, `peopleboy`",
     )
     cameras: dict[CameraName, Annotated[CameraSpec, Field(discriminator="kind")]] = Field(
         default={},
