@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
 from types import TracebackType
 
@@ -11,11 +10,12 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
 from peopleboy.sim.cameras.sensors import Glimpse
 from peopleboy.sim.cameras.surfaces import make_material_table
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.people.crowd import Crowd
@@ -23,8 +23,8 @@ from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.rendering.render import render
-from peopleboy.sim.rendering.view import BLIND, View
+from peopleboy.sim.rendering.sight import Scene, Seen, Sight, look
+from peopleboy.sim.rendering.view import BLIND
 from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME as ROBOT
 from peopleboy.sim.robot.robot_body import RADIUS_M
@@ -37,14 +37,6 @@ from peopleboy.sim.truth.truth import BORDER, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 
 _MOST_PEOPLE = 64  # a view's cover has a bit for each
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _CameraView:
-    """What one camera sees: its pose and the view from there."""
-
-    world_from_camera: Matrix
-    view: View
 
 
 class World:
@@ -132,7 +124,7 @@ class World:
                 self._crowd.people,
                 self._bullet,
                 self._robot.world_from_robot(),
-                self.config.robot.cameras["thermal"].camera,
+                flat_geometry(self.config.robot.cameras, "thermal"),
             ),
         )
 
@@ -145,14 +137,10 @@ class World:
         if camera not in self.config.robot.cameras:
             known = ", ".join(self.config.robot.cameras)
             raise BadInput(f"camera {camera!r}: there is none of that name; choose from {known}")
-        geometry = self.config.robot.cameras[camera].camera
-        seen = self._see(geometry)
+        seen = self._see(self.config.robot.cameras[camera])
         return self._truth_maker.make(
             time_s=self.time_s,
-            camera=geometry,
-            view=seen.view,
-            world_from_camera=seen.world_from_camera,
-            world_from_part=self._poses,
+            seen=seen,
             robot=self._robot.pose(),
             robot_velocity=self._robot.velocity(),
             contacts=tuple(sorted(self._touching)),
@@ -217,7 +205,7 @@ class World:
         ]
         self._table = make_shape_table(bullet.visual_shapes())
         self._materials = make_material_table(part_materials, stream(config.seed, "surface.variation"))
-        self._truth_maker = TruthMaker(keys, self._table, self._crowd, part_materials)
+        self._truth_maker = TruthMaker(keys, self._crowd, part_materials)
         self._rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._glimpse)
 
     def _settle(self) -> None:
@@ -225,9 +213,15 @@ class World:
         self._crowd.show(self._robot.gap_to)
         if self.config.renderer == BLIND:
             return
-        self._poses = self._bullet.part_poses()
-        self._hidden = self._bullet.hidden_parts()
-        self._seen: dict[Camera, _CameraView] = {}
+        self._scene = Scene(
+            renderer=self.config.renderer,
+            bullet=self._bullet,
+            table=self._table,
+            world_from_part=self._bullet.part_poses(),
+            person_of_part=self._truth_maker.person_of_part,
+            hidden=self._bullet.hidden_parts(),
+        )
+        self._seen: dict[tuple[Sight, CameraGeometry], Seen] = {}
         self._rig.forget()
 
     def _check_sight(self) -> None:
@@ -239,31 +233,26 @@ class World:
             raise BadInput(f"camera {camera!r}: the truth of an instant that is over cannot be told any more")
         return self.truth(camera)
 
-    def _see(self, camera: Camera) -> _CameraView:
+    def _see(self, config: CameraConfig) -> Seen:
         """Render one camera's view, once an instant.
 
         Raises:
             BadInput: this is a world without images.
         """
         self._check_sight()
-        if camera not in self._seen:
+        sight, camera = kind_of(config).sight, config.camera
+        if (sight, camera) not in self._seen:
             pose = self._robot.world_from_robot() @ camera.robot_from_camera
-            self._seen[camera] = _CameraView(pose, self._render(camera, pose))
-        return self._seen[camera]
+            self._seen[sight, camera] = look(sight, self._scene, camera, pose)
+        return self._seen[sight, camera]
 
-    def _render(self, camera: Camera, pose: Matrix) -> View:
-        return render(
-            self.config.renderer, self._bullet, self._table, camera, pose, self._poses,
-            self._truth_maker.person_of_part, self._hidden,
-        )  # fmt: skip
-
-    def _glimpse(self, camera: Camera) -> Glimpse:
+    def _glimpse(self, config: CameraConfig) -> Glimpse:
         """Tell a sensor what it sees, and all that forms its images from that."""
-        seen = self._see(camera)
+        seen = self._see(config)
         return Glimpse(
             view=seen.view,
             world_from_camera=seen.world_from_camera,
-            world_from_part=self._poses,
+            world_from_part=self._scene.world_from_part,
             materials=self._materials,
             surroundings_c=self.config.place.surroundings_c,
             light_level=light_level(self.config.place, self.time_s),

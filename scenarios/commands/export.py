@@ -14,20 +14,25 @@ FORMATS = ("mot", "coco", "viper", "mcap", "mp4")
 @click.argument("runs", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--format", "form", type=click.Choice(FORMATS), required=True, help="What to write.")
 @click.option(
+    "--camera",
+    metavar="NAME",
+    help="Whose images and boxes mot, viper or mp4 tell.  [default: thermal; in films thermal and colour]",
+)
+@click.option(
     "--out",
     type=click.Path(path_type=Path),
-    help="Folder to leave.  [default: beside the run, RUN-FORMAT; of several, export-FORMAT]",
+    help="Folder to leave.  [default: beside the run, RUN-FORMAT(-CAMERA); of several, export-FORMAT]",
 )
 @click.option("--overwrite", is_flag=True, help="Replace an earlier export in the folder.")
-def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -> None:
+def export(runs: Sequence[Path], form: str, camera: str | None, out: Path | None, overwrite: bool) -> None:
     """Hand runs over to other tools; a folder that holds folders of runs stands for all of them.
 
     Runs of a rendered set go to coco and mot split by split, as its folder `splits` says; export.json names
     the runs of each.
 
     mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. viper: ViPER XML. mcap: ROS 2 bags. mp4:
-    films. Images and masks are rendered again, and are those of the run. mcap and mp4 need the
-    extra `export`.
+    films. coco and mcap have every camera's images. Images and masks are rendered again, and are those of the
+    run. mcap and mp4 need the extra `export`.
     """
     from peopleboy.scenarios.export.dataset.splits import refuse_unfinished
     from peopleboy.scenarios.export.formats import export as write
@@ -39,10 +44,11 @@ def export(runs: Sequence[Path], form: str, out: Path | None, overwrite: bool) -
         refuse_unfinished(folder)
     opened = open_whole_runs([run for folder in runs for run in runs_in(folder)])
     first = opened[0].folder
-    name = f"{first.name}-{form}" if len(opened) == 1 else f"export-{form}"
+    what = form if camera is None else f"{form}-{camera}"
+    name = f"{first.name}-{what}" if len(opened) == 1 else f"export-{what}"
     folder = out if out is not None else first.parent / name
     frames = sum(run.frames for run in opened)
     with progress_bar(form, unit="frames") as show:
         play = counted(lambda frame: show(frame, frames))
-        write(opened, form, folder, play, overwrite=overwrite)
+        write(opened, form, folder, play, camera=camera, overwrite=overwrite)
     click.echo(folder)

@@ -1,4 +1,7 @@
-"""One picture of a run: its key moments side by side, thermal above colour, tracks and truth drawn in."""
+"""One picture of a run: its key moments side by side, thermal above colour, tracks and truth drawn in.
+
+What further cameras saw stands below, with their names.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +11,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 from PIL.PngImagePlugin import PngInfo
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.drawing.key_moments import KeyMoments, Moment
-from peopleboy.scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_thermal
+from peopleboy.scenarios.drawing.key_moments import KeyMoments, Moment, Shot
+from peopleboy.scenarios.drawing.overlay import (
+    Picture,
+    Plate,
+    draw_tracks,
+    draw_truth,
+    enlarge,
+    show_image,
+    show_thermal,
+)
 from peopleboy.scenarios.drawing.palette import Rgb
 from peopleboy.scenarios.drawing.sheet_head import (
     HEAD_PX,
@@ -28,7 +40,8 @@ from peopleboy.scenarios.drawing.sheet_head import (
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.out_folder import writing_to
-from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.cameras.kinds import kind_of
+from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.wording import counted
 
@@ -36,9 +49,8 @@ WIDTH_PX: Final = 1600
 COLUMNS: Final = 4
 MOMENTS: Final = 12
 
-_GAP, _CAPTION = 14, 46
+_GAP, _CAPTION, _SEAM = 14, 46, 3
 _TILE: Final = (WIDTH_PX - 2 * MARGIN_PX - (COLUMNS - 1) * _GAP) // COLUMNS
-_TYPICAL_DEPTH_M = 4.0
 _NOTE: Final = "Moments"  # of the PNG: where each tile is, and what it shows
 _CHIP: Final[Rgb] = (58, 64, 74)
 
@@ -116,13 +128,18 @@ class ContactSheet:
         return f"{counted(self._last.frame, 'frame')}, {self._last.observation.time_s:.1f} s"
 
     def _tile(self, moment: Moment) -> Image.Image:
-        """Draw one moment: caption, thermal, colour."""
-        thermal, colour = self._thermal_picture(moment), self._colour_picture(moment)
-        height = _CAPTION + thermal.shape[0] + 3 + colour.shape[0]
-        tile = Image.new("RGB", (_TILE, height), PAGE)
+        """Draw one moment: caption, thermal, colour, then further cameras, two beside each other."""
+        further = [moment.further[k : k + 2] for k in range(0, len(moment.further), 2)]
+        rows = [[self._thermal_picture(moment)], [self._colour_picture(moment)]]
+        rows += [[self._further_picture(shot, len(row), moment) for shot in row] for row in further]
+        heights = [max(picture.shape[0] for picture in row) for row in rows]
+        tile = Image.new("RGB", (_TILE, _CAPTION + sum(heights) + _SEAM * (len(rows) - 1)), PAGE)
         _caption(tile, moment)
-        tile.paste(Image.fromarray(thermal), (0, _CAPTION))
-        tile.paste(Image.fromarray(colour), (0, _CAPTION + thermal.shape[0] + 3))
+        top = _CAPTION
+        for row, height in zip(rows, heights, strict=True):
+            for column, picture in enumerate(row):
+                tile.paste(Image.fromarray(picture), (column * (_share(len(row)) + _SEAM), top))
+            top += height + _SEAM
         return tile
 
     def _thermal_picture(self, moment: Moment) -> Picture:
@@ -134,9 +151,31 @@ class ContactSheet:
 
     def _colour_picture(self, moment: Moment) -> Picture:
         scale = _TILE / moment.colour.shape[1]
-        cameras = self._robot.cameras
-        affine = affine_between(cameras["thermal"].camera, cameras["colour"].camera, _TYPICAL_DEPTH_M)
+        affine = colour_from_thermal(self._robot.cameras)
         return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, moment.explanation, affine)
+
+    def _further_picture(self, shot: Shot, beside: int, moment: Moment) -> Picture:
+        """Draw what a further camera saw, with truth where that has boxes, its name and how old it is."""
+        scale = _share(beside) / shot.image.shape[1]
+        picture = enlarge(show_image(shot.image), scale)
+        if kind_of(self._robot.cameras[shot.camera]).has_boxes:
+            picture = draw_truth(picture, shot.people, scale)
+        age_s = moment.time_s - shot.time_s
+        return _named(picture, f"{shot.camera}, {age_s:.1f} s old" if age_s > 1e-6 else shot.camera)
+
+
+def _share(pictures: int) -> int:
+    """Width [px] of each of so many pictures beside each other."""
+    return (_TILE - _SEAM * (pictures - 1)) // pictures
+
+
+def _named(picture: Picture, name: str) -> Picture:
+    """Write a name into the upper left corner of a picture."""
+    page = Image.fromarray(picture)
+    draw = ImageDraw.Draw(page)
+    draw.rectangle((0, 0, draw.textlength(name, font(12)) + 10, 18), PAGE)
+    draw.text((5, 9), name, STRONG, font(12), anchor="lm")
+    return np.asarray(page, np.uint8)
 
 
 def read_tiles(path: Path) -> list[Tile]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -36,6 +36,23 @@ _NEAR_S = 0.19
 _SPARE = 24
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Shot:
+    """The newest image of a further camera at some instant.
+
+    Attributes:
+        camera: its name.
+        time_s: [s] when it was taken.
+        image: (H, W) or (H, W, 3).
+        people: what was true in it.
+    """
+
+    camera: str
+    time_s: float
+    image: NDArray[np.uint8]
+    people: tuple[PersonTruth, ...]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Moment:
     """What is needed to draw one instant.
@@ -43,6 +60,7 @@ class Moment:
     Attributes:
         frame, time_s, mode: as in the tick.
         thermal, colour: (H, W) and (H, W, 3) what the cameras saw.
+        further: what the other cameras saw last.
         tracks, explanation: what the tracker made of it, and told beyond that.
         people: what was true.
         words: what happened, the most telling first.
@@ -53,6 +71,7 @@ class Moment:
     mode: str
     thermal: NDArray[np.uint8]
     colour: NDArray[np.uint8]
+    further: tuple[Shot, ...]
     tracks: tuple[Track, ...]
     explanation: object
     people: tuple[PersonTruth, ...]
@@ -76,6 +95,7 @@ class KeyMoments:
 
     def __init__(self) -> None:
         self._kept: dict[tuple[str, int], tuple[Moment, Words]] = {}
+        self._newest: dict[str, Shot] = {}
         self._counts: Counter[str] = Counter()
         self._occlusions: dict[str, _Occlusion] = {}
         self._closest_m = np.inf
@@ -84,7 +104,8 @@ class KeyMoments:
 
     def add(self, tick: Tick, events: Sequence[LogLine]) -> None:
         """Look at one tick and what happened at it."""
-        moment = _moment(tick)
+        self._newest |= {shot.camera: shot for shot in _further(tick)}
+        moment = _moment(tick, tuple(self._newest.values()))
         if not self._spare:
             self._keep_new("start", moment, partial(_always, "start"))
         for line in events:
@@ -171,7 +192,14 @@ def _hidden(person: PersonTruth, moment: Moment) -> str:
     return f"{shown.name}: {shown.occluded_fraction:.0%} hidden{by}"
 
 
-def _moment(tick: Tick) -> Moment:
+def _further(tick: Tick) -> Iterator[Shot]:
+    """Give what cameras took beside the two whose images everybody has."""
+    for name in (name for name in tick.truths if name not in ("thermal", "colour")):
+        senses, truth = tick.observation, tick.truths[name]
+        yield Shot(name, senses.time_s, senses.images[name], truth.people)
+
+
+def _moment(tick: Tick, further: tuple[Shot, ...]) -> Moment:
     senses = tick.observation
     return Moment(
         frame=tick.frame,
@@ -179,6 +207,7 @@ def _moment(tick: Tick) -> Moment:
         mode=tick.mode,
         thermal=senses.images["thermal"],
         colour=senses.images["colour"],
+        further=further,
         tracks=tick.tracks,
         explanation=tick.explanation,
         people=tick.truth.people,

@@ -71,6 +71,11 @@ def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
     return np.asarray(cv2.cvtColor(cv2.applyColorMap(thermal, colours), cv2.COLOR_BGR2RGB), np.uint8)
 
 
+def show_image(image: NDArray[np.uint8]) -> Picture:
+    """Turn a camera's image, (H, W) grey or (H, W, 3) RGB, into a picture of the same size."""
+    return show_thermal(image) if image.ndim == 2 else image
+
+
 def encode_jpeg(image: NDArray[np.uint8], quality: int, *, has_own_codes: bool = True) -> bytes:
     """Encode an (H, W) grey or (H, W, 3) RGB image; quality 0..100.
 
@@ -206,7 +211,8 @@ def _label(
     is_below: bool = False,
 ) -> None:
     """Write on a dark plate above or below a box, inside the picture and clear of other plates."""
-    size = max(0.2 * scale, 0.4)
+    # Letters grow with the picture, but a small image that is much enlarged is no larger picture.
+    size = max(min(0.2 * scale, canvas.shape[0] / 1200.0), 0.4)
     (width, height), descent = cv2.getTextSize(text, _FONT, size, 1)
     line = height + descent + 3
     left, top = box[0] * scale, box[1] * scale

@@ -13,6 +13,7 @@ from peopleboy.scenarios.drawing.labels import Labels
 from peopleboy.scenarios.files.check import ROBOT_M
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import CommandSpec
+from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig
 
@@ -46,7 +47,7 @@ def draw_robot(axes: Axes, labels: Labels, scenario: Scenario, robot: RobotConfi
 
 
 def _draw_view(axes: Axes, labels: Labels, robot: RobotConfig, place: Place) -> None:
-    camera = robot.cameras["thermal"].camera
+    camera = flat_geometry(robot.cameras, "thermal")
     c, s = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
     forward, left, _ = camera.position_m
     eye = np.array([robot.at_m[0] + c * forward - s * left, robot.at_m[1] + s * forward + c * left])

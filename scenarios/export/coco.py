@@ -33,7 +33,8 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file, make_image_folders, write_images
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import image_folders, with_boxes
-from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.people.body.joints import JOINT_NAMES
 from peopleboy.sim.truth.truth import Box, PersonTruth
 
@@ -215,16 +216,20 @@ def _video(number: int, run: FinishedRun) -> dict[str, Any]:
     }
 
 
-def _camera(camera: Camera) -> dict[str, Any]:
-    """Give size, matrix with pixels counted from the corner, and where on the robot a camera sits."""
-    intrinsics: Matrix = camera.intrinsics.copy()
-    intrinsics[:2, 2] += CORNER_PX
+def _camera(camera: CameraGeometry) -> dict[str, Any]:
+    """Give size, a pinhole's matrix with pixels counted from the corner, and where a camera sits."""
     return {
         "width": camera.width,
         "height": camera.height,
-        "intrinsics": intrinsics.tolist(),
+        **({"intrinsics": _intrinsics(camera).tolist()} if isinstance(camera, Pinhole) else {}),
         "robot_from_camera": camera.robot_from_camera.tolist(),
     }
+
+
+def _intrinsics(camera: Pinhole) -> Matrix:
+    intrinsics = camera.intrinsics.copy()
+    intrinsics[:2, 2] += CORNER_PX
+    return intrinsics
 
 
 def _category() -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.by_split import by_split
 from peopleboy.scenarios.export.coco import write_coco
 from peopleboy.scenarios.export.mot import write_mot
@@ -17,18 +18,25 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 
-Writer = Callable[[Sequence[FinishedRun], Path, Play], None]
-
-WRITERS: dict[str, Writer] = {
+WRITERS: dict[str, Callable[..., None]] = {
     "mot": write_mot,
     "coco": write_coco,
     "viper": write_viper,
     "mcap": write_mcap,
     "mp4": write_mp4,
 }
+OF_ONE_CAMERA = ("mot", "viper", "mp4")  # the others tell of all
 
 
-def export(runs: Sequence[FinishedRun], form: str, out: Path, play: Play, *, overwrite: bool) -> None:
+def export(
+    runs: Sequence[FinishedRun],
+    form: str,
+    out: Path,
+    play: Play,
+    *,
+    camera: str | None = None,
+    overwrite: bool,
+) -> None:
     """Write runs in one of `WRITERS`, whole or not at all.
 
     Args:
@@ -36,13 +44,17 @@ def export(runs: Sequence[FinishedRun], form: str, out: Path, play: Play, *, ove
         form: name of the format.
         out: the folder to leave.
         play: gives a run's ticks, as `replay` does.
+        camera: whose images and boxes, for a format `OF_ONE_CAMERA`; None for what it usually tells.
         overwrite: whether an earlier export there may be replaced.
 
     Raises:
         BadInput: the runs cannot be written so, or there.
     """
+    if camera is not None and form not in OF_ONE_CAMERA:
+        raise BadInput(f"--camera {camera}: {form} has the images of every camera; leave it out")
     about: dict[str, Any] = {"format": form, "runs": [run.name for run in runs], "versions": versions()}
     splits = {split: [run.name for run in own] for split, own in by_split(runs).items() if split}
     about |= {"splits": splits} if splits else {}
-    with whole_folder(out, about, overwrite=overwrite) as folder:
-        WRITERS[form](runs, folder, play)
+    chosen = {} if camera is None else {"camera": camera}
+    with whole_folder(out, about | chosen, overwrite=overwrite) as folder:
+        WRITERS[form](runs, folder, play, **chosen)

@@ -3,8 +3,11 @@
 gt/mot_challenge/seqmaps/peopleboy-all.txt               names of the sequences
 gt/mot_challenge/peopleboy-all/SEQUENCE/seqinfo.ini      length, frame rate, size
 /gt/gt.txt        truth
-/img1/000001.png  thermal images
+/img1/000001.png  images of the camera
 trackers/mot_challenge/peopleboy-all/TRACKER/data/SEQUENCE.txt
+
+The camera is the thermal one unless another is asked for, whose images are counted from 1 too; tracks are
+boxes in the thermal image, so there are none beside the truth of another.
 
 Runs of a rendered set are written by split: instead of peopleboy-all there are peopleboy-train, peopleboy-val
 and peopleboy-test.
@@ -19,9 +22,10 @@ from pathlib import Path
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.by_split import by_split
+from peopleboy.scenarios.export.one_camera import OneCamera, with_people
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.image_files import write_png
+from peopleboy.scenarios.run_folder.image_files import image_file, write_png
 
 BENCHMARK, EVERYTHING = "peopleboy", "all"
 
@@ -29,17 +33,19 @@ BENCHMARK, EVERYTHING = "peopleboy", "all"
 _DISTRACTOR = 8
 _COUNTED, _CLASS, _VISIBLE = 6, 7, 8
 
-_Sequences = dict[str, dict[str, FinishedRun]]  # by name, then tracker
+_Sequences = dict[str, dict[str, OneCamera]]  # by name, then tracker
 
 
-def write_mot(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
+def write_mot(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str = "thermal") -> None:
     """Write runs as sequences, by split; runs of several trackers on the same seed are one sequence.
 
     Raises:
         BadInput: two runs are the same, or the trackers have not seen the same sequences, or the runs cannot
-            be sorted by split.
+            be sorted by split, or one has no such camera.
     """
-    sorted_runs = {split: _sequences(own) for split, own in by_split(runs).items()}
+    sorted_runs = {
+        split: _sequences([with_people(run, camera) for run in own]) for split, own in by_split(runs).items()
+    }
     for split, sequences in sorted_runs.items():
         _write_set(f"{BENCHMARK}-{split or EVERYTHING}", sequences, folder, play)
 
@@ -51,38 +57,41 @@ def _write_set(name: str, sequences: _Sequences, folder: Path, play: Play) -> No
     (truth / "seqmaps" / f"{name}.txt").write_text(lines, encoding="utf-8")
     for sequence, own in sequences.items():
         _write_sequence(sequence, next(iter(own.values())), truth / name / sequence, play)
-        for tracker, run in own.items():
-            data = results / name / tracker / "data"
-            data.mkdir(parents=True, exist_ok=True)
-            (data / f"{sequence}.txt").write_bytes((run.folder / "tracks.txt").read_bytes())
+        for tracker, shots in own.items():
+            if shots.name == "thermal":
+                data = results / name / tracker / "data"
+                data.mkdir(parents=True, exist_ok=True)
+                (data / f"{sequence}.txt").write_bytes((shots.run.folder / "tracks.txt").read_bytes())
 
 
-def gt_text(run: FinishedRun) -> str:
-    """Give a run's truth with everybody whom our own scores leave out marked as a distractor.
+def gt_text(shots: OneCamera) -> str:
+    """Give the truth in a camera's images, whomever our own scores leave out marked as a distractor.
 
     These are people nearer than 3 m or farther than 10 m, and those of whom nothing is visible.
     """
-    lines = (run.folder / "truth" / "gt.txt").read_text(encoding="utf-8").splitlines()
-    return "".join(f"{','.join(_judged(line.split(',')))}\n" for line in lines)
+    lines = shots.truth_file.read_text(encoding="utf-8").splitlines()
+    found = (line.split(",") for line in lines)
+    numbered = ([str(shots.number(int(frame))), *rest] for frame, *rest in found)
+    return "".join(f"{','.join(_judged(cells))}\n" for cells in numbered)
 
 
-def _sequences(runs: Sequence[FinishedRun]) -> _Sequences:
+def _sequences(every: Sequence[OneCamera]) -> _Sequences:
     """Sort runs by sequence and tracker."""
     found: _Sequences = {}
-    for run in runs:
-        tracker = run.about.tracker
+    for shots in every:
+        run, tracker = shots.run, shots.run.about.tracker
         own = found.setdefault(f"{run.scenario.name}-{run.about.seed}", {})
         if tracker in own:
             raise BadInput(
-                f"{run.folder}: same scenario, seed and tracker as {own[tracker].folder}; leave one out"
+                f"{run.folder}: same scenario, seed and tracker as {own[tracker].run.folder}; leave one out"
             )
-        if any(gt_text(run) != gt_text(other) for other in own.values()):
+        if any(gt_text(shots) != gt_text(other) for other in own.values()):
             raise BadInput(
                 f"{run.folder}: with tracker {tracker} the robot went elsewhere, so the images differ; "
                 "export one tracker at a time"
             )
-        own[tracker] = run
-    everybody = {run.about.tracker for run in runs}
+        own[tracker] = shots
+    everybody = {shots.run.about.tracker for shots in every}
     for name, own in found.items():
         for lacking in sorted(everybody - own.keys()):
             raise BadInput(
@@ -91,35 +100,36 @@ def _sequences(runs: Sequence[FinishedRun]) -> _Sequences:
     return found
 
 
-def _write_sequence(name: str, run: FinishedRun, folder: Path, play: Play) -> None:
+def _write_sequence(name: str, shots: OneCamera, folder: Path, play: Play) -> None:
     for part in ("gt", "img1"):
         (folder / part).mkdir(parents=True)
-    camera = run.robot.cameras["thermal"].camera
+    width, height = shots.size
     settings = {
         "name": name,
         "imDir": "img1",
-        "frameRate": run.rate_hz,
-        "seqLength": run.frames,
-        "imWidth": camera.width,
-        "imHeight": camera.height,
+        "frameRate": shots.rate_hz,
+        "seqLength": len(shots.frames),
+        "imWidth": width,
+        "imHeight": height,
         "imExt": ".png",
     }
     lines = "".join(f"{key}={value}\n" for key, value in settings.items())
     (folder / "seqinfo.ini").write_text(f"[Sequence]\n{lines}", encoding="utf-8")
-    (folder / "gt" / "gt.txt").write_text(gt_text(run), encoding="utf-8")
-    _write_images(run, folder / "img1", play)
+    (folder / "gt" / "gt.txt").write_text(gt_text(shots), encoding="utf-8")
+    _write_images(shots, folder / "img1", play)
 
 
-def _write_images(run: FinishedRun, folder: Path, play: Play) -> None:
-    """Copy the run's thermal images if it has written them, else render them again."""
-    names = [f"{frame:06d}.png" for frame in range(1, run.frames + 1)]
-    written = [run.folder / "thermal" / name for name in names]
+def _write_images(shots: OneCamera, folder: Path, play: Play) -> None:
+    """Copy the camera's images if the run has written them, else render them again."""
+    written = [shots.run.folder / shots.name / image_file(frame) for frame in shots.frames]
     if all(path.is_file() for path in written):
-        for path in written:
-            (folder / path.name).write_bytes(path.read_bytes())
+        for number, path in enumerate(written, start=1):
+            (folder / image_file(number)).write_bytes(path.read_bytes())
         return
-    for tick in play(run):
-        write_png(folder / f"{tick.frame:06d}.png", tick.observation.images["thermal"])
+    for tick in play(shots.run):
+        if tick.frame in shots.frames:
+            image = tick.observation.images[shots.name]
+            write_png(folder / image_file(shots.number(tick.frame)), image)
 
 
 def _judged(cells: list[str]) -> list[str]:

@@ -7,7 +7,7 @@ camera; a frame per person, too.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
 import cv2
@@ -20,7 +20,8 @@ from scipy.spatial.transform import Rotation
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.camera_truth import further_cameras
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
@@ -82,9 +83,10 @@ class Messenger:
         due = {name: camera for name, camera in self._cameras.items() if name in images}
         for name in due:
             yield self._image(name, images[name], time_s)
-        for name, camera in due.items():
-            content = self._camera_info(name, camera.camera, time_s)
-            yield f"/{name}/camera_info", "sensor_msgs/msg/CameraInfo", content
+        for name, config in due.items():
+            if isinstance(config.camera, Pinhole):  # the message knows no other geometry
+                content = self._camera_info(name, config.camera, time_s)
+                yield f"/{name}/camera_info", "sensor_msgs/msg/CameraInfo", content
         yield self._detections("/truth/people", _people(tick.truth), time_s)
         for name in (name for name in self._further if name in tick.truths):
             yield self._detections(f"/truth/{name}/people", _people(tick.truths[name]), time_s, name)
@@ -114,7 +116,7 @@ class Messenger:
         )
         return f"/{camera}/image/compressed", "sensor_msgs/msg/CompressedImage", content
 
-    def _camera_info(self, name: str, camera: Camera, time_s: float) -> Any:
+    def _camera_info(self, name: str, camera: Pinhole, time_s: float) -> Any:
         projection = np.hstack([camera.intrinsics, np.zeros((3, 1))])
         whole = self._make(
             "sensor_msgs/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
@@ -187,15 +189,16 @@ class Messenger:
         turn = Rotation.from_euler("z", pose.heading).as_quat()
         return self._stamped(parent, child, (pose.x, pose.y, 0.0), turn, time_s)
 
-    def _camera_pose(self, name: str, camera: Camera, time_s: float) -> Any:
-        turn = Rotation.from_matrix(camera.robot_from_camera[:3, :3]).as_quat()
-        return self._stamped(_BASE, _optical(name), camera.position_m, turn, time_s)
+    def _camera_pose(self, name: str, camera: CameraGeometry, time_s: float) -> Any:
+        pose = camera.robot_from_camera
+        turn = Rotation.from_matrix(pose[:3, :3]).as_quat()
+        return self._stamped(_BASE, _optical(name), pose[:3, 3].tolist(), turn, time_s)
 
     def _stamped(
         self,
         parent: str,
         child: str,
-        place: tuple[float, float, float],
+        place: Sequence[float],
         turn: NDArray[np.float64],
         time_s: float,
     ) -> Any:

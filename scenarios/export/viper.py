@@ -1,5 +1,8 @@
 """ViPER XML, the format of the sources' evaluation tool: RUN/truth.xgtf and RUN/tracks.xgtf.
 
+They speak of the thermal images unless another camera is asked for, whose images are counted from 1 too;
+tracks are boxes in the thermal image, so there is the truth alone of another.
+
 People and tracks are objects whose attributes change from frame to frame. ViPER's schema allows whole pixels
 inside the image only in a `bbox`; the four decimal attributes beside it hold the box as it is.
 """
@@ -11,10 +14,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
 
+import pyarrow as pa
+
+from peopleboy.scenarios.export.one_camera import OneCamera, with_people
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.run_files import RunFiles
 from peopleboy.sim.truth.truth import Box
+from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 
 VIPER, DATA = "http://lamp.cfar.umd.edu/viper#", "http://lamp.cfar.umd.edu/viperdata#"
@@ -48,15 +54,25 @@ class _Person:
             self.others.setdefault(name, {})[frame] = value
 
 
-def write_viper(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:  # noqa: ARG001
-    """Write a file of truth and one of results for each run."""
+def write_viper(
+    runs: Sequence[FinishedRun],
+    folder: Path,
+    play: Play,  # noqa: ARG001
+    camera: str = "thermal",
+) -> None:
+    """Write a file of truth and one of results for each run.
+
+    Raises:
+        BadInput: a run has no such camera.
+    """
     ElementTree.register_namespace("", VIPER)
     ElementTree.register_namespace("data", DATA)
     for run in runs:
+        shots, files = with_people(run, camera), run.files()
         (folder / run.name).mkdir()
-        files = run.files()
-        _write(folder / run.name / "truth.xgtf", run, _people(files), TRUTH)
-        _write(folder / run.name / "tracks.xgtf", run, _tracks(files.tracks), TRACK)
+        _write(folder / run.name / "truth.xgtf", shots, _people(shots, files.people), TRUTH)
+        if camera == "thermal":
+            _write(folder / run.name / "tracks.xgtf", shots, _tracks(files.tracks), TRACK)
 
 
 def whole_pixels(box: Box, width: int, height: int) -> tuple[int, int, int, int] | None:
@@ -67,14 +83,15 @@ def whole_pixels(box: Box, width: int, height: int) -> tuple[int, int, int, int]
     return (x, y, w, h) if w > 0 and h > 0 else None
 
 
-def _people(files: RunFiles) -> dict[int, _Person]:
-    truth = files.truth
-    names = dict(zip(files.people["id"].to_pylist(), files.people["name"].to_pylist(), strict=True))
+def _people(shots: OneCamera, people: pa.Table) -> dict[int, _Person]:
+    truth = read_truth(shots.truth_file)
+    names = dict(zip(people["id"].to_pylist(), people["name"].to_pylist(), strict=True))
     found: dict[int, _Person] = {}
     columns = (truth.frame, truth.id, truth.box, truth.counted, truth.visible)
-    for frame, number, box, counted, visible in zip(*columns, strict=True):
-        person = found.setdefault(int(number), _Person(names[int(number)]))
-        person.add(int(frame), box, COUNTED=str(bool(counted)).lower(), VISIBLE=f"{visible:.4f}")
+    for frame, id_, box, counted, visible in zip(*columns, strict=True):
+        person = found.setdefault(int(id_), _Person(names[int(id_)]))
+        number = shots.number(int(frame))
+        person.add(number, box, COUNTED=str(bool(counted)).lower(), VISIBLE=f"{visible:.4f}")
     return found
 
 
@@ -88,15 +105,15 @@ def _tracks(tracks: TrackBoxes) -> dict[int, _Person]:
     return found
 
 
-def _write(path: Path, run: FinishedRun, people: Mapping[int, _Person], others: Mapping[str, str]) -> None:
+def _write(path: Path, shots: OneCamera, people: Mapping[int, _Person], others: Mapping[str, str]) -> None:
     root = ElementTree.Element(f"{{{VIPER}}}viper")
     config = _child(root, "config")
     _descriptor(config, "Information", "FILE", _FILE, dynamic=())
     _descriptor(config, "PERSON", "OBJECT", {**OBJECT, **others}, dynamic=("LOCATION", *_EDGES, *others))
-    source = _child(_child(root, "data"), "sourcefile", filename=run.name)
-    _file(source, run)
+    source = _child(_child(root, "data"), "sourcefile", filename=shots.run.name)
+    _file(source, shots)
     for number, person in sorted(people.items()):
-        _object(source, number, person, run, others)
+        _object(source, number, person, shots, others)
     ElementTree.indent(root)
     ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
@@ -114,21 +131,20 @@ def _descriptor(
                 _value(possibles, "lvalue-enum", value=word)
 
 
-def _file(source: ElementTree.Element, run: FinishedRun) -> None:
-    camera = run.robot.cameras["thermal"].camera
-    values = ("FRAMES", str(run.frames), str(float(run.rate_hz)), str(camera.width), str(camera.height))
+def _file(source: ElementTree.Element, shots: OneCamera) -> None:
+    values = ("FRAMES", str(len(shots.frames)), str(float(shots.rate_hz)), *map(str, shots.size))
     file = _child(source, "file", id="0", name="Information")
     for (name, kind), value in zip(_FILE.items(), values, strict=True):
         _value(_child(file, "attribute", name=name), kind, value=value)
 
 
 def _object(
-    source: ElementTree.Element, number: int, person: _Person, run: FinishedRun, others: Mapping[str, str]
+    source: ElementTree.Element, number: int, person: _Person, shots: OneCamera, others: Mapping[str, str]
 ) -> None:
     spans = _framespan(person.boxes)
     thing = _child(source, "object", framespan=spans, id=str(number), name="PERSON")
     _value(_child(thing, "attribute", name="NAME"), "svalue", value=person.name)
-    _location(_child(thing, "attribute", name="LOCATION"), person, run)
+    _location(_child(thing, "attribute", name="LOCATION"), person, shots)
     for k, edge in enumerate(_EDGES):
         attribute = _child(thing, "attribute", name=edge)
         for frame, box in person.boxes.items():
@@ -139,10 +155,9 @@ def _object(
             _value(attribute, kind, framespan=f"{frame}:{frame}", value=value)
 
 
-def _location(attribute: ElementTree.Element, person: _Person, run: FinishedRun) -> None:
-    camera = run.robot.cameras["thermal"].camera
+def _location(attribute: ElementTree.Element, person: _Person, shots: OneCamera) -> None:
     for frame, box in person.boxes.items():
-        pixels = whole_pixels(box, camera.width, camera.height)
+        pixels = whole_pixels(box, *shots.size)
         if pixels is not None:
             edges = dict(zip(("x", "y", "width", "height"), map(str, pixels), strict=True))
             _value(attribute, "bbox", framespan=f"{frame}:{frame}", **edges)

@@ -18,8 +18,8 @@ from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import check_rate
+from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import CONTROL_HZ
-from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rectangle import Rectangle
@@ -32,7 +32,6 @@ ROBOT_M = 0.27  # radius of the circle around the robot
 # Names that cameras must leave to other folders, entities and arrays.
 _TAKEN = ("truth", "tracks", "body", "sonar", "odometry")
 _MOST_PIXELS = 1 << 23  # that trackers sum up
-_TYPICAL_DEPTH_M = 4.0  # at which tracks are drawn on the colour image
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -199,7 +198,7 @@ def _check_cameras(robot: RobotSpec) -> None:
 
 def _check_views(cameras: Mapping[str, CameraConfig]) -> None:
     """Refuse images that a tracker or a sheet of pictures could not take in later."""
-    affine_between(cameras["thermal"].camera, cameras["colour"].camera, _TYPICAL_DEPTH_M)
+    colour_from_thermal(cameras)
     for name, camera in cameras.items():
         width, height = camera.camera.width, camera.camera.height
         if width * height > _MOST_PIXELS:

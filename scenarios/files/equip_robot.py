@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.schema.robot import CameraSpec, RobotSpec
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import KINDS
@@ -13,16 +14,17 @@ from peopleboy.sim.robot.robot_config import RobotConfig
 
 _IN_DEGREES = {"vertical_fov_deg": "vertical_fov_rad", "pitch_deg": "pitch_rad", "yaw_deg": "yaw_rad"}
 _RENAMED = {"width_px": "width", "height_px": "height", "mount_m": "position_m"}
+_KEYS = {field: key for key, field in (_IN_DEGREES | _RENAMED).items()}
 
 
 def equip_robot(spec: RobotSpec) -> RobotConfig:
     """The robot's settings: the usual ones, but for what the file changes.
 
     Raises:
-        BadInput: cameras clash.
+        BadInput: cameras clash, or one has no such key.
     """
     usual = RobotConfig()
-    own = {name: _camera(camera) for name, camera in spec.cameras.items()}
+    own = {name: _camera(name, camera) for name, camera in spec.cameras.items()}
     return replace(
         usual,
         at_m=spec.at_m,
@@ -31,10 +33,13 @@ def equip_robot(spec: RobotSpec) -> RobotConfig:
     )
 
 
-def _camera(spec: CameraSpec) -> CameraConfig:
+def _camera(name: str, spec: CameraSpec) -> CameraConfig:
     """A camera as usual for its kind, but for what the file says."""
     given: dict[str, Any] = spec.model_dump(exclude_none=True)
-    usual = KINDS[given.pop("kind")].config()
+    kind = given.pop("kind")
+    usual = KINDS[kind].config()
     geometry = {_RENAMED[key]: given.pop(key) for key in _RENAMED if key in given}
     geometry |= {_IN_DEGREES[key]: math.radians(given.pop(key)) for key in _IN_DEGREES if key in given}
+    for unknown in geometry.keys() - {field.name for field in fields(usual.camera)}:
+        raise BadInput(f"{name}.{_KEYS[unknown]}: a camera of the kind {kind!r} has none; leave it out")
     return replace(usual, camera=replace(usual.camera, **geometry), **given)

@@ -25,7 +25,7 @@ from peopleboy.scenarios.files.own_files import read_own_files
 from peopleboy.scenarios.files.schema.people import PersonSpec
 from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import DrawnSpec, ScenarioSpec
-from peopleboy.sim.cameras.kinds import KINDS
+from peopleboy.sim.cameras.kinds import KINDS, flat_geometry
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
@@ -170,7 +170,7 @@ class Scenario:
 
     def corridor_config(self) -> CorridorConfig:
         """The sense that tells a robot the walls of a corridor, and its colour camera."""
-        camera = equip_robot(self.robot).cameras["colour"].camera
+        camera = flat_geometry(equip_robot(self.robot).cameras, "colour")
         view = CameraView(focal_px=camera.focal_px, position_m=camera.position_m)
         return CorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
 

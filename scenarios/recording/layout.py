@@ -16,7 +16,8 @@ from peopleboy.scenarios.recording.entities import (
     camera_path,
 )
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import Pinhole
 
 
 def lay_out(config: WorldConfig) -> rrb.Blueprint:
@@ -47,7 +48,7 @@ def lay_out(config: WorldConfig) -> rrb.Blueprint:
     )
 
 
-def _image_view(path: str, name: str, camera: Camera) -> rrb.Spatial2DView:
+def _image_view(path: str, name: str, camera: CameraGeometry) -> rrb.Spatial2DView:
     bounds = rrb.VisualBounds2D(x_range=(0.0, camera.width), y_range=(0.0, camera.height))
     return rrb.Spatial2DView(origin=path, name=name, visual_bounds=bounds)
 
@@ -63,7 +64,14 @@ def _world_view(config: WorldConfig) -> rrb.Spatial3DView:
         [rr.VisibleTimeRange(timeline, start=start, end=now) for timeline in ("frame", "time")]
     )
     # Boxes of people who are near reach far out of the image, and would cross the whole world.
-    overlays = [f"- {path}/{layer}" for path in map(camera_path, config.robot.cameras) for layer in LAYERS]
+    cameras = config.robot.cameras
+    overlays = [f"- {path}/{layer}" for path in map(camera_path, cameras) for layer in LAYERS]
+    # Where a picture that is not flat would hang, nobody can say.
+    overlays += [
+        f"- {camera_path(name)}/image"
+        for name, camera in cameras.items()
+        if not isinstance(camera.camera, Pinhole)
+    ]
     return rrb.Spatial3DView(
         origin="world",
         contents=["$origin/**", "- $origin/place/ceiling/**", *overlays],

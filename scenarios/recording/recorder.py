@@ -34,15 +34,12 @@ from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_
 from peopleboy.scenarios.recording.rows import RowBuffer
 from peopleboy.scenarios.recording.still import Still
 from peopleboy.sim.cameras.kinds import kind_of, with_boxes
+from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.planar import Planar
 
 APPLICATION = "peopleboy"
-
-# A track has no depth: its box is mapped to the colour image as if the person were so far away.
-TYPICAL_DEPTH_M = 4.0
 
 _FRAMES_SENT_TOGETHER = 15
 _JPEG_QUALITY = {1: 60, 3: 45}  # by channels
@@ -73,10 +70,8 @@ class Recorder:
     ) -> None:
         self._cameras = config.robot.cameras
         self._boxed = with_boxes(self._cameras)
-        self._thermal = self._cameras["thermal"].camera
-        self._colour_from_thermal = affine_between(
-            self._thermal, self._cameras["colour"].camera, TYPICAL_DEPTH_M
-        )
+        self._width = self._cameras["thermal"].camera.width
+        self._colour_from_thermal = colour_from_thermal(self._cameras)
         self._names = [person.name for person in config.people]
         self._path = path
         self._trails = marks.Trails()
@@ -223,7 +218,7 @@ class Recorder:
                 self._still.log_track(track.id)
             curves[f"curves/confidence/track_{track.id}"] = [track.confidence]
             if "thermal" in track.boxes:
-                offset = marks.box_offset(track.boxes["thermal"], self._thermal.width)
+                offset = marks.box_offset(track.boxes["thermal"], self._width)
                 curves[f"curves/offset/track_{track.id}"] = [offset]
         for path, values in curves.items():
             self._rows.add(path, rr.Scalars, scalars=np.array(values, np.float64))

@@ -22,7 +22,8 @@ from peopleboy.scenarios.recording.entities import (
 )
 from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import ShapeKind
 
@@ -79,21 +80,27 @@ class Still:
             alike = [solid for solid in solids if solid.kind is kind]
             self._log(f"{path}/{kind.name.lower()}", _shape(kind, alike, fill))
 
-    def _log_camera(self, path: str, camera: Camera, layers: Sequence[str], reach_m: float) -> None:
-        pose, (u, v) = camera.robot_from_camera, camera.centre_px
-        pinhole = rr.Pinhole(
-            focal_length=camera.focal_px,
-            principal_point=(u + 0.5, v + 0.5),
-            resolution=(camera.width, camera.height),
-            camera_xyz=rr.ViewCoordinates.RDF,
-            image_plane_distance=reach_m,
-        )
-        self._log(path, rr.Transform3D(translation=pose[:3, 3], mat3x3=pose[:3, :3]), pinhole)
+    def _log_camera(self, path: str, camera: CameraGeometry, layers: Sequence[str], reach_m: float) -> None:
+        pose = camera.robot_from_camera
+        frame = rr.Transform3D(translation=pose[:3, 3], mat3x3=pose[:3, :3])
+        self._log(path, frame, *([_pinhole(camera, reach_m)] if isinstance(camera, Pinhole) else []))
         self._log(f"{path}/image", rr.EncodedImage.from_fields(media_type="image/jpeg"))
         for layer in layers:
             archetype, radius = LAYERS[layer]
             more = {"show_labels": False} if archetype is rr.Arrows2D else {}
             self._log(f"{path}/{layer}", archetype.from_fields(radii=rr.Radius.ui_points([radius]), **more))
+
+
+def _pinhole(camera: Pinhole, reach_m: float) -> rr.Pinhole:
+    """Let the picture of a camera hang so far before it."""
+    u, v = camera.centre_px
+    return rr.Pinhole(
+        focal_length=camera.focal_px,
+        principal_point=(u + 0.5, v + 0.5),
+        resolution=(camera.width, camera.height),
+        camera_xyz=rr.ViewCoordinates.RDF,
+        image_plane_distance=reach_m,
+    )
 
 
 def _shape(kind: ShapeKind, solids: Sequence[Solid], fill: FillMode) -> rr.AsComponents:

@@ -10,6 +10,7 @@ import jinja2
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.palette import TRACK_COLOURS
+from peopleboy.scenarios.export.image_words import describe_images
 from peopleboy.scenarios.report import tables
 from peopleboy.scenarios.report.charts.error_curves import draw_error_curves
 from peopleboy.scenarios.report.charts.thermal_stills import Origin
@@ -116,6 +117,7 @@ def _settings(column: Column) -> list[tuple[str, str]]:
         ("seed" if column.is_single else "seeds", seeds),
         ("tracker", about.tracker),
         ("robot", str(behaviour) if played else ""),
+        ("images", _images(run)),
         ("faults", _faults(played.get("faults", []))),
         ("renderer", about.renderer),
         ("length", f"{run.frames} frames, {run.rate_hz} a second" if column.is_single else ""),
@@ -126,6 +128,14 @@ def _settings(column: Column) -> list[tuple[str, str]]:
         command = f"peopleboy run {run.folder}/scenario.yaml --tracker {about.tracker} --out NEW"
         rows.append(("again", command))
     return [(name, value) for name, value in rows if value]
+
+
+def _images(run: FinishedRun) -> str:
+    """What the cameras' images are like; nothing if that cannot be read."""
+    try:
+        return describe_images([run.robot.cameras])
+    except BadInput:
+        return ""
 
 
 def _said(run: FinishedRun) -> Mapping[str, Any]:

@@ -7,7 +7,7 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, astuple, dataclass
+from dataclasses import asdict, astuple, dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,7 @@ from peopleboy.scenarios.run_folder.camera_truth import gt_lines
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
+from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
 from peopleboy.tracker.calibration import Calibration, PinholeCalibration
 from peopleboy.tracker.evaluation.mot_files import read_truth
@@ -62,7 +63,7 @@ class Film:
     seed: int
     frames: int
     shapes: Mapping[str, tuple[int, ...]]
-    calibrations: Mapping[str, Calibration]
+    calibrations: Mapping[str, Calibration] = field(compare=False)
 
     def truth(self) -> TrueBoxes:
         """Read who was there, as the evaluation wants it."""
@@ -195,7 +196,7 @@ def _render(
             if report is not None:
                 report(tick.frame, count)
     shapes = {camera: tick.observation.images[camera].shape for camera in SEEN}
-    cameras = {name: config.robot.cameras[name].camera for name in SEEN}
+    cameras = {name: flat_geometry(config.robot.cameras, name) for name in SEEN}
     calibrations = {
         name: [camera.intrinsics.tolist(), camera.robot_from_camera.tolist()]
         for name, camera in cameras.items()

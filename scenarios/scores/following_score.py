@@ -13,6 +13,7 @@ from peopleboy.scenarios.scores.following_metrics import (
     FollowingTask,
     score_following,
 )
+from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import outline_gap
@@ -89,7 +90,7 @@ def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:
 
     The band reaches 1.2 m to either side of it. It is the first person who is to be followed.
     """
-    camera = config.robot.cameras["thermal"].camera
+    camera = flat_geometry(config.robot.cameras, "thermal")
     shown_px = keep_height * camera.height
     keep_m = camera.focal_px * config.people[0].height_m / shown_px + camera.position_m[0]
     return FollowingTask(keep_m=keep_m, band_m=(keep_m - BAND_M, keep_m + BAND_M))

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 
 Image = NDArray[np.float32]
 
@@ -22,7 +22,7 @@ def optics_blur(image: Image, sigma_px: float) -> Image:
     return np.asarray(cv2.GaussianBlur(image, (0, 0), sigma_px, borderType=cv2.BORDER_REPLICATE), np.float32)
 
 
-def rotation_blur(image: Image, camera: Camera, turned_rad: float) -> Image:
+def rotation_blur(image: Image, camera: Pinhole, turned_rad: float) -> Image:
     """Smear an image by the rotation about the camera's vertical axis during its exposure.
 
     Column u sweeps f (1 + x^2) times the angle, with x = (u - c) / f: the outer columns sweep more.
@@ -46,7 +46,7 @@ def rotation_blur(image: Image, camera: Camera, turned_rad: float) -> Image:
 
 
 @lru_cache(maxsize=16)
-def _sweep_of_one_rad(camera: Camera) -> NDArray[np.float64]:
+def _sweep_of_one_rad(camera: Pinhole) -> NDArray[np.float64]:
     """(W,) [px] that each column would sweep if the camera turned by 1 rad at this rate."""
     x = (np.arange(camera.width) - camera.centre_px[0]) / camera.focal_px
     sweep: NDArray[np.float64] = camera.focal_px * (1.0 + x * x)

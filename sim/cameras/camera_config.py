@@ -6,18 +6,19 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import Pinhole
 
 # The colour camera sits 6 cm to the left of the thermal one and sees an angle narrower by 1.2 (T eq. 6.1).
 COLOUR_BASELINE_M = 0.06
 COLOUR_ZOOM = 1.2
 
 
-def _colour_camera() -> Camera:
-    thermal = Camera()
+def _colour_camera() -> Pinhole:
+    thermal = Pinhole()
     x, y, z = thermal.position_m
     half_angle = math.atan(math.tan(thermal.vertical_fov_rad / 2.0) / COLOUR_ZOOM)
-    return Camera(vertical_fov_rad=2.0 * half_angle, position_m=(x, y + COLOUR_BASELINE_M, z))
+    return Pinhole(vertical_fov_rad=2.0 * half_angle, position_m=(x, y + COLOUR_BASELINE_M, z))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +34,7 @@ class CameraConfig:
 
     kind: ClassVar[str]
 
-    camera: Camera = field(default_factory=Camera)
+    camera: CameraGeometry = field(default_factory=Pinhole)
     rate_hz: int | None = None
     exposure_s: float = 0.0
 
@@ -61,6 +62,7 @@ class ThermalConfig(CameraConfig):
 
     kind: ClassVar[str] = "thermal"
 
+    camera: Pinhole = field(default_factory=Pinhole)
     exposure_s: float = 0.012
     blur_px: float = 0.7
     netd_k: float = 0.08
@@ -91,7 +93,7 @@ class ColourConfig(CameraConfig):
 
     kind: ClassVar[str] = "colour"
 
-    camera: Camera = field(default_factory=_colour_camera)
+    camera: Pinhole = field(default_factory=_colour_camera)
     exposure_s: float = 0.015
     gain: float = 0.95
     read_noise: float = 0.004

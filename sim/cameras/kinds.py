@@ -14,6 +14,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.sensors import ColourSensor, Image, Sensor, ThermalSensor
 from peopleboy.sim.cameras.thermal import encode_16bit
+from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.rendering.sight import FLAT, Sight
 
 Stored = NDArray[np.uint8] | NDArray[np.uint16]
 
@@ -27,11 +29,13 @@ class Layer:
     """One of the images that a camera gives at an instant.
 
     Attributes:
+        what: it holds, in words.
         suffix: of its name, behind that of the camera.
         folder: suffix of the folder that its files lie in, behind the name of the camera.
         encode: gives what a PNG file can hold of it, without loss: (H, W) of 8 or 16 bits, or (H, W, 3) RGB.
     """
 
+    what: str = "8-bit, as the robot sees it"
     suffix: str = ""
     folder: str = ""
     encode: Callable[[Image], Stored] = _as_it_is
@@ -44,6 +48,7 @@ class CameraKind:
     Attributes:
         config: class of its settings.
         sensor: opens a camera by settings, name and seed; the name is that of its streams of noise, too.
+        sight: draws what it sees, and tells the outlines of the truth's boxes; by default as a pinhole does.
         layers: its images; the first, without suffixes, is uint8, and what people and controllers are shown.
         channels: of that first image: 1 for (H, W) grey, 3 for (H, W, 3) RGB.
         has_boxes: whether a box round a person makes sense in it.
@@ -51,6 +56,7 @@ class CameraKind:
 
     config: type[CameraConfig]
     sensor: Callable[[Any, str, int], Sensor]
+    sight: Sight = FLAT
     layers: tuple[Layer, ...] = (Layer(),)
     channels: int = 1
     has_boxes: bool = True
@@ -60,9 +66,14 @@ KINDS: Final[dict[str, CameraKind]] = {
     "thermal": CameraKind(
         config=ThermalConfig,
         sensor=ThermalSensor,
-        layers=(Layer(), Layer(suffix="_c", folder="16", encode=encode_16bit)),
+        layers=(
+            Layer(what="8-bit, 24..36 degC, as the robot sees it"),
+            Layer(what="16-bit, hundredths of a kelvin", suffix="_c", folder="16", encode=encode_16bit),
+        ),
     ),
-    "colour": CameraKind(config=ColourConfig, sensor=ColourSensor, channels=3),
+    "colour": CameraKind(
+        config=ColourConfig, sensor=ColourSensor, layers=(Layer(what="8-bit colour"),), channels=3
+    ),
 }
 
 
@@ -75,6 +86,18 @@ def kind_of(config: CameraConfig) -> CameraKind:
     if config.kind not in KINDS:
         raise BadInput(f"camera kind {config.kind!r}: there is none; choose from {', '.join(KINDS)}")
     return KINDS[config.kind]
+
+
+def flat_geometry(cameras: Mapping[str, CameraConfig], name: str) -> Pinhole:
+    """Give the geometry of a camera whose image must be flat.
+
+    Raises:
+        BadInput: there is none of that name, or it is no pinhole camera.
+    """
+    geometry = cameras[name].camera if name in cameras else None
+    if not isinstance(geometry, Pinhole):
+        raise BadInput(f"camera {name!r}: there must be one of that name, with the image of a pinhole")
+    return geometry
 
 
 def image_names(name: str, config: CameraConfig) -> tuple[str, ...]:

@@ -9,7 +9,6 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import image_names, kind_of
 from peopleboy.sim.cameras.sensors import Glimpse, Image
-from peopleboy.sim.geometry.pinhole import Camera
 from peopleboy.sim.on_demand import OnDemand
 
 
@@ -23,7 +22,7 @@ class Rig:
         cameras: settings by name.
         control_hz: [Hz] of instants.
         seed: of all noise.
-        look: gives what a camera of some geometry sees now.
+        look: gives what a camera of some settings sees now.
     """
 
     def __init__(
@@ -31,7 +30,7 @@ class Rig:
         cameras: Mapping[str, CameraConfig],
         control_hz: int,
         seed: int,
-        look: Callable[[Camera], Glimpse],
+        look: Callable[[CameraConfig], Glimpse],
     ) -> None:
         self._cameras, self._look = cameras, look
         self._sensors = {name: kind_of(one).sensor(one, name, seed) for name, one in cameras.items()}
@@ -71,5 +70,5 @@ class Rig:
         for _ in range(self._unread[name] - 1):
             sensor.skip()
         self._unread[name] = 0
-        images = sensor.take(self._look(config.camera))
+        images = sensor.take(self._look(config))
         return dict(zip(image_names(name, config), images, strict=True))

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.shapes.materials import Material, PatternKind
 
 # Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
@@ -65,7 +65,7 @@ def make_material_table(materials: Sequence[Material], rng: np.random.Generator)
     )
 
 
-def part_from_pixel(camera: Camera, world_from_camera: Matrix, world_from_part: Matrix) -> Matrix:
+def part_from_pixel(camera: Pinhole, world_from_camera: Matrix, world_from_part: Matrix) -> Matrix:
     """Combine camera and part poses so that a kernel reaches a part's frame in one product.
 
     Args:
@@ -85,7 +85,7 @@ def part_from_pixel(camera: Camera, world_from_camera: Matrix, world_from_part: 
 
 
 @lru_cache(maxsize=16)
-def _rays(camera: Camera) -> Matrix:
+def _rays(camera: Pinhole) -> Matrix:
     """(3, 3): the ray through pixel (u, v) in the optical frame is this @ (u, v, 1)."""
     rays = np.asarray(np.linalg.inv(camera.intrinsics), np.float64)
     rays.setflags(write=False)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transform
 
 
-def affine_between(thermal: Camera, colour: Camera, depth_m: float) -> Matrix:
+def affine_between(thermal: Pinhole, colour: Pinhole, depth_m: float) -> Matrix:
     """Find the (2, 3) map of thermal pixels u, v, 1 to colour pixels, for things at a depth.
 
     The depth is that along the thermal camera's axis. The map is exact where the optical axes are parallel,

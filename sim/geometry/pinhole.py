@@ -16,7 +16,7 @@ _BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Camera:
+class Pinhole:
     """A distortion-free camera with square pixels, fixed to the robot.
 
     Image frame: u right, v down, origin at the centre of the top-left pixel, so that the image spans
@@ -76,7 +76,7 @@ class Camera:
 
 
 @lru_cache(maxsize=16)
-def _robot_from_camera(camera: Camera) -> Matrix:
+def _robot_from_camera(camera: Pinhole) -> Matrix:
     cy, sy = math.cos(camera.yaw_rad), math.sin(camera.yaw_rad)
     cp, sp = math.cos(camera.pitch_rad), math.sin(camera.pitch_rad)
     yaw = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])

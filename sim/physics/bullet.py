@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bodies import Bodies, Body, PartKey, Place
 from peopleboy.sim.physics.bullet_shapes import shape_arguments, visual_shape
@@ -306,7 +306,7 @@ class Bullet:
         return {self._bodies.name_of(number) for number in {row[2] for row in rows}} - {name}
 
     def camera_image(
-        self, camera: Camera, world_from_camera: Matrix, only: Collection[str] | None = None
+        self, camera: Pinhole, world_from_camera: Matrix, only: Collection[str] | None = None
     ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """Draw the world, or only the bodies of some names, with TinyRenderer, without shadows.
 

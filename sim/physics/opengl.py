@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
 
 # OpenGL's camera looks along -z with y up, the optical frame along z with y down.
 _EYE_FROM_OPTICAL = np.diag([1.0, -1.0, -1.0, 1.0])
@@ -16,7 +16,7 @@ def view_matrix(world_from_camera: Matrix) -> list[float]:
     return (_EYE_FROM_OPTICAL @ invert_pose(world_from_camera)).ravel(order="F").tolist()
 
 
-def projection_matrix(camera: Camera, near_m: float, far_m: float) -> list[float]:
+def projection_matrix(camera: Pinhole, near_m: float, far_m: float) -> list[float]:
     """16 numbers, column by column: clip space from eye.
 
     TinyRenderer takes its sample of pixel (u, v) at -1 + 2 u / width, 1 - 2 (v + 1) / height: half a pixel

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.rendering.canvas import Lens, make_canvas, shade
 from peopleboy.sim.rendering.depth_normals import normals_from_depth
@@ -21,7 +21,7 @@ def render(
     name: str,
     bullet: Bullet,
     table: ShapeTable,
-    camera: Camera,
+    camera: Pinhole,
     world_from_camera: Matrix,
     world_from_part: Matrix,
     person_of_part: NDArray[np.int64],
@@ -55,7 +55,7 @@ def render(
 
 def cast(
     table: ShapeTable,
-    camera: Camera,
+    camera: Pinhole,
     world_from_camera: Matrix,
     world_from_part: Matrix,
     person_of_part: NDArray[np.int64],
@@ -81,7 +81,7 @@ def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:
 
 
 def rasterise(
-    bullet: Bullet, camera: Camera, world_from_camera: Matrix, person_of_part: NDArray[np.int64]
+    bullet: Bullet, camera: Pinhole, world_from_camera: Matrix, person_of_part: NDArray[np.int64]
 ) -> View:
     """Draw by TinyRenderer: everything at once, then each person alone for the cover.
 

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
 from peopleboy.sim.geometry.vectors import compose
 from peopleboy.sim.rendering.canvas import Lens, make_canvas
 from peopleboy.sim.rendering.raycast import draw
@@ -22,7 +22,7 @@ Mask = NDArray[np.bool_]
 def silhouette_bounds(
     table: ShapeTable,
     world_from_part: Matrix,
-    camera: Camera,
+    camera: Pinhole,
     world_from_camera: Matrix,
     parts: NDArray[np.bool_],
 ) -> tuple[float, float, float, float]:
@@ -50,7 +50,7 @@ def silhouette_bounds(
 def silhouette_area(
     table: ShapeTable,
     world_from_part: Matrix,
-    camera: Camera,
+    camera: Pinhole,
     world_from_camera: Matrix,
     parts: NDArray[np.bool_],
 ) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transform
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.robot.robot_body import NAME
@@ -20,7 +20,7 @@ _NEAREST_M = 0.05
 
 
 def bystanders(
-    people: Sequence[Person], bullet: Bullet, world_from_robot: Matrix, camera: Camera
+    people: Sequence[Person], bullet: Bullet, world_from_robot: Matrix, camera: Pinhole
 ) -> tuple[Bystander, ...]:
     """Tell where everybody is who is present, and how much of them the robot's camera could see.
 
@@ -40,7 +40,7 @@ def bystanders(
 
 
 def _bystander(
-    number: int, person: Person, bullet: Bullet, robot: Matrix, heading: float, camera: Camera, pose: Matrix
+    number: int, person: Person, bullet: Bullet, robot: Matrix, heading: float, camera: Pinhole, pose: Matrix
 ) -> Bystander:
     (x, y), (vx, vy) = person.position.tolist(), person.velocity.tolist()
     dx, dy = x - float(robot[0]), y - float(robot[1])
@@ -60,7 +60,7 @@ def _bystander(
     )
 
 
-def _upright_box(person: Person, camera: Camera, world_from_camera: Matrix) -> Box | None:
+def _upright_box(person: Person, camera: Pinhole, world_from_camera: Matrix) -> Box | None:
     """Head to feet, and the body's width to either side of its middle."""
     x, y = person.position.tolist()
     height = person.config.height_m
@@ -73,7 +73,7 @@ def _upright_box(person: Person, camera: Camera, world_from_camera: Matrix) -> B
     return middle - half, top, 2.0 * half, bottom - top
 
 
-def _is_inside(box: Box | None, camera: Camera) -> bool:
+def _is_inside(box: Box | None, camera: Pinhole) -> bool:
     """Whether any of a box lies in the image."""
     if box is None:
         return False
@@ -81,7 +81,7 @@ def _is_inside(box: Box | None, camera: Camera) -> bool:
     return left + width > -0.5 and left < camera.width and top + height > -0.5 and top < camera.height
 
 
-def _visible_share(person: Person, bullet: Bullet, camera: Camera, world_from_camera: Matrix) -> float:
+def _visible_share(person: Person, bullet: Bullet, camera: Pinhole, world_from_camera: Matrix) -> float:
     x, y = person.position.tolist()
     points = np.array([[x, y, share * person.config.height_m] for share in _LOOKED_AT])
     u, v = camera.project(transform(invert_pose(world_from_camera), points)).T

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera, Matrix
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.planar import Planar
 
 Box = tuple[float, float, float, float]
@@ -119,70 +119,11 @@ class Truth:
     instance: NDArray[np.uint8]
     body_part: NDArray[np.uint8]
     depth_m: NDArray[np.float32]
-    camera: Camera
+    camera: CameraGeometry
     world_from_camera: Matrix
     robot: Planar
     robot_velocity: tuple[float, float]
     contacts: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Cover:
-    """Who covers how many pixels of whom.
-
-    Attributes:
-        seen: (N, M) pixels of person n's silhouette inside the image at which owner m is seen.
-        bounds: (N, 4) first and last column and row of each person's visible pixels; last < first for none.
-    """
-
-    seen: NDArray[np.int64]
-    bounds: NDArray[np.int64]
-
-
-def count_cover(
-    part: NDArray[np.int32],
-    cover: NDArray[np.uint64],
-    owner_of_part: NDArray[np.int64],
-    people: int,
-    owners: int,
-) -> Cover:
-    """Count, for each person's silhouette, what is seen there.
-
-    Args:
-        part: (H, W) part seen.
-        cover: (H, W) bit n where person n's silhouette lies, hidden or not.
-        owner_of_part: (P,) owner of each part; person n is owner n.
-        people: N.
-        owners: M, persons first.
-    """
-    return Cover(*_count(part, cover, owner_of_part, people, owners))
-
-
-@njit(cache=True)
-def _count(
-    part: NDArray[np.int32],
-    cover: NDArray[np.uint64],
-    owner_of_part: NDArray[np.int64],
-    people: int,
-    owners: int,
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    height, width = part.shape
-    seen = np.zeros((people, owners), np.int64)
-    bounds = np.empty((people, 4), np.int64)
-    bounds[:, 0], bounds[:, 1], bounds[:, 2], bounds[:, 3] = width, -1, height, -1
-    for v in range(height):
-        for u in range(width):
-            bits = cover[v, u]
-            if bits == 0:
-                continue
-            owner = owner_of_part[part[v, u]]
-            for person in range(people):
-                if (bits >> np.uint64(person)) & np.uint64(1):
-                    seen[person, owner] += 1
-            if owner < people:
-                bounds[owner, 0], bounds[owner, 1] = min(bounds[owner, 0], u), max(bounds[owner, 1], u)
-                bounds[owner, 2], bounds[owner, 3] = min(bounds[owner, 2], v), max(bounds[owner, 3], v)
-    return seen, bounds
 
 
 def box_from_bounds(first_u: float, last_u: float, first_v: float, last_v: float) -> Box:

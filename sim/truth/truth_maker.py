@@ -9,28 +9,24 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose, transform
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import Matrix, invert_pose, transform
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
 from peopleboy.sim.physics.bodies import PartKey
-from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bounds
-from peopleboy.sim.rendering.view import View
+from peopleboy.sim.rendering.cover import Cover
+from peopleboy.sim.rendering.sight import Edges, Seen
 from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.truth.truth import (
     BORDER,
     Box,
-    Cover,
     PersonTruth,
     Truth,
     box_from_bounds,
-    count_cover,
     is_counted,
 )
 
-_Scene = tuple[ShapeTable, Matrix, Camera, Matrix]
-_Bounds = tuple[float, float, float, float]
 A = TypeVar("A", bound=NDArray[Any])
 
 
@@ -40,11 +36,9 @@ class TruthMaker:
     def __init__(
         self,
         keys: Sequence[PartKey],
-        table: ShapeTable,
         crowd: Crowd,
         materials: Sequence[Material],
     ) -> None:
-        self._table = table
         self._people = crowd.people
         owners = [key.name.split("/")[0] for key in keys]
         names = [person.name for person in self._people]
@@ -68,44 +62,36 @@ class TruthMaker:
         self,
         *,
         time_s: float,
-        camera: Camera,
-        view: View,
-        world_from_camera: Matrix,
-        world_from_part: Matrix,
+        seen: Seen,
         robot: Planar,
         robot_velocity: tuple[float, float],
         contacts: tuple[str, ...],
     ) -> Truth:
-        """Make the truth of the instant that a camera's view shows."""
-        cover = count_cover(
-            view.part, view.cover, self._owner_of_part, len(self._people), len(self._owner_names)
-        )
-        people = tuple(
-            self._person(k, cover, view, (self._table, world_from_part, camera, world_from_camera))
-            for k, person in enumerate(self._people)
-            if person.present
-        )
+        """Make the truth of the instant that a camera sees."""
+        view, people, owners = seen.view, len(self._people), len(self._owner_names)
+        cover = seen.sight.cover(view, self._owner_of_part, people, owners)
         return Truth(
             time_s=time_s,
-            people=people,
+            people=tuple(
+                self._person(k, cover, seen) for k, person in enumerate(self._people) if person.present
+            ),
             instance=_frozen(self._id_of_part[view.part]),
             body_part=_frozen(self._class_of_part[view.part]),
             depth_m=_frozen(view.depth),
-            camera=camera,
-            world_from_camera=_frozen(world_from_camera),
+            camera=seen.camera,
+            world_from_camera=_frozen(seen.world_from_camera),
             robot=robot,
             robot_velocity=robot_velocity,
             contacts=contacts,
         )
 
-    def _person(self, k: int, cover: Cover, view: View, scene: _Scene) -> PersonTruth:
+    def _person(self, k: int, cover: Cover, seen: Seen) -> PersonTruth:
         person, outline = self._people[k], self._outlines[k]
-        _, _, camera, world_from_camera = scene
-        distance = float(np.hypot(*(person.position - world_from_camera[:2, 3])))
-        whole = silhouette_bounds(*scene, outline.whole)
+        distance = float(np.hypot(*(person.position - seen.world_from_camera[:2, 3])))
+        whole = seen.bounds(outline.whole)
         visible = int(cover.seen[k, k])
-        area = self._whole_area(k, cover, scene, whole)
-        joints, pixels, is_visible = self._joints(k, person, view, camera, world_from_camera)
+        area = self._whole_area(k, cover, seen, whole)
+        joints, pixels, is_visible = self._joints(k, person, seen)
         return PersonTruth(
             id=k + 1,
             name=person.name,
@@ -115,7 +101,7 @@ class TruthMaker:
             posture=str(person.posture),
             distance_m=distance,
             is_counted=is_counted(distance),
-            box=_thesis_box(scene, outline),
+            box=_thesis_box(seen, outline),
             whole_box=_box(whole),
             visible_box=box_from_bounds(*map(float, cover.bounds[k])) if visible else None,
             whole_px=area,
@@ -128,13 +114,13 @@ class TruthMaker:
             joint_is_visible=_frozen(is_visible),
         )
 
-    def _whole_area(self, k: int, cover: Cover, scene: _Scene, whole: _Bounds) -> int:
+    def _whole_area(self, k: int, cover: Cover, seen: Seen, whole: Edges) -> int:
         """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
         inside = int(cover.seen[k].sum())
-        if _is_inside(whole, scene[2]):
+        if _is_inside(whole, seen.camera):
             return inside
         # TinyRenderer's silhouettes may be a few pixels larger.
-        return max(inside, silhouette_area(*scene, self._outlines[k].whole))
+        return max(inside, seen.area(self._outlines[k].whole))
 
     def _hidden_by(self, k: int, cover: Cover, area: int) -> dict[str, float]:
         """Share of the whole silhouette that each other owner, or the border, hides."""
@@ -147,16 +133,14 @@ class TruthMaker:
         outside = area - int(seen.sum())
         return shares | {BORDER: outside / area} if outside > 0 else shares
 
-    def _joints(
-        self, k: int, person: Person, view: View, camera: Camera, world_from_camera: Matrix
-    ) -> tuple[Matrix, Matrix, NDArray[np.bool_]]:
+    def _joints(self, k: int, person: Person, seen: Seen) -> tuple[Matrix, Matrix, NDArray[np.bool_]]:
         joints = person.joints()
-        pixels = camera.project(transform(invert_pose(world_from_camera), joints))
-        size = np.array([camera.width, camera.height])
+        pixels = seen.camera.project(transform(invert_pose(seen.world_from_camera), joints))
+        size = np.array([seen.camera.width, seen.camera.height])
         is_inside = np.all((pixels > -0.5) & (pixels < size - 0.5), axis=1)
         u, v = np.rint(pixels[is_inside]).astype(np.int64).T
         is_visible = np.zeros(len(joints), np.bool_)
-        is_visible[is_inside] = self._id_of_part[view.part[v, u]] == k + 1
+        is_visible[is_inside] = self._id_of_part[seen.view.part[v, u]] == k + 1
         return joints, pixels, is_visible
 
 
@@ -172,20 +156,20 @@ class _Outline:
         self.torso = self.whole & is_torso
 
 
-def _is_inside(bounds: _Bounds, camera: Camera) -> bool:
+def _is_inside(bounds: Edges, camera: CameraGeometry) -> bool:
     left, top, right, bottom = bounds
     return math.isnan(left) or (
         left > -0.5 and top > -0.5 and right < camera.width - 0.5 and bottom < camera.height - 0.5
     )
 
 
-def _thesis_box(scene: _Scene, outline: _Outline) -> Box | None:
+def _thesis_box(seen: Seen, outline: _Outline) -> Box | None:
     """Head to feet, as wide as the torso without arms (T 3.3)."""
-    height, torso = silhouette_bounds(*scene, outline.height), silhouette_bounds(*scene, outline.torso)
+    height, torso = seen.bounds(outline.height), seen.bounds(outline.torso)
     return _box((torso[0], height[1], torso[2], height[3]))
 
 
-def _box(bounds: _Bounds) -> Box | None:
+def _box(bounds: Edges) -> Box | None:
     """Return left, top, width, height; None where nothing is before the camera."""
     left, top, right, bottom = bounds
     return None if math.isnan(left + top) else (left, top, right - left, bottom - top)

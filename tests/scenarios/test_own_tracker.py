@@ -20,7 +20,7 @@ from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run import run as run_scenario
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import KINDS
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.calibration import PinholeCalibration
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
@@ -128,7 +128,7 @@ class Peeping(Reckoner):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RearConfig(ThermalConfig):
     kind: ClassVar[str] = "rear"
-    camera: Camera = field(default_factory=lambda: Camera(width=80, height=60, yaw_rad=math.pi))
+    camera: Pinhole = field(default_factory=lambda: Pinhole(width=80, height=60, yaw_rad=math.pi))
 
 
 def test_a_camera_that_it_wants_is_mounted_and_nothing_else_changes(
@@ -169,7 +169,7 @@ def test_a_camera_of_which_there_is_no_kind_is_refused(
     assert not (tmp_path / "run").exists()
 
 
-THERMAL_CAMERA = PinholeCalibration(Camera().intrinsics, Camera().robot_from_camera)
+THERMAL_CAMERA = PinholeCalibration(Pinhole().intrinsics, Pinhole().robot_from_camera)
 
 
 @pytest.mark.parametrize("bearing", [0.0, 0.3, -0.3])
@@ -177,9 +177,9 @@ def test_somebody_without_a_box_is_where_the_thermal_image_shows_one_who_stands_
     track = at(0.14 + 5.0 * math.cos(bearing), 5.0 * math.sin(bearing))
     left, top, width, height = thermal_box(track, THERMAL_CAMERA)
     depth = 5.0 * math.cos(bearing)
-    assert left + width / 2.0 == pytest.approx(159.5 - Camera().focal_px * math.tan(bearing))
-    assert height == pytest.approx(Camera().focal_px * 1.72 / depth)
-    assert top + height == pytest.approx(119.5 + Camera().focal_px * 1.2 / depth)
+    assert left + width / 2.0 == pytest.approx(159.5 - Pinhole().focal_px * math.tan(bearing))
+    assert height == pytest.approx(Pinhole().focal_px * 1.72 / depth)
+    assert top + height == pytest.approx(119.5 + Pinhole().focal_px * 1.2 / depth)
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth
 
@@ -94,6 +95,7 @@ def _draw_plan(axes: Axes, scenario: Scenario, tick: Tick) -> None:
     draw_walls(axes, labels, scenario.place)
     draw_things(axes, labels, scenario.place)
     robot, camera = tick.truth.robot, tick.truth.camera
+    assert isinstance(camera, Pinhole)
     half = math.degrees(math.atan(camera.width / 2.0 / camera.focal_px))
     ahead, tone = math.degrees(robot.heading), np.array(ROBOT) / 255.0
     axes.add_patch(Wedge((robot.x, robot.y), 12.0, ahead - half, ahead + half, fc=(*tone, 0.08), zorder=1))

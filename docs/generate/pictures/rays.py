@@ -18,7 +18,7 @@ def layers() -> Figure:
     titles = ("depth", "part", "normal", "thermal image", "colour image", "body parts and persons")
     figure, axes = panels(titles, 5.6, columns=3)
     with world_at(*SCENE) as world:
-        view = world._see(world.config.robot.cameras["thermal"].camera).view
+        view = world._see(world.config.robot.cameras["thermal"]).view
         images, truth = dict(world.observe().images), world.truth()
     show(axes[0], np.minimum(view.depth, 12.0), cmap="viridis_r")
     show(axes[1], _shuffled(view.part))
@@ -32,7 +32,7 @@ def layers() -> Figure:
 def silhouettes() -> Figure:
     """Everybody's whole silhouette, and what is seen of it."""
     with world_at(*SCENE) as world:
-        view = world._see(world.config.robot.cameras["thermal"].camera).view
+        view = world._see(world.config.robot.cameras["thermal"]).view
         truth = world.truth()
     rows, columns = np.nonzero(view.cover)
     everybody = (float(columns.min()), float(rows.min()), float(np.ptp(columns)), float(np.ptp(rows)))

@@ -28,10 +28,10 @@ def steps() -> Figure:
         # The surfaces alone: what every part would look like if it were black and the lens perfect.
         config = world.config.robot.cameras["thermal"]
         assert isinstance(config, ThermalConfig)
-        seen = world._see(config.camera)
+        seen = world._see(config)
         black = replace(world._materials, thermal=world._materials.thermal.copy())
         black.thermal[:, 1] = 1.0
-        place = (seen.world_from_camera, world._poses, world.config.place.surroundings_c, 0.0)
+        place = (seen.world_from_camera, seen.scene.world_from_part, world.config.place.surroundings_c, 0.0)
         surface = surface_image(seen.view, black, replace(config, blur_px=0.0), *place)
         apparent = surface_image(seen.view, world._materials, config, *place)
     rng = np.random.default_rng(0)

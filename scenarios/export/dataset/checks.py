@@ -27,6 +27,9 @@ _CORNER_PX = -0.5  # of the first pixel
 _HALF_PX = 0.5  # a pixel counts by its middle, and reaches so far beyond it
 
 
+_Look = dict[str, tuple[tuple[int, ...] | None, bool]]  # by file: its shape, and whether it has one value
+
+
 @dataclass(frozen=True, slots=True)
 class Check:
     """One thing that was looked at.
@@ -50,7 +53,7 @@ def check_set(folder: Path, runs: Sequence[Path], first: Scenario, options: RunO
         options: how that was run.
     """
     return [
-        _each("every image is there, has its size and is no plain surface", runs, _check_images),
+        _each("every image is there and has its size, and none shows a plain surface", runs, _check_images),
         _each("of everybody, what is visible and what is hidden sum to one", runs, _check_shares),
         _each(
             "visible boxes lie inside whole boxes, to half a pixel, and inside the image", runs, _check_boxes
@@ -76,24 +79,35 @@ def _check_images(run: Path) -> list[str]:
     for name, camera in cameras_of(run).items():
         every = about["rate_hz"] // (camera.rate_hz or about["rate_hz"])
         frames = range(1, about["frames"] + 1, every)
-        for folder, _, _ in image_folders({name: camera}):
-            wrong += [f"{folder}: {fault}" for fault in _check_folder(run / folder, frames)]
+        looks = [_look_into(run / folder) for folder, _, _ in image_folders({name: camera})]
+        wrong += [f"{name}: {fault}" for look in looks for fault in _faults(look, frames)]
+        # What is cold is black in 8 bits, whose other images still have content.
+        plain = set.intersection(*(_plain(look) for look in looks))
+        wrong += [f"{name}: {file} has no content" for file in sorted(plain)]
     return wrong
 
 
-def _check_folder(folder: Path, frames: Sequence[int]) -> Iterator[str]:
-    """Say what is wrong with a folder that should have the images of these frames."""
-    paths = sorted(folder.glob("*.png"))
-    if [path.name for path in paths] != [image_file(frame) for frame in frames]:
-        yield f"{len(paths)} images for {len(frames)} frames"
-    shapes = {_shape_of(path) for path in paths}
-    if len(shapes) != 1 or None in shapes:
-        yield "images of several sizes, or unreadable, or without content"
+def _look_into(folder: Path) -> _Look:
+    """Tell the shape of each image in a folder, None if it is unreadable, and whether it has one value."""
+    return {path.name: _look_at(path) for path in sorted(folder.glob("*.png"))}
 
 
-def _shape_of(path: Path) -> tuple[int, ...] | None:
+def _look_at(path: Path) -> tuple[tuple[int, ...] | None, bool]:
     image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
-    return None if image is None or image.min() == image.max() else image.shape
+    return (None, False) if image is None else (image.shape, bool(image.min() == image.max()))
+
+
+def _plain(look: _Look) -> set[str]:
+    return {file for file, (_, is_plain) in look.items() if is_plain}
+
+
+def _faults(look: _Look, frames: Sequence[int]) -> Iterator[str]:
+    """Say what is wrong with a folder that should have the images of these frames."""
+    if list(look) != [image_file(frame) for frame in frames]:
+        yield f"{len(look)} images for {len(frames)} frames"
+    shapes = {shape for shape, _ in look.values()}
+    if len(shapes) != 1 or None in shapes:
+        yield "images of several sizes, or unreadable"
 
 
 def _check_shares(run: Path) -> list[str]:

@@ -14,8 +14,10 @@ import jinja2
 
 from peopleboy.scenarios.export.dataset.checks import Check
 from peopleboy.scenarios.export.dataset.statistics import Bin, Statistics
+from peopleboy.scenarios.export.image_words import describe_images
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.sim.cameras.kinds import image_folders
 
 _TEMPLATE = Path(__file__).parent / "datasheet.md.jinja"
 
@@ -39,16 +41,16 @@ def write_datasheet(
     environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters |= {"span": _span, "quote": shlex.quote}
     template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
+    outfits = [equip_robot(scenario.spec.robot).cameras for scenario in scenarios]
     text = template.render(
-        statistics=statistics, checks=checks, about=about, scenarios=scenarios, sizes=_image_sizes(scenarios)
+        statistics=statistics,
+        checks=checks,
+        about=about,
+        scenarios=scenarios,
+        images=describe_images(outfits),
+        folders={folder: layer.what for outfit in outfits for folder, _, layer in image_folders(outfit)},
     )
     path.write_text(text, encoding="utf-8")
-
-
-def _image_sizes(scenarios: Sequence[Scenario]) -> list[str]:
-    robots = [equip_robot(scenario.spec.robot) for scenario in scenarios]
-    cameras = [config.camera for robot in robots for config in robot.cameras.values()]
-    return list(dict.fromkeys(f"{camera.width}x{camera.height}" for camera in cameras))
 
 
 def _span(one: Bin) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, SerializeAsAny, ValidatorFunctionWrapHandler, WrapValidator, model_validator
 
 from peopleboy.scenarios.files.schema.values import (
     CameraName,
@@ -15,6 +15,7 @@ from peopleboy.scenarios.files.schema.values import (
     Share,
     Strict,
 )
+from peopleboy.sim.cameras.kinds import KINDS
 
 Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
 
@@ -76,7 +77,23 @@ class ColourCameraSpec(_Camera):
     kind: Literal["colour"] = Field(description="what it sees: light")
 
 
-CameraSpec = ThermalCameraSpec | ColourCameraSpec
+class PlainCameraSpec(_Camera):
+    """A camera of any further kind: it has the keys that all have, and none of its own."""
+
+    kind: str
+
+
+CameraSpec = ThermalCameraSpec | ColourCameraSpec | PlainCameraSpec
+
+
+def _by_kind(data: Any, with_own_keys: ValidatorFunctionWrapHandler) -> Any:
+    """Read a camera of a kind that says nothing of its own keys; its kind may be younger than this schema."""
+    kind = data.get("kind") if isinstance(data, dict) else None
+    is_plain = isinstance(kind, str) and kind in KINDS and kind not in ("thermal", "colour")
+    return PlainCameraSpec.model_validate(data) if is_plain else with_own_keys(data)
+
+
+_ByKind = Annotated[ThermalCameraSpec | ColourCameraSpec, Field(discriminator="kind")]
 
 
 class CommandSpec(Strict):
@@ -121,7 +138,7 @@ class RobotSpec(Strict):
         description="whose eyes the robot sees people with, by a name that `--tracker` takes, and which that "
         "option overrules; left out, `peopleboy`",
     )
-    cameras: dict[CameraName, Annotated[CameraSpec, Field(discriminator="kind")]] = Field(
+    cameras: dict[CameraName, SerializeAsAny[Annotated[_ByKind, WrapValidator(_by_kind)]]] = Field(
         default={},
         description="by name; `thermal` and `colour` are there anyway, and what is said of them is what "
         "differs from the usual; any other name is a further camera",

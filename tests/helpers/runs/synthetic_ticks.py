@@ -13,7 +13,7 @@ from peopleboy.behaviours.command import Command
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.people.person_config import PersonConfig
@@ -26,7 +26,7 @@ from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status, Track
 
-CAMERA = Camera()
+CAMERA = Pinhole()
 ELLIPSE = Ellipse(x=160.0, y=120.0, w=20.0, h=50.0, d=3.0, vx=0.0, vy=0.0, vw=0.0, vh=0.0)
 TRACK = Track(
     id=1, boxes={"thermal": (140.0, 47.3, 40.0, 175.0)}, confidence=0.9, status=Status.TRACKED, age_s=1.0,

@@ -5,7 +5,7 @@ from functools import cache
 
 from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.places.place import Fixture, Place
@@ -14,7 +14,7 @@ from peopleboy.sim.robot.robot_config import RobotConfig, SonarConfig
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
-SMALL = Camera(width=160, height=120)
+SMALL = Pinhole(width=160, height=120)
 EXACT_SONAR = SonarConfig(noise_m=0.0, drop_out=0.0)
 NO_NOISE = ThermalConfig(netd_k=0.0, fixed_pattern_k=0.0, dead_pixels=0.0)
 
@@ -46,7 +46,7 @@ def robot(
     x: float = 1.0,
     y: float = 0.0,
     heading_deg: float = 0.0,
-    camera: Camera = SMALL,
+    camera: Pinhole = SMALL,
     thermal: ThermalConfig | None = None,
 ) -> RobotConfig:
     return RobotConfig(

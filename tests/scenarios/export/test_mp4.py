@@ -11,6 +11,8 @@ from peopleboy.scenarios.export.video import BAR_PX, HEIGHT_PX, draw_film_frame
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from tests.helpers.runs.exported import export
 
+BOTH = ("thermal", "colour")
+
 
 @pytest.fixture(scope="module")
 def film(crossing: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -29,7 +31,9 @@ def test_every_browser_can_play_the_film(film: Path) -> None:
 
 def test_its_pictures_are_those_drawn_from_the_run(film: Path, crossing: Path) -> None:
     run = open_run(crossing)
-    drawn = next(draw_film_frame(tick, run.robot, "tiny, seed 3") for tick in replay(run) if tick.frame == 30)
+    drawn = next(
+        draw_film_frame(tick, run.robot, "tiny, seed 3", BOTH) for tick in replay(run) if tick.frame == 30
+    )
     with av.open(str(film)) as opened:
         shown = [frame.to_ndarray(format="rgb24") for frame in opened.decode(video=0)][29]
     assert np.abs(shown.astype(float) - drawn).mean() < 4.0
@@ -37,7 +41,7 @@ def test_its_pictures_are_those_drawn_from_the_run(film: Path, crossing: Path) -
 
 def test_truth_and_tracks_are_drawn_on_both_images(crossing: Path) -> None:
     run = open_run(crossing)
-    *_, picture = (draw_film_frame(tick, run.robot, "tiny") for tick in replay(run) if tick.tracks)
+    *_, picture = (draw_film_frame(tick, run.robot, "tiny", BOTH) for tick in replay(run) if tick.tracks)
     coloured = np.ptp(picture[BAR_PX:].astype(int), axis=2) > 100
     half = picture.shape[1] // 2
     assert coloured[:, :half].sum() > 200

@@ -18,8 +18,8 @@ from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.recording.rounding import PIXEL_STEP
+from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.alignment import affine_between
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.thermal.contour.outline import section_lines
@@ -132,7 +132,7 @@ def test_boxes_lie_where_the_track_is_and_in_the_colour_image_where_the_affine_s
 ) -> None:
     left, top, width, height = made.TRACK.boxes["thermal"]
     robot = made.config().robot
-    affine = affine_between(robot.cameras["thermal"].camera, robot.cameras["colour"].camera, 4.0)
+    affine = colour_from_thermal(robot.cameras)
     for path, mapping in ((THERMAL, np.eye(3)[:2]), (COLOUR, affine)):
         (centre,) = recording.column(f"{path}/tracks/boxes", "Boxes2D:centers")[9]  # type: ignore[misc]
         # Rerun counts from the image's corner.

@@ -4,9 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 
-CAMERA = Camera(width=64, height=16, vertical_fov_rad=0.25)
+CAMERA = Pinhole(width=64, height=16, vertical_fov_rad=0.25)
 
 
 def test_optics_blur_keeps_the_sum_and_has_the_stated_width() -> None:

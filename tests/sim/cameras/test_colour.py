@@ -4,12 +4,12 @@ import pytest
 from peopleboy.sim.cameras.camera_config import ColourConfig
 from peopleboy.sim.cameras.colour import colour_image, expose
 from peopleboy.sim.cameras.surfaces import make_material_table
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind
 
-CONFIG = ColourConfig(camera=Camera(width=60, height=40))
+CONFIG = ColourConfig(camera=Pinhole(width=60, height=40))
 WHITE = (1.0, 1.0, 1.0)
 
 

@@ -14,7 +14,7 @@ from peopleboy.sim.cameras.kinds import KINDS, CameraKind, image_folders
 from peopleboy.sim.cameras.noise import gaussian, skip_gaussian
 from peopleboy.sim.cameras.sensors import Glimpse
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 from tests.helpers.worlds.small_worlds import SMALL, config, person, robot
@@ -116,7 +116,7 @@ def test_a_skipped_image_leaves_the_generator_as_a_drawn_one_does() -> None:
 
 
 def test_the_truth_of_a_camera_is_that_of_its_own_image() -> None:
-    high = Camera(width=96, height=64, position_m=(0.14, 0.0, 2.0), pitch_rad=0.3)
+    high = Pinhole(width=96, height=64, position_m=(0.14, 0.0, 2.0), pitch_rad=0.3)
     cameras = {**robot().cameras, "high": ThermalConfig(camera=high)}
     with World(
         config(person("anna", (4.0, 0.0)), robot=RobotConfig(at_m=(1.0, 0.0), cameras=cameras))

@@ -11,7 +11,7 @@ from peopleboy.sim.cameras.surfaces import (
     smooth_variation,
     surface_point,
 )
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Material, PatternKind
 
@@ -29,7 +29,7 @@ def pose(seed: int) -> np.ndarray:
 @given(seed=st.integers(0, 999), u=st.integers(0, 319), v=st.integers(0, 239), z=st.floats(0.1, 30.0))
 @settings(deadline=None, max_examples=50)
 def test_a_pixel_finds_its_point_in_the_frame_of_the_part(seed: int, u: int, v: int, z: float) -> None:
-    camera, world_from_camera = Camera(), pose(seed)
+    camera, world_from_camera = Pinhole(), pose(seed)
     world_from_part = np.stack([pose(seed + 1000), pose(seed + 2000)])
     matrices = part_from_pixel(camera, world_from_camera, world_from_part)
     in_camera = np.append(z * np.linalg.inv(camera.intrinsics) @ [u, v, 1.0], 1.0)

@@ -13,12 +13,12 @@ from peopleboy.sim.cameras.thermal import (
     make_detector,
     surface_image,
 )
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material
 
-CONFIG = ThermalConfig(camera=Camera(width=40, height=30))
+CONFIG = ThermalConfig(camera=Pinhole(width=40, height=30))
 
 
 def view_of(part: np.ndarray) -> View:

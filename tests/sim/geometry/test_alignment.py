@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import COLOUR_BASELINE_M
 from peopleboy.sim.geometry.alignment import affine_between
-from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
+from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 ROBOT = RobotConfig()
@@ -45,7 +45,7 @@ def test_far_away_the_parallax_vanishes() -> None:
 
 
 def test_a_turned_camera_is_fitted_within_one_percent_of_the_image_on_average() -> None:
-    turned = Camera(yaw_rad=math.radians(4.0))
+    turned = Pinhole(yaw_rad=math.radians(4.0))
     x, y = (grid.ravel() for grid in np.meshgrid(np.linspace(-2.0, 2.0, 21), np.linspace(-1.5, 1.5, 21)))
     points = np.stack([x, y, np.full_like(x, 4.0)], axis=1)
     pixels = np.column_stack([THERMAL.project(points), np.ones_like(x)])
@@ -64,4 +64,4 @@ def test_a_depth_that_is_not_positive_is_refused(depth_m: float) -> None:
 
 def test_cameras_that_look_away_from_each_other_are_refused() -> None:
     with pytest.raises(BadInput, match="does not see"):
-        affine_between(THERMAL, Camera(yaw_rad=math.pi), 4.0)
+        affine_between(THERMAL, Pinhole(yaw_rad=math.pi), 4.0)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
+from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
@@ -192,7 +192,7 @@ def test_a_part_of_many_shapes_is_whole_everywhere() -> None:
         fraction, part = bullet.cast_rays(np.zeros((40, 3)), 2.0 * np.array(places))
         np.testing.assert_allclose(part, 0)
         assert np.all(fraction < 0.5)
-        camera = Camera(position_m=(0.0, 0.0, 0.0))
+        camera = Pinhole(position_m=(0.0, 0.0, 0.0))
         mask, _ = bullet.camera_image(camera, camera.robot_from_camera)
         pixels = camera.project(transform(invert_pose(camera.robot_from_camera), np.array(places)))
         u, v = np.rint(pixels).astype(int).T

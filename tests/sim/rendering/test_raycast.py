@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera, invert_pose, transform
+from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.rendering.render import cast
@@ -18,10 +18,10 @@ from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 Array = NDArray[np.float64]
 
-AHEAD = Camera(position_m=(0.0, 0.0, 0.0)).robot_from_camera
+AHEAD = Pinhole(position_m=(0.0, 0.0, 0.0)).robot_from_camera
 
 
-def draw(*shapes: VisualShape, camera: Camera, pose: Array = AHEAD) -> View:
+def draw(*shapes: VisualShape, camera: Pinhole, pose: Array = AHEAD) -> View:
     parts = 1 + max(shape.part for shape in shapes)
     table = make_shape_table(shapes)
     here = np.tile(np.eye(4), (parts, 1, 1))
@@ -72,7 +72,7 @@ def test_depth_and_normal_are_those_found_by_marching_along_the_rays(seed: int, 
     pose = pose_matrices(
         rng.normal(size=3) * (1, 1, 1) + (2, 0, 0), orientation / np.linalg.norm(orientation)
     )
-    camera = Camera(width=40, height=30, vertical_fov_rad=1.2)
+    camera = Pinhole(width=40, height=30, vertical_fov_rad=1.2)
     shape_from_world = invert_pose(pose)
     if distance(kind, size, transform(shape_from_world, np.zeros(3))) < 0.1:
         return
@@ -100,7 +100,7 @@ def test_depth_and_normal_are_those_found_by_marching_along_the_rays(seed: int, 
 
 
 def test_a_sphere_straight_ahead_has_the_depth_and_size_of_the_textbook() -> None:
-    camera = Camera(width=321, height=241, position_m=(0.0, 0.0, 0.0))
+    camera = Pinhole(width=321, height=241, position_m=(0.0, 0.0, 0.0))
     view = draw(one(ShapeKind.SPHERE, (0.4, 0, 0), pose_matrices((3, 0, 0), (0, 0, 0, 1))), camera=camera)
     assert view.depth[120, 160] == pytest.approx(2.6)
     np.testing.assert_allclose(view.normal[120, 160], (-1, 0, 0), atol=1e-6)
@@ -114,7 +114,7 @@ def test_a_sphere_straight_ahead_has_the_depth_and_size_of_the_textbook() -> Non
 
 
 def test_a_plane_is_seen_from_above_only_and_ends_at_the_horizon() -> None:
-    level = Camera(position_m=(0.0, 0.0, 1.2))
+    level = Pinhole(position_m=(0.0, 0.0, 1.2))
     floor = one(ShapeKind.PLANE, (0, 0, 0), np.eye(4))
     view = draw(floor, camera=level, pose=level.robot_from_camera)
     v = np.arange(240)
@@ -122,12 +122,12 @@ def test_a_plane_is_seen_from_above_only_and_ends_at_the_horizon() -> None:
     below = depth < 100.0
     np.testing.assert_allclose(view.depth[below], np.repeat(depth[below, None], 320, 1), rtol=1e-6)
     assert np.all(view.part[~below] == -1)
-    under = Camera(position_m=(0.0, 0.0, -1.2), pitch_rad=-0.5)
+    under = Pinhole(position_m=(0.0, 0.0, -1.2), pitch_rad=-0.5)
     assert np.all(draw(floor, camera=under, pose=under.robot_from_camera).part == -1)
 
 
 def test_a_wall_that_runs_past_the_camera_fills_its_side_of_the_image() -> None:
-    camera = Camera(position_m=(0.0, 0.0, 0.0))
+    camera = Pinhole(position_m=(0.0, 0.0, 0.0))
     wall = one(ShapeKind.BOX, (50, 0.2, 50), pose_matrices((0, 1.1, 0), (0, 0, 0, 1)))
     view = draw(wall, camera=camera)
     u = np.arange(320)
@@ -138,14 +138,14 @@ def test_a_wall_that_runs_past_the_camera_fills_its_side_of_the_image() -> None:
 
 
 def test_a_camera_inside_a_solid_does_not_see_it() -> None:
-    camera = Camera(position_m=(0.0, 0.0, 0.0))
+    camera = Pinhole(position_m=(0.0, 0.0, 0.0))
     for kind in (ShapeKind.SPHERE, ShapeKind.CAPSULE, ShapeKind.CYLINDER, ShapeKind.BOX):
         assert np.all(draw(one(kind, (2, 2, 2), np.eye(4)), camera=camera).part == -1)
 
 
 def test_cover_shows_whole_silhouettes_behind_what_hides_them() -> None:
     rng = np.random.default_rng(3)
-    camera = Camera()
+    camera = Pinhole()
     people = [
         one(ShapeKind.CAPSULE, (0.6, 0.2, 0), pose_matrices((x, rng.normal() * 0.3, 0), (0, 0, 0, 1)), part)
         for part, x in enumerate((3.0, 4.0, 5.0))
@@ -161,7 +161,7 @@ def test_cover_shows_whole_silhouettes_behind_what_hides_them() -> None:
 
 def test_pieces_of_one_shape_leave_no_crack_between_them() -> None:
     rng = np.random.default_rng(4)
-    camera = Camera(width=160, height=120)
+    camera = Pinhole(width=160, height=120)
     for _ in range(50):
         orientation = rng.normal(size=4)
         pose = pose_matrices((3, 0, 0), orientation / np.linalg.norm(orientation))
@@ -177,7 +177,7 @@ def test_pieces_of_one_shape_leave_no_crack_between_them() -> None:
 def test_a_pose_that_is_not_a_number_draws_nothing() -> None:
     for kind in (ShapeKind.SPHERE, ShapeKind.CAPSULE, ShapeKind.CYLINDER, ShapeKind.BOX, ShapeKind.PLANE):
         broken = one(kind, (1, 1, 1), np.full((4, 4), np.nan))
-        assert np.all(draw(broken, camera=Camera()).part == -1)
+        assert np.all(draw(broken, camera=Pinhole()).part == -1)
 
 
 def test_the_arrays_of_a_table_cannot_be_written_to() -> None:

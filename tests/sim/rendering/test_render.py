@@ -13,7 +13,7 @@ import pytest
 import trimesh
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.rendering.render import render
 from peopleboy.sim.rendering.view import View
@@ -45,7 +45,7 @@ MODELS = [
 ]
 
 
-def both(bullet: Bullet, camera: Camera, people: NDArray[np.int64]) -> tuple[View, View]:
+def both(bullet: Bullet, camera: Pinhole, people: NDArray[np.int64]) -> tuple[View, View]:
     table = make_shape_table(bullet.visual_shapes())
     poses, hidden = bullet.part_poses(), bullet.hidden_parts()
     pose = camera.robot_from_camera
@@ -124,7 +124,7 @@ def test_both_renderers_agree_on_random_worlds(seed: int, rock: Path) -> None:
     rng = np.random.default_rng(seed)
     with Bullet() as bullet:
         people = fill_at_random(bullet, rng, rock)
-        camera = Camera(yaw_rad=rng.normal() * 0.2, pitch_rad=rng.normal() * 0.15)
+        camera = Pinhole(yaw_rad=rng.normal() * 0.2, pitch_rad=rng.normal() * 0.15)
         cast, drawn = both(bullet, camera, people)
     assert len(np.unique(cast.part)) > 2
     assert_alike(cast, drawn)
@@ -143,7 +143,7 @@ def test_both_renderers_agree_on_models_of_pybullet_data(model: str) -> None:
             "model", model, scale=5.0 if "vhacd" in model else 1.0, orientation=(0.1, 0.2, 0.3, 0.9274)
         )
         distance = 30.0 if model == "samurai.urdf" else 4.0
-        camera = Camera(position_m=(-distance, 0.3, distance / 2), pitch_rad=0.45)
+        camera = Pinhole(position_m=(-distance, 0.3, distance / 2), pitch_rad=0.45)
         cast, drawn = both(bullet, camera, np.full(len(bullet.parts()), -1))
     assert np.mean(cast.part >= 0) > 0.001
     boundary = near_boundary(cast.part) | near_boundary(drawn.part)
@@ -156,7 +156,7 @@ def test_both_renderers_agree_on_models_of_pybullet_data(model: str) -> None:
 @pytest.mark.parametrize("kind", ["hidden", "invisible"])
 def test_what_is_hidden_or_invisible_is_drawn_by_neither(kind: str) -> None:
     cube = [Shape(kind=ShapeKind.BOX, size=(1.0, 1.0, 1.0))]
-    camera = Camera(position_m=(0.0, 0.0, 0.0))
+    camera = Pinhole(position_m=(0.0, 0.0, 0.0))
     with Bullet() as bullet:
         bullet.add_part(
             "ball", [Shape(kind=ShapeKind.SPHERE, size=(0.5, 0.0, 0.0))], position=(5.0, 0.0, 0.0)
@@ -179,7 +179,7 @@ def test_an_unknown_renderer_and_too_many_people_are_refused(
     with Bullet() as bullet:
         bullet.add_part("ball", [Shape(kind=ShapeKind.SPHERE, size=(0.5, 0.0, 0.0))])
         table = make_shape_table(bullet.visual_shapes())
-        camera, people = Camera(), np.array([person])
+        camera, people = Pinhole(), np.array([person])
         pose, poses, hidden = camera.robot_from_camera, bullet.part_poses(), bullet.hidden_parts()
         with refused(*named):
             render(name, bullet, table, camera, pose, poses, people, hidden)

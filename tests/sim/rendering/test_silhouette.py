@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.rendering.render import cast
 from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bounds
@@ -31,7 +31,7 @@ def random_table(rng: np.random.Generator, spread_m: float, distance_m: float) -
 @settings(max_examples=50, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_bounds_lie_around_the_drawn_silhouette_by_less_than_a_pixel(seed: int) -> None:
-    camera = Camera(position_m=(0.0, 0.0, 0.0))
+    camera = Pinhole(position_m=(0.0, 0.0, 0.0))
     table = random_table(np.random.default_rng(seed), 0.4, 4.0)
     view = cast(table, camera, camera.robot_from_camera, HERE, np.zeros(1, np.int64), ~EVERYTHING)
     bounds = silhouette_bounds(table, HERE, camera, camera.robot_from_camera, EVERYTHING)
@@ -51,7 +51,7 @@ def test_bounds_lie_around_the_drawn_silhouette_by_less_than_a_pixel(seed: int) 
 @pytest.mark.parametrize("kind", KINDS)
 def test_bounds_of_large_shapes_are_met_within_a_pixel(kind: ShapeKind) -> None:
     rng = np.random.default_rng(kind)
-    camera = Camera(position_m=(0.0, 0.0, 0.0), width=1600, height=1200)
+    camera = Pinhole(position_m=(0.0, 0.0, 0.0), width=1600, height=1200)
     for _ in range(10):
         orientation = rng.normal(size=4)
         pose = pose_matrices((4, 0.2, 0.1), orientation / np.linalg.norm(orientation))
@@ -65,10 +65,10 @@ def test_bounds_of_large_shapes_are_met_within_a_pixel(kind: ShapeKind) -> None:
 
 def test_bounds_and_area_do_not_change_when_a_camera_turns_the_shape_out_of_its_image() -> None:
     table = random_table(np.random.default_rng(1), 0.1, 4.0)
-    wide = Camera(position_m=(0.0, 0.0, 0.0), width=960, height=720, vertical_fov_rad=2 * math.atan(0.9))
-    narrow = Camera(position_m=(0.0, 0.0, 0.0), width=320, height=240, vertical_fov_rad=2 * math.atan(0.3))
+    wide = Pinhole(position_m=(0.0, 0.0, 0.0), width=960, height=720, vertical_fov_rad=2 * math.atan(0.9))
+    narrow = Pinhole(position_m=(0.0, 0.0, 0.0), width=320, height=240, vertical_fov_rad=2 * math.atan(0.3))
     assert wide.focal_px == pytest.approx(narrow.focal_px)
-    turned = Camera(yaw_rad=0.4, pitch_rad=0.3, position_m=(0.0, 0.0, 0.0)).robot_from_camera
+    turned = Pinhole(yaw_rad=0.4, pitch_rad=0.3, position_m=(0.0, 0.0, 0.0)).robot_from_camera
     view = cast(table, wide, turned, HERE, np.zeros(1, np.int64), ~EVERYTHING)
     seen = cast(table, narrow, turned, HERE, np.zeros(1, np.int64), ~EVERYTHING)
     assert 0 < np.count_nonzero(seen.cover) < np.count_nonzero(view.cover)
@@ -79,7 +79,7 @@ def test_bounds_and_area_do_not_change_when_a_camera_turns_the_shape_out_of_its_
 
 
 def test_bounds_of_what_reaches_behind_the_camera_stop_at_the_near_plane() -> None:
-    camera = Camera(position_m=(0.0, 0.0, 0.0))
+    camera = Pinhole(position_m=(0.0, 0.0, 0.0))
     beam = VisualShape(0, ShapeKind.BOX, (10.0, 0.2, 0.2), pose_matrices((0, 1, 0), (0, 0, 0, 1)), None)
     bounds = silhouette_bounds(make_shape_table([beam]), HERE, camera, camera.robot_from_camera, EVERYTHING)
     u, focal = camera.centre_px[0], camera.focal_px
@@ -93,7 +93,7 @@ def test_bounds_of_what_reaches_behind_the_camera_stop_at_the_near_plane() -> No
 
 
 def test_nothing_in_front_of_the_camera_has_no_bounds_and_no_area() -> None:
-    camera = Camera(position_m=(0.0, 0.0, 0.0))
+    camera = Pinhole(position_m=(0.0, 0.0, 0.0))
     for kind in KINDS:
         table = make_shape_table(
             [VisualShape(0, kind, (1, 1, 1), pose_matrices((-3, 0, 0), (0, 0, 0, 1)), None)]

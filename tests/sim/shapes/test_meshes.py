@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.physics.model_files import find_model
 from peopleboy.sim.rendering.render import render
@@ -50,7 +50,7 @@ def test_dae_files_have_the_size_that_tinyrenderer_gives_them(model: str) -> Non
     mesh = find_model(model)
     scale = 1.0 / float(np.abs(load_triangles(mesh)).max())
     shape = Shape(kind=ShapeKind.MESH, size=(scale, scale, scale), mesh=mesh)
-    camera = Camera(position_m=(-4.0, 0.5, 1.5), pitch_rad=0.35)
+    camera = Pinhole(position_m=(-4.0, 0.5, 1.5), pitch_rad=0.35)
     with Bullet() as bullet:
         bullet.add_part("mesh", [shape], solid=False)
         table = make_shape_table(bullet.visual_shapes())

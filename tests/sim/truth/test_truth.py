@@ -6,16 +6,16 @@ import cv2
 import numpy as np
 import pytest
 
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.people.person import PART_CLASSES
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
 from peopleboy.sim.world import World
 from tests.helpers.worlds.small_worlds import SMALL, box_thing, config, hall, person, pillar, robot
 
-CAMERA = Camera()
+CAMERA = Pinhole()
 # The same camera, with one more image beyond each border.
-WIDE = Camera(
+WIDE = Pinhole(
     width=960, height=720, vertical_fov_rad=2.0 * math.atan(3.0 * math.tan(CAMERA.vertical_fov_rad / 2.0))
 )
 # Where a wall 0.4 m wide hides part of somebody, and a table his legs.

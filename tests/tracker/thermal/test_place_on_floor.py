@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.sim.geometry.pinhole import Camera
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.calibration import PinholeCalibration
 from peopleboy.tracker.thermal.place_on_floor import (
     CORRELATION,
@@ -26,7 +26,7 @@ from peopleboy.tracker.track import Box, Status
 from tests.helpers.calls.refused import refused
 
 
-def calibrate(camera: Camera) -> PinholeCalibration:
+def calibrate(camera: Pinhole) -> PinholeCalibration:
     return PinholeCalibration(camera.intrinsics, camera.robot_from_camera)
 
 
@@ -42,7 +42,7 @@ def box_of(x: float, y: float, calibration: PinholeCalibration, stature_m: float
     st.integers(60, 960), st.floats(0.3, 1.2),
 )  # fmt: skip
 def test_a_person_of_the_usual_stature_is_where_it_stands(away, bearing, up, yaw, height, field_of_view):
-    camera = Camera(
+    camera = Pinhole(
         width=height * 2,
         height=height,
         vertical_fov_rad=field_of_view,
@@ -56,14 +56,14 @@ def test_a_person_of_the_usual_stature_is_where_it_stands(away, bearing, up, yaw
 
 def test_a_camera_that_looks_down_or_up_changes_nothing_but_rounding():
     for pitch in (-0.15, 0.15):
-        calibration = calibrate(Camera(pitch_rad=pitch))
+        calibration = calibrate(Pinhole(pitch_rad=pitch))
         [place] = places_on_floor([box_of(6.0, 0.0, calibration)], [Status.TRACKED], calibration)
         assert place.position_m == pytest.approx((6.0, 0.0), abs=0.02)
 
 
 @given(st.floats(2.0, 10.0), st.floats(-math.pi, math.pi))
 def test_the_ellipse_points_along_the_line_of_sight(away, yaw):
-    calibration = calibrate(Camera(position_m=(0.0, 0.0, 1.2), yaw_rad=yaw))
+    calibration = calibrate(Pinhole(position_m=(0.0, 0.0, 1.2), yaw_rad=yaw))
     x, y = away * math.cos(yaw), away * math.sin(yaw)
     [place] = places_on_floor([box_of(x, y, calibration)], [Status.TRACKED], calibration)
     xx, xy, yy = place.covariance_m2
@@ -89,13 +89,13 @@ def test_feet_and_head_are_mixed_as_least_squares_would():
     spreads = [np.std(s * foot / up + (1.0 - s) * head / (PERSON_M - up)) for s in shares]
     best = shares[int(np.argmin(spreads))]
 
-    calibration = calibrate(Camera(position_m=(0.0, 0.0, up)))
+    calibration = calibrate(Pinhole(position_m=(0.0, 0.0, up)))
     left, top, width, height = box_of(away, 0.0, calibration)
     step = 0.1
     higher = (left, top - step, width, height + step / (1.0 - FOOT_BELOW) * (1.0 - FOOT_BELOW))
     [place] = places_on_floor([higher], [Status.TRACKED], calibration)
     moved = 1.0 / place.position_m[0] - 1.0 / away
-    slope = step / Camera().focal_px
+    slope = step / Pinhole().focal_px
     foot_moved = -FOOT_BELOW * slope  # a box that begins higher by a step ends lower by this of it
     share = (moved - slope / (PERSON_M - up)) / (foot_moved / up - slope / (PERSON_M - up))
     assert share == pytest.approx(best, abs=0.03)
@@ -108,14 +108,14 @@ def test_who_is_seen_less_is_placed_less_surely(status: Status):
 
 
 def test_feet_above_the_horizon_are_far_away_and_not_behind():
-    calibration = calibrate(Camera())
+    calibration = calibrate(Pinhole())
     [place] = places_on_floor([(100.0, 40.0, 20.0, 50.0)], [Status.TRACKED], calibration)
     assert math.hypot(*place.position_m) <= FARTHEST_M + 1.0
     assert place.position_m[0] > 0.0
 
 
 def test_nobody_is_nowhere():
-    assert places_on_floor([], [], calibrate(Camera())) == []
+    assert places_on_floor([], [], calibrate(Pinhole())) == []
 
 
 def test_a_calibration_of_another_shape_is_refused():
@@ -129,7 +129,7 @@ def test_a_calibration_of_another_shape_is_refused():
     st.floats(-0.3, 0.3), st.floats(-3.0, 3.0), st.floats(0.5, 20.0), st.floats(-5.0, 5.0), st.floats(0, 2)
 )
 def test_a_ray_leads_back_to_the_point_that_its_pixel_shows(pitch, yaw, ahead, aside, up):
-    camera = Camera(pitch_rad=pitch, yaw_rad=yaw)
+    camera = Pinhole(pitch_rad=pitch, yaw_rad=yaw)
     calibration = calibrate(camera)
     pose = camera.robot_from_camera
     point = pose[:3, :3] @ [aside, up - 1.0, ahead] + pose[:3, 3]

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from peopleboy.scenarios.export.dataset.checks import _check_images
 from peopleboy.scenarios.export.dataset.splits import SPLITS, lacking_splits, split_lines, split_of
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from tests.helpers.calls.command_line import refusal, run_cli
@@ -23,7 +24,11 @@ place: {kind: room, length_m: 8.0, width_m: 6.0}
 people:
   - name: anna
     path: [{at_m: [4.0, -1.0]}, {at_m: [4.0, 1.0]}]
-robot: {at_m: [0.6, 0.0], cameras: {thermal: {kind: thermal, width_px: 160, height_px: 120}}}
+robot:
+  at_m: [0.6, 0.0]
+  cameras:
+    thermal: {kind: thermal, width_px: 160, height_px: 120}
+    rear: {kind: thermal, width_px: 160, height_px: 120, mount_m: [-0.3, 0, 1.3], yaw_deg: 180, rate_hz: 5}
 """
 
 
@@ -72,10 +77,30 @@ def test_a_set_is_sound_and_its_numbers_are_those_of_its_files(rendered: Path) -
     assert np.allclose(whole["image_mean"]["colour"], np.mean(first, axis=(0, 1, 2)), atol=0.01)
     assert "FAILS" not in (folder / "README.md").read_text()
     assert "| runs | 2 | 2 |" in (folder / "README.md").read_text()
-    assert "Images are 160x120 or 320x240 pixels" in (folder / "README.md").read_text()
     assert (
         f"peopleboy render {rendered / 'tiny.yaml'} --frames --seeds 2" in (folder / "README.md").read_text()
     )
+
+
+def test_its_sheet_tells_each_camera_s_images_and_one_that_sees_nothing_warm_is_sound(rendered: Path) -> None:
+    sheet = (rendered / "set" / "README.md").read_text()
+    said = "160x120 pixels, 15 a second (thermal), or 320x240 pixels, 15 a second (colour)"
+    assert f"Images are {said}, or 160x120 pixels, 5 a second (rear), and have" in sheet
+    assert "| `rear16/` | 16-bit, hundredths of a kelvin |" in sheet
+    cold = [cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) for path in rendered.glob("set/*/rear/*.png")]
+    assert len(cold) == 2 * 2
+    assert np.quantile(cold, 0.99) == 0
+
+
+def test_an_image_without_content_is_found(rendered: Path) -> None:
+    run = rendered / "set" / "tiny-0"
+    kept = {name: (run / name / "000001.png").read_bytes() for name in ("rear", "rear16")}
+    for name, dtype in (("rear", np.uint8), ("rear16", np.uint16)):
+        assert _check_images(run) == []
+        cv2.imwrite(str(run / name / "000001.png"), np.full((120, 160), 7, dtype))
+    assert _check_images(run) == ["rear: 000001.png has no content"]
+    for name, content in kept.items():
+        (run / name / "000001.png").write_bytes(content)
 
 
 def test_a_call_that_is_refused_leaves_a_finished_set_as_it_was(rendered: Path) -> None:
