@@ -24,7 +24,7 @@ from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.calibration import Calibration
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
+from peopleboy.tracker.frame import THERMAL, Frame, Odometry
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
 
@@ -190,7 +190,7 @@ def make_percept(
         sonar_angle_rad=SONAR_ANGLE_RAD,
         linear_m_s=(left + right) / 2.0,
         angular_rad_s=(right - left) / WHEEL_DISTANCE_M,
-        colour=observation.images.get(COLOUR),
+        images=observation.images,
         image_age_s=image_age_s,
         fault=fault,
     )
