@@ -143,25 +143,31 @@ class ContactSheet:
         return tile
 
     def _thermal_picture(self, moment: Moment) -> Picture:
-        scale = _TILE / moment.thermal.shape[1]
+        scale = _fitting_scale(moment.thermal, _TILE)
         picture = enlarge(show_thermal(moment.thermal), scale)
         plates: list[Plate] = []
         picture = draw_tracks(picture, moment.tracks, scale, moment.explanation, plates=plates)
         return draw_truth(picture, moment.people, scale, plates=plates)
 
     def _colour_picture(self, moment: Moment) -> Picture:
-        scale = _TILE / moment.colour.shape[1]
+        scale = _fitting_scale(moment.colour, _TILE)
         affine = colour_from_thermal(self._robot.cameras)
         return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, moment.explanation, affine)
 
     def _further_picture(self, shot: Shot, beside: int, moment: Moment) -> Picture:
         """Draw what a further camera saw, with truth where that has boxes, its name and how old it is."""
-        scale = _share(beside) / shot.image.shape[1]
+        scale = _fitting_scale(shot.image, _share(beside))
         picture = enlarge(show_image(shot.image), scale)
         if kind_of(self._robot.cameras[shot.camera]).has_boxes:
             picture = draw_truth(picture, shot.people, scale)
         age_s = moment.time_s - shot.time_s
         return _named(picture, f"{shot.camera}, {age_s:.1f} s old" if age_s > 1e-6 else shot.camera)
+
+
+def _fitting_scale(image: Picture, room_px: int) -> float:
+    """How much to enlarge an image to fill some width, but to be no more than twice as high."""
+    height, width = image.shape[:2]
+    return float(min(room_px / width, 2.0 * room_px / height))
 
 
 def _share(pictures: int) -> int:

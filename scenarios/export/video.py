@@ -23,6 +23,7 @@ from peopleboy.sim.robot.robot_config import RobotConfig
 HEIGHT_PX: Final = 480
 BAR_PX: Final = 32
 
+_WIDEST_PX: Final = 4 * HEIGHT_PX  # of one image
 _QUALITY: Final = "20"  # CRF: 0 loses nothing, 18 nothing to be seen
 _BAR: Final[Rgb] = (22, 24, 28)
 _WORDS: Final[Rgb] = (225, 225, 225)
@@ -87,16 +88,20 @@ def _width(words: str) -> int:
 def _picture(tick: Tick, camera: str, robot: RobotConfig) -> Picture:
     """Draw the image of a camera, tracks where they are known, and truth."""
     image = tick.observation.images[camera]
-    scale = HEIGHT_PX / image.shape[0]
+    scale = min(HEIGHT_PX / image.shape[0], _WIDEST_PX / image.shape[1])
     picture, plates = enlarge(show_image(image), scale), list[Plate]()
     if camera in ("thermal", "colour"):
         affine = None if camera == "thermal" else colour_from_thermal(robot.cameras)
         picture = draw_tracks(picture, tick.tracks, scale, tick.explanation, affine, plates)
     if kind_of(robot.cameras[camera]).has_boxes:
         picture = draw_truth(picture, tick.truths[camera].people, scale, plates=plates)
-    return _even(picture)
+    return _framed(picture)
 
 
-def _even(picture: Picture) -> Picture:
-    """Cut a last odd column off."""
-    return picture[:HEIGHT_PX, : picture.shape[1] // 2 * 2]
+def _framed(picture: Picture) -> Picture:
+    """Cut a last odd column off, and put a lower picture into the middle of `HEIGHT_PX` rows."""
+    picture = picture[:HEIGHT_PX, : picture.shape[1] // 2 * 2]
+    frame = np.full((HEIGHT_PX, picture.shape[1], 3), _BAR, np.uint8)
+    top = (HEIGHT_PX - picture.shape[0]) // 2
+    frame[top : top + picture.shape[0]] = picture
+    return frame

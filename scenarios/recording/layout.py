@@ -21,7 +21,7 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 
 
 def lay_out(config: WorldConfig) -> rrb.Blueprint:
-    """Lay out: thermal on the left, colour, events and the world in 3-D on the right, curves below."""
+    """Lay out: thermal on the left, colour, events, further cameras and the world beside it, curves below."""
     cameras = {name: camera.camera for name, camera in config.robot.cameras.items()}
     thermal = _image_view(THERMAL, "Thermal: tracks with evidence, particles, truth", cameras.pop("thermal"))
     colour = _image_view(COLOUR, "Colour: tracks, truth", cameras.pop("colour"))
@@ -38,7 +38,8 @@ def lay_out(config: WorldConfig) -> rrb.Blueprint:
         _plot("offset", "Offset of tracks [half widths]", (-1.05, 1.05), has_legend=False),
         _plot("motion", "Speed and turn rate", (-1.6, 1.6)),
     ]
-    right = rrb.Vertical(rrb.Horizontal(colour, *further, events), _world_view(config))
+    rows = [rrb.Horizontal(colour, events), *([rrb.Horizontal(*further)] if further else [])]
+    right = rrb.Vertical(*rows, _world_view(config))
     above = rrb.Horizontal(thermal, right, column_shares=[1.0, 1.0])
     return rrb.Blueprint(
         rrb.Vertical(above, rrb.Horizontal(*plots), row_shares=[3.0, 1.0]),

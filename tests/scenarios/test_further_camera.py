@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import av
 import cv2
 import numpy as np
 import pyarrow.parquet as pq
@@ -13,13 +14,17 @@ import yaml
 from mcap.reader import make_reader
 from rerun.chunk import RrdReader
 
+from peopleboy.scenarios.drawing.contact_sheet import read_tiles
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.export.video import BAR_PX, HEIGHT_PX
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.world import World
 from tests.helpers.runs.exported import SCENE, export, run_cli
 
 # It looks back, where only carl is, at every third instant.
 REAR = {"kind": "thermal", "width_px": 160, "height_px": 120, "mount_m": [-0.3, 0.0, 1.3], "yaw_deg": 180.0}
+TALL = {"kind": "thermal", "width_px": 16, "height_px": 2048, "rate_hz": 1}
+WIDE = {"kind": "colour", "width_px": 2048, "height_px": 16, "rate_hz": 1}
 CARL = {"name": "carl", "path": [{"at_m": [1.0, 0.3]}, {"at_m": [1.0, 1.0], "speed_m_s": 0.5}]}
 BEHIND = SCENE | {
     "name": "behind",
@@ -29,7 +34,7 @@ BEHIND = SCENE | {
     "people": [{"name": "anna", "path": [{"at_m": [9.5, -0.4]}]}, CARL],
     "robot": {
         "at_m": [6.0, 0.0],
-        "cameras": {**SCENE["robot"]["cameras"], "rear": {**REAR, "rate_hz": 5}},
+        "cameras": {**SCENE["robot"]["cameras"], "rear": {**REAR, "rate_hz": 5}, "tall": TALL, "wide": WIDE},
         "behaviour": "scripted",
         "commands": [{"from_s": 0.0, "linear_m_s": 0.1, "angular_deg_s": 5.0}],
     },
@@ -99,6 +104,17 @@ def test_a_bag_has_its_topics(run: Path, tmp_path: Path) -> None:
         told = [channel.topic for _, channel, _ in make_reader(file).iter_messages()]
     for topic in ("/rear/image/compressed", "/rear/camera_info", "/truth/rear/people"):
         assert told.count(topic) == len(DUE)
+
+
+@pytest.mark.parametrize("camera", ["tall", "wide"])
+def test_sheets_and_films_stay_in_shape(run: Path, tmp_path: Path, camera: str) -> None:
+    tile = read_tiles(run / "contact_sheet.png")[0].picture
+    assert tile.height < 4.0 * tile.width
+    assert run_cli("export", run, "--format", "mp4", "--camera", camera, "--out", tmp_path / "film") == 0
+    with av.open(str(tmp_path / "film" / "behind-0.mp4")) as film:
+        (frame,) = film.decode(video=0)
+    assert frame.height == HEIGHT_PX + BAR_PX
+    assert frame.width <= 4 * HEIGHT_PX
 
 
 def test_an_environment_gives_its_newest_image(scene: Path) -> None:

@@ -78,6 +78,17 @@ def test_another_seed_length_or_drive_gives_another_key() -> None:
     assert film_key(load_scenario("fast_turn").lasting(2.6), 3) in keys
 
 
+def test_a_further_camera_makes_another_film_of_the_same_frames(tmp_path: Path) -> None:
+    films = []
+    for cameras in ("{}", "{rear: {kind: thermal, yaw_deg: 180}}"):
+        path = tmp_path / "seen.yaml"
+        told = f"like: crossing_2\nname: seen\nduration_s: 0.2\nrobot: {{at_m: [1, 0], cameras: {cameras}}}\n"
+        path.write_text(told, encoding="utf-8")
+        films.append(film(load_scenario(path), 3, tmp_path).folder)
+    assert films[0] != films[1]
+    assert len({(folder / "frames.parquet").read_bytes() for folder in films}) == 1
+
+
 def test_a_robot_that_follows_what_a_tracker_sees_is_refused_until_its_drive_is_recorded(
     tmp_path: Path,
 ) -> None:
