@@ -159,7 +159,7 @@ def _person_works(tracker: PeopleTracker, number: int, view: FrameView) -> dict[
     strength = np.full(len(others), config.interaction.penalty)
 
     def occlusion() -> object:
-        image = covered_by(view.image, others[:1], config.contour, config.occlusion.growth)
+        image = covered_by(view.image, others[:1], config.contour, config.depth.growth)
         seen_shares(image, estimate, view.model.probes)
         return person_factor(overlap_shares(state, regions_of(others, config), config), strength)
 

@@ -222,52 +222,57 @@ class InteractionConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OcclusionConfig:
-    """What happens when people hide each other, and who is remembered.
+class DepthConfig:
+    """Who is in front of whom, and what that means for the evidence."""
 
-    The defaults are section 7.3 of the thesis; what follows `forget_s` goes beyond it.
-    """
-
-    is_handled: bool = False  # whether it matters who is in front
-    # How that is told: "foot" by whose feet are lower, "appearance" by looks as well, "contour" by
-    # contours too.
-    order: str = "foot"
-    head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
-    kept_frames: int = 8  # frames for which a hidden person's samples are kept
-    forget_s: float = 10.0  # time after which a hidden person is forgotten
+    # By whose feet are lower ("foot"), by looks as well ("appearance"), by contours too ("contour"); None:
+    # nobody is in front of anybody.
+    order: str | None = None
     removes_front: bool = False  # points of the contour on people in front are left out of the evidence
-    covered_response: float = 0.4  # what such a point counts
     growth: float = 1.0  # by which the people in front are enlarged for that
-    keeps_velocity: bool = False  # hidden people walk on; otherwise they are where their occluder is
-    hidden_memory: float = 0.97  # share of a hidden person's velocity that lasts to the next step
-    hidden_noise: float = 1.0  # share of the motion noise along the floor while hidden
-    hidden_stiffness: float = 0.1  # the same for all other directions and the size
-    # Spread of the logarithm of an overlapped person's height around that when seen whole; 0: as it may be.
-    size_spread: float = 0.0
-    seen_size_spread: float = 0.0  # the same for a person who is seen whole
-    size_s: float = 0.5  # time constant of that height
-    hidden_w: float = 0.0  # semi-width of a hidden person, who may turn, in semi-heights; 0: as last seen
-    colour_gate: float = 40.0  # largest squared distance of colours of who comes back to sight
-    size_gate: float = 0.25  # largest change of the logarithm of its height
-    remembers_lost: bool = False  # who is lost in any other way is remembered as well
-    lost_frames: int = 3  # frames without evidence after which somebody counts as hidden by something unknown
-    searched_frames: int = 45  # frames for which a hidden person's samples look for it in the open
-    # How long a hidden person is shown: hidden by nobody known; on its way out of the image; behind somebody,
-    # if its samples are farther apart than this share of its semi-width. Others are until they are forgotten.
-    shown_s: float = 10.0
-    shown_leaving_s: float = 10.0
-    shown_behind_s: float = 10.0
-    sure_spread: float = 0.35
 
     def __post_init__(self) -> None:
         refuse_unless(
-            self.order in ("foot", "appearance", "contour"), self, "order", "foot, appearance or contour"
+            self.order in (None, "foot", "appearance", "contour"),
+            self,
+            "order",
+            "foot, appearance or contour",
         )
-        check_share(self, "head_covered", "hidden_memory", "hidden_stiffness")
-        check_not_negative(self, "kept_frames", "forget_s", "hidden_noise", "hidden_w")
-        check_not_negative(self, "size_spread", "seen_size_spread")
-        check_not_negative(self, "shown_s", "shown_leaving_s", "shown_behind_s", "sure_spread")
-        check_positive(self, "growth", "size_s")
+        check_positive(self, "growth")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeightConfig:
+    """How far a person's height may stray from what it was when the person was last seen whole.
+
+    Spreads are those of the logarithm; 0: as far as it may.
+    """
+
+    overlapped_spread: float = 0.0  # of a person who is overlapped or hidden
+    seen_spread: float = 0.0  # of a person who is seen whole
+    memory_s: float = 0.5  # time constant of that height
+
+    def __post_init__(self) -> None:
+        check_not_negative(self, "overlapped_spread", "seen_spread")
+        check_positive(self, "memory_s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StayBehindConfig:
+    """Hidden people are where their occluder is (thesis, section 7.3)."""
+
+    head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
+
+    def __post_init__(self) -> None:
+        check_share(self, "head_covered")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WalkOnConfig:
+    """Hidden people walk on with the velocity that they had."""
+
+    remembers_lost: bool = False  # who is lost in any other way walks on, and is remembered as well
+    shows_only_sure: bool = False  # the hidden are shown only while it is fairly certain where they are
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -285,4 +290,7 @@ class TrackerConfig:
     interaction: InteractionConfig = field(default_factory=InteractionConfig)
     colour: ColourConfig | None = None  # None: thermal alone
     appearance: AppearanceConfig | None = None  # None: colours as they are
-    occlusion: OcclusionConfig = field(default_factory=OcclusionConfig)
+    depth: DepthConfig = field(default_factory=DepthConfig)
+    height: HeightConfig = field(default_factory=HeightConfig)
+    # Asked only about people who have somebody in front of them, or are lost from sight.
+    occlusion: StayBehindConfig | WalkOnConfig = field(default_factory=StayBehindConfig)

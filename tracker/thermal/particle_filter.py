@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.appearance.part_appearance import AppearanceView
+from peopleboy.tracker.thermal.appearance.part_appearance import AppearanceView, visible
 from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, FilterConfig, MotionConfig, TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import (
     ContourModel,
@@ -36,6 +36,7 @@ from peopleboy.tracker.thermal.filter.particles import (
     uncertainty_px2,
 )
 from peopleboy.tracker.thermal.filter.prior import draw_prior
+from peopleboy.tracker.thermal.interaction import Regions
 
 RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
 
@@ -75,6 +76,14 @@ class FrameView:
     def after_turn(self, x: Columns) -> Columns:
         """Tell where columns x [px] of the last frame lie in this one but for people's own motion."""
         return turned(x, self.turn_rad, self.focal_px, (self.image.shape[1] - 1) / 2)
+
+    def describe(self, state: Floats, hiding: Regions) -> Floats | None:
+        """Describe people (N, 9) as their models do, (N, F), if that can be told.
+
+        NaN for parts that lie behind people with regions (M, 4).
+        """
+        source = self.colour if self.appearance is None else self.appearance
+        return None if source is None else visible(source.describe(state), state, hiding)
 
 
 def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig) -> FrameView:
@@ -190,13 +199,24 @@ def advance(
     config: TrackerConfig,
     rng: np.random.Generator,
     motion: MotionConfig | None = None,
+    resizes: bool = True,
 ) -> Floats:
-    """Draw the samples (N, 9) of this frame from those of the last one, some of them from the prior."""
+    """Draw the samples (N, 9) of this frame from those of the last one, some of them from the prior.
+
+    Args:
+        particles: of the last frame.
+        view: this frame.
+        filter_config: of this filter.
+        config: of the tracker.
+        rng: source of chance.
+        motion: how the samples move; None for the tracker's own.
+        resizes: whether the filter's share of samples is tried at another size.
+    """
     fresh = round(filter_config.fresh_share * filter_config.count)
     kept = resample(particles, filter_config.count - fresh, rng)
     moved = predict(kept, view.dt_s, view.size, config.motion if motion is None else motion, rng)
     moved[:, X] = view.after_turn(moved[:, X])
-    if filter_config.resized_share > 0:
+    if resizes and filter_config.resized_share > 0:
         _resize(moved, filter_config.resized_share, config.contour.head_divisor, rng)
     if fresh == 0:
         return moved

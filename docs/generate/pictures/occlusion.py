@@ -39,7 +39,7 @@ def explained_away() -> Figure:
     model = ContourModel.build(tick.observation.images["thermal"].shape, PEOPLEBOY.contour)
     image = model.prepare(tick.observation.images["thermal"])
     front = [state_of(tick, NEAR)]
-    marked = covered_by(image, front, PEOPLEBOY.contour, PEOPLEBOY.occlusion.growth)
+    marked = covered_by(image, front, PEOPLEBOY.contour, PEOPLEBOY.depth.growth)
     figure, axes = panels(("two people, two tracks", "what the filter of the one behind is shown"), 5.0)
     show(axes[0], image)
     for track in tracks.values():

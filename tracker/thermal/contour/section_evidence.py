@@ -51,7 +51,7 @@ def evidence_of(
     evidence = {}
     for track in tracks:
         front = [states[track.occluder]] if track.occluder in states else []
-        marked = covered_by(image, front, config.contour, config.occlusion.growth)
+        marked = covered_by(image, front, config.contour, config.depth.growth)
         evidence[track.id] = _measure(marked, states[track.id], model)
     return evidence
 

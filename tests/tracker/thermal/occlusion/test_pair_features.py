@@ -114,7 +114,7 @@ def test_everybody_is_compared_at_once_as_they_are_two_by_two():
     states = [NEAR, FAR, (290.0, 120.0, 9.0, 25.0)]
     figures = [
         SimpleNamespace(
-            state=people(state)[0], person=SimpleNamespace(appearance=None, colour=model, foot=foot)
+            state=people(state)[0], person=SimpleNamespace(looks=model, foot=foot)
         )
         for state, model, foot in zip(states, [*models, None], [216.0, 179.0, 171.0], strict=True)
     ]
