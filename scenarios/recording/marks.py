@@ -16,7 +16,7 @@ from peopleboy.scenarios.drawing.palette import ROBOT, TRUTH, Rgb, person_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.thermal.particles import Particles
 from peopleboy.tracker.track import Status, Track
 
 PARTICLES_A_FILTER = 50

@@ -1,4 +1,4 @@
-"""Every constant of the tracker, under its name; the variants are values of these records.
+"""In what the variants of the tracker differ; each is a value of these records.
 
 Pixels are meant for an image of 240 rows and are scaled by image height / 240.
 """
@@ -26,16 +26,11 @@ class ContourConfig:
     """Where a contour is looked at, and how a difference of grey counts.
 
     The thesis says that inner and outer pixels along the ellipses are compared; how far from the contour, at
-    how many points, and how wide the head is, it leaves open: `reach_px`, `points`, `head_aspect` and the
-    angles are readings.
+    how many points, and where the sides end, it leaves open: `reach_px`, `points` and `side_end_deg` are
+    readings.
     """
 
-    head_divisor: float = 4.4  # body semi-height / head semi-height
-    head_aspect: float = 0.75  # head semi-width / head semi-height
     points: int = 8  # pairs of inner and outer points a section
-    neck_deg: float = 60.0  # opening of the head ellipse at the neck
-    head_top_deg: float = 90.0  # arc of the head's top section
-    shoulder_deg: float = 60.0  # arc of a shoulder, from the top of the body down
     side_end_deg: float = 180.0  # where the sides end: 180 is the bottom of the body
     reach_px: float = 2.0  # distance of the points from the contour, whatever its size
     body_reach: tuple[float, ...] = (0.0,)  # plus this share of the body's semi-width; the points take turns
@@ -46,21 +41,17 @@ class ContourConfig:
     # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
     cold_response: float = 1.0
     cold_feet_response: float = 1.0  # the same for feet colder than the floor
-    # alpha_1..7 of the sections: head left, top, right, shoulders, sides.
-    weights: tuple[float, ...] = (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16)
-    feet_weight: float = 0.0  # weight of an eighth section, the line under the feet
-    feet_line: float = 2.05  # its distance below the body's centre, in body semi-heights
-    feet_span: float = 0.6  # how far it reaches to both sides, in body semi-heights
-    feet_gain: float = 3.0  # factor on its response, up to 1: feet fill only a third of the line
+    # Weight of an eighth section, the line under the feet; those of the other seven add up to 1.
+    feet_weight: float = 0.0
     unseen_response: float = 0.0  # response of a point outside the image
     hottest_grey: int = 256  # grey from which a surface is too hot for a person and counts as cold
     hot_margin_px: int = 0  # so do the pixels around it, whose grey is a blend
 
     def __post_init__(self) -> None:
-        check_positive(self, "head_divisor", "head_aspect", "points", "feet_line")
-        check_not_negative(self, "saturation_grey", "reach_px", "inner_depth", "far_head_reach")
-        if len(self.weights) != 7:
-            raise BadInput(f"ContourConfig: weights must be 7 numbers, got {len(self.weights)}")
+        check_positive(self, "points")
+        check_not_negative(
+            self, "saturation_grey", "reach_px", "inner_depth", "far_head_reach", "feet_weight"
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,17 +62,14 @@ class LimitsConfig:
     ratio_dw: tuple[float, float] = (-1.5, 1.5)
     y: tuple[float, float] = (0.2, 0.8)  # [image heights]
     h: tuple[float, float] = (0.02, 0.5)  # [image heights]; the sources name no largest
-    horizon: float = 0.5  # row of the horizon [image heights]; the middle for a level camera
     # [body semi-heights]: where people who stand on the floor are.
     y_below_horizon: tuple[float, float] = (-math.inf, math.inf)
-    outside_weight: float = 1e-6  # factor on the weight of a sample outside: "a very low chance"
 
     def __post_init__(self) -> None:
         for name in ("ratio_wh", "ratio_dw", "y", "h"):
             low, high = getattr(self, name)
             if not (math.isfinite(low) and math.isfinite(high) and low < high):
                 raise BadInput(f"LimitsConfig: {name} must be low < high, got {low}..{high}")
-        check_share(self, "outside_weight")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,12 +106,10 @@ class MotionConfig:
     place_memory: float = 1.0  # share of (vx, vy) that lasts to the next step
     size_memory: float = 1.0  # the same for (vw, vh)
     uses_odometry: bool = False
-    view_angle_deg: float = 44.0  # vertical field of view, from which a turn becomes a shift in pixels
 
     def __post_init__(self) -> None:
         check_not_negative(self, "noise_x", "noise_y", "noise_w", "noise_h", "noise_d", "noise_by_height")
         check_share(self, "place_memory", "size_memory")
-        refuse_unless(0 < self.view_angle_deg < 180, self, "view_angle_deg", "between 0 and 180")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,20 +174,13 @@ class SmoothingConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AppearanceConfig:
-    """By how much the looks of one person differ from frame to frame: head, torso, legs.
+    """By how much the thermal pattern of one person differs from frame to frame, and what it tells."""
 
-    Colours and greys are means over the part, 0..1; colours after the light has been divided out.
-    """
-
-    colour_spread: tuple[float, float, float] = (0.06, 0.02, 0.035)
-    grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)
-    brightness: float = 80.0  # mean of the colour image [grey] to which all are scaled
-    darkest: float = 12.0  # mean below which colours are noise
+    grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)  # of the mean of head, torso, legs, 0..1
     needs_colour: bool = False  # whether nobody is recognised by the thermal pattern alone
 
     def __post_init__(self) -> None:
-        for spread in (*self.colour_spread, *self.grey_spread, self.brightness):
-            refuse_unless(spread > 0, self, "colour_spread", "positive")
+        refuse_unless(min(self.grey_spread) > 0, self, "grey_spread", "positive")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

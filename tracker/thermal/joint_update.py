@@ -7,9 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from peopleboy.tracker.thermal.appearance.colour_model import likelihood
+from peopleboy.tracker.thermal.appearance.appearance_model import likelihood
 from peopleboy.tracker.thermal.config import FilterConfig, TrackerConfig
-from peopleboy.tracker.thermal.filter.particles import Floats, H
 from peopleboy.tracker.thermal.interaction import overlap_shares, person_factor
 from peopleboy.tracker.thermal.occlusion.depth_order import (
     ExpectedPerson,
@@ -21,6 +20,7 @@ from peopleboy.tracker.thermal.occlusion.depth_order import (
 )
 from peopleboy.tracker.thermal.occlusion.policy import OcclusionPolicy
 from peopleboy.tracker.thermal.particle_filter import FrameView, advance, weigh
+from peopleboy.tracker.thermal.particles import Floats, H
 from peopleboy.tracker.thermal.tracked_person import TrackedPerson
 
 COVERED_RESPONSE = 0.4  # what a point of the contour on people in front counts: less than on a person

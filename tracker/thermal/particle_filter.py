@@ -9,19 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.thermal.appearance.appearance_model import AppearanceView, visible
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.appearance.part_appearance import AppearanceView, visible
-from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, FilterConfig, MotionConfig, TrackerConfig
-from peopleboy.tracker.thermal.contour.likelihood import (
-    ContourModel,
-    fitness,
-    is_within,
-    probability,
-    sample_weights,
+from peopleboy.tracker.thermal.config import (
+    REFERENCE_HEIGHT_PX,
+    FilterConfig,
+    LimitsConfig,
+    MotionConfig,
+    TrackerConfig,
 )
-from peopleboy.tracker.thermal.filter.motion import Columns, predict, turned
-from peopleboy.tracker.thermal.filter.particles import (
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.thermal.interaction import Regions
+from peopleboy.tracker.thermal.particles import (
+    CROWN,
     FOOT,
+    HORIZON,
+    Columns,
+    D,
     Floats,
     H,
     Particles,
@@ -29,16 +33,19 @@ from peopleboy.tracker.thermal.filter.particles import (
     X,
     Y,
     core_rows,
+    draw_prior,
     mean_state,
     normalised,
+    predict,
     resample,
     select,
+    turned,
     uncertainty_px2,
 )
-from peopleboy.tracker.thermal.filter.prior import draw_prior
-from peopleboy.tracker.thermal.interaction import Regions
 
 RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
+OUTSIDE_WEIGHT = 1e-6  # factor on the weight of a sample outside the limits: "a very low chance"
+VIEW_ANGLE_DEG = 44.0  # vertical, of the robot's thermal camera: makes a shift in pixels of a turn
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,7 +97,7 @@ def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerCo
     """Prepare a frame for all filters."""
     motion = config.motion
     turn = frame.turn_rad if motion.uses_odometry and frame.turn_rad is not None else 0.0
-    focal = frame.height_px / 2 / math.tan(math.radians(motion.view_angle_deg) / 2)
+    focal = frame.thermal.shape[0] / 2 / math.tan(math.radians(VIEW_ANGLE_DEG) / 2)
     advance = frame.advance_m if motion.uses_odometry and frame.advance_m is not None else 0.0
     image = model.prepare(frame.thermal)
     colour = None
@@ -175,6 +182,46 @@ def _floored(fit: Floats, likeness: Floats | None, config: FilterConfig) -> Floa
     return floored
 
 
+def sample_weights(
+    fit: Floats, chance: Floats, is_inside: NDArray[np.bool_], model: str, config: FilterConfig
+) -> Floats:
+    """Weigh the samples (N,), to sum to 1.
+
+    The thesis weighs with the probability, which is flat once the fitness is well above the threshold; with a
+    sharpness, the weight goes on growing with the fitness. The paper weighs with the fitness itself.
+
+    Source: thesis, equation 4.5; paper, equation 3.
+    """
+    if config.sharpness > 0:
+        weight = np.exp(config.sharpness * (fit - fit.max()))
+    elif model == "paper":
+        weight = np.maximum(fit, 1e-6)
+    else:
+        weight = chance
+    return normalised(np.where(is_inside, weight, np.float32(OUTSIDE_WEIGHT) * weight).astype(np.float32))
+
+
+def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np.bool_]:
+    """Tell which samples (N,) have a person's proportions and place.
+
+    Source: thesis, section 4.2 and the table of section 4.4.
+    """
+    w, h = state[:, W], state[:, H]
+    below_horizon = state[:, Y] - HORIZON * height_px
+    return (
+        (w > limits.ratio_wh[0] * h)
+        & (w < limits.ratio_wh[1] * h)
+        & (state[:, D] > limits.ratio_dw[0] * w)
+        & (state[:, D] < limits.ratio_dw[1] * w)
+        & (state[:, Y] > limits.y[0] * height_px)
+        & (state[:, Y] < limits.y[1] * height_px)
+        & (below_horizon > limits.y_below_horizon[0] * h)
+        & (below_horizon < limits.y_below_horizon[1] * h)
+        & (h > limits.h[0] * height_px)
+        & (h < limits.h[1] * height_px)
+    )
+
+
 def step(
     particles: Particles,
     view: FrameView,
@@ -217,13 +264,13 @@ def advance(
     moved = predict(kept, view.dt_s, view.size, config.motion if motion is None else motion, rng)
     moved[:, X] = view.after_turn(moved[:, X])
     if resizes and filter_config.resized_share > 0:
-        _resize(moved, filter_config.resized_share, config.contour.head_divisor, rng)
+        _resize(moved, filter_config.resized_share, rng)
     if fresh == 0:
         return moved
     return np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)])
 
 
-def _resize(state: Floats, share: float, head_divisor: float, rng: np.random.Generator) -> None:
+def _resize(state: Floats, share: float, rng: np.random.Generator) -> None:
     """Make a share of the samples (N, 9) larger or smaller, in place.
 
     Every other one keeps the top of its head where it is, the others keep their feet: a torso that was taken
@@ -231,7 +278,7 @@ def _resize(state: Floats, share: float, head_divisor: float, rng: np.random.Gen
     """
     tried = state[:: round(1 / share)]
     factor = np.exp(RESIZING * rng.standard_normal(len(tried), dtype=np.float32))
-    kept = np.where(np.arange(len(tried)) % 2 == 0, -(1 + 2 / head_divisor), FOOT).astype(np.float32)
+    kept = np.where(np.arange(len(tried)) % 2 == 0, -CROWN, FOOT).astype(np.float32)
     tried[:, Y] -= kept * (factor - 1) * tried[:, H]
     tried[:, W : H + 1] *= factor[:, None]
 

@@ -10,11 +10,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.contour.outline import box_of
+from peopleboy.tracker.thermal.ellipse import ellipse_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
-from peopleboy.tracker.thermal.filter.particles import ellipse_of
-from peopleboy.tracker.thermal.filter.prior import draw_around
-from peopleboy.tracker.thermal.interaction import detector_factor, least_overlaps, regions_of
+from peopleboy.tracker.thermal.interaction import box_of, detector_factor, least_overlaps, regions_of
 from peopleboy.tracker.thermal.joint_update import follow
 from peopleboy.tracker.thermal.occlusion.depth_order import ORDERS, Order
 from peopleboy.tracker.thermal.occlusion.policy import make_policy
@@ -26,6 +24,7 @@ from peopleboy.tracker.thermal.particle_filter import (
     view_frame,
     weigh,
 )
+from peopleboy.tracker.thermal.particles import draw_around
 from peopleboy.tracker.thermal.tracked_person import FORGET_S, TrackedPerson, is_born, newborn
 from peopleboy.tracker.track import Status, Track
 
@@ -101,7 +100,7 @@ class PeopleTracker:
         return time_s - self._last_s
 
     def _model_for(self, frame: Frame) -> ContourModel:
-        shape = (frame.height_px, frame.width_px)
+        shape = (frame.thermal.shape[0], frame.thermal.shape[1])
         if self._model is None or self._model.shape != shape:
             self._model = ContourModel.build(shape, self._config.contour)
         return self._model
@@ -197,10 +196,9 @@ class PeopleTracker:
         return bool(is_in_image) and self._policy.is_shown(person, region, view)
 
     def _track(self, person: TrackedPerson, time_s: float) -> Track:
-        ellipse = ellipse_of(person.shown)
         return Track(
             id=person.id,
-            box=box_of(ellipse, self._config.box, self._config.contour.head_divisor),
+            box=box_of(person.shown, self._config.box),
             confidence=person.belief.confidence,
             status=person.status,
             age_s=time_s - person.born_s,

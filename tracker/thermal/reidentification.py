@@ -7,11 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from peopleboy.tracker.thermal.appearance.colour_model import squared_distances
-from peopleboy.tracker.thermal.appearance.part_appearance import knows_colour
+from peopleboy.tracker.thermal.appearance.appearance_model import knows_colour, squared_distances
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.filter.particles import H, X, Y
 from peopleboy.tracker.thermal.particle_filter import FrameView
+from peopleboy.tracker.thermal.particles import H, X, Y
 from peopleboy.tracker.thermal.tracked_person import TrackedPerson
 
 PLACE_PX = 12.0  # [px] of 240 rows: spread of the place of a person who was just lost

@@ -9,13 +9,12 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
+from peopleboy.tracker.thermal.appearance.appearance_model import AppearanceView, ColourModel
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.appearance.part_appearance import AppearanceView
 from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.config import LifeConfig, SmoothingConfig, TrackerConfig
-from peopleboy.tracker.thermal.filter.particles import FOOT, STATE_SIZE, VX, D, Floats, H, W, X, Y
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
+from peopleboy.tracker.thermal.particles import FOOT, STATE_SIZE, VX, D, Floats, H, W, X, Y
 from peopleboy.tracker.track import Status
 
 SETTLED = 6  # frames

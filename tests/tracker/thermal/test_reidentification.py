@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.filter.particles import equally_weighted
 from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
+from peopleboy.tracker.thermal.particles import equally_weighted
 from peopleboy.tracker.thermal.reidentification import least_mismatch, most_alike_and_nearest
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.thermal.variants import FOOTAGE, PEOPLEBOY

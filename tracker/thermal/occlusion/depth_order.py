@@ -10,13 +10,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.appearance.colour_model import squared_distances
+from peopleboy.tracker.thermal.appearance.appearance_model import squared_distances
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.contour.coverage import covered_by
-from peopleboy.tracker.thermal.contour.likelihood import fitness
-from peopleboy.tracker.thermal.filter.particles import STATE_SIZE, Floats
+from peopleboy.tracker.thermal.contour.likelihood import covered_by, fitness
 from peopleboy.tracker.thermal.interaction import Regions, overlap_shares, regions_of
 from peopleboy.tracker.thermal.particle_filter import FrameView
+from peopleboy.tracker.thermal.particles import STATE_SIZE, Floats
 from peopleboy.tracker.thermal.tracked_person import TrackedPerson, moved_on
 
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
@@ -185,7 +184,7 @@ def surroundings_of(
     interaction, image = config.interaction, view.image
     if front:
         states = [person.belief.estimate for person in front]
-        image = covered_by(image, states, config.contour, config.depth.growth)
+        image = covered_by(image, states, config.depth.growth)
     return Surroundings(
         front=front,
         others=np.concatenate([regions[is_front], rivals]),

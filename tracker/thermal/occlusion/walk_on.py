@@ -8,15 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.appearance.colour_model import squared_distances
+from peopleboy.tracker.thermal.appearance.appearance_model import squared_distances
 from peopleboy.tracker.thermal.config import MotionConfig, TrackerConfig, WalkOnConfig
 from peopleboy.tracker.thermal.contour.contour import SECTIONS
-from peopleboy.tracker.thermal.contour.coverage import body_share, head_share, seen_shares
-from peopleboy.tracker.thermal.contour.likelihood import probability
-from peopleboy.tracker.thermal.filter.particles import FOOT, VW, VX, VY, D, H, W, X, Y, equally_weighted
+from peopleboy.tracker.thermal.contour.likelihood import body_share, head_share, probability, seen_shares
 from peopleboy.tracker.thermal.interaction import Regions, overlap_shares
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
+from peopleboy.tracker.thermal.particles import FOOT, VW, VX, VY, D, H, W, X, Y, equally_weighted
 from peopleboy.tracker.thermal.reidentification import least_mismatch
 from peopleboy.tracker.thermal.tracked_person import (
     FORGET_S,

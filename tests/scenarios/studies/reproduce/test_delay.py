@@ -21,7 +21,7 @@ from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Set
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.thermal.particles import Particles
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import Tracker
 

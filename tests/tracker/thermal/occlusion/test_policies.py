@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.contour.coverage import covered_by
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.filter.particles import equally_weighted
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, covered_by
 from peopleboy.tracker.thermal.interaction import regions_of
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.occlusion.policy import make_policy
 from peopleboy.tracker.thermal.occlusion.walk_on import LOST_FRAMES
 from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
+from peopleboy.tracker.thermal.particles import equally_weighted
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
 from peopleboy.tracker.track import Status
@@ -41,7 +40,7 @@ def judged(config, behind, *front):
         front=front,
         others=regions_of(states, config),
         strength=np.zeros(len(front)),
-        image=covered_by(view.image, states, config.contour) if front else view.image,
+        image=covered_by(view.image, states) if front else view.image,
     )
     return make_policy(config).judge(behind, behind.belief, surroundings, view, np.random.default_rng(0))
 
