@@ -238,7 +238,10 @@ class HeightConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StayBehindConfig:
-    """Hidden people are where their occluder is (thesis, section 7.3)."""
+    """Hidden people are where their occluder is (thesis, section 7.3).
+
+    Without an order in depth nobody is ever in front, and nobody hidden.
+    """
 
     head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
 
@@ -271,5 +274,4 @@ class TrackerConfig:
     appearance: AppearanceConfig | None = None  # None: colours as they are
     depth: DepthConfig = field(default_factory=DepthConfig)
     height: HeightConfig = field(default_factory=HeightConfig)
-    # Asked only about people who have somebody in front of them, or are lost from sight.
     occlusion: StayBehindConfig | WalkOnConfig = field(default_factory=StayBehindConfig)

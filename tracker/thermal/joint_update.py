@@ -23,7 +23,7 @@ from peopleboy.tracker.thermal.particle_filter import FrameView, advance, weigh
 from peopleboy.tracker.thermal.particles import Floats, H
 from peopleboy.tracker.thermal.tracked_person import TrackedPerson
 
-COVERED_RESPONSE = 0.4  # what a point of the contour on people in front counts: less than on a person
+COVERED_RESPONSE = 0.4  # what a point of the contour on people in front counts: neither for nor against
 NOBODY = np.empty((0, 4), dtype=np.float32)
 
 

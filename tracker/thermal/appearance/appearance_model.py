@@ -17,7 +17,7 @@ from peopleboy.tracker.thermal.interaction import Regions
 from peopleboy.tracker.thermal.particles import Floats
 
 # By how much the mean colours, 0..1, of one person's head, torso and legs differ from frame to frame after
-# the light has been divided out, over the data sets.
+# the light has been divided out.
 COLOUR_SPREAD = (0.06, 0.02, 0.035)
 BRIGHTNESS = 80.0  # mean of the colour image [grey] to which all are scaled
 DARKEST = 12.0  # mean below which colours are noise
