@@ -17,14 +17,12 @@ from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood
-from peopleboy.tracker.thermal.contour.coverage import covered_by, seen_shares
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, likelihood
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, covered_by, seen_shares
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY
-from peopleboy.tracker.thermal.filter.motion import predict
-from peopleboy.tracker.thermal.filter.particles import mean_state, resample
 from peopleboy.tracker.thermal.interaction import overlap_shares, person_factor, regions_of
 from peopleboy.tracker.thermal.particle_filter import FrameView, view_frame, weigh
+from peopleboy.tracker.thermal.particles import mean_state, predict, resample
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status
@@ -161,7 +159,7 @@ def _person_works(tracker: PeopleTracker, number: int, view: FrameView) -> dict[
     strength = np.full(len(others), config.interaction.penalty)
 
     def occlusion() -> object:
-        image = covered_by(view.image, others[:1], config.contour, config.occlusion.growth)
+        image = covered_by(view.image, others[:1], config.depth.growth)
         seen_shares(image, estimate, view.model.probes)
         return person_factor(overlap_shares(state, regions_of(others, config), config), strength)
 

@@ -1,4 +1,4 @@
-"""How much a sample overlaps people who are already tracked, and what that costs it."""
+"""The boxes of people, how much they overlap, and what an overlap costs a sample."""
 
 from __future__ import annotations
 
@@ -9,16 +9,30 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import BoxConfig, InteractionConfig, TrackerConfig
-from peopleboy.tracker.thermal.filter.particles import Floats, H, W, X, Y
+from peopleboy.tracker.thermal.particles import CROWN, Floats, H, W, X, Y
 
+Box = tuple[float, float, float, float]
 Regions = Floats
 """(M, 4) left, top, width, height [px] of people."""
+
+
+def box_of(state: NDArray[np.floating], config: BoxConfig) -> Box:
+    """Give the box left, top, width, height [px] of a contour (9,).
+
+    Its top is the top of the head, its centre column the body's.
+
+    Source: thesis, section 3.4 (2 w by 3.5 h); paper, section 4.1 (2 w by 3 h).
+    """
+    x, y, w, h = (float(state[k]) for k in (X, Y, W, H))
+    width_per_w, height_per_h, top_per_h = _proportions(config)
+    width = width_per_w * w
+    return x - width / 2, y - top_per_h * h, width, height_per_h * h
 
 
 def regions_of(states: Sequence[NDArray[np.floating]], config: TrackerConfig) -> Regions:
     """Give the rectangles (M, 4) [px] that people with these (9,) states take."""
     state = np.asarray(states, dtype=np.float32).reshape(-1, 9)
-    return _regions(state, *_proportions(config.box, config.contour.head_divisor))
+    return _regions(state, *_proportions(config.box))
 
 
 def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
@@ -27,12 +41,12 @@ def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Fl
     Source: thesis, section 5.2, "the amount of overlap between particle i and region j", which is read as a
     share of the sample's own area.
     """
-    return _shares(_regions(state, *_proportions(config.box, config.contour.head_divisor)), regions)
+    return _shares(_regions(state, *_proportions(config.box)), regions)
 
 
 def least_overlaps(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
     """Measure (N, M) the intersection of a sample and a region as a share of the smaller of the two."""
-    samples = _regions(state, *_proportions(config.box, config.contour.head_divisor))
+    samples = _regions(state, *_proportions(config.box))
     return np.maximum(_shares(samples, regions), _shares(regions, samples).T)
 
 
@@ -63,9 +77,9 @@ def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
     return factor
 
 
-def _proportions(box: BoxConfig, head_divisor: float) -> tuple[float, float, float]:
+def _proportions(box: BoxConfig) -> tuple[float, float, float]:
     """Give width per w, height per h, and how many h the top lies above the centre."""
-    return box.width_per_w, box.height_per_h, 1 + 2 / head_divisor + box.hair_per_h
+    return box.width_per_w, box.height_per_h, CROWN + box.hair_per_h
 
 
 @njit(cache=True, nogil=True)

@@ -12,15 +12,12 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.contour.outline import box_of
+from peopleboy.tracker.thermal.ellipse import ellipse_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
-from peopleboy.tracker.thermal.filter.particles import W, ellipse_of
-from peopleboy.tracker.thermal.filter.prior import draw_around
-from peopleboy.tracker.thermal.interaction import detector_factor, least_overlaps, regions_of
+from peopleboy.tracker.thermal.interaction import box_of, detector_factor, least_overlaps, regions_of
 from peopleboy.tracker.thermal.joint_update import follow
-from peopleboy.tracker.thermal.life import is_born
 from peopleboy.tracker.thermal.occlusion.depth_order import ORDERS, Order
-from peopleboy.tracker.thermal.occlusion.occlusion_status import foot_of, learn
+from peopleboy.tracker.thermal.occlusion.policy import make_policy
 from peopleboy.tracker.thermal.particle_filter import (
     Belief,
     FrameView,
@@ -29,9 +26,9 @@ from peopleboy.tracker.thermal.particle_filter import (
     view_frame,
     weigh,
 )
+from peopleboy.tracker.thermal.particles import draw_around
 from peopleboy.tracker.thermal.place_on_floor import places_on_floor
-from peopleboy.tracker.thermal.reidentification import recognised, remembered
-from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
+from peopleboy.tracker.thermal.tracked_person import FORGET_S, TrackedPerson, is_born, newborn
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 FIRST_STEP_S = 1 / 15
@@ -46,7 +43,9 @@ class PeopleTracker:
     def __init__(self, config: TrackerConfig, rng: np.random.Generator, order: Order | None = None) -> None:
         self._config = config
         self._rng = rng
-        self._order = ORDERS[config.occlusion.order] if order is None else order
+        by = config.depth.order
+        self._order = None if by is None else order or ORDERS[by]
+        self._policy = make_policy(config)
         self._model: ContourModel | None = None
         self._last_s: float | None = None
         self._detector: Belief | None = None
@@ -91,14 +90,8 @@ class PeopleTracker:
         model = self._model_for(frame.grey(THERMAL))
         view = view_frame(frame, self._time_step(frame.time_s), model, self._config)
         self._last_s = frame.time_s
-        self._memories = tuple(
-            person
-            for memory in self._memories
-            if (person := remembered(memory, view, self._persons, self._config)).hidden_s
-            <= self._config.occlusion.forget_s
-        )
-        persons = follow(self._persons, view, self._config, self._order, self._rng)
-        self._part(persons)
+        self._memories = self._remembered(view)
+        self._part(follow(self._persons, view, self._config, self._order, self._policy, self._rng))
         if self._introduced is not None:
             self._meet(self._introduced, view, frame.time_s)
             self._introduced = None
@@ -121,28 +114,35 @@ class PeopleTracker:
             self._model = ContourModel.build(shape, self._config.contour)
         return self._model
 
+    def _remembered(self, view: FrameView) -> tuple[TrackedPerson, ...]:
+        """Carry on the memory of people for whom no samples look any more, but of those not for too long."""
+        later = (
+            replace(
+                person,
+                shown=self._policy.whereabouts(person, self._persons, view),
+                hidden_s=person.hidden_s + view.dt_s,
+                hidden_frames=person.hidden_frames + 1,
+            )
+            for person in self._memories
+        )
+        return tuple(person for person in later if person.hidden_s <= FORGET_S)
+
     def _part(self, persons: tuple[TrackedPerson, ...]) -> None:
         """Divide people into those who are kept, those who are only remembered, and those who are gone."""
         kept, memories = [], []
         for person in persons:
             if self._is_kept(person):
                 kept.append(person)
-            elif self._is_remembered(person):
+            elif person.is_hidden or self._policy.remembers_lost(person):
                 memories.append(replace(person, status=Status.TOTALLY_OCCLUDED, is_behind=False))
         self._persons = tuple(kept)
         self._memories = (*self._memories, *memories)
 
     def _is_kept(self, person: TrackedPerson) -> bool:
-        handling = self._config.occlusion
+        if person.is_hidden:
+            return self._policy.searches(person)
         # Without confidence no sample is within the limits, and the estimate may be no ellipse at all.
-        if not person.is_hidden:
-            return person.missing < self._config.life.death_frames and person.belief.confidence > 0
-        if handling.keeps_velocity:
-            return person.missing < handling.searched_frames
-        return person.hidden_frames <= handling.kept_frames
-
-    def _is_remembered(self, person: TrackedPerson) -> bool:
-        return person.is_hidden or (self._config.occlusion.remembers_lost and person.is_settled)
+        return person.missing < self._config.life.death_frames and person.belief.confidence > 0
 
     def _search(self, view: FrameView, time_s: float) -> tuple[TrackedPerson, ...]:
         """Carry the detector on; a person is born when it has settled on one for long enough.
@@ -158,12 +158,12 @@ class PeopleTracker:
         self._hits = self._hits + 1 if is_born(self._detector, view, config.life) else 0
         if self._hits == 0:
             return ()
-        found = self._newborn(self._detector, view, time_s)
+        found = newborn(self._born + 1, self._detector, view, time_s, config)
         if self._hits < config.life.birth_frames:
             return (replace(found, status=Status.TENTATIVE),)
         self._hits, self._detector = 0, None
         lost = (*self._memories, *(person for person in self._persons if person.is_hidden))
-        known = recognised(found, lost, view, config)
+        known = self._policy.recognised(found, lost, view) if lost else None
         if known is None:
             self._born = found.id
         else:
@@ -182,21 +182,10 @@ class PeopleTracker:
     def _meet(self, box: Box, view: FrameView, time_s: float) -> None:
         """Start a filter on samples around a person who is pointed out."""
         state = draw_around(box, self._config, self._rng)
-        found = self._newborn(weigh(state, view, self._config.person, self._config), view, time_s)
+        belief = weigh(state, view, self._config.person, self._config)
+        found = newborn(self._born + 1, belief, view, time_s, self._config)
         self._born = found.id
         self._persons = (*self._persons, found)
-
-    def _newborn(self, belief: Belief, view: FrameView, time_s: float) -> TrackedPerson:
-        person = TrackedPerson(
-            id=self._born + 1,
-            born_s=time_s,
-            belief=belief,
-            shown=belief.estimate,
-            velocity=np.zeros(2),
-            foot=foot_of(belief.estimate),
-            size=belief.estimate[SIZE],
-        )
-        return learn(person, belief.estimate, view, self._config)
 
     def _detected(self, view: FrameView) -> Belief:
         """Weigh the detector's samples, kept off the people that are tracked."""
@@ -210,25 +199,14 @@ class PeopleTracker:
         return weigh(state, view, config.detector, config, factor)
 
     def _is_shown(self, person: TrackedPerson, view: FrameView) -> bool:
-        """Tell whether a hidden person is shown: as long as it is fairly certain where it is."""
-        handling = self._config.occlusion
-        left, top, width, height = regions_of([person.shown], self._config)[0]
-        rows, columns = view.image.shape
-        if left > columns or left + width < 0:
-            return False
-        if person.is_behind:
-            is_sure = person.belief.uncertainty_px2 < (handling.sure_spread * float(person.shown[W])) ** 2
-            return person.hidden_s <= (handling.forget_s if is_sure else handling.shown_behind_s)
-        walks_out = (left < 0 and person.velocity[0] < 0) or (
-            left + width > columns and person.velocity[0] > 0
-        )
-        is_whole = top + height < rows
-        return person.hidden_s <= (handling.shown_leaving_s if walks_out and is_whole else handling.shown_s)
+        """Tell whether a hidden person is shown: nobody outside of the image is."""
+        region = regions_of([person.shown], self._config)[0]
+        is_in_image = region[0] <= view.image.shape[1] and region[0] + region[2] >= 0
+        return bool(is_in_image) and self._policy.is_shown(person, region, view)
 
     def _tracks(self, frame: Frame) -> tuple[Track, ...]:
         config, calibration = self._config, frame.calibrations.get(THERMAL)
-        divisor = config.contour.head_divisor
-        boxes = [box_of(ellipse_of(person.shown), config.box, divisor) for person in self._told]
+        boxes = [box_of(person.shown, config.box) for person in self._told]
         places: Sequence[FloorPlace | None] = [None] * len(boxes)
         if calibration is not None:
             places = places_on_floor(boxes, [person.status for person in self._told], calibration)

@@ -17,15 +17,18 @@ from peopleboy.tracker.thermal.config import (
     AppearanceConfig,
     BoxConfig,
     ContourConfig,
+    DepthConfig,
     FilterConfig,
+    HeightConfig,
     InteractionConfig,
     LifeConfig,
     LikelihoodConfig,
     LimitsConfig,
     MotionConfig,
-    OcclusionConfig,
     SmoothingConfig,
+    StayBehindConfig,
     TrackerConfig,
+    WalkOnConfig,
 )
 
 _BEND_GREY = 40.0  # unit of the fitness, in which kappa and theta are given below
@@ -79,7 +82,8 @@ cameras are 6 cm apart, which no affine map makes up for at every distance, so t
 THESIS_OCCLUSION = replace(
     THESIS_COLOUR,
     interaction=InteractionConfig(occluded_penalty=0.5),
-    occlusion=OcclusionConfig(is_handled=True, head_covered=1.0),
+    depth=DepthConfig(order="foot"),
+    occlusion=StayBehindConfig(head_covered=1.0),
 )
 """With the occlusion handling of chapter 7; a head is hidden once no point of it is seen."""
 
@@ -167,22 +171,9 @@ PEOPLEBOY = TrackerConfig(
     ),
     colour=_PEOPLEBOY_COLOUR,
     appearance=AppearanceConfig(),
-    occlusion=OcclusionConfig(
-        is_handled=True,
-        order="appearance",
-        removes_front=True,
-        growth=1.2,
-        keeps_velocity=True,
-        hidden_memory=0.985,
-        hidden_noise=0.5,
-        size_spread=0.1,
-        hidden_w=0.46,
-        remembers_lost=True,
-        shown_s=0.3,
-        shown_leaving_s=0.5,
-        shown_behind_s=0.8,
-        sure_spread=0.4,
-    ),
+    depth=DepthConfig(order="appearance", removes_front=True, growth=1.2),
+    height=HeightConfig(overlapped_spread=0.1),
+    occlusion=WalkOnConfig(remembers_lost=True, shows_only_sure=True),
 )
 """What works on the robot: the default."""
 
@@ -204,7 +195,8 @@ FOOTAGE = replace(
     box=BoxConfig(width_per_w=2.0, height_per_h=3.5),
     colour=replace(_PEOPLEBOY_COLOUR, affine=SAME_VIEW, parallax=0.0),
     appearance=AppearanceConfig(grey_spread=(0.15, 0.1, 0.15), needs_colour=True),
-    occlusion=replace(PEOPLEBOY.occlusion, order="contour", seen_size_spread=0.3, size_s=2.0),
+    depth=replace(PEOPLEBOY.depth, order="contour"),
+    height=HeightConfig(overlapped_spread=0.1, seen_spread=0.3, memory_s=2.0),
 )
 """For footage of any camera, in which degC, horizon and the camera's own motion are unknown.
 

@@ -22,7 +22,7 @@ from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
-from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.thermal.particles import Particles
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status, Track
 

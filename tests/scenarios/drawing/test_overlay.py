@@ -39,7 +39,7 @@ def is_coloured(
 
 def test_the_outline_of_a_track_has_its_colour_all_around() -> None:
     picture = draw_tracks(GREY, [made.TRACK], explanation=made.explain())
-    for line in outline(made.ELLIPSE, made.explain().config.contour, 200):
+    for line in outline(made.ELLIPSE, 200):
         assert is_coloured(picture, line, track_colour(1))
 
 

@@ -51,6 +51,6 @@ def test_nobody_who_is_settled_grows_at_once():
                 before = tracks[0].boxes["thermal"][3]
         return tracks[0].boxes["thermal"][3] / before
 
-    free = replace(FOOTAGE, occlusion=replace(FOOTAGE.occlusion, seen_size_spread=0.0))
-    stiff = replace(FOOTAGE, occlusion=replace(FOOTAGE.occlusion, seen_size_spread=0.02))
+    free = replace(FOOTAGE, height=replace(FOOTAGE.height, seen_spread=0.0))
+    stiff = replace(FOOTAGE, height=replace(FOOTAGE.height, seen_spread=0.02))
     assert height_after(stiff) < 1.12 < 1.3 < height_after(free)

@@ -6,21 +6,41 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.thermal.config import InteractionConfig, TrackerConfig
-from peopleboy.tracker.thermal.contour.outline import box_of
-from peopleboy.tracker.thermal.filter.particles import ellipse_of
-from peopleboy.tracker.thermal.interaction import detector_factor, overlap_shares, person_factor, regions_of
+from peopleboy.tracker.thermal.config import BoxConfig, InteractionConfig, TrackerConfig
+from peopleboy.tracker.thermal.interaction import (
+    box_of,
+    detector_factor,
+    overlap_shares,
+    person_factor,
+    regions_of,
+)
+from peopleboy.tracker.thermal.variants import PAPER, THESIS
 
 CONFIG = TrackerConfig()
+TALL = np.array([100.0, 120.0, 12.0, 44.0, 3.0, 0.0, 0.0, 0.0, 0.0])
 
 
 def state(x=100.0, y=120.0, w=10.0, h=30.0):
     return np.array([x, y, w, h, 0, 0, 0, 0, 0], dtype=np.float32)
 
 
+def test_the_thesis_box_is_2_w_by_3_5_h_from_the_top_of_the_head():
+    assert box_of(TALL, BoxConfig()) == pytest.approx((88, 120 - 44 - 20, 24, 154))
+    assert THESIS.box.height_per_h == 3.5
+
+
+def test_the_paper_box_is_3_h_high():
+    assert box_of(TALL, PAPER.box)[3] == pytest.approx(132)
+
+
+def test_hair_raises_the_top_of_the_box_and_nothing_else():
+    bald, haired = (box_of(TALL, BoxConfig(hair_per_h=hair)) for hair in (0.0, 0.1))
+    assert haired == pytest.approx((bald[0], bald[1] - 4.4, bald[2], bald[3]))
+
+
 def test_the_region_is_the_box_that_is_shown():
     region = regions_of([state()], CONFIG)[0]
-    box = box_of(ellipse_of(state()), CONFIG.box, CONFIG.contour.head_divisor)
+    box = box_of(state(), CONFIG.box)
     assert region == pytest.approx(box, rel=1e-6)
 
 

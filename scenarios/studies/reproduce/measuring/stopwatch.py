@@ -14,21 +14,20 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood
-from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, likelihood
+from peopleboy.tracker.thermal.appearance.colour_view import ColourView, PowerSums
 from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.contour.likelihood import (
-    ContourModel,
-    fitness,
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.thermal.particle_filter import (
+    advance,
+    begin,
     is_within,
-    probability,
     sample_weights,
+    step,
+    view_frame,
 )
-from peopleboy.tracker.thermal.filter.motion import predict
-from peopleboy.tracker.thermal.filter.particles import Particles, mean_state, resample, uncertainty_px2
-from peopleboy.tracker.thermal.particle_filter import advance, begin, step, view_frame
+from peopleboy.tracker.thermal.particles import Particles, mean_state, predict, resample, uncertainty_px2
 
 SHAPE = (240, 320)
 COUNT = 1000

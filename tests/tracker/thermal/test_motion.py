@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.thermal.config import MotionConfig
-from peopleboy.tracker.thermal.filter.motion import noise_per_step, predict, turned
+from peopleboy.tracker.thermal.particles import noise_per_step, predict, turned
 
 DT = 1 / 15
 STATE = np.array([120, 110, 12, 30, 2, 15, -9, 3, -6], dtype=np.float32)

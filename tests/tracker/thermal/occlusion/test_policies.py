@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import THERMAL, Frame
-from peopleboy.tracker.thermal.contour.coverage import covered_by
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.filter.particles import equally_weighted
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, covered_by
 from peopleboy.tracker.thermal.interaction import regions_of
-from peopleboy.tracker.thermal.occlusion.occlusion_status import judge
-from peopleboy.tracker.thermal.occlusion.visibility import Surroundings
+from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
+from peopleboy.tracker.thermal.occlusion.policy import make_policy
+from peopleboy.tracker.thermal.occlusion.walk_on import LOST_FRAMES
 from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
+from peopleboy.tracker.thermal.particles import equally_weighted
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
 from peopleboy.tracker.track import Status
@@ -26,6 +26,14 @@ def person(number, x, h):
     )
 
 
+VIEW = view_frame(
+    Frame(images={THERMAL: blank()}, time_s=1.0),
+    1 / 15,
+    ContourModel.build((240, 320), PEOPLEBOY.contour),
+    PEOPLEBOY,
+)
+
+
 def judged(config, behind, *front):
     view = view_frame(
         Frame(images={THERMAL: blank()}, time_s=1.0),
@@ -38,9 +46,9 @@ def judged(config, behind, *front):
         front=front,
         others=regions_of(states, config),
         strength=np.zeros(len(front)),
-        image=covered_by(view.image, states, config.contour) if front else view.image,
+        image=covered_by(view.image, states) if front else view.image,
     )
-    return judge(behind, behind.belief, surroundings, view, config, np.random.default_rng(0))
+    return make_policy(config).judge(behind, behind.belief, surroundings, view, np.random.default_rng(0))
 
 
 @pytest.mark.parametrize("config", [PEOPLEBOY, THESIS_OCCLUSION])
@@ -98,7 +106,57 @@ def test_looks_are_not_learnt_while_somebody_is_in_front():
 
 
 def test_who_is_lost_in_mid_image_is_hidden_by_something_unknown():
-    lost = replace(person(1, 160, 30), missing=PEOPLEBOY.occlusion.lost_frames - 1)
+    lost = replace(person(1, 160, 30), missing=LOST_FRAMES - 1)
     gone = judged(PEOPLEBOY, replace(lost, belief=replace(lost.belief, confidence=0.0)))
     assert gone.status is Status.TOTALLY_OCCLUDED
     assert gone.occluder is None
+
+
+def test_with_the_thesis_nobody_is_hidden_by_what_is_unknown_or_remembered_who_was_not_hidden():
+    lost = replace(person(1, 160, 30), missing=LOST_FRAMES - 1)
+    gone = judged(THESIS_OCCLUSION, replace(lost, belief=replace(lost.belief, confidence=0.0)))
+    assert not gone.is_hidden
+    assert not make_policy(THESIS_OCCLUSION).remembers_lost(gone)
+    assert make_policy(PEOPLEBOY).remembers_lost(gone)
+
+
+def test_in_the_thesis_the_remembered_stay_with_their_occluder_and_in_ours_they_walk_on():
+    leader = person(1, 100.0, 30)
+    walker = replace(person(2, 50.0, 30), occluder=1)
+    walker.shown[5] = 30.0
+    behind = make_policy(THESIS_OCCLUSION).whereabouts(walker, (leader,), VIEW)
+    assert behind[0] == 100.0
+    ahead = make_policy(PEOPLEBOY).whereabouts(walker, (leader,), VIEW)
+    assert ahead[0] == pytest.approx(50.0 + 30.0 / 15)
+
+
+def test_the_samples_of_the_hidden_are_held_to_the_floor_by_ours_and_left_alone_by_the_thesis():
+    hidden = replace(person(1, 160, 30), status=Status.TOTALLY_OCCLUDED)
+    ours, theirs = make_policy(PEOPLEBOY), make_policy(THESIS_OCCLUSION)
+    motion = ours.motion_of(hidden)
+    assert motion.noise_x / PEOPLEBOY.motion.noise_x > motion.noise_y / PEOPLEBOY.motion.noise_y
+    assert theirs.motion_of(hidden) == THESIS_OCCLUSION.motion
+    assert ours.keeps_off(hidden)
+    assert not theirs.keeps_off(hidden)
+
+
+@pytest.mark.parametrize(
+    ("hidden_s", "spread_px", "is_behind", "is_shown"),
+    [
+        (0.2, 90.0, False, True),
+        (0.4, 90.0, False, False),
+        (0.7, 90.0, True, True),
+        (0.9, 90.0, True, False),
+        (9.0, 1.0, True, True),
+    ],
+)
+def test_ours_shows_the_hidden_for_as_long_as_it_is_sure_where_they_are(
+    hidden_s, spread_px, is_behind, is_shown
+):
+    lost = replace(person(1, 160, 30), hidden_s=hidden_s, is_behind=is_behind)
+    lost = replace(lost, belief=replace(lost.belief, uncertainty_px2=spread_px**2))
+    region = regions_of([lost.shown], PEOPLEBOY)[0]
+    assert make_policy(PEOPLEBOY).is_shown(lost, region, VIEW) is is_shown
+    assert make_policy(THESIS_OCCLUSION).is_shown(lost, region, VIEW)
+    showing = replace(PEOPLEBOY, occlusion=replace(PEOPLEBOY.occlusion, shows_only_sure=False))
+    assert make_policy(showing).is_shown(lost, region, VIEW)

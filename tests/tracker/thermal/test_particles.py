@@ -3,7 +3,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from peopleboy.tracker.thermal.filter.particles import (
+from peopleboy.tracker.thermal.particles import (
     Particles,
     core_rows,
     equally_weighted,
