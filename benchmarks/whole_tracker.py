@@ -20,11 +20,11 @@ from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, likelihood
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel, covered_by, seen_shares
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY
-from peopleboy.tracker.thermal.interaction import overlap_shares, person_factor, regions_of
 from peopleboy.tracker.thermal.particle_filter import FrameView, view_frame, weigh
 from peopleboy.tracker.thermal.particles import mean_state, predict, resample
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.thermal.whereabouts import overlap_shares, person_factor, regions_of
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 

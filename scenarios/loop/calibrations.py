@@ -7,7 +7,7 @@ from functools import lru_cache, singledispatch
 
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.tracker.calibration import Calibration, PinholeCalibration
+from peopleboy.tracker.frame import Calibration, PinholeCalibration
 
 
 def calibrations_of(cameras: Mapping[str, CameraConfig]) -> Mapping[str, Calibration]:

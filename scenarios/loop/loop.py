@@ -23,8 +23,7 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.tracker.calibration import Calibration
-from peopleboy.tracker.frame import THERMAL, Frame, Odometry
+from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
 

@@ -7,8 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.calibration import Calibration
-from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.frame import THERMAL, Calibration
 from peopleboy.tracker.track import Box, FloorPlace, Track
 
 PERSON_M: Final = (1.72, 0.5)  # height and width of who has no box

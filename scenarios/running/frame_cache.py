@@ -31,10 +31,9 @@ from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
-from peopleboy.tracker.calibration import Calibration, PinholeCalibration
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import Frame, Odometry
+from peopleboy.tracker.frame import Calibration, Frame, Odometry, PinholeCalibration
 from peopleboy.tracker.track import Track
 
 MOTION = ("advance_m", "aside_m", "turn_rad")

@@ -21,8 +21,7 @@ from peopleboy.scenarios.running.run import run as run_scenario
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import KINDS
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.tracker.calibration import PinholeCalibration
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import Frame, PinholeCalibration
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
 from tests.helpers.calls.refused import refused

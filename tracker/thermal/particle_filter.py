@@ -19,7 +19,6 @@ from peopleboy.tracker.thermal.config import (
     TrackerConfig,
 )
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
-from peopleboy.tracker.thermal.interaction import Regions
 from peopleboy.tracker.thermal.particles import (
     CROWN,
     FOOT,
@@ -42,6 +41,7 @@ from peopleboy.tracker.thermal.particles import (
     turned,
     uncertainty_px2,
 )
+from peopleboy.tracker.thermal.whereabouts import Regions
 
 STANDING = Odometry()
 RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller

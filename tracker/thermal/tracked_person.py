@@ -15,12 +15,12 @@ from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.config import LifeConfig, SmoothingConfig, TrackerConfig
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
 from peopleboy.tracker.thermal.particles import FOOT, STATE_SIZE, VX, D, Floats, H, W, X, Y
+from peopleboy.tracker.thermal.whereabouts import PERSON_M
 from peopleboy.tracker.track import Status
 
 SETTLED = 6  # frames
 SIZE = [W, H, D]  # columns of a state
-PERSON_M = 1.72  # height of people [m]
-HEIGHT = 3.7  # the same, in body semi-heights
+HEIGHT = 3.7  # of people, in body semi-heights
 VELOCITY_S = 0.4  # time constant of the velocity with which a hidden person walks on
 FOOT_S = 0.5
 FORGET_S = 10.0  # time after which a hidden person is forgotten

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
-from peopleboy.tracker.thermal import joint_update, people_tracker
+from peopleboy.tracker.thermal import people_tracker
 from peopleboy.tracker.thermal.config import InteractionConfig
 from peopleboy.tracker.thermal.particle_filter import weigh
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
@@ -72,8 +72,7 @@ def test_equal_seeds_give_equal_tracks():
 
 def test_the_image_is_measured_once_for_each_person_and_once_for_the_detector(monkeypatch):
     calls = []
-    for module in (people_tracker, joint_update):
-        monkeypatch.setattr(module, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
+    monkeypatch.setattr(people_tracker, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
     tracker = PeopleTracker(APART, np.random.default_rng(0))
     for i in range(60):
         calls.clear()

@@ -10,18 +10,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.tracker.calibration import PinholeCalibration
-from peopleboy.tracker.thermal.place_on_floor import (
+from peopleboy.tracker.frame import PinholeCalibration
+from peopleboy.tracker.thermal.whereabouts import (
     CORRELATION,
     ERRORS,
     FARTHEST_M,
     FOOT_BELOW,
     FOOT_SD,
     HEAD_SD,
+    PERSON_M,
     STATURE_SD_M,
     places_on_floor,
 )
-from peopleboy.tracker.thermal.tracked_person import PERSON_M
 from peopleboy.tracker.track import Box, Status
 from tests.helpers.calls.refused import refused
 

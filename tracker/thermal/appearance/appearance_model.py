@@ -13,8 +13,8 @@ from peopleboy.tracker.thermal.appearance.colour_view import ColourView, PowerSu
 from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangles
 from peopleboy.tracker.thermal.colour_config import SAME_VIEW, ColourConfig
 from peopleboy.tracker.thermal.config import AppearanceConfig
-from peopleboy.tracker.thermal.interaction import Regions
 from peopleboy.tracker.thermal.particles import Floats
+from peopleboy.tracker.thermal.whereabouts import Regions
 
 # By how much the mean colours, 0..1, of one person's head, torso and legs differ from frame to frame after
 # the light has been divided out.

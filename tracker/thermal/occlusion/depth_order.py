@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from peopleboy.tracker.thermal.appearance.appearance_model import squared_distances
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import covered_by, fitness
-from peopleboy.tracker.thermal.interaction import Regions, overlap_shares, regions_of
 from peopleboy.tracker.thermal.particle_filter import FrameView
 from peopleboy.tracker.thermal.particles import STATE_SIZE, Floats
 from peopleboy.tracker.thermal.tracked_person import TrackedPerson, moved_on
+from peopleboy.tracker.thermal.whereabouts import Regions, overlap_shares, regions_of
 
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
 LOOKS = 12.0  # difference of squared distances of looks that counts 1

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import MotionConfig, TrackerConfig, WalkOnConfig
-from peopleboy.tracker.thermal.interaction import Regions
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.occlusion.stay_behind import StayBehind
 from peopleboy.tracker.thermal.occlusion.walk_on import WalkOn
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
 from peopleboy.tracker.thermal.tracked_person import TrackedPerson
+from peopleboy.tracker.thermal.whereabouts import Regions
 
 
 class OcclusionPolicy(Protocol):

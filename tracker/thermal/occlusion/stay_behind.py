@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import MotionConfig, StayBehindConfig, TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import head_share, seen_shares
-from peopleboy.tracker.thermal.interaction import Regions
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
 from peopleboy.tracker.thermal.particles import VW
 from peopleboy.tracker.thermal.reidentification import most_alike_and_nearest
 from peopleboy.tracker.thermal.tracked_person import FORGET_S, TrackedPerson, hidden, moved_on, seen
+from peopleboy.tracker.thermal.whereabouts import Regions
 
 KEPT_FRAMES = 8  # thesis, section 7.3
 

@@ -12,7 +12,6 @@ from peopleboy.tracker.thermal.appearance.appearance_model import squared_distan
 from peopleboy.tracker.thermal.config import MotionConfig, TrackerConfig, WalkOnConfig
 from peopleboy.tracker.thermal.contour.contour import SECTIONS
 from peopleboy.tracker.thermal.contour.likelihood import body_share, head_share, probability, seen_shares
-from peopleboy.tracker.thermal.interaction import Regions, overlap_shares
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
 from peopleboy.tracker.thermal.particles import FOOT, VW, VX, VY, D, H, W, X, Y, equally_weighted
@@ -27,6 +26,7 @@ from peopleboy.tracker.thermal.tracked_person import (
     seen,
     smoothed,
 )
+from peopleboy.tracker.thermal.whereabouts import Regions, overlap_shares
 
 # When somebody is hidden, and seen again.
 HEAD_COVERED = 0.8  # share of the head's contour behind others from which a person is hidden

@@ -5,7 +5,6 @@ import pytest
 
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel, covered_by
-from peopleboy.tracker.thermal.interaction import regions_of
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.occlusion.policy import make_policy
 from peopleboy.tracker.thermal.occlusion.walk_on import LOST_FRAMES
@@ -13,6 +12,7 @@ from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
 from peopleboy.tracker.thermal.particles import equally_weighted
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS_OCCLUSION
+from peopleboy.tracker.thermal.whereabouts import regions_of
 from peopleboy.tracker.track import Status
 from tests.helpers.images.drawn_people import blank
 

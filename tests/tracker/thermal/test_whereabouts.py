@@ -7,14 +7,14 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.thermal.config import BoxConfig, InteractionConfig, TrackerConfig
-from peopleboy.tracker.thermal.interaction import (
+from peopleboy.tracker.thermal.variants import PAPER, THESIS
+from peopleboy.tracker.thermal.whereabouts import (
     box_of,
     detector_factor,
     overlap_shares,
     person_factor,
     regions_of,
 )
-from peopleboy.tracker.thermal.variants import PAPER, THESIS
 
 CONFIG = TrackerConfig()
 TALL = np.array([100.0, 120.0, 12.0, 44.0, 3.0, 0.0, 0.0, 0.0, 0.0])
