@@ -32,7 +32,6 @@ border, +1 at the right one; height, top and bottom are in image heights from th
 is_visible is 0 while a person is wholly hidden.
 """
 
-SEEN_SHARE: Final = 0.3  # of a person's middle that must be visible for the person to count as seen
 _LOWEST: Final = (0.0, -10.0, 0.0, -10.0, -10.0, 0.0, 0.0)
 _HIGHEST: Final = (1e6, 10.0, 10.0, 10.0, 10.0, 1.0, 1.0)
 _SONARS: Final = 16
@@ -95,7 +94,7 @@ def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> Arrays:
 def see_truth(scene: ImageFreeTruth, robot: RobotConfig) -> Arrays:
     """Give what a perfect tracker would say: everybody within the image, hidden or not."""
     return _table(
-        _row(person.id, person.box, 1.0, person.visible_share >= SEEN_SHARE, robot)
+        _row(person.id, person.box, 1.0, person.is_seen, robot)
         for person in scene.people
         if person.box is not None and _is_inside(person, robot)
     )

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from peopleboy.scenarios.environments.observations import SEEN_SHARE
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
@@ -62,7 +61,7 @@ class Episode:
     def judge(self, scene: ImageFreeTruth) -> Situation:
         """Look at the next instant."""
         target = find_target(scene)
-        sees = target is not None and target.visible_share >= SEEN_SHARE
+        sees = target is not None and target.is_seen
         self._wait(target, sees)
         along, lateral = corridor_motion(self._plan, scene)
         situation = Situation(
@@ -116,7 +115,7 @@ class Episode:
 
     def _compare(self, scene: ImageFreeTruth) -> tuple[tuple[str, str], ...]:
         """Give what is new as pairs of what happened, and to or with whom."""
-        seen = {person.name for person in scene.people if person.visible_share >= SEEN_SHARE}
+        seen = {person.name for person in scene.people if person.is_seen}
         touched = set(scene.contacts)
         found = [("seen", name) for name in sorted(seen - self._seen)]
         found += [("out of sight", name) for name in sorted(self._seen - seen)]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from peopleboy.sim.truth.seen import is_seen
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Status, Track
 
 TRUTH = "truth"
-SEEN = 0.3  # share of a silhouette above which a person counts as seen
 
 
 class OracleTracker:
@@ -27,16 +27,15 @@ class OracleTracker:
         return tuple(
             self._track(person, frame.time_s)
             for person in self._truth().people
-            if person.box is not None and person.inside_fraction > SEEN
+            if person.box is not None and is_seen(person.inside_fraction)
         )
 
     def _track(self, person: PersonTruth, time_s: float) -> Track:
         assert person.box is not None
-        is_seen = person.visible_fraction > SEEN
         return Track(
             id=person.id,
             box=person.box,
             confidence=1.0,
-            status=Status.TRACKED if is_seen else Status.TOTALLY_OCCLUDED,
+            status=Status.TRACKED if is_seen(person.visible_fraction) else Status.TOTALLY_OCCLUDED,
             age_s=time_s - self._first_s.setdefault(person.id, time_s),
         )

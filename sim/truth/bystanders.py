@@ -56,7 +56,7 @@ def _bystander(
         distance_m=math.hypot(dx, dy),
         bearing_rad=math.remainder(math.atan2(dy, dx) - heading, math.tau),
         box=box,
-        visible_share=_visible_share(person, bullet, camera, pose) if _is_inside(box, camera) else 0.0,
+        free_ray_share=_free_ray_share(person, bullet, camera, pose) if _is_inside(box, camera) else 0.0,
     )
 
 
@@ -81,7 +81,7 @@ def _is_inside(box: Box | None, camera: Camera) -> bool:
     return left + width > -0.5 and left < camera.width and top + height > -0.5 and top < camera.height
 
 
-def _visible_share(person: Person, bullet: Bullet, camera: Camera, world_from_camera: Matrix) -> float:
+def _free_ray_share(person: Person, bullet: Bullet, camera: Camera, world_from_camera: Matrix) -> float:
     x, y = person.position.tolist()
     points = np.array([[x, y, share * person.config.height_m] for share in _LOOKED_AT])
     u, v = camera.project(transform(invert_pose(world_from_camera), points)).T
