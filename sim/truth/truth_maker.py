@@ -98,6 +98,15 @@ class TruthMaker:
             contacts=contacts,
         )
 
+    def box(
+        self, person: int, camera: Camera, world_from_camera: Matrix, world_from_part: Matrix
+    ) -> Box | None:
+        """Tell the truth box of one person alone, by its number from 1; None as in `PersonTruth`."""
+        k = person - 1
+        if not self._people[k].present:
+            return None
+        return _thesis_box((self._table, world_from_part, camera, world_from_camera), self._outlines[k])
+
     def _person(self, k: int, cover: Cover, view: View, scene: _Scene) -> PersonTruth:
         person, outline = self._people[k], self._outlines[k]
         _, _, camera, world_from_camera = scene

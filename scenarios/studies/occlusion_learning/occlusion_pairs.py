@@ -22,8 +22,8 @@ from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 
 # A tracked person is the true one whose box it overlaps most, and by at least this (thesis, section 3.4).
 _LEAST_IOU = 0.5
-# With less than this of a person in view, the moment of total occlusion has come: before the event log says so,
-# as so little of a person has no looks to learn from.
+# With less than this of a person in view, the moment of total occlusion has come: earlier than in the event
+# log, as so little of a person has no looks to learn from.
 _TOTAL = 0.15
 # Nobody is in front of whom the other hides less than this share, and who is no nearer than that.
 _LEAST_HIDDEN, _LEAST_GAP_M = 0.02, 0.3
