@@ -16,6 +16,7 @@ from peopleboy.scenarios.drawing.palette import ROBOT, TRUTH, Rgb, person_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Status, Track
 
@@ -141,7 +142,7 @@ def visible_fractions(tick: Tick, names: Iterable[str]) -> list[float]:
 
 def track_offset(track: Track, width_px: int) -> float:
     """Give how far the middle of a track's box lies right of the image's [half image widths]."""
-    return (track.box[0] + track.box[2] / 2.0 - (width_px - 1) / 2.0) / (width_px / 2.0)
+    return image_shares(track.box, width_px, 1).x
 
 
 def _boxes(boxes: Sequence[tuple[float, float, float, float]]) -> Floats:

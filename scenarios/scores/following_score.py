@@ -18,7 +18,7 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.robot.robot_body import outline_gap
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.truth.truth import Box, Truth
-from peopleboy.tracker.evaluation.boxes import iou
+from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.track import Status, Track
 
 TARGET = 1  # the person to follow: the scenario's first

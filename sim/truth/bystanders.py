@@ -11,6 +11,7 @@ from peopleboy.sim.geometry.pinhole import Camera, Matrix, invert_pose, transfor
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.robot.robot_body import NAME
+from peopleboy.sim.truth.boxes import reaches_into
 from peopleboy.sim.truth.image_free_truth import Bystander
 from peopleboy.sim.truth.truth import Box
 
@@ -56,7 +57,9 @@ def _bystander(
         distance_m=math.hypot(dx, dy),
         bearing_rad=math.remainder(math.atan2(dy, dx) - heading, math.tau),
         box=box,
-        free_ray_share=_free_ray_share(person, bullet, camera, pose) if _is_inside(box, camera) else 0.0,
+        free_ray_share=_free_ray_share(person, bullet, camera, pose)
+        if box is not None and reaches_into(box, camera)
+        else 0.0,
     )
 
 
@@ -71,14 +74,6 @@ def _upright_box(person: Person, camera: Camera, world_from_camera: Matrix) -> B
     (_, top), (_, bottom), (middle, _) = camera.project(points).tolist()
     half = camera.focal_px * person.radius_m / float(points[2, 2])
     return middle - half, top, 2.0 * half, bottom - top
-
-
-def _is_inside(box: Box | None, camera: Camera) -> bool:
-    """Whether any of a box lies in the image."""
-    if box is None:
-        return False
-    left, top, width, height = box
-    return left + width > -0.5 and left < camera.width and top + height > -0.5 and top < camera.height
 
 
 def _free_ray_share(person: Person, bullet: Bullet, camera: Camera, world_from_camera: Matrix) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
@@ -18,19 +17,18 @@ from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bound
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import ShapeTable
+from peopleboy.sim.truth.boxes import Bounds, box_between, box_of_pixels, is_cut_off
 from peopleboy.sim.truth.truth import (
     BORDER,
     Box,
     Cover,
     PersonTruth,
     Truth,
-    box_from_bounds,
     count_cover,
     is_counted,
 )
 
 _Scene = tuple[ShapeTable, Matrix, Camera, Matrix]
-_Bounds = tuple[float, float, float, float]
 A = TypeVar("A", bound=NDArray[Any])
 
 
@@ -125,8 +123,8 @@ class TruthMaker:
             distance_m=distance,
             is_counted=is_counted(distance),
             box=_thesis_box(scene, outline),
-            whole_box=_box(whole),
-            visible_box=box_from_bounds(*map(float, cover.bounds[k])) if visible else None,
+            whole_box=box_between(whole),
+            visible_box=box_of_pixels(*map(float, cover.bounds[k])) if visible else None,
             whole_px=area,
             visible_px=visible,
             visible_fraction=visible / area if area else 0.0,
@@ -137,10 +135,10 @@ class TruthMaker:
             joint_is_visible=_frozen(is_visible),
         )
 
-    def _whole_area(self, k: int, cover: Cover, scene: _Scene, whole: _Bounds) -> int:
+    def _whole_area(self, k: int, cover: Cover, scene: _Scene, whole: Bounds) -> int:
         """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
         inside = int(cover.seen[k].sum())
-        if _is_inside(whole, scene[2]):
+        if not is_cut_off(whole, scene[2]):
             return inside
         # TinyRenderer's silhouettes may be a few pixels larger.
         return max(inside, silhouette_area(*scene, self._outlines[k].whole))
@@ -181,23 +179,10 @@ class _Outline:
         self.torso = self.whole & is_torso
 
 
-def _is_inside(bounds: _Bounds, camera: Camera) -> bool:
-    left, top, right, bottom = bounds
-    return math.isnan(left) or (
-        left > -0.5 and top > -0.5 and right < camera.width - 0.5 and bottom < camera.height - 0.5
-    )
-
-
 def _thesis_box(scene: _Scene, outline: _Outline) -> Box | None:
     """Head to feet, as wide as the torso without arms (T 3.3)."""
     height, torso = silhouette_bounds(*scene, outline.height), silhouette_bounds(*scene, outline.torso)
-    return _box((torso[0], height[1], torso[2], height[3]))
-
-
-def _box(bounds: _Bounds) -> Box | None:
-    """Return left, top, width, height; None where nothing is before the camera."""
-    left, top, right, bottom = bounds
-    return None if math.isnan(left + top) else (left, top, right - left, bottom - top)
+    return box_between((torso[0], height[1], torso[2], height[3]))
 
 
 def _frozen(array: A) -> A:

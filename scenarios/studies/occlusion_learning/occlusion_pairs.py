@@ -12,7 +12,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.evaluation.boxes import iou
+from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.occlusion.depth_order import ExpectedPerson, Order, lower_foot
 from peopleboy.tracker.thermal.occlusion.learned_order import features_of
