@@ -46,6 +46,7 @@ def _bystander(
     (x, y), (vx, vy) = person.position.tolist(), person.velocity.tolist()
     dx, dy = x - float(robot[0]), y - float(robot[1])
     box = _upright_box(person, camera, pose)
+    is_inside = box is not None and reaches_into(box, camera)
     return Bystander(
         id=number,
         name=person.name,
@@ -57,9 +58,7 @@ def _bystander(
         distance_m=math.hypot(dx, dy),
         bearing_rad=math.remainder(math.atan2(dy, dx) - heading, math.tau),
         box=box,
-        free_ray_share=_free_ray_share(person, bullet, camera, pose)
-        if box is not None and reaches_into(box, camera)
-        else 0.0,
+        free_ray_share=_free_ray_share(person, bullet, camera, pose) if is_inside else 0.0,
     )
 
 
