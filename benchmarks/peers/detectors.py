@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.truth.seen import SEEN
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal.colour_config import ROBOT_AFFINE
@@ -87,10 +88,8 @@ class Blobs:
 class Oracle:
     """Finds everybody of whom enough is visible, exactly: no detector of single frames can do better."""
 
-    _VISIBLE = 0.3
-
     def __init__(self, truth: TrueBoxes) -> None:
-        self._truth = truth.take(truth.visible > self._VISIBLE)
+        self._truth = truth.take(truth.visible > SEEN)
         self._frame = 0
 
     def detect(self, frame: Frame) -> Detections:  # noqa: ARG002

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.contour_lines import lines_of
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
 Picture = NDArray[np.uint8]  # (H, W, 3) RGB
-Box = tuple[float, float, float, float]
 Plate = tuple[int, int, int, int]  # left, top, right, bottom of a label on the enlarged picture
 
 SCALE = 2
@@ -160,15 +160,14 @@ def draw_truth(
 
 def map_box(box: Box, affine: Matrix) -> Box:
     """Map a box by a (2, 3) affine that does not turn it, or take the upright box around the turned one."""
-    corners = box_corners(box) @ affine[:, :2].T + affine[:, 2]
-    (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
+    points = box_corners(box) @ affine[:, :2].T + affine[:, 2]
+    (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
     return float(left), float(top), float(right - left), float(bottom - top)
 
 
 def box_corners(box: Box) -> NDArray[np.float64]:
     """Give the closed line (5, 2) around a box."""
-    left, top, width, height = box
-    right, bottom = left + width, top + height
+    left, top, right, bottom = corners(box)
     return np.array([[left, top], [right, top], [right, bottom], [left, bottom], [left, top]])
 
 
@@ -183,9 +182,9 @@ def draw_line(
 
 
 def _is_inside(box: Box, canvas: Picture, scale: float) -> bool:
-    left, top, width, height = box
+    left, top, right, bottom = corners(box)
     rows, columns = canvas.shape[0] / scale, canvas.shape[1] / scale
-    return left < columns and top < rows and left + width > 0.0 and top + height > 0.0
+    return left < columns and top < rows and right > 0.0 and bottom > 0.0
 
 
 def _track_text(track: Track) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, Key
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.corridor.corridor_from_image import CameraView
@@ -220,10 +220,11 @@ def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
     )
 
 
-def _everybody(spec: ScenarioSpec) -> tuple[tuple[str, PersonSpec], ...]:
+def _everybody(spec: ScenarioSpec) -> tuple[tuple[Key, PersonSpec], ...]:
     """All people with the keys that stand for them in the file."""
-    single = tuple((f"people[{index}]", person) for index, person in enumerate(spec.people))
-    grouped = tuple(
-        (f"groups[{index}]", person) for index, group in enumerate(spec.groups) for person in members(group)
-    )
-    return (*single, *grouped)
+    found: list[tuple[Key, PersonSpec]] = [
+        (("people", index), person) for index, person in enumerate(spec.people)
+    ]
+    for index, group in enumerate(spec.groups):
+        found += [(("groups", index), person) for person in members(group)]
+    return tuple(found)

@@ -24,6 +24,7 @@ from peopleboy.scenarios.run_folder.out_folder import check_named
 from peopleboy.scenarios.run_folder.tables import TRACKS, Row, track_row, write_table
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, track_line, write_truth
 from peopleboy.tracker.evaluation.table import to_json
@@ -40,8 +41,6 @@ COLOUR_TRACKER: Final = "colour"
 """It differs from `thermal` by what colours add alone."""
 DEFAULT_RATE_HZ: Final = 15.0
 """Pictures a second of a folder: those of the robot's cameras, for which the tracker is made."""
-
-Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -214,8 +213,8 @@ def _check_first(thermal: NDArray[Any], options: TrackOptions, notes: list[str])
 
 
 def _check_inside(box: Box, width: int, height: int) -> None:
-    left, top, wide, high = box
-    if not (left >= 0 and top >= 0 and left + wide <= width and top + high <= height):
+    left, top, right, bottom = corners(box)
+    if not (left >= 0 and top >= 0 and right <= width and bottom <= height):
         told = ",".join(f"{number:g}" for number in box)
         raise BadInput(f"--start {told}: X,Y,W,H must lie inside the pictures, which are {width}x{height}")
 

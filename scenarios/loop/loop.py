@@ -23,6 +23,7 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 from peopleboy.sim.truth.truth import Truth
+from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
@@ -201,13 +202,13 @@ def _are_same(old: Images, new: Images) -> bool:
 
 def see_person(track: Track, box: Box, width: int, height: int) -> SeenPerson:
     """Express a track's box [px] in shares of the image."""
-    left, top, box_width, box_height = box
+    shares = image_shares(box, width, height)
     return SeenPerson(
         id=track.id,
-        x=(left + box_width / 2.0 - (width - 1) / 2.0) / (width / 2.0),
-        height=box_height / height,
-        top=(top + 0.5) / height,
-        bottom=(top + box_height + 0.5) / height,
+        x=shares.x,
+        height=shares.height,
+        top=shares.top,
+        bottom=shares.bottom,
         confidence=track.confidence,
         is_visible=track.status is not Status.TOTALLY_OCCLUDED,
     )

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.truth.seen import is_seen
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
-
-SEEN = 0.3  # share of a silhouette above which a person counts as seen
 
 
 class OracleTracker:
@@ -33,18 +32,17 @@ class OracleTracker:
         return tuple(
             self._track(person, truth.robot, frame.time_s)
             for person in truth.people
-            if person.box is not None and person.inside_fraction > SEEN
+            if person.box is not None and is_seen(person.inside_fraction)
         )
 
     def _track(self, person: PersonTruth, robot: Planar, time_s: float) -> Track:
         assert person.box is not None
-        is_seen = person.visible_fraction > SEEN
         return Track(
             id=person.id,
             boxes={THERMAL: person.box},
             place=_place(person, robot),
             confidence=1.0,
-            status=Status.TRACKED if is_seen else Status.TOTALLY_OCCLUDED,
+            status=Status.TRACKED if is_seen(person.visible_fraction) else Status.TOTALLY_OCCLUDED,
             age_s=time_s - self._first_s.setdefault(person.id, time_s),
         )
 

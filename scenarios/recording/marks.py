@@ -17,6 +17,7 @@ from peopleboy.scenarios.drawing.palette import ROBOT, TRUTH, Rgb, person_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.thermal.particles import Particles
 from peopleboy.tracker.track import Box, Status, Track
@@ -188,7 +189,7 @@ def visible_fractions(tick: Tick, names: Iterable[str]) -> list[float]:
 
 def box_offset(box: Box, width_px: int) -> float:
     """Give how far the middle of a box lies right of the thermal image's [half image widths]."""
-    return (box[0] + box[2] / 2.0 - (width_px - 1) / 2.0) / (width_px / 2.0)
+    return image_shares(box, width_px, 1).x
 
 
 def _boxes(boxes: Sequence[tuple[float, float, float, float]]) -> Floats:

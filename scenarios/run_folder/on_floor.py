@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.tables import PLACE
-from peopleboy.tracker.evaluation.boxes import Floats
+from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.floor import Places, floor_squares
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.track import Status

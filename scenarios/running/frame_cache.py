@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import shutil
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, astuple, dataclass, field
 from functools import cache
@@ -29,6 +27,7 @@ from peopleboy.scenarios.run_folder.camera_truth import gt_lines
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
+from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
 from peopleboy.tracker.evaluation.mot_files import read_truth
@@ -156,18 +155,11 @@ class _Blind:
 
 def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int], None] | None) -> None:
     """Render a film beside its place, and put it there when it is whole."""
-    part = home.parent / f".{home.name}.{os.getpid()}"
-    shutil.rmtree(part, ignore_errors=True)
-    with writing_to(home.parent, "--films"):
-        part.mkdir(parents=True)
-    try:
+    with whole(home, stays=(home / "about.json").is_file) as part:  # another process may be quicker
+        with writing_to(home.parent, "--films"):
+            part.mkdir(parents=True)
         about = _render(scenario, seed, part, report)
         (part / "about.json").write_text(json.dumps(about) + "\n", encoding="utf-8")
-        if not (home / "about.json").is_file():
-            shutil.rmtree(home, ignore_errors=True)
-            part.rename(home)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
 
 
 def _render(

@@ -9,7 +9,7 @@ from typing import Final, Self
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.evaluation.boxes import Floats
+from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.sequence import Ints
 
 CHI2_95: Final = 5.991  # quantile of chi squared with two degrees of freedom

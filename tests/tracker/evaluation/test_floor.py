@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import chi2
 
-from peopleboy.tracker.evaluation.boxes import iou
+from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.evaluate import combine, evaluate
 from peopleboy.tracker.evaluation.floor import (
     CHI2_95,

@@ -11,8 +11,8 @@ from peopleboy.scenarios.running.frame_cache import film, frames_of
 from peopleboy.scenarios.studies.reproduce.measuring.store import Result
 from peopleboy.scenarios.studies.reproduce.measuring.units import Showing
 from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.association import GATE
-from peopleboy.tracker.evaluation.boxes import iou
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import confirmed

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from trackeval.datasets._base_dataset import _BaseDataset
 
-from peopleboy.tracker.evaluation.boxes import area, intersection, iou
+from peopleboy.tracker.boxes import area, corners, image_shares, intersection, iou
 
 
 def random_boxes(seed: int, count: int) -> np.ndarray:
@@ -60,3 +60,10 @@ def test_the_shared_area_of_whole_pixel_boxes_is_the_number_of_shared_pixels(see
 
     assert area(a) == len(pixels(a))
     assert intersection(a, b) == len(pixels(a) & pixels(b))
+
+
+def test_corners_and_shares_of_the_image_are_those_of_the_box():
+    box = (-0.5, 59.5, 320.0, 120.0)
+    assert corners(box) == (-0.5, 59.5, 319.5, 179.5)
+    assert image_shares(box, 320, 240) == (0.0, 0.5, 0.25, 0.75)
+    assert image_shares((319.0, -0.5, 1.0, 240.0), 320, 240) == (1.0, 1.0, 0.0, 1.0)

@@ -1,9 +1,47 @@
-"""Areas and overlaps of boxes; a box is left, top, width, height in pixels."""
+"""Boxes: their corners and shares of the image, their areas and overlaps.
+
+A box is left, top, width, height in pixels; pixel (0, 0) spans -0.5..0.5.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+
+
+Box = tuple[float, float, float, float]
+
+
+class ImageShares(NamedTuple):
+    """Where a box is, in shares of the image.
+
+    x is that of its middle in half image widths, 0 in the middle of the image, 1 at the right border; the
+    others are in image heights, counted from the top.
+    """
+
+    x: float
+    height: float
+    top: float
+    bottom: float
+
+
+def corners(box: Box) -> Box:
+    """Give left, top, right, bottom [px] of a box."""
+    left, top, width, height = box
+    return left, top, left + width, top + height
+
+
+def image_shares(box: Box, width_px: int, height_px: int) -> ImageShares:
+    """Express a box in shares of an image of that size."""
+    left, top, width, height = box
+    return ImageShares(
+        x=(left + width / 2.0 - (width_px - 1) / 2.0) / (width_px / 2.0),
+        height=height / height_px,
+        top=(top + 0.5) / height_px,
+        bottom=(top + height + 0.5) / height_px,
+    )
 
 
 def area(box: Floats) -> Floats:
