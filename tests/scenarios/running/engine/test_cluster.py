@@ -20,6 +20,7 @@ from tests.helpers.runs import toy_tasks
 from tests.helpers.runs.toy_tasks import ToyTask, diary, squares, toys, work
 
 distributed = pytest.importorskip("distributed")
+pytestmark = pytest.mark.filterwarnings("default")  # Dask closes its sockets late
 MODULE = "peopleboy.scenarios.running.engine.cluster"
 
 
@@ -40,7 +41,7 @@ class Ours:
 def cluster() -> Iterator[str]:
     """The address of two workers that are threads of this process."""
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+        n_workers=2, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
     ) as found:
         yield found.scheduler_address
 
@@ -72,7 +73,7 @@ def test_workers_of_another_version_are_refused(
 def test_a_worker_with_threads_is_refused(tmp_path: Path) -> None:
     with (
         distributed.LocalCluster(
-            n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
+            n_workers=1, threads_per_worker=2, processes=False, dashboard_address="127.0.0.1:0"
         ) as found,
         refused("has 2 threads", "--nthreads 1"),
     ):
@@ -90,7 +91,6 @@ def test_a_scheduler_that_does_not_answer_is_refused(
 
 
 @pytest.mark.heavy
-@pytest.mark.filterwarnings("default")
 def test_a_cluster_finishes_though_one_of_its_two_workers_is_killed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
