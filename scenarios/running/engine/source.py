@@ -7,7 +7,7 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-from peopleboy import bad_input
+from peopleboy import sim
 from peopleboy.scenarios.run_folder.folder import versions
 
 Source = dict[str, str]
@@ -17,7 +17,7 @@ Source = dict[str, str]
 def running_source() -> Source:
     """Tell packages by name with their versions, and under "source" a hash of PeopleBoy's own files."""
     digest = sha256()
-    root = Path(bad_input.__file__).parent
+    root = Path(sim.__path__[0]).parent
     for folder, inner, names in os.walk(root, followlinks=True):
         inner.sort()
         for name in sorted(names):
