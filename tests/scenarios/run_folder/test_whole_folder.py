@@ -14,9 +14,10 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.folder import claim_folder
 from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
+from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.frame_cache import film
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
-from peopleboy.scenarios.studies.reproduce.measuring.store import Store
+from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store
 from tests.helpers.calls.footage_calls import refusal
 from tests.helpers.images.footage_files import write_folder
 
@@ -114,13 +115,15 @@ def write_run(path):
 FOLDERS = {
     "export or track": write_run,
     "run": lambda path: claim_folder(path, overwrite=False),
-    "render": lambda path: render_set(["pass_behind"], 1, path, frames=False, tracker="truth", processes=1),
+    "render": lambda path: render_set(
+        ["pass_behind"], 1, path, frames=False, tracker="truth", workers=Workers()
+    ),
 }
 OTHERS = {
     "show": lambda path: draw_plan(load_scenario("pass_behind"), 0, path),
-    "reproduce": lambda path: Store(path / "units.jsonl"),
+    "reproduce": lambda path: open_store(path / "units.jsonl"),
     "train-occlusion": lambda path: give_lesson(
-        path, "peopleboy", 1, triplets=False, again=False, ship=False
+        path, "peopleboy", 1, Workers(), triplets=False, again=False, ship=False
     ),
     "datasets": lambda path: film(load_scenario("pass_behind"), 0, path),
 }

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.running.frame_cache import film, frames_of
-from peopleboy.scenarios.studies.reproduce.measuring.store import Result
 from peopleboy.scenarios.studies.reproduce.measuring.units import Showing
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.boxes import iou

@@ -11,9 +11,9 @@ from typing import Any, Protocol, TypeVar, get_type_hints
 import numpy as np
 
 from peopleboy.scenarios.files.suite import SuiteRun
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.scenarios.scores.suite_table import count
-from peopleboy.scenarios.studies.reproduce.measuring.store import Result
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.evaluate import Counts, evaluate

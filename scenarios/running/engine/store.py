@@ -1,4 +1,4 @@
-"""Results of finished units of work, one JSON line each: whoever is killed goes on from there."""
+"""Results of finished tasks, one JSON line each: whoever is killed goes on from there."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from peopleboy import sim, tracker
 from peopleboy.scenarios.run_folder.folder import versions
@@ -20,13 +20,21 @@ Result = dict[str, Any]
 class Store(Mapping[str, Result]):
     """Results by key, on disk as soon as they are added.
 
-    A line that was cut off by a kill is left out, and so are results of other versions of the trackers, the
-    simulator and the packages below them.
+    A line that was cut off by a kill is left out, and so are results of other code.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, code: str) -> None:
+        """Open it, or make it.
+
+        Args:
+            path: of the file.
+            code: on which results depend, as a hash.
+
+        Raises:
+            BadInput: the file's folder cannot be written to.
+        """
         self.path = path
-        self._code = code_digest()
+        self._code = code
         self._results: dict[str, Result] = {}
         with writing_to(path.parent):
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -63,16 +71,12 @@ class Store(Mapping[str, Result]):
             self._results[entry["key"]] = entry["result"]
 
 
-UNITS: Final = ("delay_units.py", "learn_units.py", "units.py")
-"""The files beside this one that say how results are measured."""
-
-
 @cache
-def code_digest() -> str:
-    """Hash what results depend on: trackers, simulator, how they are measured here, packages."""
+def code_digest(*further: Path) -> str:
+    """Hash what results depend on: trackers, simulator, packages, and files that say how they come about."""
     digest = sha256(json.dumps(versions(), sort_keys=True).encode())
     roots = [Path(tracker.__path__[0]), Path(sim.__path__[0])]
     files = [path for root in roots for path in root.rglob("*") if path.suffix in (".py", ".yaml")]
-    for path in sorted([*files, *(Path(__file__).with_name(name) for name in UNITS)]):
+    for path in sorted([*files, *further]):
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
