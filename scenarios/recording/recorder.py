@@ -43,7 +43,7 @@ APPLICATION = "peopleboy"
 
 _FRAMES_SENT_TOGETHER = 15
 _JPEG_QUALITY = {1: 60, 3: 45}  # by channels
-_NAME_HEIGHT_PX = 16.0
+_NAME_HEIGHT = 1.0 / 15.0  # [image heights] of names above boxes
 _GRAVE = ("contact", "lost")
 
 
@@ -170,12 +170,13 @@ class Recorder:
 
     def _log_truth(self, tick: Tick) -> None:
         for name in (name for name in self._boxed if name in tick.truths):
-            self._log_named_boxes(camera_path(name), marks.truth_boxes(tick.truths[name].people))
+            self._log_named_boxes(name, marks.truth_boxes(tick.truths[name].people))
         self._log_arrows("truth/occlusions", true_arrows(tick.truth.people))
 
-    def _log_named_boxes(self, path: str, boxes: marks.Boxes) -> None:
+    def _log_named_boxes(self, camera: str, boxes: marks.Boxes) -> None:
+        path, lift_px = camera_path(camera), _NAME_HEIGHT * self._cameras[camera].camera.height
         self._log_boxes(f"{path}/truth/boxes", boxes)
-        above = _from_corner(boxes.box[:, :2]) + boxes.box[:, 2:] * (0.5, 0.0) - (0.0, _NAME_HEIGHT_PX)
+        above = _from_corner(boxes.box[:, :2]) + boxes.box[:, 2:] * (0.5, 0.0) - (0.0, lift_px)
         self._rows.add(
             f"{path}/truth/names", rr.Points2D, positions=above, colors=boxes.colour, labels=boxes.label
         )
