@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,7 +54,8 @@ class Percept:
         sonar_angle_rad: (N,) [rad] direction of each sonar in the robot's frame, positive to the left.
         linear_m_s: [m/s] forward speed from the wheels.
         angular_rad_s: [rad/s] turn rate from the wheels, positive to the left.
-        colour: (H, W, 3) uint8 sRGB, the colour camera's image; None where there is none.
+        images: of the cameras that took one now, by name, such as `colour`, (H, W, 3) uint8 sRGB; each may be
+            made only when it is asked for.
         image_age_s: [s] since the newest image came in; `people` are those of that image.
         fault: why nobody can be seen just now, such as a tracker's error; empty if all is well.
 
@@ -67,7 +69,7 @@ class Percept:
     sonar_angle_rad: Ranges
     linear_m_s: float
     angular_rad_s: float
-    colour: NDArray[np.uint8] | None = None
+    images: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
     image_age_s: float = 0.0
     fault: str = ""
 

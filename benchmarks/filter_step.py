@@ -8,7 +8,7 @@ from statistics import median
 
 import numpy as np
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame, Odometry
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.particle_filter import begin, step, view_frame
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
@@ -23,7 +23,7 @@ def step_time_ms(count: int, steps: int = 300) -> float:
     """
     config = replace(PEOPLEBOY, person=replace(PEOPLEBOY.person, count=count))
     rng = np.random.default_rng(0)
-    frame = Frame(thermal=_drawn_person(), time_s=0.0, turn_rad=0.01)
+    frame = Frame(images={THERMAL: _drawn_person()}, time_s=0.0, odometry=Odometry(turn_rad=0.01))
     view = view_frame(frame, 1 / 15, ContourModel.build(SHAPE, config.contour), config)
     belief = begin(view, config.detector, config, rng)
     times = []

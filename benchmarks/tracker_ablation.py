@@ -14,12 +14,13 @@ import click
 import numpy as np
 
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_OCCLUSION
@@ -77,19 +78,10 @@ STEPS: dict[str, tuple[str, ...]] = {
     "some samples tried at another size": ("person.resized_share",),
     "smoothing": ("smoothing",),
     "colours and thermal pattern, by part, without the light": ("colour", "appearance"),
-    "who is in front is no evidence for who is behind": (
-        "occlusion.is_handled",
-        "occlusion.order",
-        "occlusion.removes_front",
-        "occlusion.growth",
-    ),
-    "who is overlapped keeps the height": ("occlusion.size_spread",),
-    "the hidden walk on, and are looked for": (
-        "occlusion.keeps_velocity",
-        "occlusion.hidden",
-        "person.floor",
-    ),
-    "the hidden are shown only where that is sure": ("occlusion.shown", "occlusion.sure_spread"),
+    "who is in front is no evidence for who is behind": ("depth",),
+    "who is overlapped keeps the height": ("height",),
+    "the hidden walk on, and are looked for": ("occlusion", "person.floor"),
+    "the hidden are shown only where that is sure": ("occlusion.shows_only_sure",),
     "whoever was lost is remembered": ("occlusion.remembers_lost",),
 }
 COLUMNS = (
@@ -115,14 +107,24 @@ class Recorded:
 
 
 def differing(one: Any, other: Any, path: str = "") -> Iterator[str]:
-    """Name the settings, such as "contour.points", in which two configurations differ."""
-    for item in fields(one):
+    """Name the settings, such as "contour.points", in which two configurations differ.
+
+    A record of another kind is named itself, and then what it changes of its kind's defaults.
+    """
+    for item in fields(other):
         name = f"{path}{item.name}"
         mine, theirs = getattr(one, item.name), getattr(other, item.name)
-        if is_dataclass(mine):
-            yield from differing(mine, theirs, f"{name}.")
+        if is_dataclass(mine) and is_dataclass(theirs):
+            if type(mine) is not type(theirs):
+                yield name
+            yield from differing(_of_kind(mine, theirs), theirs, f"{name}.")
         elif mine != theirs:
             yield name
+
+
+def _of_kind(record: Any, model: Any) -> Any:
+    """Give a record as it is if it is of the model's kind, and the defaults of that kind if it is not."""
+    return record if type(record) is type(model) else type(model)()
 
 
 def step_of(setting: str) -> str:
@@ -139,7 +141,10 @@ def adopt(base: Any, source: Any, names: Sequence[str]) -> Any:
     for head in dict.fromkeys(name.split(".")[0] for name in names):
         rest = [name.split(".", 1)[1] for name in names if name.startswith(f"{head}.")]
         mine, theirs = getattr(base, head), getattr(source, head)
-        changes[head] = adopt(mine, theirs, rest) if rest else theirs
+        if is_dataclass(mine) and is_dataclass(theirs):
+            mine = _of_kind(mine, theirs) if head in names else mine
+            theirs = adopt(mine, _of_kind(theirs, mine), rest)
+        changes[head] = theirs
     return replace(base, **changes)
 
 
@@ -167,7 +172,7 @@ def record(scenario: str, seed: int) -> Recorded:
         count = round(loaded.duration_s * config.control_hz)
         tracker = make_tracker("peopleboy", stream(seed, "tracker"))
         for tick in closed_loop(world, tracker, loaded.make_behaviour(), count):
-            frames.append(make_frame(tick.observation, before))
+            frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
             before = tick.observation.odometry
             rows += [
                 (tick.frame, person.id, person.box, person.is_counted, person.visible_fraction)
@@ -195,7 +200,7 @@ def replay(run: Recorded, config: TrackerConfig, seed: int) -> Scores:
     tracks = TrackBoxes(
         frame=np.array([number for number, _ in found]),
         id=np.array([track.id for _, track in found]),
-        box=np.array([track.box for _, track in found]).reshape(-1, 4),
+        box=np.array([track.boxes[THERMAL] for _, track in found]).reshape(-1, 4),
         confidence=np.array([track.confidence for _, track in found]),
     )
     return evaluate(run.truth, tracks, frames=len(run.frames))

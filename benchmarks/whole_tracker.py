@@ -12,20 +12,19 @@ import numpy as np
 
 from benchmarks.peers.detectors import Hog
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood
-from peopleboy.tracker.thermal.contour.coverage import covered_by, seen_shares
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, likelihood
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, covered_by, seen_shares
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY
-from peopleboy.tracker.thermal.filter.motion import predict
-from peopleboy.tracker.thermal.filter.particles import mean_state, resample
-from peopleboy.tracker.thermal.interaction import overlap_shares, person_factor, regions_of
 from peopleboy.tracker.thermal.particle_filter import FrameView, view_frame, weigh
+from peopleboy.tracker.thermal.particles import mean_state, predict, resample
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.thermal.whereabouts import overlap_shares, person_factor, regions_of
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
@@ -101,7 +100,8 @@ def shoot(scenario: str, people: int | None = None, seed: int = 0) -> Iterator[F
     with World(replace(config, people=config.people[:people])) as world:
         for _ in range(round(loaded.duration_s * config.control_hz)):
             observation = world.observe()
-            yield make_frame(observation, before)
+            frame = make_frame(observation, calibrations_of(world.cameras), before)
+            yield replace(frame, images={name: frame.images[name] for name in (THERMAL, COLOUR)})
             before = observation.odometry
             world.step(0.0, 0.0)
 
@@ -137,7 +137,7 @@ def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
 
 
 def _view_of(frame: Frame) -> FrameView:
-    model = _model_of(frame.thermal.shape[0], frame.thermal.shape[1])
+    model = _model_of(*frame.grey(THERMAL).shape)
     return view_frame(frame, STEP_S, model, PEOPLEBOY)
 
 
@@ -159,7 +159,7 @@ def _person_works(tracker: PeopleTracker, number: int, view: FrameView) -> dict[
     strength = np.full(len(others), config.interaction.penalty)
 
     def occlusion() -> object:
-        image = covered_by(view.image, others[:1], config.contour, config.occlusion.growth)
+        image = covered_by(view.image, others[:1], config.depth.growth)
         seen_shares(image, estimate, view.model.probes)
         return person_factor(overlap_shares(state, regions_of(others, config), config), strength)
 

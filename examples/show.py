@@ -15,14 +15,14 @@ from peopleboy.scenarios.scores.bootstrap import bootstrap
 FIGURES = {
     "reward": ("reward of an episode", 1.0, ""),
     "found": ("found the person", 100.0, "%"),
-    "seen": ("person in sight since", 100.0, "%"),
+    "followed": ("person tracked since", 100.0, "%"),
     "in_band": ("within 1.2 m of the right distance", 100.0, "%"),
     "facing": ("within 10 deg of the nose", 100.0, "%"),
-    "distance_error_m": ("distance error", 1.0, "m"),
+    "mean_distance_error_m": ("distance error", 1.0, "m"),
     "collided": ("episodes with a collision", 100.0, "%"),
     "lost": ("episodes in which the person was lost", 100.0, "%"),
 }
-"""What is printed of an episode: its name, factor and unit; see `Episode.metrics`."""
+"""What is printed of an episode: its name, factor and unit; see `FollowingScore`."""
 
 Controller = Callable[[Any], Any]
 Figures = Mapping[str, float]
@@ -36,7 +36,7 @@ def play(env: gymnasium.Env[Any, Any], controller: Controller, seed: int) -> Fig
         observation, earned, terminated, truncated, info = env.step(controller(observation))
         reward, is_over = reward + float(earned), terminated or truncated
     ends = {"collided": float(info["reward"]["collision"] < 0), "lost": float(info["reward"]["lost"] < 0)}
-    return {**info["metrics"], **ends, "reward": reward}
+    return {**info["metrics"]["following"], **ends, "reward": reward}
 
 
 def print_figures(title: str, runs: Mapping[str, Sequence[Figures]], console: Console) -> None:

@@ -19,7 +19,9 @@ from peopleboy.scenarios.commands.run import run
 from peopleboy.scenarios.commands.study import datasets, reproduce, train_occlusion
 from peopleboy.scenarios.commands.track import track
 from peopleboy.scenarios.commands.view import view
+from peopleboy.scenarios.running.engine.task import TasksFailed
 
+FAILED = 1
 BAD_INPUT = 2
 COMMANDS = (
     list_command,
@@ -63,6 +65,9 @@ def main(arguments: Sequence[str] | None = None) -> Any:
         code = 130
     except BadInput as error:
         code = _complain(str(error))
+    except TasksFailed as error:
+        click.echo(f"peopleboy: {error}", err=True)
+        code = FAILED
     sys.exit(code if isinstance(code, int) else 0)
 
 

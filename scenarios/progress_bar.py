@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-Item = TypeVar("Item")
 
 
 class Show(Protocol):
@@ -49,13 +47,3 @@ def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
                 running.enter_context(progress)
 
         yield show
-
-
-def each_shown(items: Sequence[Item], title: str) -> Iterator[Item]:
-    """Yield the items while a bar counts those that are finished."""
-    with progress_bar(title) as show:
-        for finished, item in enumerate(items):
-            show(finished, len(items))
-            yield item
-        if items:
-            show(len(items), len(items))

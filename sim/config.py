@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
 from peopleboy.sim.cameras.kinds import check_rate
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.places.place import Place
@@ -47,6 +47,7 @@ class WorldConfig:
                 "a control step is a whole number of physics steps"
             )
         for name, camera in self.robot.cameras.items():
-            check_rate(f"camera {name!r}: rate_hz", camera.rate_hz, self.control_hz)
+            with found_in("cameras", name):
+                check_rate(camera.rate_hz, self.control_hz)
         if self.seed < 0:
             raise BadInput(f"seed {self.seed} must be 0 or more")

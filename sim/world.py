@@ -33,7 +33,7 @@ from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import make_shape_table
 from peopleboy.sim.truth.bystanders import bystanders
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
-from peopleboy.sim.truth.truth import BORDER, Truth
+from peopleboy.sim.truth.truth import BORDER, Box, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 
 _MOST_PEOPLE = 64  # a view's cover has a bit for each
@@ -74,6 +74,11 @@ class World:
         if self.config.renderer != BLIND:
             self._rig.forget()
         self._bullet.close()
+
+    @property
+    def cameras(self) -> Mapping[str, CameraConfig]:
+        """What the robot carries, by name."""
+        return self.config.robot.cameras
 
     @property
     def time_s(self) -> float:
@@ -140,6 +145,21 @@ class World:
             robot_velocity=self._robot.velocity(),
             contacts=tuple(sorted(self._touching)),
         )
+
+    def box(self, person: int) -> Box | None:
+        """Tell a person's truth box in the thermal image, as `truth` does among much else that takes longer.
+
+        Args:
+            person: number, from 1 in the scenario's order.
+
+        Returns:
+            left, top, width, height [px]; None while the person is away, or not before the camera.
+
+        Raises:
+            BadInput: this is a world without images.
+        """
+        self._check_sight()
+        return self._truth_maker.box(person, self._see(self.config.robot.cameras["thermal"]))
 
     def truths(self) -> Mapping[str, Truth]:
         """Give the truth by camera that takes an image now: that of `thermal`, the rest when asked for.

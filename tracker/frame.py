@@ -1,14 +1,109 @@
-"""What a tracker takes in: one instant of the robot's cameras and odometry."""
+"""What a tracker takes in: one instant of the robot's cameras, how they sit, and its odometry."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+
+Floats = NDArray[np.float64]
+
+THERMAL: Final = "thermal"
+COLOUR: Final = "colour"
+
+
+class Calibration(Protocol):
+    """What a tracker must know of a camera to tell metres from pixels.
+
+    The robot's frame is x forward, y left, z up, with z = 0 on the floor [m]; pixels are u right, v down from
+    the middle of the first one.
+    """
+
+    @property
+    def position_m(self) -> tuple[float, float, float]:
+        """Optical centre in the robot's frame [m]."""
+        ...
+
+    def project(self, points_m: Floats) -> Floats:
+        """Map points (N, 3) of the robot's frame to pixels (N, 2); NaN where the camera cannot see them."""
+        ...
+
+    def rays(self, pixels: Floats) -> Floats:
+        """Give the directions (N, 3) in the robot's frame in which pixels (N, 2) look, of any length."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PinholeCalibration:
+    """Calibration of a camera whose image is flat and free of distortion.
+
+    Attributes:
+        intrinsics: (3, 3) [px] camera matrix.
+        robot_from_camera: (4, 4) pose of the optical frame, x right, y down, z forward, in the robot's.
+
+    Raises:
+        BadInput: a matrix of another shape, or with a number that is not finite.
+    """
+
+    intrinsics: Floats
+    robot_from_camera: Floats
+    _robot_from_pixel: Floats = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Refuse what is no calibration."""
+        for name, shape in (("intrinsics", (3, 3)), ("robot_from_camera", (4, 4))):
+            matrix = getattr(self, name)
+            if np.shape(matrix) != shape or not np.isfinite(matrix).all():
+                raise BadInput(f"calibration: {name} must be {shape} and finite, got {np.shape(matrix)}")
+        unprojected = self.robot_from_camera[:3, :3] @ np.linalg.inv(self.intrinsics)
+        object.__setattr__(self, "_robot_from_pixel", unprojected)
+
+    @property
+    def position_m(self) -> tuple[float, float, float]:
+        """Optical centre in the robot's frame [m]."""
+        x, y, z = self.robot_from_camera[:3, 3].tolist()
+        return x, y, z
+
+    def project(self, points_m: Floats) -> Floats:
+        """Map points (N, 3) of the robot's frame to pixels (N, 2); NaN for those behind the camera."""
+        rotation, origin = self.robot_from_camera[:3, :3], self.robot_from_camera[:3, 3]
+        seen = (points_m - origin) @ rotation @ self.intrinsics.T
+        depth = np.where(seen[:, 2:] > 1e-9, seen[:, 2:], np.nan)
+        return np.asarray(seen[:, :2] / depth, np.float64)
+
+    def rays(self, pixels: Floats) -> Floats:
+        """Give the directions (N, 3) in the robot's frame in which pixels (N, 2) look; their depth is 1."""
+        columns = self._robot_from_pixel.T
+        return np.asarray(pixels @ columns[:2] + columns[2], np.float64)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Odometry:
+    """How the robot moved from one frame to the next, in its own frame at the first of them.
+
+    Attributes:
+        advance_m: forward [m].
+        aside_m: to the left [m].
+        turn_rad: how it turned, left positive [rad].
+
+    Raises:
+        BadInput: a number that is not finite.
+    """
+
+    advance_m: float = 0.0
+    aside_m: float = 0.0
+    turn_rad: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what no robot does."""
+        for name in (column.name for column in fields(self)):
+            _check_finite(name, getattr(self, name))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -16,41 +111,57 @@ class Frame:
     """What the tracker sees at one instant.
 
     Attributes:
-        thermal: (H, W) uint8 grey, linear over 24..36 degC by default.
-        time_s: when both images were taken [s].
-        colour: (H, W, 3) uint8 RGB, or None without a colour camera; its size may differ from the thermal
-            one.
-        turn_rad: how the robot turned since the last frame, left positive [rad]; None if unknown.
-        advance_m: how far it drove forward since the last frame [m]; None if unknown.
+        images: by the camera's name, such as `thermal`, (H, W) uint8 grey, linear over 24..36 degC by
+            default, and `colour`, (H, W, 3) uint8 RGB; their sizes may differ. A camera that takes no image
+            at this instant is left out. An image may be made only when it is asked for.
+        calibrations: of those cameras whose place on the robot is known, by name; none for footage.
+        time_s: when the images were taken [s].
+        odometry: how the robot moved since the last frame; None if unknown.
 
     Raises:
-        BadInput: an image of another shape or type, an empty one, or a number that is not finite.
+        BadInput: a time that is not finite.
     """
 
-    thermal: NDArray[np.uint8]
+    images: Mapping[str, NDArray[Any]]
     time_s: float
-    colour: NDArray[np.uint8] | None = None
-    turn_rad: float | None = None
-    advance_m: float | None = None
+    calibrations: Mapping[str, Calibration] = field(default_factory=dict)
+    odometry: Odometry | None = None
 
     def __post_init__(self) -> None:
-        _check_image("thermal image must be (H, W) uint8", self.thermal, 2)
-        if self.colour is not None:
-            _check_image("colour image must be (H, W, 3) uint8", self.colour, 3)
-        for name in ("time_s", "turn_rad", "advance_m"):
-            value = getattr(self, name)
-            if value is not None and not math.isfinite(value):
-                raise BadInput(f"{name} must be a finite number, got {value}")
+        """Refuse a time that is none; images are checked when they are read."""
+        _check_finite("time_s", self.time_s)
 
-    @property
-    def height_px(self) -> int:
-        """Rows of the thermal image."""
-        return int(self.thermal.shape[0])
+    def grey(self, camera: str) -> NDArray[np.uint8]:
+        """Read the (H, W) grey image of a camera.
 
-    @property
-    def width_px(self) -> int:
-        """Columns of the thermal image."""
-        return int(self.thermal.shape[1])
+        Raises:
+            BadInput: there is none, or it has another shape or type.
+        """
+        image = self._image(camera)
+        _check_image(f"{camera} image must be (H, W) uint8", image, 2)
+        return image
+
+    def rgb(self, camera: str) -> NDArray[np.uint8]:
+        """Read the (H, W, 3) RGB image of a camera.
+
+        Raises:
+            BadInput: there is none, or it has another shape or type.
+        """
+        image = self._image(camera)
+        _check_image(f"{camera} image must be (H, W, 3) uint8", image, 3)
+        return image
+
+    def _image(self, camera: str) -> NDArray[Any]:
+        if camera not in self.images:
+            raise BadInput(
+                f"frame has no image of camera {camera!r}; it has {', '.join(self.images) or 'none'}"
+            )
+        return self.images[camera]
+
+
+def _check_finite(name: str, value: float) -> None:
+    if not math.isfinite(value):
+        raise BadInput(f"{name} must be a finite number, got {value}")
 
 
 def _check_image(rule: str, image: object, dimensions: int) -> None:

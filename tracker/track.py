@@ -1,9 +1,13 @@
-"""What a tracker gives out: people, each with an id, a status and a box."""
+"""What a tracker gives out: people, each with an id, a status, and where it is in images and on the floor."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
+
+Box = tuple[float, float, float, float]
+"""left, top, width, height [px], which may reach outside the image."""
 
 
 class Status(StrEnum):
@@ -16,21 +20,44 @@ class Status(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FloorPlace:
+    """A place on the floor, and how sure it is.
+
+    Attributes:
+        position_m: x forward, y left in the robot's frame [m].
+        covariance_m2: xx, xy, yy of the error's covariance [m2].
+    """
+
+    position_m: tuple[float, float]
+    covariance_m2: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Track:
     """One person as the tracker believes it at one instant.
 
     Attributes:
         id: 1 or more; a person who was forgotten and is found again gets a new one.
-        box: left, top, width, height [px], which may reach outside the image.
-        confidence: 0..1, how well the image speaks for the person.
+        boxes: the person's box in the image of each camera that the tracker places it in, by the camera's
+            name; none for a tracker that knows people on the floor alone.
+        place: where the person stands; None where that cannot be told, as in footage.
+        confidence: 0..1, how well the images speak for the person.
         status: whether the person is confirmed, and how much of it is hidden.
         age_s: time since the track was born [s].
         occluder: id of the person in front who hides it; None if nobody does, or nobody known.
     """
 
     id: int
-    box: tuple[float, float, float, float]
+    boxes: Mapping[str, Box] = field(default_factory=dict)
+    place: FloorPlace | None = None
     confidence: float
     status: Status
     age_s: float
     occluder: int | None = None
+
+
+def confirmed(tracks: Iterable[Track], camera: str) -> Iterator[tuple[Track, Box]]:
+    """Yield the tracks that are claimed in the image of a camera, with their boxes there."""
+    for track in tracks:
+        if track.status is not Status.TENTATIVE and camera in track.boxes:
+            yield track, track.boxes[camera]

@@ -1,30 +1,32 @@
-"""The trackers by name."""
+"""The trackers by name, and what anything must do to be one."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Protocol, runtime_checkable
+import sys
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from typing import Final, Protocol, runtime_checkable
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import (
-    FOOTAGE,
-    PAPER,
-    PEOPLEBOY,
-    THESIS,
-    THESIS_COLOUR,
-    THESIS_OCCLUSION,
-)
-from peopleboy.tracker.track import Track
+from peopleboy.tracker.thermal.variants import LEARNED, VARIANTS
+from peopleboy.tracker.track import Box, Track
 
 
+@runtime_checkable
 class Tracker(Protocol):
     """Whatever turns frames into tracks."""
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """Names of the cameras whose images it wants; those that a robot lacks are mounted with defaults."""
+        ...
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Take in the next frame and tell who is seen."""
@@ -41,32 +43,65 @@ class Explains(Protocol):
         ...
 
 
+@runtime_checkable
+class Introducible(Protocol):
+    """A tracker that can be told where a person is."""
+
+    def introduce(self, box: Box) -> None:
+        """Tell that a person is at this box [px] of the thermal image in the next frame."""
+        ...
+
+
+Factory = Callable[[np.random.Generator], Tracker]
+"""Makes a tracker that draws all that is random from the generator."""
+
+
 def explanation_of(tracker: Tracker) -> object:
     """Ask a tracker what it believes beyond its tracks; None where it tells nothing."""
     return tracker.explanation if isinstance(tracker, Explains) else None
 
 
-TRACKERS: Mapping[str, TrackerConfig] = {
-    "peopleboy": PEOPLEBOY,
-    "learned": PEOPLEBOY,
-    "footage": FOOTAGE,
-    "thesis": THESIS_OCCLUSION,
-    "thermal": THESIS,
-    "colour": THESIS_COLOUR,
-    "paper": PAPER,
-}
-"""Each tracker's settings by name; the first is the default. `learned` also has a learned order in depth."""
-
-DEFAULT_TRACKER = "peopleboy"
-FOOTAGE_TRACKER = "footage"
+def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
+    return PeopleTracker(VARIANTS[name], rng, shipped_order() if name == LEARNED else None)
 
 
-def make_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
-    """Make the tracker of that name.
+TRACKERS: Final[dict[str, Factory]] = {name: partial(_contour_tracker, name) for name in VARIANTS}
+"""Each tracker's factory by name; the first is the default. Whoever has a further one adds it here."""
+
+DEFAULT_TRACKER: Final = "peopleboy"
+FOOTAGE_TRACKER: Final = "footage"
+
+
+def make_tracker(name: str, rng: np.random.Generator) -> Tracker:
+    """Make the tracker of that name: one of `TRACKERS`, or "module:Class" for one of your own.
+
+    Modules are looked for where Python looks for them, and in the working directory.
 
     Raises:
-        BadInput: an unknown name.
+        BadInput: there is none of that name, or what is there is no tracker.
     """
+    if ":" in name:
+        return _own_tracker(name, rng)
     if name not in TRACKERS:
-        raise BadInput(f"unknown tracker {name!r}; there are: {', '.join(TRACKERS)}")
-    return PeopleTracker(TRACKERS[name], rng, shipped_order() if name == "learned" else None)
+        known = ", ".join(TRACKERS)
+        raise BadInput(f"unknown tracker {name!r}; there are: {known}, and your own as module:Class")
+    return TRACKERS[name](rng)
+
+
+def _own_tracker(name: str, rng: np.random.Generator) -> Tracker:
+    home, _, member = name.partition(":")
+    if (here := str(Path.cwd())) not in sys.path:
+        sys.path.insert(0, here)
+    try:
+        factory = getattr(import_module(home), member)
+    except (ImportError, ValueError) as error:
+        raise BadInput(f"tracker {name!r}: module {home!r} cannot be imported: {error}") from error
+    except AttributeError as error:
+        raise BadInput(f"tracker {name!r}: there is no {member!r} in {home}") from error
+    try:
+        tracker = factory(rng)
+    except TypeError as error:
+        raise BadInput(f"tracker {name!r}: must be called with a numpy.random.Generator: {error}") from error
+    if not isinstance(tracker, Tracker):
+        raise BadInput(f"tracker {name!r}: is no tracker; give it `cameras` and `update(frame)`")
+    return tracker

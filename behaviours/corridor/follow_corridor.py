@@ -186,7 +186,7 @@ def _locate(state: CorridorState, percept: Percept, step_s: float, config: Corri
             return replace(state, corridor=expected, seen_s=percept.time_s)
     by_image: Corridor | Unknown = Unknown("")
     if config.sense == "image" and config.camera is not None:
-        by_image = corridor_from_image(percept.colour, config.camera, expected, config.image)
+        by_image = corridor_from_image(percept.images.get("colour"), config.camera, expected, config.image)
     is_by_image = isinstance(by_image, Corridor)
     seen = by_image if is_by_image else corridor_from_sonar(percept, expected, config.sonar)
     state = replace(

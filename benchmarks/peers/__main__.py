@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from pathlib import Path
 
 import click
 from rich.console import Console
-from rich.progress import track
 
 from peopleboy.bad_input import BadInput
 
@@ -17,11 +14,15 @@ try:
 except ImportError as error:
     raise SystemExit("benchmarks.peers: the package trackers is missing; `make peers` installs it") from error
 
-from benchmarks.peers.compete import Result, compete_on_film
+from benchmarks.peers.compete import FilmTask, Result
 from benchmarks.peers.contestants import contestants
 from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results, write_results
+from peopleboy.scenarios.commands.options import workers_options
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.scenarios.files.suite import load_suite
+from peopleboy.scenarios.running.engine.engine import work_through
+from peopleboy.scenarios.running.engine.task import TasksFailed
+from peopleboy.scenarios.running.engine.workers import Workers, chosen_workers
 
 _QUICK = "crossing_2,crossing_3,same_uniform,pass_behind_pillar,hidden_0_5s,hidden_2s,hidden_5s,crowd_8"
 _USUAL = (
@@ -36,7 +37,7 @@ _USUAL = (
     "--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="How many, from 0 on."
 )
 @click.option("--trackers", default=_USUAL, show_default=True, help="Names of contestants.")
-@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="At the same time.")
+@workers_options
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -44,8 +45,11 @@ _USUAL = (
     show_default=True,
     help="What is kept.",
 )
-def main(scenarios: str, seeds: int, trackers: str, jobs: int, out: Path) -> None:
+def main(
+    scenarios: str, seeds: int, trackers: str, workers: int | None, scheduler: str | None, out: Path
+) -> None:
     """Let peers and our trackers see the same frames, and print how they do."""
+    who = chosen_workers(workers, scheduler)
     names = trackers.split(",")
     for name in names:
         if name not in contestants():
@@ -56,7 +60,7 @@ def main(scenarios: str, seeds: int, trackers: str, jobs: int, out: Path) -> Non
         else scenarios.split(",")
     )
     console = Console(width=130)
-    results = _compete_all(names, played, seeds, jobs, out)
+    results = _compete_all(names, played, seeds, who, out)
     print_results(results, console)
     console.print()
     print_occlusions(results, console)
@@ -66,18 +70,17 @@ def main(scenarios: str, seeds: int, trackers: str, jobs: int, out: Path) -> Non
 
 
 def _compete_all(
-    names: list[str], played: list[str], seeds: int, jobs: int, out: Path
+    names: list[str], played: list[str], seeds: int, workers: Workers, out: Path
 ) -> dict[str, list[Result]]:
     """Film by film, so that each is rendered by one process only."""
-    films = [(scenario, seed) for scenario in played for seed in range(seeds)]
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        waiting = [pool.submit(compete_on_film, names, *shot, out) for shot in films]
-        done = [future.result() for future in track(waiting, "films", console=Console(stderr=True))]
-    return {name: [results[k] for results in done] for k, name in enumerate(names)}
+    tasks = [FilmTask(tuple(names), shot, seed, out.resolve()) for shot in played for seed in range(seeds)]
+    found: dict[str, list[Result]] = {}
+    work_through(tasks, workers, "films", lambda task, results: found.update({task.name: results}))
+    return {name: [found[task.name][k] for task in tasks] for k, name in enumerate(names)}
 
 
 if __name__ == "__main__":
     try:
         main(standalone_mode=False)
-    except (BadInput, click.ClickException) as error:
+    except (BadInput, TasksFailed, click.ClickException) as error:
         raise SystemExit(f"benchmarks.peers: {error}") from error

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
@@ -17,6 +16,7 @@ import benchmarks.peers
 from benchmarks.peers.contestants import PEERS, RATE_HZ, make_contestant
 from peopleboy import tracker
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, write_tracks
@@ -43,9 +43,24 @@ class Result:
     ms: float
 
 
-def compete_on_film(names: Sequence[str], scenario: str, seed: int, folder: Path) -> list[Result]:
+@dataclass(frozen=True, slots=True)
+class FilmTask:
     """Score several contestants on one film."""
-    return [compete(name, scenario, seed, folder) for name in names]
+
+    names: tuple[str, ...]
+    scenario: str
+    seed: int
+    folder: Path
+    size: int = 1
+
+    @property
+    def name(self) -> str:
+        """Scenario and seed."""
+        return f"{self.scenario}-{self.seed}"
+
+    def __call__(self, tell: Tell) -> list[Result]:  # noqa: ARG002
+        """Score them one after the other."""
+        return [compete(name, self.scenario, self.seed, self.folder) for name in self.names]
 
 
 def compete(name: str, scenario: str, seed: int, folder: Path) -> Result:

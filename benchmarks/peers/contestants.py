@@ -12,8 +12,8 @@ from trackers import ByteTrackTracker, SORTTracker
 from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.track import Status
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
 
 RATE_HZ = 15.0
@@ -60,8 +60,8 @@ class Ours:
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
         """Update, and take the confirmed tracks."""
-        tracks = [track for track in self._tracker.update(frame) if track.status is not Status.TENTATIVE]
-        return np.array([track.box for track in tracks]).reshape(-1, 4), [track.id for track in tracks]
+        found = list(confirmed(self._tracker.update(frame), THERMAL))
+        return np.array([box for _, box in found]).reshape(-1, 4), [track.id for track, _ in found]
 
 
 def _bytetrack() -> Any:

@@ -12,8 +12,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.truth.seen import SEEN
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal.colour_config import ROBOT_AFFINE
 
 Boxes = NDArray[np.float64]
@@ -50,8 +51,7 @@ class Hog:
 
     def detect(self, frame: Frame) -> Detections:
         """Find people in a frame."""
-        image = frame.colour if self._uses_colour else frame.thermal
-        assert image is not None
+        image = frame.rgb(COLOUR) if self._uses_colour else frame.grey(THERMAL)
         large = cv2.resize(image, None, fx=self._ENLARGED, fy=self._ENLARGED, interpolation=cv2.INTER_LINEAR)
         found, weight = self._hog.detectMultiScale(
             large, hitThreshold=self._WEAKEST, winStride=(8, 8), padding=(16, 16), scale=1.07
@@ -74,7 +74,7 @@ class Blobs:
 
     def detect(self, frame: Frame) -> Detections:
         """Find people in a frame."""
-        warm = (frame.thermal > self._WARMER_THAN).astype(np.uint8)
+        warm = (frame.grey(THERMAL) > self._WARMER_THAN).astype(np.uint8)
         warm = cv2.morphologyEx(warm, cv2.MORPH_CLOSE, np.ones((9, 3), np.uint8))
         _, _, stats, _ = cv2.connectedComponentsWithStats(warm)
         boxes = stats[1:, :4].astype(np.float64)
@@ -88,10 +88,8 @@ class Blobs:
 class Oracle:
     """Finds everybody of whom enough is visible, exactly: no detector of single frames can do better."""
 
-    _VISIBLE = 0.3
-
     def __init__(self, truth: TrueBoxes) -> None:
-        self._truth = truth.take(truth.visible > self._VISIBLE)
+        self._truth = truth.take(truth.visible > SEEN)
         self._frame = 0
 
     def detect(self, frame: Frame) -> Detections:  # noqa: ARG002
@@ -116,4 +114,5 @@ def _from_colour(boxes: Boxes, colour_shape: tuple[int, ...], frame: Frame) -> B
     height, width = colour_shape[:2]
     share = boxes / (width, height, width, height)
     share = (share - (p1, p4, 0.0, 0.0)) / (p2, p6, p2, p6)
-    return np.asarray(share * (frame.width_px, frame.height_px, frame.width_px, frame.height_px))
+    rows, columns = frame.grey(THERMAL).shape
+    return np.asarray(share * (columns, rows, columns, rows))

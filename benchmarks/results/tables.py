@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import found_in
 from peopleboy.scenarios.files.read_yaml import read_yaml
-from peopleboy.scenarios.files.schema_errors import explain
+from peopleboy.scenarios.files.schema_errors import validated
 
 PATH = Path(__file__).parents[2] / "docs" / "results.yaml"
 
@@ -73,10 +73,9 @@ def read_tables(path: Path = PATH) -> ResultTables:
     Raises:
         BadInput: it cannot be read, or says something else than tables of figures.
     """
-    try:
-        return ResultTables.model_validate(read_yaml(path))
-    except ValidationError as error:
-        raise BadInput(f"{path}: {explain(error, ResultTables)}") from error
+    data = read_yaml(path)
+    with found_in(file=str(path)):
+        return validated(ResultTables, data)
 
 
 def as_yaml(tables: ResultTables) -> str:

@@ -7,9 +7,9 @@ from peopleboy.tracker.evaluation.table import FIGURES
 
 
 def metrics(group: str) -> str:
-    """List the figures of one group: thesis, paper, mot or counts."""
+    """List the figures of one group: thesis, paper, mot, floor or counts."""
     rows = [
-        (f"**{figure.name}**", figure.unit or "count", figure.meaning)
+        (f"**{figure.name}**", figure.unit or ("-" if figure.group == "floor" else "count"), figure.meaning)
         for figure in FIGURES
         if figure.group == group
     ]

@@ -29,6 +29,7 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "metrics thesis": partial(metrics, "thesis"),
     "metrics paper": partial(metrics, "paper"),
     "metrics mot": partial(metrics, "mot"),
+    "metrics floor": partial(metrics, "floor"),
     "metrics counts": partial(metrics, "counts"),
     **{f"results {name}": partial(results, table) for name, table in read_tables().tables.items()},
 }

@@ -36,13 +36,16 @@ def settings() -> str:
     parts = []
     for part in fields(TrackerConfig):
         given = {name: getattr(config, part.name) for name, config in COLUMNS.items()}
-        kind = next(type(value) for value in given.values() if value is not None)
-        if kind.__module__ == source.__name__:
-            parts.append(_section(part.name, kind, settings_of(text, kind.__name__), given))
+        kinds = dict.fromkeys(type(value) for value in given.values() if value is not None)
+        for kind in kinds:
+            if kind.__module__ == source.__name__:
+                own = {name: value if isinstance(value, kind) else None for name, value in given.items()}
+                title = f"`{part.name}`" if len(kinds) == 1 else f"`{part.name}`: `{kind.__name__}`"
+                parts.append(_section(title, kind, settings_of(text, kind.__name__), own))
         if kind is FilterConfig:
             limits = {name: config.limits for name, config in given.items()}
             parts.append(
-                _section(f"{part.name}.limits", LimitsConfig, settings_of(text, "LimitsConfig"), limits)
+                _section(f"`{part.name}.limits`", LimitsConfig, settings_of(text, "LimitsConfig"), limits)
             )
     return "\n".join(parts)
 
@@ -61,13 +64,13 @@ def settings_of(text: str, kind: str) -> list[Setting]:
     return found
 
 
-def _section(name: str, kind: type[Any], found: list[Setting], given: Mapping[str, Any]) -> str:
+def _section(title: str, kind: type[Any], found: list[Setting], given: Mapping[str, Any]) -> str:
     rows = []
     for setting in found:
         values = [_value(config, setting.name, kind) for config in given.values()]
         rows.append((f"`{setting.name}`", setting.comment, *values))
     about = inspect.cleandoc(kind.__doc__ or "")
-    return f"## `{name}`\n\n{about}\n\n{table(('setting', 'meaning', *given), rows)}"
+    return f"## {title}\n\n{about}\n\n{table(('setting', 'meaning', *given), rows)}"
 
 
 def _comment(lines: list[str], node: ast.AnnAssign) -> str:

@@ -28,19 +28,26 @@ from peopleboy.scenarios.scores.show_scores import print_scores, print_spread
     show_default=True,
     help="People count if more than this share of them is seen; 0.3 leaves out slivers at the border.",
 )
-def evaluate(runs: Sequence[Path], truth: Path | None, tracks: Path | None, min_visible: float) -> None:
+@click.option("--camera", default="thermal", show_default=True, help="In whose image boxes are scored.")
+def evaluate(
+    runs: Sequence[Path], truth: Path | None, tracks: Path | None, min_visible: float, camera: str
+) -> None:
     """Score tracks against truth: one pair of files, or the folders of any number of runs.
 
     A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs give mean and
-    standard deviation over them, beside the figure of all their frames.
+    standard deviation over them, beside the figure of all their frames. Where a tracker says where on the
+    floor people stand, its errors are told in metres; one that gives no boxes is scored on the floor alone.
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in
     from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
 
+    if camera != "thermal" and not runs:
+        raise BadInput("evaluate: --camera goes with folders of runs; give --truth RUN/truth/CAMERA.gt.txt")
     if bool(runs) == (truth is not None or tracks is not None):
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
     if runs:
-        print_spread(evaluate_runs([run for folder in runs for run in runs_in(folder)], min_visible))
+        found = [run for folder in runs for run in runs_in(folder)]
+        print_spread(evaluate_runs(found, min_visible, camera))
     elif truth is None or tracks is None:
         raise BadInput("evaluate: --truth and --tracks go together")
     else:

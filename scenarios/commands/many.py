@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from peopleboy.scenarios.commands.options import tracker_option
+from peopleboy.scenarios.commands.options import tracker_option, workers_options
 from peopleboy.scenarios.scores.show_scores import print_spread
 
 
@@ -24,17 +24,27 @@ from peopleboy.scenarios.scores.show_scores import print_spread
     help="Where the runs' folders go.",
 )
 @tracker_option
-@click.option(
-    "--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Runs at the same time."
-)
+@workers_options
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
-def sweep(scenario: str, seeds: int, out: Path, tracker: str, jobs: int, overwrite: bool) -> None:
-    """Run a scenario with many seeds, without recordings, and score them together."""
-    from peopleboy.scenarios.running.sweep import run_seeds
+def sweep(
+    scenario: str,
+    seeds: int,
+    out: Path,
+    tracker: str | None,
+    workers: int | None,
+    scheduler: str | None,
+    overwrite: bool,
+) -> None:
+    """Run a scenario with many seeds, without recordings, and score them together.
+
+    A killed call goes on where it was.
+    """
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.sweep import sweep as run_seeds
     from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 
-    folders = run_seeds(scenario, range(seeds), out, tracker, jobs, overwrite=overwrite)
-    print_spread(evaluate_runs(folders))
+    who = chosen_workers(workers, scheduler)
+    print_spread(evaluate_runs(run_seeds(scenario, range(seeds), out, tracker, who, overwrite=overwrite)))
 
 
 @click.command()
@@ -60,20 +70,32 @@ def sweep(scenario: str, seeds: int, out: Path, tracker: str, jobs: int, overwri
     type=click.Path(path_type=Path),
     default=Path("runs") / "compare",
     show_default=True,
-    help="Where runs, tables and plots go; earlier ones are replaced.",
+    help="Where runs, tables and plots go.",
 )
-@click.option(
-    "--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Runs at the same time."
-)
-def compare(controllers: str, scenarios: Sequence[str], seeds: int, out: Path, jobs: int) -> None:
-    """Let controllers drive through the same scenes, and print how they did, with confidence intervals."""
+@workers_options
+@click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
+def compare(
+    controllers: str,
+    scenarios: Sequence[str],
+    seeds: int,
+    out: Path,
+    workers: int | None,
+    scheduler: str | None,
+    overwrite: bool,
+) -> None:
+    """Let controllers drive through the same scenes, and print how they did, with confidence intervals.
+
+    A killed call goes on where it was.
+    """
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.running.compare_controllers import compare, parse_controller
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.running.show_comparison import show_comparison
 
+    who = chosen_workers(workers, scheduler)
     chosen = [parse_controller(text) for text in controllers.split(",")]
     names = [load_scenario(scenario).name for scenario in scenarios]
     for scenario, name in zip(scenarios, names, strict=True):
-        runs = compare(scenario, chosen, range(seeds), out / name, jobs)
+        runs = compare(scenario, chosen, range(seeds), out / name, who, overwrite=overwrite)
         show_comparison(name, runs, out / name)
         click.echo(out / name / "comparison.png")

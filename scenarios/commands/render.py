@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from peopleboy.scenarios.commands.options import TRACKERS
+from peopleboy.scenarios.commands.options import TRACKERS, workers_options
 
 FAILED = 1
 
@@ -32,23 +32,28 @@ FAILED = 1
     show_default=True,
     help=f"Whose eyes steer robots that follow people: {TRACKERS}.",
 )
-@click.option("--jobs", type=click.IntRange(min=1), help="Runs at the same time.  [default: one a core]")
+@workers_options
 def render(
-    scenarios: Sequence[str], frames: bool, seeds: int, out: Path | None, tracker: str, jobs: int | None
+    scenarios: Sequence[str],
+    frames: bool,
+    seeds: int,
+    out: Path | None,
+    tracker: str,
+    workers: int | None,
+    scheduler: str | None,
 ) -> None:
     """Render a data set: scenarios with many seeds, split, counted and checked, with a datasheet.
 
     A killed call goes on where it was; with more --seeds the set grows, and no run changes its split.
     """
-    import os
-
     from peopleboy.scenarios.export.dataset.make_dataset import render_set
     from peopleboy.scenarios.files.load import load_scenario
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
 
+    who = chosen_workers(workers, scheduler)
     names = [load_scenario(scenario).name for scenario in scenarios]
     folder = out if out is not None else Path("sets") / "-".join(names)
-    processes = jobs if jobs is not None else os.cpu_count() or 1
-    done = render_set(scenarios, seeds, folder, frames=frames, tracker=tracker, processes=processes)
+    done = render_set(scenarios, seeds, folder, frames=frames, tracker=tracker, workers=who)
     for check in done.checks:
         click.echo(f"{'holds' if not check.failures else 'FAILS'}: {check.what}")
         for failure in check.failures[:5]:

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import SEED, tracker_option
+from peopleboy.scenarios.commands.options import SEED, tracker_option, workers_options
 from peopleboy.scenarios.scores.show_scores import print_corridor, print_following, print_scores, print_spread
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.files.scenario import Scenario
     from peopleboy.scenarios.loop.loop import Tick
+    from peopleboy.scenarios.running.engine.workers import Workers
     from peopleboy.scenarios.running.run import RunOptions
     from peopleboy.scenarios.scores.run_scores import RunScores
 
@@ -35,28 +36,32 @@ if TYPE_CHECKING:
 @click.option(
     "--live", is_flag=True, help="Show it in the rerun viewer as it goes, or on a page of this machine."
 )
+@workers_options
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
 def run(
     scenario: str,
     seed: int | None,
     out: Path | None,
     frames: bool,
-    tracker: str,
+    tracker: str | None,
     renderer: str,
     no_rrd: bool,
     live: bool,
+    workers: int | None,
+    scheduler: str | None,
     overwrite: bool,
 ) -> None:
     """Run a scenario headless, and leave a folder with truth, tracks, scores and a recording.
 
     SCENARIO is a name from `peopleboy list` or the path of a YAML file; or a suite, such as dataset1, whose
     runs have seeds of their own and leave no recordings. A suite that was killed goes on where it was.
+    --workers and --scheduler are for suites.
     """
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.files.suite import suite_names
     from peopleboy.scenarios.recording.viewer import live_viewer
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.running.run import RunOptions
-    from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
     is_suite = scenario in suite_names()
     if is_suite and seed is not None:
@@ -64,8 +69,8 @@ def run(
     loaded = None if is_suite else load_scenario(scenario)
     number = seed if seed is not None else 0 if loaded is None else loaded.seed
     name = scenario if loaded is None else f"{loaded.name}-{number}"
-    if tracker != DEFAULT_TRACKER:
-        name += f"-{tracker}"
+    if tracker is not None and (loaded is None or tracker != loaded.tracker):
+        name += f"-{tracker.replace(':', '.')}"
     options = RunOptions(
         seed=number,
         out=out if out is not None else Path("runs") / name,
@@ -78,8 +83,10 @@ def run(
     if live and (loaded is None or no_rrd):
         raise BadInput("--live: shows the recording of one run; give one scenario, without --no-rrd")
     if loaded is None:
-        _run_suite(scenario, options)
+        _run_suite(scenario, options, chosen_workers(workers, scheduler))
         return
+    if workers is not None or scheduler is not None:
+        raise BadInput(f"{scenario}: is one run, which has no use for --workers or --scheduler; leave it out")
     with ExitStack() as stack:
         if live:
             viewer = stack.enter_context(live_viewer(click.echo))
@@ -119,11 +126,11 @@ def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
         return run_scenario(scenario, options, report)
 
 
-def _run_suite(name: str, options: RunOptions) -> None:
+def _run_suite(name: str, options: RunOptions, workers: Workers) -> None:
     from peopleboy.scenarios.running.run_suite import run_suite
     from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 
-    folders = run_suite(name, options)
+    folders = run_suite(name, options, workers)
     print_spread(evaluate_runs(folders))
     for path in folders:
         click.echo(path)

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.options import workers_options
 
 
 @click.command()
@@ -50,17 +51,28 @@ def datasets(suites: Sequence[str], films: Path) -> None:
 @click.option("--again", is_flag=True, help="Run the scenarios even if the examples are there.")
 @click.option("--triplets/--no-triplets", default=True, help="Try weighted triplets as well (a minute).")
 @click.option("--ship", is_flag=True, help="Put the learned table in the place of the tracker's own.")
+@workers_options
 def train_occlusion(
-    tracker: str, seeds: int, out: Path | None, again: bool, triplets: bool, ship: bool
+    tracker: str,
+    seeds: int,
+    out: Path | None,
+    again: bool,
+    triplets: bool,
+    ship: bool,
+    workers: int | None,
+    scheduler: str | None,
 ) -> None:
     """Learn from scenarios which of two overlapping people is in front, and compare with the thesis.
 
     One set of scenarios is learned from, another one is for testing. Needs scikit-learn: .[train].
+    A killed call goes on where it was.
     """
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
 
+    who = chosen_workers(workers, scheduler)
     folder = out if out is not None else Path("runs") / f"occlusion-{tracker}"
-    click.echo(give_lesson(folder, tracker, seeds, triplets=triplets, again=again, ship=ship))
+    click.echo(give_lesson(folder, tracker, seeds, who, triplets=triplets, again=again, ship=ship))
 
 
 @click.command()
@@ -78,15 +90,14 @@ def train_occlusion(
     show_default=True,
     help="Where rendered frames are kept; for a cluster, a folder that all share.",
 )
-@click.option("--jobs", type=click.IntRange(min=1), help="Processes at the same time.  [default: one a core]")
-@click.option("--scheduler", metavar="tcp://...", help="Work on the cluster of this Dask scheduler.")
+@workers_options
 @click.option("--list", "lists", is_flag=True, help="List tables and figures, and do nothing.")
 def reproduce(
     names: Sequence[str],
     quick: bool,
     out: Path | None,
     films: Path,
-    jobs: int | None,
+    workers: int | None,
     scheduler: str | None,
     lists: bool,
 ) -> None:
@@ -95,10 +106,12 @@ def reproduce(
     ID is one of `--list`, or its number: 4.9 stands for figures 4.9a and 4.9b. A killed call goes on where it
     was when it is given again.
     """
-    from peopleboy.scenarios.studies.reproduce.show import list_experiments, reproduce_with_progress
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.studies.reproduce.show import list_experiments, reproduce_named
 
     if lists:
         list_experiments(names)
     else:
         folder = out if out is not None else Path("runs") / ("reproduce-quick" if quick else "reproduce")
-        click.echo(reproduce_with_progress(names, folder, films, jobs, scheduler, quick=quick))
+        who = chosen_workers(workers, scheduler)
+        click.echo(reproduce_named(names, folder, films, who, quick=quick))

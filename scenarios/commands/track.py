@@ -12,7 +12,7 @@ from peopleboy.bad_input import BadInput
 if TYPE_CHECKING:
     from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
 
-_TRACKERS = "footage, peopleboy, learned, thesis, colour, thermal, paper"
+_TRACKERS = "footage, peopleboy, learned, thesis, colour, thermal or paper; or module:Class, your own"
 
 
 @click.command()

@@ -25,5 +25,4 @@ def lines_of(explanation: object, points: int = 48) -> Mapping[int, tuple[Line, 
 
 @lines_of.register
 def _(explanation: ContourExplanation, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
-    contour = explanation.config.contour
-    return {number: outline(ellipse, contour, points) for number, ellipse in explanation.ellipses.items()}
+    return {number: outline(ellipse, points) for number, ellipse in explanation.ellipses.items()}

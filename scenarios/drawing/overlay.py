@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.contour_lines import lines_of
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.tracker.boxes import Box, corners
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
 Picture = NDArray[np.uint8]  # (H, W, 3) RGB
-Box = tuple[float, float, float, float]
 Plate = tuple[int, int, int, int]  # left, top, right, bottom of a label on the enlarged picture
 
 SCALE = 2
@@ -93,6 +94,7 @@ def draw_tracks(
     explanation: object = None,
     affine: Matrix | None = None,
     plates: list[Plate] | None = None,
+    camera: str = THERMAL,
 ) -> Picture:
     """Draw boxes, ids, confidence and status of tracks, and what their tracker explains of them.
 
@@ -105,16 +107,20 @@ def draw_tracks(
         explanation: what their tracker told beyond them; None to draw the boxes alone.
         affine: (2, 3) thermal pixels to the picture's, before enlarging; None for the thermal image itself.
         plates: where labels are already, which these give way to; theirs are added.
+        camera: whose boxes; tracks without any are left out.
     """
-    canvas, tracks = picture.copy(), tuple(tracks)
+    canvas, placed = (
+        picture.copy(),
+        [(track, track.boxes[camera]) for track in tracks if camera in track.boxes],
+    )
     taken = [] if plates is None else plates
     mapping = _UNTURNED if affine is None else affine
     body = max(round(scale), 1)
     outlines = lines_of(explanation)
-    for track in tracks:
+    for track, own_box in placed:
         is_sure = track.status is not Status.TENTATIVE
         colour = track_colour(track.id) if is_sure else faded(track_colour(track.id), _DIM)
-        box = map_box(track.box, mapping)
+        box = map_box(own_box, mapping)
         around = outlines.get(track.id, ())
         lines = [(box_corners(box), 1 if around else body)]
         lines += [(line @ mapping[:, :2].T + mapping[:, 2], body) for line in around]
@@ -122,8 +128,8 @@ def draw_tracks(
         for shade, extra in ((_EDGE, 1), (colour, 0)):
             for line, thickness in lines:
                 draw_line(canvas, line, shade, scale, thickness + extra)
-    for track in tracks:
-        box = map_box(track.box, mapping)
+    for track, own_box in placed:
+        box = map_box(own_box, mapping)
         if _is_inside(box, canvas, scale):
             _label(canvas, _track_text(track), box, track_colour(track.id), scale, taken)
     return canvas
@@ -154,15 +160,14 @@ def draw_truth(
 
 def map_box(box: Box, affine: Matrix) -> Box:
     """Map a box by a (2, 3) affine that does not turn it, or take the upright box around the turned one."""
-    corners = box_corners(box) @ affine[:, :2].T + affine[:, 2]
-    (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
+    points = box_corners(box) @ affine[:, :2].T + affine[:, 2]
+    (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
     return float(left), float(top), float(right - left), float(bottom - top)
 
 
 def box_corners(box: Box) -> NDArray[np.float64]:
     """Give the closed line (5, 2) around a box."""
-    left, top, width, height = box
-    right, bottom = left + width, top + height
+    left, top, right, bottom = corners(box)
     return np.array([[left, top], [right, top], [right, bottom], [left, bottom], [left, top]])
 
 
@@ -177,9 +182,9 @@ def draw_line(
 
 
 def _is_inside(box: Box, canvas: Picture, scale: float) -> bool:
-    left, top, width, height = box
+    left, top, right, bottom = corners(box)
     rows, columns = canvas.shape[0] / scale, canvas.shape[1] / scale
-    return left < columns and top < rows and left + width > 0.0 and top + height > 0.0
+    return left < columns and top < rows and right > 0.0 and bottom > 0.0
 
 
 def _track_text(track: Track) -> str:

@@ -16,9 +16,9 @@ from peopleboy.scenarios.files.schema.robot import CommandSpec
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 
 _COLOUR = "#c0392b"
-_COUNTED_M = (3.0, 10.0)
 _STEP_S = 0.05
 _RAYS = 721
 _FAR_M = 100.0
@@ -55,11 +55,11 @@ def _draw_view(axes: Axes, labels: Labels, robot: RobotConfig, place: Place) -> 
     angles = robot.heading_rad + camera.yaw_rad + np.linspace(-half, half, _RAYS)
     rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     reach = _distance_to_walls(eye, rays, place)[:, None]
-    near, far = _COUNTED_M
+    near, far = COUNTED_NEAREST_M, COUNTED_FARTHEST_M
     inner, outer = np.minimum(reach, near) * rays, np.minimum(reach, far) * rays
     _fill(axes, eye + np.concatenate([reach * rays, np.zeros((1, 2))]))
     _fill(axes, eye + np.concatenate([outer, inner[::-1]]))
-    for radius in _COUNTED_M:
+    for radius in (near, far):
         arc = np.where(reach >= radius, eye + radius * rays, np.nan)
         axes.plot(arc[:, 0], arc[:, 1], color=_COLOUR, lw=0.9, alpha=0.8, ls=(0, (4, 3)), zorder=2)
         _label_arc(labels, arc, f"{radius:g} m")

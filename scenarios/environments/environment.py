@@ -14,6 +14,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.environments.episode_figures import EpisodeFigures, Figures
 from peopleboy.scenarios.environments.observations import (
     KINDS,
     Arrays,
@@ -28,9 +29,10 @@ from peopleboy.scenarios.environments.rewards import TASKS, TERMS, reward_terms
 from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.environments.situation import Episode
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
-from peopleboy.scenarios.scores.following_score import following_task
+from peopleboy.scenarios.loop.tracker_by_name import camera_names, make_eyes
+from peopleboy.scenarios.scores.following_score import TARGET, following_task
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation, Senses
@@ -40,12 +42,11 @@ from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track
-from peopleboy.tracker.trackers import DEFAULT_TRACKER, Tracker, explanation_of, make_tracker
+from peopleboy.tracker.trackers import Tracker, explanation_of
 
 SMALLEST_PX: Final = (80, 60)
 LARGEST_PX: Final = (1280, 960)
 DEFAULT_PX: Final = (320, 240)
-_KEEP_M: Final = 3.9  # where there is nobody whose height would tell
 _SEEDS: Final = 2**31
 
 
@@ -56,12 +57,12 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     (150 deg/s, positive to the left); beyond is clipped. Observations are told in `observations`, the
     reward in `rewards`. An episode terminates when the robot touches anything, or, unless the task is
     "corridor", when the person to follow has been out of sight for 10 s; it is truncated when the
-    scenario's time is over. `info` holds `truth` (a `ImageFreeTruth`), `reward` (its terms), `metrics` (see
-    `Episode.metrics`), `events` (what is new, and with whom), and `seed`.
+    scenario's time is over. `info` holds `truth` (a `ImageFreeTruth`), `reward` (its terms), `events` (what
+    is new, and with whom), `seed`, and, once the episode is over, `metrics`.
 
-    `reset(seed=3)` plays the world of `peopleboy run --seed 3`: the same commands lead to the same truth.
-    `reset()` goes on to a seed drawn from it. `reset(options=...)` varies that one episode, see
-    `peopleboy.scenarios.environments.randomise.LIMITS`.
+    `reset(seed=3)` plays the world of `peopleboy run --seed 3`: the same commands lead to the same truth and,
+    with the tracks of the same tracker, to the same figures. `reset()` goes on to a seed drawn from it.
+    `reset(options=...)` varies that one episode, see `peopleboy.scenarios.environments.randomise.LIMITS`.
 
     Args:
         scenario: name in the library or path of a YAML file.
@@ -69,7 +70,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         observation: "pixels"; "tracks", what the tracker makes of the images; or "truth", what a perfect
             tracker would, for which nothing is rendered.
         image_size: width and height [px] of all images.
-        tracker: name of the tracker behind "tracks".
+        tracker: name of the tracker behind "tracks", "truth" for exact boxes, or None for the scenario's.
         randomise: options of every episode for which `reset` is given none.
         render_mode: "rgb_array" or None.
         physics_hz: steps of physics a second, a multiple of 15; None is that of a run, 240. 60 is quicker by
@@ -88,7 +89,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         task: str = "follow",
         observation: str = "tracks",
         image_size: tuple[int, int] = DEFAULT_PX,
-        tracker: str = DEFAULT_TRACKER,
+        tracker: str | None = None,
         randomise: Mapping[str, Any] | None = None,
         render_mode: str | None = None,
         physics_hz: int | None = None,
@@ -98,11 +99,14 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         _check_word("observation", observation, KINDS)
         _check_word("render_mode", render_mode, (None, *self.metadata["render_modes"]))
         _check_size(image_size)
-        make_tracker(tracker, stream(0, "tracker"))  # refuses an unknown name now
         self._randomise = {} if randomise is None else dict(randomise)
         check_options(self._randomise)
         self._scenario = load_scenario(scenario)
-        self._task, self._kind, self._size, self._tracker_name = task, observation, image_size, tracker
+        self._tracker_name = self._scenario.tracker if tracker is None else tracker
+        wanted = camera_names(self._tracker_name)  # refuses an unknown name now
+        if observation == "tracks":
+            self._scenario = self._scenario.mounting(wanted)
+        self._task, self._kind, self._size = task, observation, image_size
         self.render_mode = render_mode
         usual = self._scenario.world(0)
         self._physics_hz = usual.physics_hz if physics_hz is None else physics_hz
@@ -127,15 +131,19 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._seed = int(self.np_random.integers(_SEEDS)) if seed is None else seed
         config = self._config(chosen)
         self._world = World(config)
+        self._calibrations = calibrations_of(config.robot.cameras)
         self._limits, self._dt_s = config.robot.drive, 1.0 / config.control_hz
         self._frames = round(self._scenario.duration_s * config.control_hz)
         self._frame = 0
         self._action = (0.0, 0.0)
-        self._tracker: Tracker = make_tracker(self._tracker_name, stream(self._seed, "tracker"))
-        self._keep_m = _keep_m(self._scenario, config)
-        self._episode = Episode(
-            self._scenario.plan, self._keep_m, self._dt_s, may_lose=self._task != "corridor"
+        self._tracker: Tracker = make_eyes(self._tracker_name, self._seed, self._world.truth)
+        plan, following = (
+            self._scenario.plan,
+            following_task(config, self._scenario.follow_config().keep_height),
         )
+        self._keep_m = following.keep_m
+        self._episode = Episode(plan, self._dt_s, may_lose=self._task != "corridor")
+        self._figures = EpisodeFigures(plan, following)
         self._start: Planar | None = None
         self._tracks: tuple[Track, ...] = ()
         self._images: Arrays = {}
@@ -181,6 +189,17 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         assert isinstance(self._senses, Observation)
         return self._picture.draw(self._senses, self._scene, self._tracks, explanation_of(self._tracker))
 
+    def metrics(self) -> Figures:
+        """Give the figures of the episode so far, see `EpisodeFigures`.
+
+        They are over the instants at which a run has frames; that at which the time is over is none.
+
+        Raises:
+            BadInput: there is no episode yet.
+        """
+        self._running(even_over=True)
+        return self._figures.metrics()
+
     def close(self) -> None:
         """Free the physics world."""
         if self._world is not None:
@@ -203,24 +222,37 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._scene: ImageFreeTruth = world.scene()
         if self._start is None:
             self._start = self._senses.odometry
-        found = feel(self._senses, self._start)
+        found = feel(self._senses, self._start) | self._see(before)
+        if self._frame < self._frames:
+            self._note(world)
+        return found
+
+    def _see(self, before: Planar | None) -> Arrays:
+        """Give what the chosen eyes tell."""
         if self._kind == "truth":
-            return found | see_truth(self._scene, self._robot)
+            return see_truth(self._scene, self._robot)
         assert isinstance(self._senses, Observation)
         if self._kind == "pixels":
             self._images |= see_images(self._senses, self._robot)
-            return found | self._images
-        self._tracks = self._tracker.update(make_frame(self._senses, before))
-        return found | see_tracks(self._tracks, self._robot)
+            return self._images
+        self._tracks = self._tracker.update(make_frame(self._senses, self._calibrations, before))
+        return see_tracks(self._tracks, self._robot)
+
+    def _note(self, world: World) -> None:
+        """Keep this instant for the figures."""
+        if self._kind == "tracks" and world.config.people:
+            self._figures.add_tracked(self._scene, self._tracks, world.box(TARGET))
+        else:
+            self._figures.add_seen(self._scene)
 
     def _info(self, terms: dict[str, float]) -> dict[str, Any]:
-        return {
+        info = {
             "truth": self._scene,
             "reward": terms,
-            "metrics": self._episode.metrics(),
             "events": self._episode.events,
             "seed": self._seed,
         }
+        return info | {"metrics": self.metrics()} if self._is_over else info
 
     def _running(self, *, even_over: bool = False) -> World:
         if self._world is None or (self._is_over and not even_over):
@@ -257,10 +289,3 @@ def _check_action(action: NDArray[np.float32] | Sequence[float]) -> tuple[float,
 def _resize(robot: RobotConfig, size: tuple[int, int]) -> RobotConfig:
     """Let all cameras take images of another size, of the same height of view and as sharp."""
     return replace(robot, cameras={name: camera.resized(*size) for name, camera in robot.cameras.items()})
-
-
-def _keep_m(scenario: Scenario, config: WorldConfig) -> float:
-    """Distance [m] at which the first person looks as tall as the scenario asks."""
-    if not config.people:
-        return _KEEP_M
-    return following_task(config, scenario.follow_config().keep_height).keep_m

@@ -10,13 +10,17 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.thermal_box import thermal_box
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.tracker.boxes import Box, image_shares
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
 Arrays = dict[str, NDArray[Any]]
@@ -32,7 +36,6 @@ border, +1 at the right one; height, top and bottom are in image heights from th
 is_visible is 0 while a person is wholly hidden.
 """
 
-SEEN_SHARE: Final = 0.3  # of a person's middle that must be visible for the person to count as seen
 _LOWEST: Final = (0.0, -10.0, 0.0, -10.0, -10.0, 0.0, 0.0)
 _HIGHEST: Final = (1e6, 10.0, 10.0, 10.0, 10.0, 1.0, 1.0)
 _SONARS: Final = 16
@@ -85,19 +88,20 @@ def see_images(observation: Observation, robot: RobotConfig) -> Arrays:
 
 def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> Arrays:
     """Give what the tracker is sure of."""
+    thermal = calibrations_of(robot.cameras)[THERMAL]
     return _table(
-        _row(track.id, track.box, track.confidence, track.status is not Status.TOTALLY_OCCLUDED, robot)
+        _row(track.id, box, track.confidence, track.status is not Status.TOTALLY_OCCLUDED, robot)
         for track in tracks
-        if track.status is not Status.TENTATIVE
+        if track.status is not Status.TENTATIVE and (box := thermal_box(track, thermal)) is not None
     )
 
 
 def see_truth(scene: ImageFreeTruth, robot: RobotConfig) -> Arrays:
     """Give what a perfect tracker would say: everybody within the image, hidden or not."""
     return _table(
-        _row(person.id, person.box, 1.0, person.visible_share >= SEEN_SHARE, robot)
+        _row(person.id, person.box, 1.0, person.is_seen, robot)
         for person in scene.people
-        if person.box is not None and _is_inside(person, robot)
+        if person.box is not None and _is_inside(person.box, robot)
     )
 
 
@@ -105,22 +109,15 @@ def _shape(camera: CameraConfig) -> tuple[int, int, int]:
     return camera.camera.height, camera.camera.width, kind_of(camera).channels
 
 
-def _is_inside(person: Bystander, robot: RobotConfig) -> bool:
+def _is_inside(box: Box, robot: RobotConfig) -> bool:
     """Whether a person's middle lies between the borders."""
-    assert person.box is not None
-    middle = person.box[0] + person.box[2] / 2.0
-    return -0.5 <= middle <= robot.cameras["thermal"].camera.width - 0.5
-
-
-def _row(
-    number: int, box: tuple[float, float, float, float], confidence: float, visible: bool, robot: RobotConfig
-) -> Row:
-    left, top, box_width, box_height = box
     camera = robot.cameras["thermal"].camera
-    width, height = camera.width, camera.height
-    x = (left + box_width / 2.0 - (width - 1) / 2.0) / (width / 2.0)
-    upper, lower = (top + 0.5) / height, (top + box_height + 0.5) / height
-    return float(number), x, box_height / height, upper, lower, confidence, float(visible)
+    return abs(image_shares(box, camera.width, camera.height).x) <= 1.0
+
+
+def _row(number: int, box: Box, confidence: float, visible: bool, robot: RobotConfig) -> Row:
+    camera = robot.cameras["thermal"].camera
+    return float(number), *image_shares(box, camera.width, camera.height), confidence, float(visible)
 
 
 def _table(rows: Iterable[Row]) -> Arrays:

@@ -1,4 +1,4 @@
-"""How the robot stands to the person to follow and to the corridor, and the figures of an episode so far."""
+"""How the robot stands to the person to follow and to the corridor, and what happens to it."""
 
 from __future__ import annotations
 
@@ -6,14 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from peopleboy.scenarios.environments.observations import SEEN_SHARE
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
 
 LOST_S: Final = 10.0
-FACING_RAD: Final = math.radians(10.0)
-BAND_M: Final = 1.2
 NOBODY_M: Final = 1000.0  # stands for a distance or gap where there is nobody
 
 
@@ -45,27 +42,24 @@ class Situation:
 
 
 class Episode:
-    """Judges one instant after another: whom to follow, what happened, how it went so far."""
+    """Judges one instant after another: whom to follow, and what happened."""
 
-    def __init__(self, plan: FloorPlan, keep_m: float, dt_s: float, *, may_lose: bool) -> None:
-        self._plan, self._keep_m, self._dt_s, self._may_lose = plan, keep_m, dt_s, may_lose
+    def __init__(self, plan: FloorPlan, dt_s: float, *, may_lose: bool) -> None:
+        self._plan, self._dt_s, self._may_lose = plan, dt_s, may_lose
         self._unseen_s = 0.0
         self._has_seen = ""
         self._seen: set[str] = set()
         self._touched: set[str] = set()
-        self._sums = dict.fromkeys(
-            ("steps", "seen", "in_band", "facing", "off_m", "with_target", "lateral2", "way_m", "find"), 0.0
-        )
-        self._nearest_m = NOBODY_M
         self.events: tuple[tuple[str, str], ...] = ()
 
     def judge(self, scene: ImageFreeTruth) -> Situation:
         """Look at the next instant."""
         target = find_target(scene)
-        sees = target is not None and target.visible_share >= SEEN_SHARE
+        sees = target is not None and target.is_seen
         self._wait(target, sees)
         along, lateral = corridor_motion(self._plan, scene)
-        situation = Situation(
+        self.events = self._compare(scene)
+        return Situation(
             target="" if target is None else target.name,
             sees_target=sees,
             distance_m=NOBODY_M if target is None else target.distance_m,
@@ -78,32 +72,6 @@ class Episode:
             collided=bool(scene.contacts),
             is_lost=self._may_lose and self._unseen_s >= LOST_S,
         )
-        self.events = self._compare(scene)
-        self._count(situation, scene)
-        return situation
-
-    def metrics(self) -> dict[str, float]:
-        """Give the figures of the episode so far; shares are of the time since the first sight of a target.
-
-        time_s; found: 1 once a target was seen; time_to_find_s: until then; seen, in_band (1.2 m to either
-        side of the distance to keep), facing (10 degrees): shares; distance_error_m: mean of the absolute
-        error; nearest_m: smallest gap to a person; lateral_rms: offset from the centre line in half widths;
-        way_m.
-        """
-        sums, steps = self._sums, max(self._sums["steps"], 1.0)
-        since = max(sums["with_target"], 1.0)
-        return {
-            "time_s": (steps - 1.0) * self._dt_s,
-            "found": float(bool(self._has_seen)),
-            "time_to_find_s": sums["find"] * self._dt_s,
-            "seen": sums["seen"] / since,
-            "in_band": sums["in_band"] / since,
-            "facing": sums["facing"] / since,
-            "distance_error_m": sums["off_m"] / since,
-            "nearest_m": self._nearest_m,
-            "lateral_rms": math.sqrt(sums["lateral2"] / steps),
-            "way_m": sums["way_m"],
-        }
 
     def _wait(self, target: Bystander | None, sees: bool) -> None:
         """Count how long the target has been out of sight; a new target must be found first."""
@@ -116,28 +84,13 @@ class Episode:
 
     def _compare(self, scene: ImageFreeTruth) -> tuple[tuple[str, str], ...]:
         """Give what is new as pairs of what happened, and to or with whom."""
-        seen = {person.name for person in scene.people if person.visible_share >= SEEN_SHARE}
+        seen = {person.name for person in scene.people if person.is_seen}
         touched = set(scene.contacts)
         found = [("seen", name) for name in sorted(seen - self._seen)]
         found += [("out of sight", name) for name in sorted(self._seen - seen)]
         found += [("contact", name) for name in sorted(touched - self._touched)]
         self._seen, self._touched = seen, touched
         return tuple(found)
-
-    def _count(self, situation: Situation, scene: ImageFreeTruth) -> None:
-        sums = self._sums
-        sums["steps"] += 1.0
-        sums["find"] += not self._has_seen
-        sums["lateral2"] += situation.lateral_share**2
-        sums["way_m"] += abs(scene.robot_velocity[0]) * self._dt_s
-        self._nearest_m = min(self._nearest_m, situation.gap_m)
-        if self._has_seen and situation.target:
-            off = abs(situation.distance_m - self._keep_m)
-            sums["with_target"] += 1.0
-            sums["seen"] += situation.sees_target
-            sums["in_band"] += off <= BAND_M
-            sums["facing"] += abs(situation.bearing_rad) <= FACING_RAD
-            sums["off_m"] += off
 
 
 def find_target(scene: ImageFreeTruth) -> Bystander | None:

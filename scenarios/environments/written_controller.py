@@ -41,7 +41,7 @@ class WrittenController:
             sonar_angle_rad=SONAR_ANGLE_RAD,
             linear_m_s=speed,
             angular_rad_s=turn_rate,
-            colour=observation.get("colour"),
+            images={"colour": observation["colour"]} if "colour" in observation else {},
         )
         self._time_s += _DT_S
         command = self._behaviour.command(percept)

@@ -26,7 +26,8 @@ from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Box, Truth
-from peopleboy.tracker.track import Status
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import confirmed
 
 Message = tuple[str, str, Any]  # topic, type, content
 
@@ -89,7 +90,7 @@ class Messenger:
         yield self._detections("/truth/people", _people(tick.truth), time_s)
         for name in (name for name in self._further if name in tick.truths):
             yield self._detections(f"/truth/{name}/people", _people(tick.truths[name]), time_s, name)
-        tracks = [(str(t.id), t.box, t.confidence) for t in tick.tracks if t.status is not Status.TENTATIVE]
+        tracks = [(str(t.id), box, t.confidence) for t, box in confirmed(tick.tracks, THERMAL)]
         yield self._detections("/tracks", tracks, time_s)
         yield "/odom", "nav_msgs/msg/Odometry", self._odometry(tick)
         yield "/tf", "tf2_msgs/msg/TFMessage", self._make("tf2_msgs/TFMessage", transforms=self._frames(tick))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, Key, found_in
 from peopleboy.scenarios.files.place_things import make_things, resolve_colour
 from peopleboy.scenarios.files.schema.place import CorridorSpec, DoorSpec, LCorridorSpec, PlaceSpec, RoomSpec
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
@@ -25,17 +25,16 @@ def make_floor_plan(spec: PlaceSpec) -> FloorPlan:
     """
     plan = _areas(spec)
     for index, door in enumerate(spec.doors):
-        check_wall(plan, f"place.doors[{index}].wall", door.wall)
+        check_wall(plan, ("place", "doors", index, "wall"), door.wall)
         if door.height_m > spec.height_m - 0.1:
             raise BadInput(
-                f"place.doors[{index}].height_m: {door.height_m:g} is too high; "
-                f"the ceiling is at {spec.height_m:g} m and a lintel needs 0.1 m"
+                f"{door.height_m:g} is too high; the ceiling is at {spec.height_m:g} m "
+                "and a lintel needs 0.1 m",
+                key=("place", "doors", index, "height_m"),
             )
     plan = replace(plan, doors=tuple(_door(door) for door in spec.doors))
-    try:
+    with found_in("place"):
         check_doors(plan)
-    except BadInput as error:
-        raise BadInput(f"place.{error}") from error
     return plan
 
 
@@ -47,7 +46,7 @@ def make_place(spec: ScenarioSpec, folder: Path) -> Place:
         folder: where the scenario file lies, for its own URDF files.
 
     Raises:
-        BadInput: something does not fit; the message begins with the key.
+        BadInput: something does not fit; with its key.
     """
     plan = make_floor_plan(spec.place)
     return build_place(
@@ -60,7 +59,7 @@ def make_place(spec: ScenarioSpec, folder: Path) -> Place:
     )
 
 
-def check_wall(plan: FloorPlan, key: str, name: str) -> None:
+def check_wall(plan: FloorPlan, key: Key, name: str) -> None:
     """Refuse the name of a wall that the plan lacks.
 
     Raises:
@@ -68,22 +67,24 @@ def check_wall(plan: FloorPlan, key: str, name: str) -> None:
     """
     known = [wall.name for wall in plan.walls()]
     if name not in known:
-        raise BadInput(f"{key}: unknown wall {name!r}; {hint(name, known)}")
+        raise BadInput(f"unknown wall {name!r}; {hint(name, known)}", key=key)
 
 
 def _areas(spec: PlaceSpec) -> FloorPlan:
     if isinstance(spec, RoomSpec | CorridorSpec):
         return straight_corridor(spec.length_m, spec.width_m)
     if isinstance(spec, LCorridorSpec):
-        _check_longer(spec.first_m, "place.first_m", spec.width_m)
+        _check_longer(spec.first_m, "first_m", spec.width_m)
         return l_corridor(spec.first_m, spec.second_m, spec.width_m, spec.turn)
-    _check_longer(spec.bar_m, "place.bar_m", spec.width_m)
+    _check_longer(spec.bar_m, "bar_m", spec.width_m)
     return t_corridor(spec.stem_m, spec.bar_m, spec.width_m)
 
 
 def _check_longer(length_m: float, key: str, width_m: float) -> None:
     if length_m <= width_m:
-        raise BadInput(f"{key}: {length_m:g} must be more than the corridor's width of {width_m:g} m")
+        raise BadInput(
+            f"{length_m:g} must be more than the corridor's width of {width_m:g} m", key=("place", key)
+        )
 
 
 def _door(spec: DoorSpec) -> Door:
@@ -101,7 +102,7 @@ def _surfaces(spec: PlaceSpec, plan: FloorPlan) -> Surfaces:
     usual, temperatures, colours = Surfaces(), spec.temperatures, spec.colours
     walls = _material(usual.walls, temperatures.walls_c, colours.walls)
     for name in temperatures.single_walls_c:
-        check_wall(plan, "place.temperatures.single_walls_c", name)
+        check_wall(plan, ("place", "temperatures", "single_walls_c"), name)
     return Surfaces(
         floor=_material(usual.floor, temperatures.floor_c, colours.floor),
         ceiling=_material(usual.ceiling, temperatures.ceiling_c, colours.ceiling),

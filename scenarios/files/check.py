@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, Key, dotted, found_in
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.place_things import describe_floor, name_things
 from peopleboy.scenarios.files.schema.people import PersonSpec, WaypointSpec
-from peopleboy.scenarios.files.schema.robot import RobotSpec
+from peopleboy.scenarios.files.schema.robot import ORACLE, CameraSpec, RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.cameras.camera_config import CameraConfig
@@ -50,14 +50,14 @@ class Ground:
     names: tuple[str, ...]
     seats: frozenset[str]
 
-    def fault(self, path: Sequence[WaypointSpec]) -> str | None:
-        """Say what is wrong with a path, beginning with its key; None if people can walk it."""
+    def fault(self, path: Sequence[WaypointSpec]) -> BadInput | None:
+        """Give what is wrong with a path, below the key of its person; None if people can walk it."""
         for index, waypoint in enumerate(path):
             fault = self._point_fault(waypoint)
             if fault is None and index > 0:
                 fault = self._leg_fault(path[index - 1], waypoint)
             if fault is not None:
-                return f"path[{index}].at_m: {fault}"
+                return BadInput(fault, key=("path", index, "at_m"))
         return None
 
     def _point_fault(self, waypoint: WaypointSpec) -> str | None:
@@ -98,7 +98,7 @@ def make_ground(spec: ScenarioSpec, plan: FloorPlan, place: Place) -> Ground:
     )
 
 
-def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[str, PersonSpec]], ground: Ground) -> None:
+def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]], ground: Ground) -> None:
     """Refuse what cannot be played.
 
     Args:
@@ -107,19 +107,20 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[str, PersonSpec]],
         ground: where one can walk.
 
     Raises:
-        BadInput: the message begins with the key.
+        BadInput: with the key of what it is.
     """
     _check_names(people)
     _check_robot(spec, ground)
     _check_cameras(spec.robot)
-    _check_order("lights", "at_s", [light.at_s for light in spec.lights])
+    _check_order("at_s", [light.at_s for light in spec.lights], ("lights",))
     for key, person in people:
-        _check_times(key, person, spec.duration_s)
-        _check_faces(key, person, [other.name for _, other in people])
-        fault = ground.fault(person.path)
-        if fault is not None:
-            raise BadInput(f"{key}.{fault}")
-        _check_distance(key, person, spec.robot)
+        with found_in(*key):
+            _check_times(person, spec.duration_s)
+            _check_faces(person, [other.name for _, other in people])
+            fault = ground.fault(person.path)
+            if fault is not None:
+                raise fault
+            _check_distance(person, spec.robot)
 
 
 def crosses(box: Rectangle, start: tuple[float, float], end: tuple[float, float]) -> bool:
@@ -137,53 +138,71 @@ def crosses(box: Rectangle, start: tuple[float, float], end: tuple[float, float]
     return first < last
 
 
-def _check_names(people: Sequence[tuple[str, PersonSpec]]) -> None:
-    seen: dict[str, str] = {}
+def _check_names(people: Sequence[tuple[Key, PersonSpec]]) -> None:
+    seen: dict[str, Key] = {}
     for key, person in people:
         if person.name == "robot":
-            raise BadInput(f"{key}: name 'robot' is taken by the robot; choose another")
+            raise BadInput("name 'robot' is taken by the robot; choose another", key=key)
         if person.name in seen:
-            raise BadInput(
-                f"{key}: name {person.name!r} is also that of {seen[person.name]}; give each its own"
-            )
+            other = dotted(seen[person.name])
+            raise BadInput(f"name {person.name!r} is also that of {other}; give each its own", key=key)
         seen[person.name] = key
 
 
 def _check_robot(spec: ScenarioSpec, ground: Ground) -> None:
-    x, y = spec.robot.at_m
+    with found_in("robot"):
+        _check_start(spec.robot, ground)
+        _check_behaviour(spec.robot)
+        _check_order("from_s", [command.from_s for command in spec.robot.commands], ("commands",))
+
+
+def _check_start(robot: RobotSpec, ground: Ground) -> None:
+    x, y = robot.at_m
     margin = ROBOT_M - BODY_M
     for box, name in zip(ground.boxes, ground.names, strict=True):
         if box.grown(margin).contains(x, y):
             raise BadInput(
-                f"robot.at_m: ({x:g}, {y:g}) is in or within {ROBOT_M:g} m of {name!r}; move it away"
+                f"({x:g}, {y:g}) is in or within {ROBOT_M:g} m of {name!r}; move it away", key=("at_m",)
             )
     if not any(area.contains(x, y) for area in ground.plan.walkable()):
-        raise BadInput(f"robot.at_m: ({x:g}, {y:g}) is outside the floor; {describe_floor(ground.plan)}")
-    if spec.robot.commands and spec.robot.behaviour != "scripted":
-        raise BadInput(
-            f"robot.commands: a robot that is to {spec.robot.behaviour} takes none; use 'scripted'"
-        )
-    if spec.robot.keep_height is not None and spec.robot.behaviour != "follow_person":
-        raise BadInput("robot.keep_height: only a robot that is to 'follow_person' takes it")
-    if spec.robot.walls_by is not None and spec.robot.behaviour != "follow_corridor":
-        raise BadInput("robot.walls_by: only a robot that is to 'follow_corridor' takes it")
-    _check_order("robot.commands", "from_s", [command.from_s for command in spec.robot.commands])
+        raise BadInput(f"({x:g}, {y:g}) is outside the floor; {describe_floor(ground.plan)}", key=("at_m",))
+
+
+def _check_behaviour(robot: RobotSpec) -> None:
+    if robot.commands and robot.behaviour != "scripted":
+        raise BadInput(f"a robot that is to {robot.behaviour} takes none; use 'scripted'", key=("commands",))
+    if robot.keep_height is not None and robot.behaviour != "follow_person":
+        raise BadInput("only a robot that is to 'follow_person' takes it", key=("keep_height",))
+    if robot.walls_by is not None and robot.behaviour != "follow_corridor":
+        raise BadInput("only a robot that is to 'follow_corridor' takes it", key=("walls_by",))
+    if robot.tracker is not None:
+        _check_tracker(robot.tracker)
+
+
+def _check_tracker(name: str) -> None:
+    from peopleboy.tracker.trackers import TRACKERS  # here, as they take a second to load
+
+    if name not in (*TRACKERS, ORACLE):
+        known = ", ".join((*TRACKERS, ORACLE))
+        raise BadInput(f"robot.tracker: unknown name {name!r}; there are {known}")
 
 
 def _check_cameras(robot: RobotSpec) -> None:
-    for name, camera in robot.cameras.items():
-        key = f"robot.cameras.{name}"
-        if name in _TAKEN:
-            raise BadInput(f"{key}: the name is taken in what a run leaves; choose another")
-        if name in RobotConfig().cameras and camera.kind != name:
-            raise BadInput(f"{key}.kind: must be {name!r}, as the tracker wants it; choose another name")
-        if name in RobotConfig().cameras and camera.rate_hz not in (None, CONTROL_HZ):
-            raise BadInput(f"{key}.rate_hz: must be {CONTROL_HZ}, as the tracker wants it; leave it out")
-        check_rate(f"{key}.rate_hz", camera.rate_hz, CONTROL_HZ)
-    try:
+    with found_in("robot", "cameras"):
+        for name, camera in robot.cameras.items():
+            with found_in(name):
+                _check_camera(name, camera)
         _check_views(equip_robot(robot).cameras)
-    except BadInput as error:
-        raise BadInput(f"robot.cameras: {error}") from error
+
+
+def _check_camera(name: str, camera: CameraSpec) -> None:
+    if name in _TAKEN:
+        raise BadInput("the name is taken in what a run leaves; choose another")
+    if name in RobotConfig().cameras and camera.kind != name:
+        raise BadInput(f"must be {name!r}, as the tracker wants it; choose another name", key=("kind",))
+    if name in RobotConfig().cameras and camera.rate_hz not in (None, CONTROL_HZ):
+        raise BadInput(f"must be {CONTROL_HZ}, as the tracker wants it; leave it out", key=("rate_hz",))
+    check_rate(camera.rate_hz, CONTROL_HZ)
 
 
 def _check_views(cameras: Mapping[str, CameraConfig]) -> None:
@@ -192,42 +211,47 @@ def _check_views(cameras: Mapping[str, CameraConfig]) -> None:
     for name, camera in cameras.items():
         width, height = camera.camera.width, camera.camera.height
         if width * height > _MOST_PIXELS:
-            raise BadInput(f"{name}: {width} x {height} pixels are too many; at most {_MOST_PIXELS} in all")
-
-
-def _check_order(key: str, unit_key: str, times: Sequence[float]) -> None:
-    for index in range(1, len(times)):
-        if times[index] <= times[index - 1]:
             raise BadInput(
-                f"{key}[{index}].{unit_key}: {times[index]:g} must be after {times[index - 1]:g} before it"
+                f"{width} x {height} pixels are too many; at most {_MOST_PIXELS} in all", key=(name,)
             )
 
 
-def _check_times(key: str, person: PersonSpec, duration_s: float) -> None:
+def _check_order(unit_key: str, times: Sequence[float], key: Key) -> None:
+    for index in range(1, len(times)):
+        if times[index] <= times[index - 1]:
+            raise BadInput(
+                f"{times[index]:g} must be after {times[index - 1]:g} before it", key=(*key, index, unit_key)
+            )
+
+
+def _check_times(person: PersonSpec, duration_s: float) -> None:
     if person.leave_s is not None and person.leave_s <= person.enter_s:
-        raise BadInput(f"{key}.leave_s: {person.leave_s:g} must be after enter_s {person.enter_s:g}")
+        raise BadInput(f"{person.leave_s:g} must be after enter_s {person.enter_s:g}", key=("leave_s",))
     if person.enter_s >= duration_s:
-        raise BadInput(f"{key}.enter_s: {person.enter_s:g} must be before the end, duration_s {duration_s:g}")
+        raise BadInput(
+            f"{person.enter_s:g} must be before the end, duration_s {duration_s:g}", key=("enter_s",)
+        )
     for index in range(1, len(person.path)):
         if math.dist(person.path[index - 1].at_m, person.path[index].at_m) < 0.05:
-            raise BadInput(f"{key}.path[{index}].at_m: it is the point before; use pause_s there to stay")
+            raise BadInput("it is the point before; use pause_s there to stay", key=("path", index, "at_m"))
 
 
-def _check_faces(key: str, person: PersonSpec, names: Sequence[str]) -> None:
+def _check_faces(person: PersonSpec, names: Sequence[str]) -> None:
     known = [*(name for name in names if name != person.name), "robot"]
     for index, waypoint in enumerate(person.path):
         if isinstance(waypoint.face, str) and waypoint.face not in known:
             raise BadInput(
-                f"{key}.path[{index}].face: unknown name {waypoint.face!r}; {hint(waypoint.face, known)}"
+                f"unknown name {waypoint.face!r}; {hint(waypoint.face, known)}", key=("path", index, "face")
             )
 
 
-def _check_distance(key: str, person: PersonSpec, robot: RobotSpec) -> None:
+def _check_distance(person: PersonSpec, robot: RobotSpec) -> None:
     distance = math.dist(person.path[0].at_m, robot.at_m)
     if distance < ROBOT_M + BODY_M:
         raise BadInput(
-            f"{key}.path[0].at_m: {person.name!r} starts {distance:.2g} m from the robot's middle, "
-            f"inside it; keep {ROBOT_M + BODY_M:g} m"
+            f"{person.name!r} starts {distance:.2g} m from the robot's middle, inside it; "
+            f"keep {ROBOT_M + BODY_M:g} m",
+            key=("path", 0, "at_m"),
         )
 
 

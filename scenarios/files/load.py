@@ -5,13 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario, make_scenario
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
-from peopleboy.scenarios.files.schema_errors import explain, hint
+from peopleboy.scenarios.files.schema_errors import hint, validated
 
 LIBRARY = Path(__file__).parents[1] / "library"
 SUITES = Path(__file__).parents[1] / "suites"
@@ -38,12 +36,8 @@ def parse_scenario(data: dict[Any, Any], *, source: str, folder: Path) -> Scenar
     Raises:
         BadInput: the data are wrong.
     """
-    try:
-        return make_scenario(ScenarioSpec.model_validate(_filled_in(data)), folder)
-    except ValidationError as error:
-        raise BadInput(f"{source}: {explain(error, ScenarioSpec)}") from error
-    except BadInput as error:
-        raise BadInput(f"{source}: {error}") from error
+    with found_in(file=source):
+        return make_scenario(validated(ScenarioSpec, _filled_in(data)), folder)
 
 
 def library() -> dict[str, str]:
@@ -61,9 +55,10 @@ def _filled_in(data: dict[Any, Any], via: tuple[str, ...] = ()) -> dict[Any, Any
     """
     if not isinstance(data.get("like"), str):
         return data
-    path = _find_in_library(data["like"], "like: ")
-    if path.stem in via:
-        raise BadInput(f"like: {path.stem!r} is like itself, by way of {', '.join(via)}; leave it out of one")
+    with found_in("like"):
+        path = _find_in_library(data["like"])
+        if path.stem in via:
+            raise BadInput(f"{path.stem!r} is like itself, by way of {', '.join(via)}; leave it out of one")
     model = _filled_in(read_yaml(path), (*via, path.stem))
     return {key: value for key, value in (model | data).items() if key != "like"}
 
@@ -75,12 +70,12 @@ def _find(name_or_path: str | Path) -> Path:
     return _find_in_library(text)
 
 
-def _find_in_library(name: str, key: str = "") -> Path:
+def _find_in_library(name: str) -> Path:
     known = [path.stem for path in LIBRARY.glob("*.yaml")]
     if (SUITES / f"{name}.yaml").is_file():
-        raise BadInput(f"{key}{name} is a suite of scenarios, which only `peopleboy run` takes whole")
+        raise BadInput(f"{name} is a suite of scenarios, which only `peopleboy run` takes whole")
     if name not in known:
-        raise BadInput(f"{key}unknown scenario {name!r}; {hint(name, known)}; a file's path ends in .yaml")
+        raise BadInput(f"unknown scenario {name!r}; {hint(name, known)}; a file's path ends in .yaml")
     return LIBRARY / f"{name}.yaml"
 
 

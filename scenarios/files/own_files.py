@@ -37,7 +37,7 @@ def read_own_files(spec: ScenarioSpec, folder: Path) -> dict[str, bytes]:
         for path in _parts(folder / thing.urdf):
             if not path.resolve().is_relative_to(folder.resolve()):
                 raise BadInput(
-                    f"things[{index}].urdf: {path.resolve()} lies outside the scenario's own folder"
+                    f"{path.resolve()} lies outside the scenario's own folder", key=("things", index, "urdf")
                 )
             found[Path(os.path.relpath(path, folder)).as_posix()] = path.read_bytes()
     return found

@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.scenarios.files.schema.things import ThingSpec
 from peopleboy.scenarios.files.schema.values import Colour
@@ -55,7 +55,8 @@ def name_things(things: Sequence[ThingSpec]) -> tuple[str, ...]:
         name = thing.name if thing.name is not None else f"{thing.kind}_{number}"
         if name in names:
             raise BadInput(
-                f"things[{index}].name: {name!r} is also things[{names.index(name)}]; give each its own"
+                f"{name!r} is also things[{names.index(name)}]; give each its own",
+                key=("things", index, "name"),
             )
         names.append(name)
     return tuple(names)
@@ -72,10 +73,8 @@ def make_things(spec: ScenarioSpec, plan: FloorPlan, folder: Path) -> Built:
     """
     built: dict[str, tuple[Fixture, ...]] = {}
     for index, (name, thing) in enumerate(zip(name_things(spec.things), spec.things, strict=True)):
-        try:
+        with found_in("things", index):
             built[name] = _make_thing(name, thing, spec.place.height_m, plan, built, folder)
-        except BadInput as error:
-            raise BadInput(f"things[{index}]{error}") from error
     return built
 
 
@@ -92,7 +91,9 @@ def _make_thing(
     extent = _usual_extent(spec, ceiling_m) if urdf is None else _urdf_extent(urdf) * spec.scale
     stance = _stand(spec, plan, built, extent)
     if not any(area.grown(_GAP_M).contains(stance.x, stance.y) for area in plan.walkable()):
-        raise BadInput(f".at_m: ({stance.x:g}, {stance.y:g}) is outside the floor; {describe_floor(plan)}")
+        raise BadInput(
+            f"({stance.x:g}, {stance.y:g}) is outside the floor; {describe_floor(plan)}", key=("at_m",)
+        )
     depth, width, height = (float(side) for side in extent[1] - extent[0])
     return build_thing(
         Thing(
@@ -132,10 +133,8 @@ def _usual_extent(spec: ThingSpec, ceiling_m: float) -> Extent:
 
 
 def _urdf_extent(urdf: str) -> Extent:
-    try:
+    with found_in("urdf"):
         return urdf_extent(find_urdf(urdf))
-    except BadInput as error:
-        raise BadInput(f".urdf: {error}") from error
 
 
 def _stand(spec: ThingSpec, plan: FloorPlan, built: Built, extent: Extent) -> _Stance:
@@ -143,28 +142,29 @@ def _stand(spec: ThingSpec, plan: FloorPlan, built: Built, extent: Extent) -> _S
     if spec.wall is not None:
         return _stand_at_wall(spec, plan, extent)
     if spec.along_m is not None:
-        raise BadInput(".along_m: it needs the key 'wall' beside it")
+        raise BadInput("it needs the key 'wall' beside it", key=("along_m",))
     if spec.at_m is not None:
         return _Stance(*spec.at_m, facing)
     if spec.on_top_of is not None:
         below = extent_of(_below(spec.on_top_of, built))
         x, y, _ = below.mean(axis=0)
         return _Stance(float(x), float(y), facing)
-    raise BadInput(": missing key 'at_m'; or give 'wall' and 'along_m', or 'on_top_of'")
+    raise BadInput("missing key 'at_m'; or give 'wall' and 'along_m', or 'on_top_of'")
 
 
 def _stand_at_wall(spec: ThingSpec, plan: FloorPlan, extent: Extent) -> _Stance:
     wall = _find_wall(plan, str(spec.wall))
     if spec.at_m is not None or spec.on_top_of is not None:
-        raise BadInput(".wall: give either 'wall' with 'along_m', or 'at_m', or 'on_top_of'")
+        raise BadInput("give either 'wall' with 'along_m', or 'at_m', or 'on_top_of'", key=("wall",))
     if spec.along_m is None:
-        raise BadInput(": missing key 'along_m' beside 'wall'")
+        raise BadInput("missing key 'along_m' beside 'wall'")
     low, high = wall.side.span(wall.area)
     half = float(extent[1, 1] - extent[0, 1]) / 2.0
     if not low + half <= spec.along_m <= high - half:
         raise BadInput(
-            f".along_m: {spec.along_m:g} puts it beyond the end of wall {wall.name!r}, "
-            f"which reaches from {low:g} to {high:g} m"
+            f"{spec.along_m:g} puts it beyond the end of wall {wall.name!r}, "
+            f"which reaches from {low:g} to {high:g} m",
+            key=("along_m",),
         )
     x, y = wall.side.at(wall.area, spec.along_m)
     is_hung = spec.kind in KINDS and KINDS[spec.kind].is_hung
@@ -175,7 +175,7 @@ def _stand_at_wall(spec: ThingSpec, plan: FloorPlan, extent: Extent) -> _Stance:
 def _find_wall(plan: FloorPlan, name: str) -> Wall:
     walls = {wall.name: wall for wall in plan.walls()}
     if name not in walls:
-        raise BadInput(f".wall: unknown wall {name!r}; {hint(name, walls)}")
+        raise BadInput(f"unknown wall {name!r}; {hint(name, walls)}", key=("wall",))
     return walls[name]
 
 
@@ -193,7 +193,9 @@ def _base(spec: ThingSpec, ceiling_m: float, built: Built, extent: Extent) -> fl
 def _below(name: str, built: Built) -> tuple[Fixture, ...]:
     if name not in built:
         known = f"; {hint(name, built)}" if built else ""
-        raise BadInput(f".on_top_of: unknown thing {name!r} (it must come earlier in the file){known}")
+        raise BadInput(
+            f"unknown thing {name!r} (it must come earlier in the file){known}", key=("on_top_of",)
+        )
     return built[name]
 
 
@@ -201,19 +203,22 @@ def _find_urdf(spec: ThingSpec, folder: Path) -> str | None:
     """The name by which PyBullet finds the file: inside pybullet_data, or in the scenario's own folder."""
     if spec.kind != "urdf":
         if spec.urdf is not None:
-            raise BadInput(".urdf: only a thing of kind 'urdf' takes it")
+            raise BadInput("only a thing of kind 'urdf' takes it", key=("urdf",))
         return None
     if spec.urdf is None:
-        raise BadInput(": missing key 'urdf': a file such as 'table/table.urdf'")
+        raise BadInput("missing key 'urdf': a file such as 'table/table.urdf'")
     name = PurePosixPath(spec.urdf)
     if name.is_absolute() or ".." in name.parts or "\\" in spec.urdf or "\0" in spec.urdf:
         raise BadInput(
-            f".urdf: {spec.urdf!r} must be a file of pybullet_data or of the scenario's own folder: "
-            "no '..', no absolute path"
+            f"{spec.urdf!r} must be a file of pybullet_data or of the scenario's own folder: "
+            "no '..', no absolute path",
+            key=("urdf",),
         )
     own = folder / name
     if is_in_data(spec.urdf):
         return spec.urdf
     if own.is_file() and own.resolve().is_relative_to(folder.resolve()):
         return str(own.resolve())
-    raise BadInput(f".urdf: {spec.urdf!r} is neither in pybullet_data nor in the scenario's own folder")
+    raise BadInput(
+        f"{spec.urdf!r} is neither in pybullet_data nor in the scenario's own folder", key=("urdf",)
+    )

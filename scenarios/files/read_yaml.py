@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
 
 _LARGEST_BYTES = 1_000_000
 
@@ -59,38 +59,42 @@ def read_yaml(path: Path) -> dict[Any, Any]:
     Raises:
         BadInput: the file cannot be read, is not YAML, or holds something else.
     """
-    text = _read_text(path)
+    with found_in(file=str(path)):
+        return _parse(_read_text(path))
+
+
+def _parse(text: str) -> dict[Any, Any]:
     try:
         data = yaml.load(text, Loader=_Loader)
     except yaml.MarkedYAMLError as error:
         line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
-        raise BadInput(f"{path}: {line}{_one_line(str(error.problem))}") from error
+        raise BadInput(f"{line}{_one_line(str(error.problem))}") from error
     except RecursionError as error:
-        raise BadInput(f"{path}: it is nested too deeply to be a scenario") from error
+        raise BadInput("it is nested too deeply to be a scenario") from error
     except (yaml.YAMLError, ValueError, OverflowError) as error:
-        raise BadInput(f"{path}: not YAML: {_one_line(str(error))}") from error
+        raise BadInput(f"not YAML: {_one_line(str(error))}") from error
     if data is None:
-        raise BadInput(f"{path}: the file is empty; it must hold keys such as 'name' and 'place'")
+        raise BadInput("the file is empty; it must hold keys such as 'name' and 'place'")
     if not isinstance(data, dict):
-        raise BadInput(f"{path}: it holds a {type(data).__name__}, not keys such as 'name' and 'place'")
+        raise BadInput(f"it holds a {type(data).__name__}, not keys such as 'name' and 'place'")
     return data
 
 
 def _read_text(path: Path) -> str:
     if path.is_dir():
-        raise BadInput(f"{path}: it is a folder; give a scenario file that ends in .yaml")
+        raise BadInput("it is a folder; give a scenario file that ends in .yaml")
     try:
         data = path.read_bytes()
     except FileNotFoundError as error:
-        raise BadInput(f"{path}: there is no such file") from error
+        raise BadInput("there is no such file") from error
     except OSError as error:
-        raise BadInput(f"{path}: it cannot be read: {error.strerror}") from error
+        raise BadInput(f"it cannot be read: {error.strerror}") from error
     if len(data) > _LARGEST_BYTES:
-        raise BadInput(f"{path}: it has {len(data)} bytes; a scenario file has at most {_LARGEST_BYTES}")
+        raise BadInput(f"it has {len(data)} bytes; a scenario file has at most {_LARGEST_BYTES}")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise BadInput(f"{path}: it is not UTF-8 text (byte {error.start})") from error
+        raise BadInput(f"it is not UTF-8 text (byte {error.start})") from error
 
 
 def _one_line(text: str) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, Key
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.corridor.corridor_from_image import CameraView
@@ -25,7 +25,7 @@ from peopleboy.scenarios.files.own_files import read_own_files
 from peopleboy.scenarios.files.schema.people import PersonSpec
 from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import DrawnSpec, ScenarioSpec
-from peopleboy.sim.cameras.kinds import flat_geometry
+from peopleboy.sim.cameras.kinds import KINDS, flat_geometry
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
@@ -79,6 +79,13 @@ class Scenario:
         """What the file says about the robot."""
         return self.spec.robot
 
+    @property
+    def tracker(self) -> str:
+        """Name of the tracker that sees people unless another one is asked for."""
+        from peopleboy.tracker.trackers import DEFAULT_TRACKER  # here, as it takes a second to load
+
+        return self.robot.tracker or DEFAULT_TRACKER
+
     def people(self, seed: int) -> tuple[PersonSpec, ...]:
         """Everybody, groups included, with all that the seed decides.
 
@@ -107,6 +114,29 @@ class Scenario:
             seed=seed,
             renderer=renderer,
         )
+
+    def mounting(self, cameras: Sequence[str]) -> Scenario:
+        """The same scenario, but its robot also carries these cameras: those that it lacks, with defaults.
+
+        Args:
+            cameras: names, each of a camera that the robot carries or of a kind of camera.
+
+        Raises:
+            BadInput: the robot has no camera of a name, and there is no such kind.
+        """
+        lacking = [name for name in dict.fromkeys(cameras) if name not in equip_robot(self.robot).cameras]
+        if not lacking:
+            return self
+        for name in lacking:
+            if name not in KINDS:
+                raise BadInput(
+                    f"camera {name!r}: the tracker wants it, but no kind of camera has that name "
+                    f"({', '.join(KINDS)} have); mount one in robot.cameras"
+                )
+        mounted = {name: {"kind": name} for name in lacking}
+        data = self.robot.model_dump(exclude_unset=True)
+        robot = RobotSpec.model_validate(data | {"cameras": {**data.get("cameras", {}), **mounted}})
+        return replace(self, spec=self.spec.model_copy(update={"robot": robot}))
 
     def lasting(self, duration_s: float) -> Scenario:
         """The same scenario, but shorter or longer."""
@@ -190,10 +220,11 @@ def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
     )
 
 
-def _everybody(spec: ScenarioSpec) -> tuple[tuple[str, PersonSpec], ...]:
+def _everybody(spec: ScenarioSpec) -> tuple[tuple[Key, PersonSpec], ...]:
     """All people with the keys that stand for them in the file."""
-    single = tuple((f"people[{index}]", person) for index, person in enumerate(spec.people))
-    grouped = tuple(
-        (f"groups[{index}]", person) for index, group in enumerate(spec.groups) for person in members(group)
-    )
-    return (*single, *grouped)
+    found: list[tuple[Key, PersonSpec]] = [
+        (("people", index), person) for index, person in enumerate(spec.people)
+    ]
+    for index, group in enumerate(spec.groups):
+        found += [(("groups", index), person) for person in members(group)]
+    return tuple(found)

@@ -5,9 +5,13 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
+
+from peopleboy.bad_input import BadInput, Key
+
+M = TypeVar("M", bound=BaseModel)
 
 _MOST_FAULTS = 3
 _TAGS = ("word", "list")  # of the schema's own unions
@@ -33,18 +37,27 @@ _LIMITS = {
 }
 
 
-def explain(error: ValidationError, model: type[BaseModel]) -> str:
-    """Say where and what the faults are, at most three, on one line; misspelt keys come first.
+def validated(model: type[M], data: object) -> M:
+    """Make a model of data.
 
-    Args:
-        error: raised by `model`.
-        model: what the data should have been.
+    Raises:
+        BadInput: with where and what the faults are, at most three, misspelt keys first.
     """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise _explain(error, model) from error
+
+
+def _explain(error: ValidationError, model: type[BaseModel]) -> BadInput:
     faults = [fault for fault in error.errors() if not _is_echo(fault, error.errors())]
     faults.sort(key=lambda fault: fault["type"] != "extra_forbidden")
-    lines = list(dict.fromkeys(_explain_one(fault, model) for fault in faults))
+    found = [_explain_one(fault, model) for fault in faults]
+    lines = list(dict.fromkeys(map(str, found)))
+    if len(lines) == 1:
+        return found[0]
     more = f"; and {len(lines) - _MOST_FAULTS} more" if len(lines) > _MOST_FAULTS else ""
-    return "; ".join(lines[:_MOST_FAULTS]) + more
+    return BadInput("; ".join(lines[:_MOST_FAULTS]) + more)
 
 
 def hint(word: str, known: Iterable[str]) -> str:
@@ -54,29 +67,21 @@ def hint(word: str, known: Iterable[str]) -> str:
     return f"did you mean {close[0]!r}?" if close else f"choose from {', '.join(words)}"
 
 
-def dotted(steps: Sequence[str | int]) -> str:
-    """Write a path as people[0].path[1]."""
-    text = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
-    return text.removeprefix(".")
-
-
 def _is_echo(fault: Any, faults: Sequence[Any]) -> bool:
     """Whether a list only seems too short because an entry of it is wrong."""
     place = fault["loc"]
     return any(len(other["loc"]) > len(place) and other["loc"][: len(place)] == place for other in faults)
 
 
-def _explain_one(fault: Any, model: type[BaseModel]) -> str:
+def _explain_one(fault: Any, model: type[BaseModel]) -> BadInput:
     steps, owner = _follow(fault["loc"], model)
     kind, context = fault["type"], fault.get("ctx", {})
-    if kind in ("extra_forbidden", "missing"):
-        where = f"{dotted(steps[:-1])}: " if len(steps) > 1 else ""
-        if kind == "missing" and isinstance(steps[-1], str):
-            return f"{where}missing key {steps[-1]!r}"
-        if kind == "extra_forbidden":
-            return f"{where}unknown key {steps[-1]!r}; {hint(str(steps[-1]), owner)}"
+    if kind == "missing" and isinstance(steps[-1], str):
+        return BadInput(f"missing key {steps[-1]!r}", key=steps[:-1])
+    if kind == "extra_forbidden":
+        return BadInput(f"unknown key {steps[-1]!r}; {hint(str(steps[-1]), owner)}", key=steps[:-1])
     label = next((step for step in reversed(steps) if isinstance(step, str)), "value")
-    return f"{dotted(steps)}: {_what(kind, context, fault, label)}"
+    return BadInput(_what(kind, context, fault, label), key=steps)
 
 
 def _what(kind: str, context: Any, fault: Any, label: str) -> str:
@@ -105,7 +110,7 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 40 else f"{text[:37]}..."
 
 
-def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[list[str | int], list[str]]:
+def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[Key, list[str]]:
     """Drop pydantic's tags of unions from a path, and list the keys that are known at its last step."""
     steps: list[str | int] = []
     known: list[str] = []
@@ -122,7 +127,7 @@ def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[list[str 
             fields = [c.model_fields[step].annotation for c in models if step in c.model_fields]
             # A step that is no field is the key of a mapping, and what follows is inside its value.
             types = [inner for annotation in fields for inner in _inside(annotation)] if fields else types
-    return steps, known
+    return tuple(steps), known
 
 
 def _is_model(candidate: Any) -> bool:

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.drives import read_drive
 from peopleboy.scenarios.files.load import SUITES, load_scenario
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.values import Key, Strict
-from peopleboy.scenarios.files.schema_errors import explain, hint
+from peopleboy.scenarios.files.schema_errors import hint, validated
 
 DRIVES = SUITES / "drives"
 
@@ -71,10 +71,8 @@ def load_suite(name: str) -> SuiteSpec:
     if name not in suite_names():
         raise BadInput(f"unknown suite {name!r}; {hint(name, suite_names())}")
     data: dict[Any, Any] = read_yaml(SUITES / f"{name}.yaml")
-    try:
-        return SuiteSpec.model_validate(data)
-    except ValidationError as error:
-        raise BadInput(f"suites/{name}.yaml: {explain(error, SuiteSpec)}") from error
+    with found_in(file=f"suites/{name}.yaml"):
+        return validated(SuiteSpec, data)
 
 
 def runs_of(suite: SuiteSpec, *, with_drives: bool = True) -> Iterator[SuiteRun]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
-from peopleboy.tracker.trackers import TRACKERS
+from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.wording import counted
 
 
@@ -30,6 +30,6 @@ def _what_to_look_at(options: TrackOptions) -> str:
 
 def _heights(tracker: str) -> str:
     """Say which people this tracker looks for; one who fills more than the picture is not seen whole."""
-    config = TRACKERS[tracker]
+    config = VARIANTS[tracker]
     low, high = (config.box.height_per_h * share for share in config.detector.limits.h)
     return f"at least {low:.0%}" if high >= 1 else f"{low:.0%} to {high:.0%}"

@@ -14,7 +14,6 @@ from PIL import Image
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.overlay import (
-    Box,
     Picture,
     Plate,
     draw_tracks,
@@ -23,6 +22,7 @@ from peopleboy.scenarios.drawing.overlay import (
     show_thermal,
 )
 from peopleboy.scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, draw_head
+from peopleboy.tracker.boxes import Box
 from peopleboy.tracker.footage.grey import Grey
 from peopleboy.tracker.track import Track
 

@@ -24,6 +24,7 @@ from peopleboy.scenarios.run_folder.out_folder import check_named
 from peopleboy.scenarios.run_folder.tables import TRACKS, Row, track_row, write_table
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, track_line, write_truth
 from peopleboy.tracker.evaluation.table import to_json
@@ -31,18 +32,15 @@ from peopleboy.tracker.footage.grey import LEAST_SIDE_PX, Grey, Radiometry, grey
 from peopleboy.tracker.footage.pictures import Footage, open_footage
 from peopleboy.tracker.footage.plausible import check_plausible
 from peopleboy.tracker.footage.truth_files import KEPT_SINGLE, GivenTruth, find_truth, load_truth
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.trackers import FOOTAGE_TRACKER, make_tracker
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.track import Status, Track, confirmed
+from peopleboy.tracker.trackers import FOOTAGE_TRACKER, Introducible, Tracker, explanation_of, make_tracker
 from peopleboy.wording import counted
 
 COLOUR_TRACKER: Final = "colour"
 """It differs from `thermal` by what colours add alone."""
 DEFAULT_RATE_HZ: Final = 15.0
 """Pictures a second of a folder: those of the robot's cameras, for which the tracker is made."""
-
-Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,7 +115,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
         log = _Log(folder, options, truth, rate)
         with log:
             for frame in _frames(footage, colour, options, rate):
-                log.add(frame, tracker.update(frame), tracker.explanation)
+                log.add(frame, tracker.update(frame), explanation_of(tracker))
                 report(log.frames, footage.expected)
         scores = log.finish()
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
@@ -142,14 +140,21 @@ def _truth_of(options: TrackOptions, footage: Footage) -> GivenTruth | None:
     return load_truth(path, footage.expected if options.footage.is_dir() else None)
 
 
-def _tracker_of(options: TrackOptions, truth: GivenTruth | None) -> PeopleTracker:
+def _tracker_of(options: TrackOptions, truth: GivenTruth | None) -> Tracker:
     tracker = make_tracker(options.tracker, stream(options.seed, "tracker"))
+    for camera in tracker.cameras:
+        if camera not in (THERMAL, COLOUR):
+            raise BadInput(f"--tracker {options.tracker}: wants camera {camera!r}, which footage has not")
     if options.tracker == COLOUR_TRACKER and options.colour is None:
         raise BadInput("--tracker colour: needs --colour FOLDER; without it, give --tracker thermal")
     start = options.start
     if start == "truth" and truth is not None:
         start = truth.box_at(1)
     if start is not None and not isinstance(start, str):
+        if not isinstance(tracker, Introducible):
+            raise BadInput(
+                f"--tracker {options.tracker}: cannot be told where a person is; leave --start out"
+            )
         tracker.introduce(start)
     return tracker
 
@@ -188,7 +193,10 @@ def _frames(footage: Footage, colour: Footage | None, options: TrackOptions, rat
         values = options.radiometry.values(thermal, footage.notes)
         if number == 0:
             check_plausible(options.radiometry, values)
-        yield Frame(thermal=to_grey(values), time_s=number / rate, colour=_colour_picture(picture))
+        images: dict[str, NDArray[np.uint8]] = {THERMAL: to_grey(values)}
+        if picture is not None:
+            images[COLOUR] = _colour_picture(picture)
+        yield Frame(images=images, time_s=number / rate)
 
 
 def _check_first(thermal: NDArray[Any], options: TrackOptions, notes: list[str]) -> None:
@@ -205,15 +213,13 @@ def _check_first(thermal: NDArray[Any], options: TrackOptions, notes: list[str])
 
 
 def _check_inside(box: Box, width: int, height: int) -> None:
-    left, top, wide, high = box
-    if not (left >= 0 and top >= 0 and left + wide <= width and top + high <= height):
+    left, top, right, bottom = corners(box)
+    if not (left >= 0 and top >= 0 and right <= width and bottom <= height):
         told = ",".join(f"{number:g}" for number in box)
         raise BadInput(f"--start {told}: X,Y,W,H must lie inside the pictures, which are {width}x{height}")
 
 
-def _colour_picture(picture: NDArray[Any] | None) -> NDArray[np.uint8] | None:
-    if picture is None:
-        return None
+def _colour_picture(picture: NDArray[Any]) -> NDArray[np.uint8]:
     if picture.dtype != np.uint8:
         raise BadInput(f"--colour: pictures must be 8-bit, got {picture.dtype}")
     return np.repeat(picture[..., None], 3, axis=2) if picture.ndim == 2 else np.ascontiguousarray(picture)
@@ -252,18 +258,20 @@ class _Log:
     def add(self, frame: Frame, tracks: tuple[Track, ...], explanation: object) -> None:
         """Write one frame."""
         self.frames += 1
-        self.size = frame.thermal.shape
+        grey = frame.grey(THERMAL)
+        self.size = grey.shape[0], grey.shape[1]
         self._rows += [track_row(self.frames, frame.time_s, track, explanation) for track in tracks]
         sure = [track for track in tracks if track.status is not Status.TENTATIVE]
         self._ids |= {track.id for track in sure}
         self._results.writelines(
-            track_line(self.frames, track.id, track.box, track.confidence) for track in sure
+            track_line(self.frames, track.id, box, track.confidence)
+            for track, box in confirmed(tracks, THERMAL)
         )
-        height, width = frame.thermal.shape
+        height, width = self.size
         if self._film is not None:
-            self._film.add(self._drawn(frame.thermal, tracks, explanation, math.ceil(FILM_PX / height)))
+            self._film.add(self._drawn(grey, tracks, explanation, math.ceil(FILM_PX / height)))
         if self._sheet.wants(self.frames):
-            self._sheet.add(self.frames, self._drawn(frame.thermal, tracks, explanation, TILE_PX / width))
+            self._sheet.add(self.frames, self._drawn(grey, tracks, explanation, TILE_PX / width))
 
     def _drawn(self, grey: Grey, tracks: tuple[Track, ...], explanation: object, scale: float) -> Picture:
         words = f"frame {self.frames}"

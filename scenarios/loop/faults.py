@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.loop import Stage
+from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.on_demand import OnDemand
@@ -49,6 +50,11 @@ class FaultySensors:
             seen = replace(seen, odometry=_jumped(seen.odometry, now["odometry_jumps"]))
         return seen
 
+    @property
+    def cameras(self) -> Mapping[str, CameraConfig]:
+        """What the robot carries, by name."""
+        return self._world.cameras
+
     def truths(self) -> Mapping[str, Truth]:
         """Tell what is true at this instant, by camera that takes an image."""
         return self._world.truths()
@@ -71,6 +77,11 @@ class FaultyTracker:
     def __init__(self, tracker: Tracker, faults: Sequence[FaultSpec]) -> None:
         self._tracker = tracker
         self._faults = faults
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """Those of the tracker."""
+        return self._tracker.cameras
 
     @property
     def explanation(self) -> object:

@@ -5,26 +5,34 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from functools import partial
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.percept import Percept, SeenPerson
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.thermal_box import thermal_box
+from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.boxes import image_shares
+from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
+from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
 
 # Ways between two images beyond what the drive can do in a quarter of a second are jumps of the odometry.
 FARTHEST_TURN_RAD = math.radians(40.0)
 FARTHEST_WAY_M = 0.2
+
+Images = Mapping[str, NDArray[Any]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -67,6 +75,11 @@ class Stage(Protocol):
         """Read every sensor once."""
         ...
 
+    @property
+    def cameras(self) -> Mapping[str, CameraConfig]:
+        """What the robot carries, by name."""
+        ...
+
     def truths(self) -> Mapping[str, Truth]:
         """Tell what is true at this instant, by camera that takes an image."""
         ...
@@ -83,9 +96,12 @@ class Eyes:
         tracks: those of the newest image that was understood.
     """
 
-    def __init__(self, tracker: Tracker) -> None:
+    def __init__(self, tracker: Tracker, calibrations: Mapping[str, Calibration]) -> None:
         self._tracker = tracker
+        self._calibrations = calibrations
+        self._watched = tuple(dict.fromkeys((THERMAL, *tracker.cameras)))
         self._newest: Observation | None = None
+        self._images: Images = {}
         self.tracks: tuple[Track, ...] = ()
 
     def look(self, observation: Observation) -> Percept:
@@ -93,25 +109,25 @@ class Eyes:
 
         Images equal to the last ones to the bit are no new ones: the noise of a camera never repeats.
         """
-        newest = self._newest
-        if newest is not None and _is_same_image(newest, observation):
-            age_s = observation.time_s - newest.time_s
-            return make_percept(observation, self.tracks, image_age_s=age_s)
+        newest, tell = self._newest, partial(make_percept, observation, self._calibrations[THERMAL])
+        images = {name: observation.images[name] for name in self._watched if name in observation.images}
+        if newest is not None and _are_same(self._images, images):
+            return tell(self.tracks, image_age_s=observation.time_s - newest.time_s)
         before = None if newest is None else newest.odometry
-        self._newest = observation
+        self._newest, self._images = observation, images
         try:
-            self.tracks = self._tracker.update(make_frame(observation, before))
+            self.tracks = self._tracker.update(make_frame(observation, self._calibrations, before))
         except BadInput:
             raise
         except Exception as error:  # a robot among people outlives its tracker
             self.tracks = ()
-            return make_percept(observation, (), fault=f"the tracker failed: {type(error).__name__}: {error}")
-        return make_percept(observation, self.tracks)
+            return tell((), fault=f"the tracker failed: {type(error).__name__}: {error}")
+        return tell(self.tracks)
 
 
 def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: int) -> Iterator[Tick]:
     """Run the loop for a number of frames, from the world's present instant on."""
-    eyes = Eyes(tracker)
+    eyes = Eyes(tracker, calibrations_of(world.cameras))
     for frame in range(1, frames + 1):
         observation = world.observe()
         command = behaviour.command(eyes.look(observation))
@@ -130,35 +146,41 @@ def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: in
             world.step(command.linear_m_s, command.angular_rad_s, is_emergency=command.is_emergency)
 
 
-def make_frame(observation: Observation, before: Planar | None) -> Frame:
-    """Give the tracker its images, and how the odometry moved since the pose before (None: unknown).
-
-    A jump that no wheels can make is unknown too.
-    """
-    turn, advance = None, None
-    if before is not None:
-        now = observation.odometry
-        turn = math.remainder(now.heading - before.heading, math.tau)
-        dx, dy = now.x - before.x, now.y - before.y
-        advance = dx * math.cos(before.heading) + dy * math.sin(before.heading)
-        if abs(turn) > FARTHEST_TURN_RAD or math.hypot(dx, dy) > FARTHEST_WAY_M:
-            turn, advance = None, None
+def make_frame(
+    observation: Observation, calibrations: Mapping[str, Calibration], before: Planar | None
+) -> Frame:
+    """Give the tracker its images, and how the odometry moved since the pose before (None: unknown)."""
     return Frame(
-        thermal=observation.images["thermal"],
+        images=observation.images,
+        calibrations=calibrations,
         time_s=observation.time_s,
-        colour=observation.images["colour"],
-        turn_rad=turn,
-        advance_m=advance,
+        odometry=None if before is None else _moved(before, observation.odometry),
     )
 
 
+def _moved(before: Planar, now: Planar) -> Odometry | None:
+    """Tell how the odometry moved; a jump that no wheels can make is unknown."""
+    turn = math.remainder(now.heading - before.heading, math.tau)
+    advance, aside = before.locate((now.x, now.y))
+    if abs(turn) > FARTHEST_TURN_RAD or math.hypot(advance, aside) > FARTHEST_WAY_M:
+        return None
+    return Odometry(advance_m=advance, aside_m=aside, turn_rad=turn)
+
+
 def make_percept(
-    observation: Observation, tracks: tuple[Track, ...], *, image_age_s: float = 0.0, fault: str = ""
+    observation: Observation,
+    thermal: Calibration,
+    tracks: tuple[Track, ...],
+    *,
+    image_age_s: float = 0.0,
+    fault: str = "",
 ) -> Percept:
     """Give the behaviour what it steers by: confirmed tracks, sonar and the wheels' speed."""
-    height, width = observation.images["thermal"].shape
+    height, width = observation.images[THERMAL].shape
     people = tuple(
-        see_person(track, width, height) for track in tracks if track.status is not Status.TENTATIVE
+        see_person(track, box, width, height)
+        for track in tracks
+        if track.status is not Status.TENTATIVE and (box := thermal_box(track, thermal)) is not None
     )
     left, right = observation.wheel_speeds_m_s
     return Percept(
@@ -168,25 +190,25 @@ def make_percept(
         sonar_angle_rad=SONAR_ANGLE_RAD,
         linear_m_s=(left + right) / 2.0,
         angular_rad_s=(right - left) / WHEEL_DISTANCE_M,
-        colour=observation.images["colour"],
+        images=observation.images,
         image_age_s=image_age_s,
         fault=fault,
     )
 
 
-def _is_same_image(one: Observation, other: Observation) -> bool:
-    return all(np.array_equal(one.images[name], other.images[name]) for name in ("thermal", "colour"))
+def _are_same(old: Images, new: Images) -> bool:
+    return all(name in old and np.array_equal(old[name], image) for name, image in new.items())
 
 
-def see_person(track: Track, width: int, height: int) -> SeenPerson:
-    """Express a track's box in shares of the image."""
-    left, top, box_width, box_height = track.box
+def see_person(track: Track, box: Box, width: int, height: int) -> SeenPerson:
+    """Express a track's box [px] in shares of the image."""
+    shares = image_shares(box, width, height)
     return SeenPerson(
         id=track.id,
-        x=(left + box_width / 2.0 - (width - 1) / 2.0) / (width / 2.0),
-        height=box_height / height,
-        top=(top + 0.5) / height,
-        bottom=(top + box_height + 0.5) / height,
+        x=shares.x,
+        height=shares.height,
+        top=shares.top,
+        bottom=shares.bottom,
         confidence=track.confidence,
         is_visible=track.status is not Status.TOTALLY_OCCLUDED,
     )

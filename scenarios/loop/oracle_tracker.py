@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.truth.seen import is_seen
 from peopleboy.sim.truth.truth import PersonTruth, Truth
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.track import Status, Track
-
-TRUTH = "truth"
-SEEN = 0.3  # share of a silhouette above which a person counts as seen
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.track import FloorPlace, Status, Track
 
 
 class OracleTracker:
@@ -22,21 +21,31 @@ class OracleTracker:
         self._truth = truth
         self._first_s: dict[int, float] = {}
 
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """None: it looks at no image."""
+        return ()
+
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Look at the truth instead of the frame."""
+        truth = self._truth()
         return tuple(
-            self._track(person, frame.time_s)
-            for person in self._truth().people
-            if person.box is not None and person.inside_fraction > SEEN
+            self._track(person, truth.robot, frame.time_s)
+            for person in truth.people
+            if person.box is not None and is_seen(person.inside_fraction)
         )
 
-    def _track(self, person: PersonTruth, time_s: float) -> Track:
+    def _track(self, person: PersonTruth, robot: Planar, time_s: float) -> Track:
         assert person.box is not None
-        is_seen = person.visible_fraction > SEEN
         return Track(
             id=person.id,
-            box=person.box,
+            boxes={THERMAL: person.box},
+            place=_place(person, robot),
             confidence=1.0,
-            status=Status.TRACKED if is_seen else Status.TOTALLY_OCCLUDED,
+            status=Status.TRACKED if is_seen(person.visible_fraction) else Status.TOTALLY_OCCLUDED,
             age_s=time_s - self._first_s.setdefault(person.id, time_s),
         )
+
+
+def _place(person: PersonTruth, robot: Planar) -> FloorPlace:
+    return FloorPlace(position_m=robot.locate(person.position_m), covariance_m2=(0.0, 0.0, 0.0))

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import Box, Status, Track
 
 OUT_SHARE = 0.3  # of a box's width outside the image, from which who is lost there has left it
+_INSIDE: Box = (0.0, 0.0, 0.0, 0.0)  # who has no box left no image
 PAUSE_S = 1.0  # an occlusion that goes on after less is the same one
 
 
@@ -81,7 +83,7 @@ def why_lost(now: Track, was: Track, width_px: int) -> str:
         was: as it was before.
         width_px: of the thermal image.
     """
-    left, _, width, _ = now.box
+    left, _, width, _ = now.boxes.get(THERMAL, _INSIDE)
     for out_px, side in ((-left, "left"), (left + width - width_px, "right")):
         if out_px > OUT_SHARE * width:
             return f"left the image on the {side}"

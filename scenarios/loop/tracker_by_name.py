@@ -4,28 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.loop.oracle_tracker import TRUTH, OracleTracker
+from peopleboy.scenarios.files.schema.robot import ORACLE
+from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.tracker.trackers import TRACKERS, Tracker, make_tracker
+from peopleboy.tracker.trackers import Tracker, make_tracker
 
 
 def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
     """Make a tracker by its name; "truth" is none, but knows.
 
     Raises:
-        BadInput: an unknown name.
+        BadInput: an unknown name, or a tracker of your own that cannot be made.
     """
-    check_eyes(name)
-    return OracleTracker(truth) if name == TRUTH else make_tracker(name, stream(seed, "tracker"))
+    return OracleTracker(truth) if name == ORACLE else make_tracker(name, stream(seed, "tracker"))
 
 
-def check_eyes(name: str) -> None:
-    """Refuse the name of a tracker that there is not.
+def camera_names(name: str) -> tuple[str, ...]:
+    """Name the cameras that the tracker of a name wants.
 
     Raises:
-        BadInput: an unknown name.
+        BadInput: an unknown name, or a tracker of your own that cannot be made.
     """
-    if name not in (*TRACKERS, TRUTH):
-        raise BadInput(f"unknown tracker {name!r}; there are: {', '.join((*TRACKERS, TRUTH))}")
+    return () if name == ORACLE else make_tracker(name, stream(0, "tracker")).cameras

@@ -10,6 +10,7 @@ import numpy as np
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, track_colour
 from peopleboy.scenarios.recording.marks import Colours, Floats, colours_of
 from peopleboy.sim.truth.truth import Box, PersonTruth
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Track
 
 LEAST_SHARE = 0.02  # of a silhouette, from which being hidden is worth an arrow
@@ -55,10 +56,10 @@ def world_arrows(people: Sequence[PersonTruth]) -> Arrows:
 
 def believed_arrows(tracks: Iterable[Track]) -> Arrows:
     """Draw on the thermal image whom the tracker takes to be in front of whom, in the front one's colour."""
-    known = {track.id: track for track in tracks}
+    known = {track.id: (track, track.boxes[THERMAL]) for track in tracks if THERMAL in track.boxes}
     pairs = [
-        (_point(known[front].box, _CHEST), _point(behind.box, _HEAD), track_colour(front), str(behind.status))
-        for behind in known.values()
+        (_point(known[front][1], _CHEST), _point(box, _HEAD), track_colour(front), str(behind.status))
+        for behind, box in known.values()
         if (front := behind.occluder) is not None and front in known
     ]
     return _arrows(pairs, 2)

@@ -4,7 +4,8 @@ world/place/...             floor, walls and things; the ceiling is there, but n
 world/robot                 its pose; below it body and cameras, with what is drawn on their images:
 world/robot/thermal/...     image, tracks with evidence, particles, truth
 world/robot/colour/...      image, tracks, truth
-world/robot/CAMERA/...      image and truth of any further camera
+world/robot/CAMERA/...      image, truth, and tracks if they have boxes there, of any further camera
+world/robot/places          where on the floor the tracker takes people to be, with 95 % ellipses
 world/people/NAME/body      capsules, and the name
 world/occlusions            arrows from who hides to who is hidden
 world/trails                where robot and people went
@@ -20,6 +21,7 @@ import rerun as rr
 THERMAL: Final = "world/robot/thermal"
 COLOUR: Final = "world/robot/colour"
 OCCLUSIONS: Final = "world/occlusions"
+PLACES: Final = "world/robot/places"
 TRAILS: Final = "world/trails"
 EVENTS: Final = "events"
 
@@ -35,7 +37,7 @@ LAYERS: Final[dict[str, tuple[Any, float]]] = {
     "particles/detector": (rr.Points2D, 1.5),
 }
 ON_COLOUR: Final = ("truth/boxes", "truth/names", "tracks/boxes")
-ON_FURTHER: Final = ("truth/boxes", "truth/names")
+ON_FURTHER: Final = ("truth/boxes", "truth/names", "tracks/boxes")
 
 
 def camera_path(name: str) -> str:

@@ -5,6 +5,7 @@ Pixels are those of the camera's image: the centre of the top-left one is (0, 0)
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -16,11 +17,15 @@ from peopleboy.scenarios.drawing.palette import ROBOT, TRUTH, Rgb, person_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.thermal.filter.particles import Particles
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.boxes import image_shares
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.thermal.particles import Particles
+from peopleboy.tracker.track import Box, Status, Track
 
 PARTICLES_A_FILTER = 50
 PARTICLES_AT_MOST = 100
+FLAT_M = 0.01  # height of what lies on the floor
+CHI_95 = 2.4477  # root of the 95 % quantile of chi squared with two degrees of freedom
 
 Floats = NDArray[np.float32]
 Colours = NDArray[np.uint8]
@@ -67,11 +72,54 @@ class Points:
     colour: Colours
 
 
-def track_boxes(tracks: Sequence[Track], affine: Matrix | None = None) -> Boxes:
-    """Give the boxes of tracks, mapped to the other camera's image if (2, 3) `affine` says how."""
-    boxes = [track.box if affine is None else map_box(track.box, affine) for track in tracks]
+@dataclass(frozen=True, slots=True, eq=False)
+class Ellipses:
+    """K flat ellipses on the floor with a colour and a label each, in the robot's frame.
+
+    Attributes:
+        centre: (K, 3) [m].
+        half_size: (K, 3) [m] along their own axes.
+        quaternion: (K, 4) x, y, z, w.
+        colour: (K, 3).
+        label: K texts.
+    """
+
+    centre: Floats
+    half_size: Floats
+    quaternion: Floats
+    colour: Colours
+    label: list[str]
+
+
+def places(tracks: Iterable[Track]) -> Ellipses:
+    """Give where tracks stand on the floor, as ellipses that hold 95 % of what their covariance allows."""
+    placed = [(track, track.place) for track in tracks if track.place is not None]
+    centre = [(*place.position_m, FLAT_M) for _, place in placed]
+    shapes = [_ellipse(*place.covariance_m2) for _, place in placed]
+    return Ellipses(
+        np.reshape(np.array(centre, np.float32), (-1, 3)),
+        np.reshape(np.array([half for half, _ in shapes], np.float32), (-1, 3)),
+        np.reshape(np.array([turn for _, turn in shapes], np.float32), (-1, 4)),
+        colours_of(track_colour(track.id) for track, _ in placed),
+        [track_label(track) for track, _ in placed],
+    )
+
+
+def _ellipse(xx: float, xy: float, yy: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Give semi-axes [m] and quaternion of a covariance's 95 % ellipse."""
+    variance, axes = np.linalg.eigh(np.array([[xx, xy], [xy, yy]]))
+    along, across = CHI_95 * np.sqrt(np.maximum(variance[::-1], FLAT_M**2))
+    half_turn = math.atan2(axes[1, 1], axes[0, 1]) / 2.0
+    return (float(along), float(across), FLAT_M), (0.0, 0.0, math.sin(half_turn), math.cos(half_turn))
+
+
+def track_boxes(tracks: Sequence[Track], camera: str = THERMAL, affine: Matrix | None = None) -> Boxes:
+    """Give the boxes of tracks in a camera's image, mapped to another's if (2, 3) `affine` says how."""
+    placed = [track for track in tracks if camera in track.boxes]
+    own = [track.boxes[camera] for track in placed]
+    boxes = own if affine is None else [map_box(box, affine) for box in own]
     return Boxes(
-        _boxes(boxes), colours_of(track_colour(t.id) for t in tracks), [track_label(t) for t in tracks]
+        _boxes(boxes), colours_of(track_colour(t.id) for t in placed), [track_label(t) for t in placed]
     )
 
 
@@ -139,9 +187,9 @@ def visible_fractions(tick: Tick, names: Iterable[str]) -> list[float]:
     return [visible.get(name, 0.0) for name in names]
 
 
-def track_offset(track: Track, width_px: int) -> float:
-    """Give how far the middle of a track's box lies right of the image's [half image widths]."""
-    return (track.box[0] + track.box[2] / 2.0 - (width_px - 1) / 2.0) / (width_px / 2.0)
+def box_offset(box: Box, width_px: int) -> float:
+    """Give how far the middle of a box lies right of the thermal image's [half image widths]."""
+    return image_shares(box, width_px, 1).x
 
 
 def _boxes(boxes: Sequence[tuple[float, float, float, float]]) -> Floats:

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from peopleboy.scenarios.run_folder.whole import whole
+
 _ONLY_ERRORS = {"RUST_LOG": "error"}
 
 
@@ -16,13 +18,12 @@ def pack(path: Path) -> None:
     There is always a complete file: the new one takes its place at the end, or not at all if rerun's program
     fails.
     """
-    packed = path.with_suffix(".packed")
-    command = [sys.executable, "-m", "rerun_cli", "rrd", "optimize", str(path), "--output", str(packed)]
-    done = subprocess.run(
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        env=os.environ | _ONLY_ERRORS, check=False,
-    )  # fmt: skip
-    # Rerun's program takes it for no failure if it can make nothing of its input.
-    if done.returncode == 0 and packed.is_file():
-        packed.replace(path)
-    packed.unlink(missing_ok=True)
+    # Rerun's program takes it for no failure if it can make nothing of its input, and then leaves nothing.
+    with whole(path) as packed:
+        command = [sys.executable, "-m", "rerun_cli", "rrd", "optimize", str(path), "--output", str(packed)]
+        done = subprocess.run(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            env=os.environ | _ONLY_ERRORS, check=False,
+        )  # fmt: skip
+        if done.returncode != 0:
+            packed.unlink(missing_ok=True)

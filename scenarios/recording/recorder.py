@@ -19,9 +19,9 @@ from peopleboy.scenarios.recording import marks
 from peopleboy.scenarios.recording.arrows import Arrows, believed_arrows, true_arrows, world_arrows
 from peopleboy.scenarios.recording.capsule_people import NOBODY, body_capsules
 from peopleboy.scenarios.recording.entities import (
-    COLOUR,
     EVENTS,
     OCCLUSIONS,
+    PLACES,
     THERMAL,
     TRAILS,
     camera_path,
@@ -76,6 +76,8 @@ class Recorder:
         self._path = path
         self._trails = marks.Trails()
         self._tracks_named: set[int] = set()
+        self._tracked = {"thermal"}
+        self._has_places = False
         self._rows = RowBuffer()
         self._stream = rr.RecordingStream(
             APPLICATION, recording_id=title.replace(", ", "-").replace(" ", "-")
@@ -133,11 +135,27 @@ class Recorder:
         contours = explained_lines(tick.explanation, tick)
         strips, colours = _from_corner(contours.line), contours.colour
         self._rows.add(f"{THERMAL}/tracks/contours", rr.LineStrips2D, strips=strips, colors=colours)
-        on_thermal = marks.track_boxes(tick.tracks)
-        on_colour = marks.track_boxes(tick.tracks, self._colour_from_thermal)
-        for path, boxes in ((THERMAL, on_thermal), (COLOUR, on_colour)):
-            self._log_boxes(f"{path}/tracks/boxes", boxes, labels=boxes.label)
+        self._tracked |= {camera for track in tick.tracks for camera in track.boxes}
+        for name in self._boxed:
+            if name in self._tracked:
+                boxes = marks.track_boxes(tick.tracks, name)
+            elif name == "colour":
+                boxes = marks.track_boxes(tick.tracks, affine=self._colour_from_thermal)
+            else:
+                continue
+            self._log_boxes(f"{camera_path(name)}/tracks/boxes", boxes, labels=boxes.label)
         self._log_arrows("tracks/occlusions", believed_arrows(tick.tracks))
+        self._log_places(tick)
+
+    def _log_places(self, tick: Tick) -> None:
+        self._has_places |= any(track.place is not None for track in tick.tracks)
+        if self._has_places:
+            places = marks.places(tick.tracks)
+            self._rows.add(
+                PLACES, rr.Ellipsoids3D, centers=rounded(places.centre, METRE_STEP),
+                half_sizes=rounded(places.half_size, METRE_STEP), quaternions=places.quaternion,
+                colors=places.colour, labels=places.label,
+            )  # fmt: skip
 
     def _log_arrows(self, layer: str, arrows: Arrows) -> None:
         self._rows.add(
@@ -200,7 +218,9 @@ class Recorder:
                 self._tracks_named.add(track.id)
                 self._still.log_track(track.id)
             curves[f"curves/confidence/track_{track.id}"] = [track.confidence]
-            curves[f"curves/offset/track_{track.id}"] = [marks.track_offset(track, self._width)]
+            if "thermal" in track.boxes:
+                offset = marks.box_offset(track.boxes["thermal"], self._width)
+                curves[f"curves/offset/track_{track.id}"] = [offset]
         for path, values in curves.items():
             self._rows.add(path, rr.Scalars, scalars=np.array(values, np.float64))
 

@@ -15,6 +15,7 @@ from peopleboy.scenarios.recording.entities import (
     OCCLUSIONS,
     ON_COLOUR,
     ON_FURTHER,
+    PLACES,
     TRAILS,
     camera_path,
     person_path,
@@ -51,6 +52,7 @@ class Still:
         for name, camera in config.robot.cameras.items():
             layers, reach_m = own.get(name, (ON_FURTHER, 0.8))
             self._log_camera(camera_path(name), camera.camera, layers, reach_m)
+        self._log(PLACES, rr.Ellipsoids3D.from_fields(fill_mode=FillMode.MajorWireframe))
         self._log(TRAILS, rr.LineStrips3D.from_fields(radii=[0.02]))
         self._log(OCCLUSIONS, rr.Arrows3D.from_fields(radii=[0.03]))
         for curve, (labels, shades) in _ROBOT_CURVES.items():

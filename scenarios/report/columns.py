@@ -128,7 +128,7 @@ def _column(label: str, runs: Sequence[FinishedRun]) -> Column:
 
 def _occlusions(found: RunFindings) -> tuple[Occlusion, ...]:
     """Score the total occlusions of a run; its truth file has nobody who is outside the image."""
-    truth, tracks = found.files.truth, found.files.tracks
+    truth, tracks = found.boxes
     occluded = {person.id: person.occluded for person in found.people}
     rows = zip(truth.id.tolist(), truth.frame.tolist(), strict=True)
     hidden = np.array([occluded[person][frame - 1] for person, frame in rows], np.float64)

@@ -100,7 +100,7 @@ def _title(columns: Sequence[Column]) -> str:
 
 def _first_repeated(singles: Sequence[Column]) -> int:
     """The first number whose colour repeats that of another; 0 if there are not so many numbers."""
-    most = max((int(c.found.files.tracks.id.max(initial=0)) for c in singles), default=0)
+    most = max((int(c.found.boxes[1].id.max(initial=0)) for c in singles), default=0)
     return TRACK_COLOURS + 1 if most > TRACK_COLOURS else 0
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.scenarios.run_folder.whole import whole
 
 _ENDINGS = (".html", ".htm")
 _REPORT = re.compile(rb"<title>[^<]*: PeopleBoy report</title>")
@@ -34,13 +35,8 @@ def write_page(text: str, out: Path) -> None:
     Raises:
         BadInput: it cannot be written there.
     """
-    part = out.with_name(f"{out.name}.part")
-    with writing_to(out):
-        try:
-            part.write_text(text, encoding="utf-8")
-            part.replace(out)
-        finally:
-            part.unlink(missing_ok=True)
+    with writing_to(out), whole(out) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 def _is_report(path: Path) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import ContourExplanation
-from peopleboy.tracker.trackers import TRACKERS
+from peopleboy.tracker.thermal.variants import VARIANTS
 
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
 SPREAD = "uncertainty_px2"
@@ -33,10 +33,10 @@ def _(explanation: ContourExplanation, track: int) -> Mapping[str, Any]:
 def read_explanation(tracker: str, rows: Iterable[Mapping[str, Any]]) -> ContourExplanation | None:
     """Read back what a tracker of that name explained at one frame; None if its rows hold nothing of it."""
     told = [row for row in rows if row[SPREAD] is not None]
-    if not told or tracker not in TRACKERS:
+    if not told or tracker not in VARIANTS:
         return None
     return ContourExplanation(
-        config=TRACKERS[tracker],
+        config=VARIANTS[tracker],
         ellipses={row["id"]: Ellipse(**{name: row[name] for name in STATE}) for row in told},
         spread_px2={row["id"]: row[SPREAD] for row in told},
     )

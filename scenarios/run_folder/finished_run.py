@@ -9,14 +9,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema_errors import explain
+from peopleboy.scenarios.files.schema_errors import validated
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_files
 from peopleboy.scenarios.run_folder.tables import ROBOT, TRUTH
@@ -164,9 +164,10 @@ def open_run(folder: Path) -> FinishedRun:
     if "footage" in data:
         raise BadInput(f"{folder}: is a run of footage; only runs of scenarios can be looked into so")
     try:
-        return FinishedRun(folder, About.model_validate(data))
-    except ValidationError as error:
-        raise BadInput(f"{folder / 'run.json'}: {explain(error, About)}; run the scenario again") from error
+        about = validated(About, data)
+    except BadInput as error:
+        raise BadInput(f"{error}; run the scenario again", file=str(folder / "run.json")) from error
+    return FinishedRun(folder, about)
 
 
 def open_whole_runs(folders: Sequence[Path]) -> list[FinishedRun]:

@@ -29,7 +29,8 @@ from peopleboy.scenarios.run_folder.tables import (
 )
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.tracker.evaluation.mot_files import track_line
-from peopleboy.tracker.track import Status
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import confirmed
 
 _VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet", "scipy")
 
@@ -68,7 +69,7 @@ class RunFolder:
             make_image_folders(path, cameras)
         self._gt = self._open("truth/gt.txt")
         self._further = {name: CameraTruth(path / "truth", name) for name in further_cameras(cameras)}
-        self._results = self._open("tracks.txt")
+        self._results = {THERMAL: self._open("tracks.txt")}
         self._events = self._open("events.jsonl")
 
     def __enter__(self) -> RunFolder:
@@ -77,13 +78,12 @@ class RunFolder:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        for file in (self._gt, self._results, self._events):
+        for file in self._texts():
             file.close()
         for camera in self._further.values():
             camera.close()
-        write_table(self.path / "truth.parquet", self._truth, TRUTH)
-        write_table(self.path / "tracks.parquet", self._tracks, TRACKS)
-        write_table(self.path / "robot.parquet", self._robot, ROBOT)
+        if not self._is_complete:
+            self._write_tables()
         status = "complete" if self._is_complete and kind is None else "cut off"
         self._write_json("run.json", {"status": status, "frames": len(self._robot), **self._about})
 
@@ -95,7 +95,7 @@ class RunFolder:
         self._gt.writelines(gt_lines(tick))
         for camera in self._further.values():
             camera.write(tick)
-        self._results.writelines(result_lines(tick))
+        self._write_boxes(tick)
         self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
         if self._writes_frames:
             write_images(self.path, tick.frame, tick.observation, self._cameras)
@@ -106,11 +106,28 @@ class RunFolder:
         self._is_complete = True
 
     def flush(self) -> None:
-        """Bring the text files to disk, so that they can be read while the run goes on."""
-        for file in (self._gt, self._results, self._events):
+        """Bring all files but the further cameras' tables to disk, so that the run can be scored."""
+        self._write_tables()
+        for file in self._texts():
             file.flush()
         for camera in self._further.values():
             camera.flush()
+
+    def _texts(self) -> tuple[TextIO, ...]:
+        return self._gt, self._events, *self._results.values()
+
+    def _write_boxes(self, tick: Tick) -> None:
+        """Write the boxes that the tracker gives, by camera; a camera's file begins with its first box."""
+        for camera in {camera for track in tick.tracks for camera in track.boxes} - set(self._results):
+            (self.path / "tracks").mkdir(exist_ok=True)
+            self._results[camera] = self._open(f"tracks/{camera}.txt")
+        for camera, file in self._results.items():
+            file.writelines(result_lines(tick, camera))
+
+    def _write_tables(self) -> None:
+        write_table(self.path / "truth.parquet", self._truth, TRUTH)
+        write_table(self.path / "tracks.parquet", self._tracks, TRACKS)
+        write_table(self.path / "robot.parquet", self._robot, ROBOT)
 
     def _open(self, name: str) -> TextIO:
         return open_text(self.path / name)
@@ -142,10 +159,9 @@ def claim_folder(path: Path, *, overwrite: bool) -> None:
         (path / "run.json").touch()
 
 
-def result_lines(tick: Tick) -> list[str]:
-    """MOTChallenge results: one line per confirmed track."""
+def result_lines(tick: Tick, camera: str = THERMAL) -> list[str]:
+    """MOTChallenge results in the image of a camera: one line per confirmed track."""
     return [
-        track_line(tick.frame, track.id, track.box, track.confidence)
-        for track in tick.tracks
-        if track.status is not Status.TENTATIVE
+        track_line(tick.frame, track.id, box, track.confidence)
+        for track, box in confirmed(tick.tracks, camera)
     ]

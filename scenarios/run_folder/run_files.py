@@ -33,7 +33,7 @@ _AGAIN = "run the scenario again"
 _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
 # What tells which rows of the tables are in the text files too.
 _WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
-_WRITTEN_TRACKS = ("frame", "id", "status")
+_WRITTEN_TRACKS = ("frame", "id", "status", "left_px")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -87,9 +87,9 @@ def read_files(
     files = RunFiles(
         truth=read_truth(folder / _TRUTH_TEXT),
         tracks=read_tracks(folder / _TRACKS_TEXT),
-        people=_read_table(folder / "truth.parquet", TRUTH, people),
-        beliefs=_read_table(folder / "tracks.parquet", TRACKS, TRACKS.names),
-        robot=_read_table(folder / "robot.parquet", ROBOT, robot),
+        people=read_table(folder / "truth.parquet", TRUTH, people),
+        beliefs=read_table(folder / "tracks.parquet", TRACKS, TRACKS.names),
+        robot=read_table(folder / "robot.parquet", ROBOT, robot),
     )
     if files.robot["frame"].to_pylist() != list(range(1, frames + 1)):
         raise BadInput(
@@ -117,10 +117,10 @@ def check_whole(folder: Path, truth: TrueBoxes, tracks: TrackBoxes) -> None:
         BadInput: a box is missing, or nobody's, or a table is spoilt.
     """
     if (folder / "truth.parquet").is_file():
-        people = _read_table(folder / "truth.parquet", TRUTH, _WRITTEN_TRUTH)
+        people = read_table(folder / "truth.parquet", TRUTH, _WRITTEN_TRUTH)
         _check_rows(truth, folder / _TRUTH_TEXT, _written_truth(people))
     if (folder / "tracks.parquet").is_file():
-        beliefs = _read_table(folder / "tracks.parquet", TRACKS, _WRITTEN_TRACKS)
+        beliefs = read_table(folder / "tracks.parquet", TRACKS, _WRITTEN_TRACKS)
         _check_rows(tracks, folder / _TRACKS_TEXT, _written_tracks(beliefs))
 
 
@@ -134,7 +134,12 @@ def check_end(rows: Rows, path: Path, frames: int) -> None:
         raise BadInput(f"{path}: must end with frame {frames}, the run's last, got {rows.last_frame}")
 
 
-def _read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Table:
+def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Table:
+    """Read columns of a table of a run.
+
+    Raises:
+        BadInput: it is missing or spoilt, or of a version that had other columns.
+    """
     try:
         found = pq.read_schema(path)
         for name in columns:
@@ -159,7 +164,8 @@ def _written_truth(people: pa.Table) -> pa.Table:
 
 def _written_tracks(beliefs: pa.Table) -> pa.Table:
     """Keep the rows of tracks that have a line in tracks.txt."""
-    return beliefs.filter(pc.not_equal(beliefs["status"], str(Status.TENTATIVE)))
+    is_sure = pc.not_equal(beliefs["status"], str(Status.TENTATIVE))
+    return beliefs.filter(pc.and_(is_sure, pc.is_valid(beliefs["left_px"])))
 
 
 def _by_frame(table: pa.Table) -> dict[int, list[Row]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import pyarrow as pa
@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.explained import COLUMNS, SPREAD, STATE, explained
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import FloorPlace, Status, Track
 
 Row = dict[str, Any]
 
@@ -27,6 +28,7 @@ def _floats(*names: str) -> list[pa.Field]:
     return [pa.field(name, pa.float64()) for name in names]
 
 
+PLACE: Final = ("place_x_m", "place_y_m", "place_xx_m2", "place_xy_m2", "place_yy_m2")
 _EDGES = ("left_px", "top_px", "width_px", "height_px")
 _INSTANT = [pa.field("frame", pa.int64()), pa.field("time_s", pa.float64())]
 
@@ -60,6 +62,7 @@ TRACKS = pa.schema(
         pa.field("status", pa.string()),
         *_floats("confidence", "age_s", SPREAD),
         *_box_fields(""),
+        *_floats(*PLACE),
         *_floats(*STATE),
         pa.field("occluder", pa.int64()),
     ]
@@ -79,7 +82,12 @@ ROBOT = pa.schema(
 )
 
 MAY_BE_EMPTY = frozenset(
-    ("occluder", *COLUMNS, *(f"{prefix}{edge}" for prefix in ("", "whole_", "visible_") for edge in _EDGES))
+    (
+        "occluder",
+        *COLUMNS,
+        *PLACE,
+        *(f"{prefix}{edge}" for prefix in ("", "whole_", "visible_") for edge in _EDGES),
+    )
 )
 """Columns that have no value where there is nobody or nothing to tell of."""
 
@@ -138,6 +146,11 @@ def _box(prefix: str, box: tuple[float, float, float, float] | None) -> Row:
     return dict(zip(names, box or (None,) * 4, strict=True))
 
 
+def _place(place: FloorPlace | None) -> Row:
+    values = (None,) * 5 if place is None else (*place.position_m, *place.covariance_m2)
+    return dict(zip(PLACE, values, strict=True))
+
+
 def _person_row(tick: Tick, person: PersonTruth) -> Row:
     row = {
         "id": person.id,
@@ -177,7 +190,8 @@ def track_row(frame: int, time_s: float, track: Track, explanation: object) -> R
     return (
         {"frame": frame, "time_s": time_s}
         | row
-        | _box("", track.box)
+        | _box("", track.boxes.get(THERMAL))
+        | _place(track.place)
         | hider
         | dict(explained(explanation, track.id))
     )
@@ -186,9 +200,11 @@ def track_row(frame: int, time_s: float, track: Track, explanation: object) -> R
 def track_of(row: Mapping[str, Any]) -> Track:
     """Read a track back from a row of the tracks table."""
     left, top, width, height = (row[edge] for edge in _EDGES)
+    x, y, *covariance = (row[name] for name in PLACE)
     return Track(
         id=row["id"],
-        box=(left, top, width, height),
+        boxes={} if left is None else {THERMAL: (left, top, width, height)},
+        place=None if x is None else FloorPlace(position_m=(x, y), covariance_m2=tuple(covariance)),
         confidence=row["confidence"],
         status=Status(row["status"]),
         age_s=row["age_s"],

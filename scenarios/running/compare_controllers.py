@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +13,10 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.tracker_by_name import check_eyes
-from peopleboy.scenarios.progress_bar import each_shown
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.loop.tracker_by_name import camera_names
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.run import RunOptions
+from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
@@ -48,46 +47,61 @@ def parse_controller(text: str) -> Controller:
     behaviour, at, eyes = text.strip().partition("@")
     make_behaviour(behaviour)
     controller = Controller(behaviour, eyes if at else DEFAULT_TRACKER)
-    check_eyes(controller.eyes)
+    camera_names(controller.eyes)  # refuses an unknown name
     return controller
 
 
 def compare(
-    scenario: str, controllers: Sequence[Controller], seeds: Iterable[int], out: Path, jobs: int
+    scenario: str,
+    controllers: Sequence[Controller],
+    seeds: Iterable[int],
+    out: Path,
+    workers: Workers,
+    *,
+    overwrite: bool,
 ) -> dict[Controller, list[Figures]]:
     """Run a scenario with every controller and seed, and collect how the robot drove.
+
+    A comparison that was killed goes on where it was.
 
     Args:
         scenario: name or path.
         controllers: who drives.
         seeds: the same for all of them.
-        out: where the runs' folders go, each CONTROLLER-SEED; earlier ones are replaced.
-        jobs: runs at the same time.
+        out: where the runs' folders go, each CONTROLLER-SEED.
+        workers: who does the runs.
+        overwrite: whether earlier runs are replaced.
 
     Returns:
         For each controller the figures of each seed, NaN for what is undefined.
 
     Raises:
-        BadInput: as for a single run, or a controller is named twice.
+        BadInput: as for a single run, a controller is named twice, or a complete run in the place of one is
+            another one.
+        TasksFailed: some runs failed.
     """
     if len(set(controllers)) < len(controllers):
         raise BadInput(f"--controllers {','.join(map(str, controllers))}: each may be there once only")
-    runs = [
-        (controller, RunOptions(
-            seed=seed, out=out / f"{controller}-{seed}", tracker=controller.eyes, record=False, overwrite=True
-        ))
+    loaded = load_scenario(scenario)
+    tasks = {
+        (controller, seed): RunTask(
+            loaded.steered_by(controller.behaviour),
+            RunOptions(
+                seed=seed,
+                out=out / f"{controller}-{seed}",
+                tracker=controller.eyes,
+                record=False,
+                overwrite=overwrite,
+            ),
+        )
         for seed in seeds
         for controller in controllers
-    ]  # fmt: skip
-    found: dict[Controller, list[Figures]] = {controller: [] for controller in controllers}
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        done = [
-            pool.submit(_run_one, scenario, controller.behaviour, options) for controller, options in runs
-        ]
-        names = [controller for controller, _ in runs]
-        for controller, future in zip(names, each_shown(done, scenario), strict=True):
-            found[controller].append(future.result())
-    return found
+    }
+    play(unfinished(list(tasks.values())), workers, loaded.name)
+    return {
+        controller: [figures_of(task.options.out) for (who, _), task in tasks.items() if who == controller]
+        for controller in controllers
+    }
 
 
 def intervals(runs: Sequence[Figures], rng: np.random.Generator) -> dict[str, Interval]:
@@ -103,8 +117,3 @@ def figures_of(folder: Path) -> dict[str, float]:
     return {
         name: math.nan if value is None else float(value) for group in groups for name, value in group.items()
     }
-
-
-def _run_one(scenario: str, behaviour: str, options: RunOptions) -> dict[str, float]:
-    run(load_scenario(scenario).steered_by(behaviour), options, lambda _tick, _frames: None)
-    return figures_of(options.out)

@@ -9,9 +9,10 @@ import yaml
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.own_files import are_kept
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.tracker_by_name import camera_names
 from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.running.run import RunOptions
+from peopleboy.scenarios.running.run import RunOptions, tracker_name
 
 
 def is_finished(scenario: Scenario, options: RunOptions) -> bool:
@@ -25,13 +26,15 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
     if options.overwrite or not _is_complete(options.out):
         return False
     run = open_run(options.out)
-    if run.about.tracker != options.tracker:
+    tracker = tracker_name(scenario, options)
+    if run.about.tracker != tracker:
         raise BadInput(
             f"{options.out}: was run with tracker {run.about.tracker!r}; give --overwrite, or another --out"
         )
     if options.frames and not run.about.images:
         return False
-    resolved = _as_read(scenario.resolved(options.seed, versions()))
+    mounted = scenario.mounting(camera_names(tracker))
+    resolved = _as_read(mounted.resolved(options.seed, versions()))
     if (run.played, run.about.renderer) != (resolved, options.renderer) or not are_kept(
         scenario.kept_files(), options.out
     ):

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import shutil
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import asdict, astuple, dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -29,19 +27,21 @@ from peopleboy.scenarios.run_folder.camera_truth import gt_lines
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
+from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import Calibration, Frame, Odometry, PinholeCalibration
 from peopleboy.tracker.track import Track
 
+MOTION = ("advance_m", "aside_m", "turn_rad")
 SEEN = ("thermal", "colour")  # cameras whose images trackers are given
 _GROUP = 16  # frames that are read or written at once
 _FRAMES = pa.schema(
     [
         pa.field("time_s", pa.float64()),
-        pa.field("turn_rad", pa.float64()),
-        pa.field("advance_m", pa.float64()),
+        *(pa.field(name, pa.float64()) for name in MOTION),
         *(pa.field(camera, pa.binary()) for camera in SEEN),
     ]
 )
@@ -57,6 +57,7 @@ class Film:
         seed: of the run.
         frames: how many.
         shapes: of the images, by camera: (height, width) or (height, width, 3) [px].
+        calibrations: of the cameras.
     """
 
     folder: Path
@@ -64,6 +65,7 @@ class Film:
     seed: int
     frames: int
     shapes: Mapping[str, tuple[int, ...]]
+    calibrations: Mapping[str, Calibration] = field(compare=False)
 
     def truth(self) -> TrueBoxes:
         """Read who was there, as the evaluation wants it."""
@@ -113,7 +115,11 @@ def open_film(folder: Path) -> Film:
     except (OSError, ValueError) as error:
         raise BadInput(f"{folder}: there are no finished frames here") from error
     shapes = {camera: tuple(shape) for camera, shape in about.pop("shapes").items()}
-    return Film(folder=folder, shapes=shapes, **about)
+    calibrations = {
+        camera: PinholeCalibration(*(np.array(matrix) for matrix in matrices))
+        for camera, matrices in about.pop("calibrations").items()
+    }
+    return Film(folder=folder, shapes=shapes, calibrations=calibrations, **about)
 
 
 def frames_of(shot: Film) -> Iterator[Frame]:
@@ -121,11 +127,12 @@ def frames_of(shot: Film) -> Iterator[Frame]:
     for batch in pq.ParquetFile(shot.folder / "frames.parquet").iter_batches(batch_size=_GROUP):
         for row in batch.to_pylist():
             images = {camera: _unpack(row[camera], shape) for camera, shape in shot.shapes.items()}
+            motion = {name: row[name] for name in MOTION}
             yield Frame(
-                **images,
+                images=images,
+                calibrations=shot.calibrations,
                 time_s=row["time_s"],
-                turn_rad=row["turn_rad"],
-                advance_m=row["advance_m"],
+                odometry=None if row["turn_rad"] is None else Odometry(**motion),
             )
 
 
@@ -133,12 +140,14 @@ def film_key(scenario: Scenario, seed: int) -> str:
     """A hash of all that the frames depend on."""
     drive = [] if scenario.drive is None else [astuple(command) for command in scenario.drive]
     files = {name: hashlib.sha256(content).hexdigest() for name, content in scenario.files.items()}
-    parts = [scenario.resolved(seed), seed, versions(), _source_digest(), drive, files]
+    parts = [_FRAMES.names, scenario.resolved(seed), seed, versions(), _source_digest(), drive, files]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 
 class _Blind:
     """A tracker that sees nobody."""
+
+    cameras = SEEN
 
     def update(self, frame: Frame) -> tuple[Track, ...]:  # noqa: ARG002
         return ()
@@ -146,18 +155,11 @@ class _Blind:
 
 def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int], None] | None) -> None:
     """Render a film beside its place, and put it there when it is whole."""
-    part = home.parent / f".{home.name}.{os.getpid()}"
-    shutil.rmtree(part, ignore_errors=True)
-    with writing_to(home.parent, "--films"):
-        part.mkdir(parents=True)
-    try:
+    with whole(home, stays=(home / "about.json").is_file) as part:  # another process may be quicker
+        with writing_to(home.parent, "--films"):
+            part.mkdir(parents=True)
         about = _render(scenario, seed, part, report)
         (part / "about.json").write_text(json.dumps(about) + "\n", encoding="utf-8")
-        if not (home / "about.json").is_file():
-            shutil.rmtree(home, ignore_errors=True)
-            part.rename(home)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
 
 
 def _render(
@@ -177,7 +179,7 @@ def _render(
         images: list[dict[str, Any]] = []
         people: list[dict[str, Any]] = []
         for tick in closed_loop(world, _Blind(), scenario.make_behaviour(), count):
-            images.append(_row(tick.observation, make_frame(tick.observation, before)))
+            images.append(_row(tick.observation, make_frame(tick.observation, {}, before)))
             people += truth_rows(tick)
             boxes.writelines(gt_lines(tick))
             before = tick.observation.odometry
@@ -189,12 +191,23 @@ def _render(
             if report is not None:
                 report(tick.frame, count)
     shapes = {camera: tick.observation.images[camera].shape for camera in SEEN}
-    return {"scenario": scenario.name, "seed": seed, "frames": count, "shapes": shapes}
+    cameras = {name: flat_geometry(config.robot.cameras, name) for name in SEEN}
+    calibrations = {
+        name: [camera.intrinsics.tolist(), camera.robot_from_camera.tolist()]
+        for name, camera in cameras.items()
+    }
+    return {
+        "scenario": scenario.name,
+        "seed": seed,
+        "frames": count,
+        "shapes": shapes,
+        "calibrations": calibrations,
+    }
 
 
 def _row(senses: Observation, frame: Frame) -> dict[str, Any]:
-    motion = {"time_s": frame.time_s, "turn_rad": frame.turn_rad, "advance_m": frame.advance_m}
-    return motion | {camera: _pack(senses.images[camera]) for camera in SEEN}
+    motion = dict.fromkeys(MOTION) if frame.odometry is None else asdict(frame.odometry)
+    return {"time_s": frame.time_s} | motion | {camera: _pack(senses.images[camera]) for camera in SEEN}
 
 
 def _pack(image: NDArray[np.uint8]) -> bytes:

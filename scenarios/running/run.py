@@ -12,7 +12,7 @@ from peopleboy.scenarios.files.own_files import keep_own_files
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.scenarios.loop.tracker_by_name import check_eyes, make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.running.watchers import Watchers
@@ -31,7 +31,7 @@ class RunOptions:
         seed: 0 or more; everything random follows from it.
         out: the run's folder.
         frames: whether to write every image.
-        tracker: name of the tracker, or "truth".
+        tracker: name of the tracker, "truth", or "module:Class"; None for the scenario's.
         renderer: "raycast" or "bullet".
         record: whether to write recording.rrd.
         viewer: address of a viewer to show the recording at once; None for none.
@@ -41,11 +41,16 @@ class RunOptions:
     seed: int
     out: Path
     frames: bool = False
-    tracker: str = "peopleboy"
+    tracker: str | None = None
     renderer: str = "raycast"
     record: bool = True
     viewer: str | None = None
     overwrite: bool = False
+
+
+def tracker_name(scenario: Scenario, options: RunOptions) -> str:
+    """Name the tracker of a run: the one asked for, or else the scenario's."""
+    return scenario.tracker if options.tracker is None else options.tracker
 
 
 def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], None]) -> RunScores:
@@ -61,19 +66,22 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
     """
     if options.seed < 0:
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
-    check_eyes(options.tracker)
+    world: World  # the oracle looks at it only once it is built
+    name, given = tracker_name(scenario, options), scenario.robot.cameras
+    tracker = make_eyes(name, options.seed, lambda: world.truth())
+    scenario = scenario.mounting(tracker.cameras)
+    mounted = [camera for camera in scenario.robot.cameras if camera not in given]
     config = scenario.world(options.seed, options.renderer)
     about = {
         "scenario": scenario.name,
         "seed": options.seed,
-        "tracker": options.tracker,
+        "tracker": name,
         "renderer": options.renderer,
         "rate_hz": config.control_hz,
         "images": options.frames,
-    }
+    } | ({"mounted_for_tracker": mounted} if mounted else {})
     with ExitStack() as stack:
         world = stack.enter_context(World(config))
-        tracker = make_eyes(options.tracker, options.seed, world.truth)
         claim_folder(options.out, overwrite=options.overwrite)
         folder = stack.enter_context(
             RunFolder(
@@ -85,7 +93,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
             )
         )
         keep_own_files(scenario.kept_files(), options.out)
-        title = f"{scenario.name}, seed {options.seed}, tracker {options.tracker}"
+        title = f"{scenario.name}, seed {options.seed}, tracker {name}"
         recorder = None
         if options.record:
             recorder = stack.enter_context(

@@ -9,7 +9,7 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.scores.corridor_score import CorridorLog
-from peopleboy.scenarios.scores.following_score import FollowingLog
+from peopleboy.scenarios.scores.following_score import FollowingLog, whose_tracks
 from peopleboy.sim.config import WorldConfig
 
 
@@ -26,8 +26,8 @@ class Watchers:
     def update(self, tick: Tick) -> list[LogLine]:
         """Look at one tick and return what happened at it."""
         events = self._events.update(tick)
-        self.following.add(tick)
-        self.corridor.add(tick)
+        self.following.add(tick.truth, *whose_tracks(tick))
+        self.corridor.add(tick.truth)
         self._sheet.add(tick, events)
         if self._recorder is not None:
             self._recorder.log(tick, events)

@@ -1,30 +1,29 @@
-"""The scores of a corridor run, from its ticks and its floor plan."""
+"""The scores of a way along corridors, from the truth instant by instant and the floor plan."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore, Leg, score_corridor
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.rectangle import Rectangle
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.truth import Truth
 
 
 class CorridorLog:
-    """Keeps what the scores of corridor following need, tick by tick."""
+    """Keeps what the scores of corridor following need, instant by instant."""
 
     def __init__(self) -> None:
         self._rows: list[tuple[float, ...]] = []
 
-    def add(self, tick: Tick) -> None:
-        """Take in one tick."""
-        robot = tick.truth.robot
-        self._rows.append(
-            (tick.truth.time_s, robot.x, robot.y, robot.heading, float(bool(tick.truth.contacts)))
-        )
+    def add(self, truth: Truth | ImageFreeTruth) -> None:
+        """Take in one instant."""
+        robot = truth.robot
+        self._rows.append((truth.time_s, robot.x, robot.y, robot.heading, float(bool(truth.contacts))))
 
     def score(self, plan: FloorPlan) -> CorridorScore:
-        """Score the run so far in the corridors of a floor plan."""
+        """Score the way so far in the corridors of a floor plan."""
         table = np.array(self._rows, dtype=np.float64)
         return score_corridor(
             time_s=table[:, 0],

@@ -8,11 +8,13 @@ from pathlib import Path
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.run_folder.run_files import check_end, check_whole
+from peopleboy.scenarios.scores.people_scores import score_camera, score_people
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
 from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
+from peopleboy.tracker.frame import THERMAL
 
 
 def evaluate_files(
@@ -26,14 +28,20 @@ def evaluate_files(
     return _score(load_truth(truth, None), read_tracks(tracks), frames, min_visible)
 
 
-def evaluate_runs(folders: Sequence[Path], min_visible: float = MIN_VISIBLE) -> list[Scores]:
+def evaluate_runs(
+    folders: Sequence[Path], min_visible: float = MIN_VISIBLE, camera: str = THERMAL
+) -> list[Scores]:
     """Score the runs in these folders, one by one; min_visible as for files.
+
+    Boxes are scored in the image of a camera; those of the thermal one come with places on the floor.
 
     Raises:
         BadInput: a folder holds no run, or one that was cut off, or whose files do not belong together, or
             one of footage without truth.
     """
-    return [_evaluate_run(folder, min_visible) for folder in folders]
+    if camera == THERMAL:
+        return [_evaluate_run(folder, min_visible) for folder in folders]
+    return [score_camera(folder, camera, read_run(folder)["frames"], min_visible) for folder in folders]
 
 
 def _evaluate_run(folder: Path, min_visible: float) -> Scores:
@@ -44,6 +52,8 @@ def _evaluate_run(folder: Path, min_visible: float) -> Scores:
     check_end(given.truth, truth, about["frames"])
     check_end(found, folder / "tracks.txt", about["frames"])
     check_whole(folder, given.truth, found)
+    if (folder / "truth.parquet").is_file():
+        return score_people(folder, given.truth, found, about["frames"], min_visible)
     return _score(given, found, about["frames"], min_visible)
 
 

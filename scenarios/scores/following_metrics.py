@@ -23,7 +23,7 @@ class FollowingTask:
     Attributes:
         keep_m: [m] distance to keep; at 3.9 a person of 1.75 m is 0.58 image heights tall in a level camera
             of 44 degrees that sits 0.14 m before the robot's origin.
-        band_m: [m] nearest and farthest distance that count as kept: 1.2 m to either side.
+        within_m: [m] by which a distance may be off on either side, and counts as kept.
         facing_rad: [rad] bearing within which the robot faces the person.
         lost_s: [s] a person out of track for this long is lost; shorter gaps are drop-outs.
         reached_s: [s] last part of the run, which tells whether the person was followed to the end.
@@ -32,7 +32,7 @@ class FollowingTask:
     """
 
     keep_m: float = 3.9
-    band_m: tuple[float, float] = (2.7, 5.1)
+    within_m: float = 1.2
     facing_rad: float = math.radians(10.0)
     lost_s: float = 0.5
     reached_s: float = 5.0
@@ -59,7 +59,7 @@ class FollowingScore:
         path_efficiency: from the encounter to the first time in the band, straight way / way driven.
         mean_heading_error_rad: [rad] mean absolute bearing of the person.
         jerk_m_s3: [m/s3] root mean square of the second difference of the forward speed, over the whole run.
-        wrong_person_s: [s] for which the robot went after somebody else.
+        wrong_person_s: [s] for which the robot went after somebody else; NaN if nobody knows.
         identity_changes: how often the track that lay on the person got another number.
         intimate_intrusions, personal_intrusions: how often somebody and the robot came so near.
 
@@ -124,7 +124,7 @@ class FollowingRun:
         is_tracked: (T,) whether a track lay on this person.
         is_contact: (T,) whether the robot touched anything or anyone.
         track: (T,) number of the track that lay on this person, 0 for none; None to leave that out.
-        is_wrong: (T,) whether the robot went after somebody else; None to leave that out.
+        is_wrong: (T,) whether the robot went after somebody else; None if nobody knows.
         gap_m: (T,) [m] from the robot's outline to the nearest body's middle; None to leave that out.
 
     Raises:
@@ -173,7 +173,8 @@ def score_following(run: FollowingRun, task: FollowingTask | None = None) -> Fol
     distance, bearing = _person_from_robot(run.robot, run.person)
     is_there = np.isfinite(distance)
     since = is_there & (np.arange(len(time_s)) >= first)
-    is_kept = (distance >= task.band_m[0]) & (distance <= task.band_m[1])  # NaN is in no band
+    nearest_m, farthest_m = task.keep_m - task.within_m, task.keep_m + task.within_m
+    is_kept = (distance >= nearest_m) & (distance <= farthest_m)  # NaN is in no band
     is_facing = np.abs(bearing) < task.facing_rad
     error = np.abs(distance[since] - task.keep_m)
     lost = _periods(time_s, since & ~is_tracked)
@@ -195,7 +196,7 @@ def score_following(run: FollowingRun, task: FollowingTask | None = None) -> Fol
         path_efficiency=_path_efficiency(run.robot[first:], is_kept[first:]),
         mean_heading_error_rad=_mean(np.abs(bearing[since])),
         jerk_m_s3=_jerk(run),
-        wrong_person_s=0.0 if run.is_wrong is None else float(np.sum(_periods(time_s, run.is_wrong))),
+        wrong_person_s=math.nan if run.is_wrong is None else float(np.sum(_periods(time_s, run.is_wrong))),
         identity_changes=0 if run.track is None else _changes(run.track),
         intimate_intrusions=intimate,
         personal_intrusions=personal,

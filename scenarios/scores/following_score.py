@@ -1,8 +1,10 @@
-"""The scores of following one person, from a run's ticks and what the robot was asked."""
+"""The scores of following one person, instant by instant, in a run and in an environment alike."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,72 +18,122 @@ from peopleboy.scenarios.scores.following_metrics import (
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.robot.robot_body import outline_gap
-from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.evaluation.boxes import iou
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.truth import Box, Truth
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.evaluation.floor import floor_squares
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
-BAND_M = 1.2
+TARGET = 1  # the person to follow: the scenario's first
+_LEAST_IOU = 0.5  # a track lies on a person whom it overlaps by more
 
 
 class FollowingLog:
-    """Keeps what the scores of following need, tick by tick; the person to follow is the scenario's first."""
+    """Keeps what the scores of following need, instant by instant."""
 
     def __init__(self) -> None:
         self._rows: list[tuple[float, ...]] = []
 
-    def add(self, tick: Tick) -> None:
-        """Take in one tick."""
-        truth, robot = tick.truth, tick.truth.robot
-        target = next((person for person in truth.people if person.id == 1), None)
+    def add(self, truth: Truth | ImageFreeTruth, track: int, is_wrong: bool | None = None) -> None:
+        """Take in one instant.
+
+        Args:
+            truth: of the instant.
+            track: number of the track that lies on the person to follow, 0 for none.
+            is_wrong: whether the robot goes after somebody else; None if nobody knows.
+        """
+        robot = truth.robot
+        target = next((person for person in truth.people if person.id == TARGET), None)
         position = (math.nan, math.nan) if target is None else target.position_m
-        track, is_wrong = _whose_track(tick)
         gap_m = min((outline_gap(robot, person.position_m) for person in truth.people), default=math.inf)
+        wrong = math.nan if is_wrong is None else float(is_wrong)
         self._rows.append(
             (
                 *(truth.time_s, robot.x, robot.y, robot.heading, *position),
-                *(track > 0, bool(truth.contacts), track, is_wrong, gap_m),
+                *(bool(truth.contacts), track, wrong, gap_m),
             )
         )
 
     def score(self, task: FollowingTask) -> FollowingScore:
-        """Score the run so far against what the robot was to do."""
+        """Score what happened so far against what the robot was to do."""
         table = np.array(self._rows, dtype=np.float64)
+        wrong = table[:, 8]
         run = FollowingRun(
             time_s=table[:, 0],
             robot=table[:, 1:4],
             person=table[:, 4:6],
-            is_tracked=table[:, 6] > 0.0,
-            is_contact=table[:, 7] > 0.0,
-            track=table[:, 8].astype(np.int64),
-            is_wrong=table[:, 9] > 0.0,
-            gap_m=table[:, 10],
+            is_tracked=table[:, 7] > 0.0,
+            is_contact=table[:, 6] > 0.0,
+            track=table[:, 7].astype(np.int64),
+            is_wrong=None if np.isnan(wrong).any() else wrong > 0.0,
+            gap_m=table[:, 9],
         )
         return score_following(run, task)
 
 
-def _whose_track(tick: Tick) -> tuple[int, bool]:
-    """Give the number of the track on the first person, 0 for none; and whether somebody else is followed."""
-    tracks = [track for track in tick.tracks if track.status is not Status.TENTATIVE]
-    people = [person for person in tick.truth.people if person.box is not None]
-    mine, is_wrong = (0.5, 0), False
-    for track in tracks:
-        covers = [(_overlap(track, person), person.id) for person in people]
-        overlap, whose = max(covers, default=(0.0, 0))
-        is_wrong |= track.id == tick.following and whose != 1 and overlap > 0.5
-        mine = max([mine, *((share, track.id) for share, owner in covers if owner == 1)])
-    return mine[1], is_wrong
+class Spot(NamedTuple):
+    """Where a person truly is.
+
+    Attributes:
+        box: left, top, width, height [px] in the thermal image.
+        place_m: [m] forward, left, in the robot's frame.
+    """
+
+    box: Box
+    place_m: tuple[float, float]
 
 
-def _overlap(track: Track, person: PersonTruth) -> float:
-    return float(iou(np.array(track.box), np.array(person.box)))
+def whose_tracks(tick: Tick) -> tuple[int, bool]:
+    """Give the number of the track on the person to follow, 0 for none; and whether another is followed."""
+    robot = tick.truth.robot
+    spots = {
+        person.id: Spot(person.box, robot.locate(person.position_m))
+        for person in tick.truth.people
+        if person.box is not None
+    }
+    return track_on(spots.get(TARGET), tick.tracks), _is_wrong(spots, tick)
+
+
+def track_on(spot: Spot | None, tracks: Iterable[Track]) -> int:
+    """Give the number of the track that lies best on a person, 0 if none does well enough."""
+    if spot is None:
+        return 0
+    overlaps = ((_overlap(track, spot), track.id) for track in _sure(tracks))
+    return max(((_LEAST_IOU, 0), *overlaps))[1]
+
+
+def _is_wrong(spots: dict[int, Spot], tick: Tick) -> bool:
+    """Tell whether the track that the robot follows lies on somebody else than the person to follow."""
+    for track in _sure(tick.tracks):
+        if track.id == tick.following:
+            overlaps = [(_overlap(track, spot), number) for number, spot in spots.items()]
+            overlap, whose = max(overlaps, default=(0.0, 0))
+            return whose != TARGET and overlap > _LEAST_IOU
+    return False
+
+
+def _sure(tracks: Iterable[Track]) -> Iterable[Track]:
+    return (track for track in tracks if track.status is not Status.TENTATIVE)
+
+
+def _overlap(track: Track, spot: Spot) -> float:
+    """Tell how well a track lies on a person, in 0..1: in the thermal image, or else on the floor."""
+    if THERMAL in track.boxes:
+        return float(iou(np.array(track.boxes[THERMAL]), np.array(spot.box)))
+    if track.place is None:
+        return 0.0
+    said, true = np.array(track.place.position_m), np.array(spot.place_m)
+    return float(iou(floor_squares(said), floor_squares(true)))
 
 
 def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:
     """Turn the height [image heights] at which a person is to be seen into the distance that shows it so.
 
-    The band reaches 1.2 m to either side of it. It is the first person who is to be followed.
+    It is the first person who is to be followed; where there is nobody, the distance is the usual one.
     """
+    if not config.people:
+        return FollowingTask()
     camera = flat_geometry(config.robot.cameras, "thermal")
     shown_px = keep_height * camera.height
-    keep_m = camera.focal_px * config.people[0].height_m / shown_px + camera.position_m[0]
-    return FollowingTask(keep_m=keep_m, band_m=(keep_m - BAND_M, keep_m + BAND_M))
+    return FollowingTask(keep_m=camera.focal_px * config.people[0].height_m / shown_px + camera.position_m[0])

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,8 @@ from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import (
     FollowingScore,
 )
-from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.scenarios.scores.people_scores import score_camera, score_people
+from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 from peopleboy.tracker.evaluation.table import to_json
 
@@ -24,11 +26,13 @@ class RunScores:
         people: detection, localisation and identity; from the files of the run.
         following: of the first person in the scenario; None if the robot was not to follow anybody.
         corridor: of the way along corridors; None if the robot was not to follow any.
+        further: of people by the boxes that the tracker gave in further cameras' images, by camera.
     """
 
     people: Scores
     following: FollowingScore | None
     corridor: CorridorScore | None = None
+    further: Mapping[str, Scores] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         """Give all figures as JSON can hold them: None for what is undefined."""
@@ -39,6 +43,8 @@ class RunScores:
                     name: None if isinstance(value, float) and math.isnan(value) else value
                     for name, value in asdict(score).items()
                 }
+        if self.further:
+            groups["cameras"] = {camera: to_json(scores) for camera, scores in self.further.items()}
         return groups
 
 
@@ -47,4 +53,10 @@ def score_run(
 ) -> RunScores:
     """Score a run from the truth and tracks in its folder."""
     truth, tracks = read_truth(folder / "truth" / "gt.txt"), read_tracks(folder / "tracks.txt")
-    return RunScores(evaluate(truth, tracks, frames=frames), following, corridor)
+    further = sorted(path.stem for path in (folder / "tracks").glob("*.txt"))
+    return RunScores(
+        score_people(folder, truth, tracks, frames),
+        following,
+        corridor,
+        {camera: score_camera(folder, camera, frames) for camera in further},
+    )

@@ -12,7 +12,7 @@ from rich.table import Table
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
-from peopleboy.tracker.evaluation.table import rows, spread
+from peopleboy.tracker.evaluation.table import NEED_EVERYBODY, rows, spread
 
 
 def print_scores(scores: Scores) -> None:
@@ -74,12 +74,13 @@ def _single_person(scores: Scores) -> str:
 
 
 def _tell_unknown(scores: Scores) -> None:
-    unknown = [row.figure.name for row in rows(scores) if not row.figure.is_told_by(scores)]
-    if unknown:
-        _console().print(
-            f"Unknown: {', '.join(unknown)}. One person alone is annotated, so that nobody can say whether "
-            "boxes elsewhere are wrong.\n"
-        )
+    if not scores.counts.partly_annotated:
+        return
+    unknown = [row.figure.name for row in rows(scores) if row.figure.name in NEED_EVERYBODY]
+    _console().print(
+        f"Unknown: {', '.join(unknown)}. One person alone is annotated, so that nobody can say whether "
+        "boxes elsewhere are wrong.\n"
+    )
 
 
 def _table(title: str, *columns: str) -> Table:

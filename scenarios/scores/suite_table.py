@@ -3,7 +3,7 @@
 A *detection* is a counted person (3..10 m away) of whom something is visible, in one frame: what the scores
 call a target. A *track* is a longest run of frames in which one person is counted and in the image, hidden or
 not; gaps of up to `GAP_S`, such as an arm that swings over the border, do not end it. An *occlusion* is a
-detection of which more than `HIDDEN` of what lies inside the image is hidden. The thesis does not define the
+detection of which as much is hidden as starts an occlusion in the event log. The thesis does not define the
 word, but 1130 occlusions among 42 tracks can only be occluded detections.
 """
 
@@ -17,9 +17,10 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.run_folder.tables import is_in_image
+from peopleboy.sim.truth.events import OCCLUSION_STARTS
+from peopleboy.tracker.evaluation.uncounted import counts
 
 GAP_S = 0.5
-HIDDEN = 0.15  # as an occlusion starts in the event log
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,8 +69,8 @@ def count(people: pa.Table, frames: int, rate_hz: float) -> Content:
     """
     frame, person = people["frame"].to_numpy(), people["id"].to_numpy()
     counted = people["is_counted"].to_numpy(zero_copy_only=False)
-    seen = counted & (people["visible_fraction"].to_numpy() > 0.0)
-    hidden = seen & (people["occluded_fraction"].to_numpy() > HIDDEN)
+    seen = counts(counted, people["visible_fraction"].to_numpy())
+    hidden = seen & (people["occluded_fraction"].to_numpy() > OCCLUSION_STARTS)
     present = counted & is_in_image(people)
     _, at_once = np.unique(frame[seen], return_counts=True)
     gap = round(GAP_S * rate_hz)

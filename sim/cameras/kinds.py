@@ -117,16 +117,17 @@ def with_boxes(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
     return tuple(name for name, config in cameras.items() if kind_of(config).has_boxes)
 
 
-def check_rate(what: str, rate_hz: int | None, control_hz: int) -> None:
+def check_rate(rate_hz: int | None, control_hz: int) -> None:
     """Refuse a camera's rate that does not divide the control rate.
 
     Raises:
-        BadInput: beginning with what it is.
+        BadInput: about the key rate_hz.
     """
     if rate_hz is not None and (rate_hz < 1 or control_hz % rate_hz):
         fits = [str(rate) for rate in range(1, control_hz + 1) if control_hz % rate == 0]
         raise BadInput(
-            f"{what}: {rate_hz} must divide the control rate, {control_hz} Hz; choose from {', '.join(fits)}"
+            f"{rate_hz} must divide the control rate, {control_hz} Hz; choose from {', '.join(fits)}",
+            key=("rate_hz",),
         )
 
 

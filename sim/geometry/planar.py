@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
@@ -12,3 +13,9 @@ class Planar:
     x: float
     y: float
     heading: float
+
+    def locate(self, place: tuple[float, float]) -> tuple[float, float]:
+        """Express a place x, y [m] of the world in this pose's own frame: forward, to the left."""
+        dx, dy = place[0] - self.x, place[1] - self.y
+        cosine, sine = math.cos(self.heading), math.sin(self.heading)
+        return dx * cosine + dy * sine, dy * cosine - dx * sine

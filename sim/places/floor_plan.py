@@ -196,7 +196,7 @@ def check_doors(plan: FloorPlan) -> None:
         _check_fits(plan, index, door)
         for other_index, other in enumerate(plan.doors[:index]):
             if plan.opening(door).grown(WALL_M).meets(plan.opening(other)):
-                raise BadInput(f"doors[{index}]: overlaps doors[{other_index}] in wall {door.wall!r}")
+                raise BadInput(f"overlaps doors[{other_index}] in wall {door.wall!r}", key=("doors", index))
 
 
 def _check_fits(plan: FloorPlan, index: int, door: Door) -> None:
@@ -205,15 +205,17 @@ def _check_fits(plan: FloorPlan, index: int, door: Door) -> None:
     half = door.width_m / 2.0 + WALL_M
     if not low + half <= door.along_m <= high - half:
         raise BadInput(
-            f"doors[{index}].along_m: {door.along_m:g} does not leave room for a door of {door.width_m:g} m "
-            f"in wall {door.wall!r}, which reaches from {low:g} to {high:g} m"
+            f"{door.along_m:g} does not leave room for a door of {door.width_m:g} m in wall {door.wall!r}, "
+            f"which reaches from {low:g} to {high:g} m",
+            key=("doors", index, "along_m"),
         )
     behind = (plan.lobby(door).grown(WALL_M), plan.opening(door)) if door.is_open else (plan.opening(door),)
     for name, area in plan.areas:
         if any(part.meets(area) for part in behind):
             raise BadInput(
-                f"doors[{index}].along_m: {door.along_m:g} puts the door of wall {door.wall!r} "
-                f"into {name or 'the room'}; choose a place with {WALL_M + door.lobby_m:g} m behind the wall"
+                f"{door.along_m:g} puts the door of wall {door.wall!r} into {name or 'the room'}; "
+                f"choose a place with {WALL_M + door.lobby_m:g} m behind the wall",
+                key=("doors", index, "along_m"),
             )
 
 

@@ -11,6 +11,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transfo
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.robot.robot_body import NAME
+from peopleboy.sim.truth.boxes import reaches_into
 from peopleboy.sim.truth.image_free_truth import Bystander
 from peopleboy.sim.truth.truth import Box
 
@@ -45,6 +46,7 @@ def _bystander(
     (x, y), (vx, vy) = person.position.tolist(), person.velocity.tolist()
     dx, dy = x - float(robot[0]), y - float(robot[1])
     box = _upright_box(person, camera, pose)
+    is_inside = box is not None and reaches_into(box, camera)
     return Bystander(
         id=number,
         name=person.name,
@@ -56,7 +58,7 @@ def _bystander(
         distance_m=math.hypot(dx, dy),
         bearing_rad=math.remainder(math.atan2(dy, dx) - heading, math.tau),
         box=box,
-        visible_share=_visible_share(person, bullet, camera, pose) if _is_inside(box, camera) else 0.0,
+        free_ray_share=_free_ray_share(person, bullet, camera, pose) if is_inside else 0.0,
     )
 
 
@@ -73,15 +75,7 @@ def _upright_box(person: Person, camera: Pinhole, world_from_camera: Matrix) -> 
     return middle - half, top, 2.0 * half, bottom - top
 
 
-def _is_inside(box: Box | None, camera: Pinhole) -> bool:
-    """Whether any of a box lies in the image."""
-    if box is None:
-        return False
-    left, top, width, height = box
-    return left + width > -0.5 and left < camera.width and top + height > -0.5 and top < camera.height
-
-
-def _visible_share(person: Person, bullet: Bullet, camera: Pinhole, world_from_camera: Matrix) -> float:
+def _free_ray_share(person: Person, bullet: Bullet, camera: Pinhole, world_from_camera: Matrix) -> float:
     x, y = person.position.tolist()
     points = np.array([[x, y, share * person.config.height_m] for share in _LOOKED_AT])
     u, v = camera.project(transform(invert_pose(world_from_camera), points)).T

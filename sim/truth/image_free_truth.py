@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.truth.seen import is_seen
 from peopleboy.sim.truth.truth import Box
 
 
@@ -23,8 +24,8 @@ class Bystander:
         bearing_rad: [rad] from the robot's nose, positive to the left.
         box: left, top, width, height [px] of that upright body in the thermal image, whatever the posture, as
             if nothing hid it; None when it is not before the camera.
-        visible_share: share of five points up the body's middle that are inside the thermal image with
-            nothing solid before them.
+        free_ray_share: share of five points up the body's middle that are inside the thermal image with
+            nothing solid before them; `peopleboy.sim.truth.seen` has how near that is to the share of pixels.
     """
 
     id: int
@@ -37,7 +38,12 @@ class Bystander:
     distance_m: float
     bearing_rad: float
     box: Box | None
-    visible_share: float
+    free_ray_share: float
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether the thermal camera would see enough of the person."""
+        return is_seen(self.free_ray_share)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

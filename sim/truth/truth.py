@@ -126,11 +126,6 @@ class Truth:
     contacts: tuple[str, ...]
 
 
-def box_from_bounds(first_u: float, last_u: float, first_v: float, last_v: float) -> Box:
-    """Return the box that spans whole pixels, first to last column and row included."""
-    return (first_u - 0.5, first_v - 0.5, last_u - first_u + 1.0, last_v - first_v + 1.0)
-
-
 def is_counted(distance_m: float) -> bool:
     """Whether the sources count a person at this distance (T 3.3)."""
     return COUNTED_NEAREST_M <= distance_m <= COUNTED_FARTHEST_M

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, invert_pose, transform
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.people.crowd import Crowd
@@ -18,12 +16,12 @@ from peopleboy.sim.physics.bodies import PartKey
 from peopleboy.sim.rendering.cover import Cover
 from peopleboy.sim.rendering.sight import Edges, Seen
 from peopleboy.sim.shapes.materials import Material
+from peopleboy.sim.truth.boxes import box_between, box_of_pixels, is_cut_off
 from peopleboy.sim.truth.truth import (
     BORDER,
     Box,
     PersonTruth,
     Truth,
-    box_from_bounds,
     is_counted,
 )
 
@@ -85,6 +83,11 @@ class TruthMaker:
             contacts=contacts,
         )
 
+    def box(self, person: int, seen: Seen) -> Box | None:
+        """Tell the truth box of one person alone, by its number from 1; None as in `PersonTruth`."""
+        k = person - 1
+        return _thesis_box(seen, self._outlines[k]) if self._people[k].present else None
+
     def _person(self, k: int, cover: Cover, seen: Seen) -> PersonTruth:
         person, outline = self._people[k], self._outlines[k]
         distance = float(np.hypot(*(person.position - seen.world_from_camera[:2, 3])))
@@ -102,8 +105,8 @@ class TruthMaker:
             distance_m=distance,
             is_counted=is_counted(distance),
             box=_thesis_box(seen, outline),
-            whole_box=_box(whole),
-            visible_box=box_from_bounds(*map(float, cover.bounds[k])) if visible else None,
+            whole_box=box_between(whole),
+            visible_box=box_of_pixels(*map(float, cover.bounds[k])) if visible else None,
             whole_px=area,
             visible_px=visible,
             visible_fraction=visible / area if area else 0.0,
@@ -117,7 +120,7 @@ class TruthMaker:
     def _whole_area(self, k: int, cover: Cover, seen: Seen, whole: Edges) -> int:
         """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
         inside = int(cover.seen[k].sum())
-        if _is_inside(whole, seen.camera):
+        if not is_cut_off(whole, seen.camera):
             return inside
         # TinyRenderer's silhouettes may be a few pixels larger.
         return max(inside, seen.area(self._outlines[k].whole))
@@ -156,23 +159,10 @@ class _Outline:
         self.torso = self.whole & is_torso
 
 
-def _is_inside(bounds: Edges, camera: CameraGeometry) -> bool:
-    left, top, right, bottom = bounds
-    return math.isnan(left) or (
-        left > -0.5 and top > -0.5 and right < camera.width - 0.5 and bottom < camera.height - 0.5
-    )
-
-
 def _thesis_box(seen: Seen, outline: _Outline) -> Box | None:
     """Head to feet, as wide as the torso without arms (T 3.3)."""
     height, torso = seen.bounds(outline.height), seen.bounds(outline.torso)
-    return _box((torso[0], height[1], torso[2], height[3]))
-
-
-def _box(bounds: Edges) -> Box | None:
-    """Return left, top, width, height; None where nothing is before the camera."""
-    left, top, right, bottom = bounds
-    return None if math.isnan(left + top) else (left, top, right - left, bottom - top)
+    return box_between((torso[0], height[1], torso[2], height[3]))
 
 
 def _frozen(array: A) -> A:

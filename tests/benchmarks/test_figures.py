@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.memory import MemoryCurve, memory_curve
 from benchmarks.whole_tracker import CrowdTime, WholeTracker
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame
 
 
 def test_growth_of_memory_is_the_slope_once_all_is_warm() -> None:
@@ -18,7 +18,7 @@ def test_growth_of_memory_is_the_slope_once_all_is_warm() -> None:
 
 def test_memory_is_looked_at_twenty_times_until_the_last_frame() -> None:
     image = np.zeros((60, 80), dtype=np.uint8)
-    curve = memory_curve((Frame(thermal=image, time_s=0.1 * number) for number in range(99)), 50)
+    curve = memory_curve((Frame(images={THERMAL: image}, time_s=0.1 * number) for number in range(99)), 50)
     assert curve.frame[-1] == 50
     assert len(curve.frame) == len(curve.resident_mb) == 20
     assert min(curve.resident_mb) > 10

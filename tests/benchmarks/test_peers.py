@@ -6,17 +6,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.peers.compete import compete_on_film
+from benchmarks.peers.compete import FilmTask
 from benchmarks.peers.detectors import Blobs, Oracle, _from_colour
 from benchmarks.peers.show import write_results
 from benchmarks.results.measured import take_in
 from benchmarks.results.tables import read_tables
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame
+
+
+def no_news(part: int) -> None:
+    """Nobody looks on."""
 
 
 def frame(thermal: np.ndarray) -> Frame:
-    return Frame(thermal=thermal, time_s=0.0)
+    return Frame(images={THERMAL: thermal}, time_s=0.0)
 
 
 def test_blobs_find_a_warm_upright_region_and_leave_a_flat_one() -> None:
@@ -48,8 +52,8 @@ def test_boxes_of_the_colour_image_shrink_by_its_zoom_when_they_move_to_the_ther
 
 
 def test_results_are_kept_and_the_oracle_is_right_about_everybody_it_tracks(tmp_path: Path) -> None:
-    first = compete_on_film(["oracle+bytetrack", "blobs+sort"], "crossing_2", 1, tmp_path)
-    again = compete_on_film(["oracle+bytetrack", "blobs+sort"], "crossing_2", 1, tmp_path)
+    first = FilmTask(("oracle+bytetrack", "blobs+sort"), "crossing_2", 1, tmp_path)(no_news)
+    again = FilmTask(("oracle+bytetrack", "blobs+sort"), "crossing_2", 1, tmp_path)(no_news)
     assert [run.ms for run in first] == [run.ms for run in again]
     assert first[0].scores.thesis.cp == 100.0
     assert first[0].scores.thesis.cr > first[1].scores.thesis.cr
@@ -61,7 +65,7 @@ def test_what_is_kept_of_the_peers_can_be_taken_into_the_tables_of_results(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("runs/peers").mkdir(parents=True)
-    runs = compete_on_film(["oracle+bytetrack"], "crossing_2", 1, tmp_path)
+    runs = FilmTask(("oracle+bytetrack",), "crossing_2", 1, tmp_path)(no_news)
     write_results({"oracle+bytetrack": runs}, Path("runs/peers/results.json"))
     kept = json.loads(Path("runs/peers/results.json").read_text())["oracle+bytetrack"]["kept"]["all"]
     tracked = [o for o in runs[0].occlusions if o.id_before is not None]

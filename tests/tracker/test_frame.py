@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 from tests.helpers.calls.refused import refused
 
 GREY = np.zeros((240, 320), dtype=np.uint8)
@@ -18,16 +18,27 @@ GREY = np.zeros((240, 320), dtype=np.uint8)
 )
 def test_a_thermal_image_of_another_shape_or_type_is_refused_by_name(image, got):
     with refused("thermal image", "(H, W) uint8", got):
-        Frame(thermal=image, time_s=0.0)
+        Frame(images={THERMAL: image}, time_s=0.0).grey(THERMAL)
 
 
 def test_a_colour_image_without_three_channels_is_refused():
     with refused("colour image", "(240, 320) uint8"):
-        Frame(thermal=GREY, time_s=0.0, colour=GREY)
+        Frame(images={THERMAL: GREY, COLOUR: GREY}, time_s=0.0).rgb(COLOUR)
 
 
-@pytest.mark.parametrize("name", ["time_s", "turn_rad", "advance_m"])
+def test_an_image_that_there_is_none_of_is_refused_with_those_that_there_are():
+    with refused("'panorama'", "thermal, colour"):
+        Frame(images={THERMAL: GREY, COLOUR: GREY}, time_s=0.0).grey("panorama")
+
+
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])
-def test_numbers_that_are_not_finite_are_refused(name, value):
+def test_a_time_that_is_not_finite_is_refused(value):
+    with refused("time_s", "finite", value):
+        Frame(images={THERMAL: GREY}, time_s=value)
+
+
+@pytest.mark.parametrize("name", ["turn_rad", "advance_m", "aside_m"])
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_odometry_that_is_not_finite_is_refused(name, value):
     with refused(name, "finite", value):
-        Frame(**{"thermal": GREY, "time_s": 0.0, name: value})
+        Odometry(**{name: value})

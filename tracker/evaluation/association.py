@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from peopleboy.tracker.evaluation.boxes import Floats, iou
+from peopleboy.tracker.boxes import Floats, iou
 from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 
 GATE = 0.5  # a pair must overlap by more than this (thesis, section 3.4)

@@ -7,6 +7,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.association import associate, pair_up
+from peopleboy.tracker.evaluation.floor import NOWHERE, FloorErrors, Places, measure_floor
 from peopleboy.tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics, measure_paper
 from peopleboy.tracker.evaluation.metrics.sums import Sums
@@ -63,6 +64,7 @@ class Scores(Sums):
     thesis: ThesisMetrics
     paper: PaperMetrics
     mot: MotMetrics
+    floor: FloorErrors = NOWHERE
 
 
 def evaluate(
@@ -73,6 +75,8 @@ def evaluate(
     uncounted: Rule = "ignore",
     min_visible: float = MIN_VISIBLE,
     is_single: bool = False,
+    standing: Places | None = None,
+    believed: Places | None = None,
 ) -> Scores:
     """Score the tracks of one sequence against its truth.
 
@@ -88,6 +92,8 @@ def evaluate(
         min_visible: people of whom at most this fraction is visible are uncounted as well.
         is_single: whether the truth has one person alone, whoever else is there. Boxes elsewhere are then
             neither right nor wrong, and the figures that need to know are undefined (`table.FIGURES`).
+        standing: where the people stand on the floor; None if nobody knows.
+        believed: where the tracker says that they stand; None if it does not.
 
     Raises:
         BadInput: a target or candidate lies beyond `frames`, or an argument is out of range.
@@ -111,6 +117,13 @@ def evaluate(
         thesis=measure_thesis(judged.truth, judged.tracks, pairs, matched),
         paper=measure_paper(judged.truth, judged.tracks, pairs),
         mot=measure_mot(judged.truth, judged.tracks, pairs),
+        floor=measure_floor(
+            judged.truth.frame[pairs.target[matched]],
+            judged.truth.id[pairs.target[matched]],
+            judged.tracks.id[pairs.candidate[matched]],
+            standing,
+            believed,
+        ),
     )
 
 

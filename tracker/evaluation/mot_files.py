@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.evaluation.boxes import Floats
+from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.sequence import Rows, TrackBoxes, TrueBoxes, find_fault
 
 TRUTH_COLUMNS = "frame, id, left, top, width, height, counted, class, visible fraction"

@@ -21,7 +21,9 @@ from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-TOTAL_STARTS = 0.98  # share hidden of what lies inside the image, as in the event log
+# Shares hidden of what lies inside the image; the same as in the simulated world's event log, which is not
+# known here.
+TOTAL_STARTS = 0.98
 TOTAL_ENDS = 0.90
 SEEN_AGAIN = 0.5  # share hidden below which a person can be expected to be found
 WINDOW_S = 1.0  # before an occlusion

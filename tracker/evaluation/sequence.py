@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.evaluation.boxes import Floats
+from peopleboy.tracker.boxes import Floats
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]

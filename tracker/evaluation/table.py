@@ -5,8 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from statistics import fmean, stdev
+from typing import Final
 
 from peopleboy.tracker.evaluation.evaluate import Scores
+
+FLOOR: Final = "floor"
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,7 +18,7 @@ class Figure:
 
     Attributes:
         name: its usual name, unique among the figures.
-        unit: `%`, or empty for a plain count.
+        unit: `%`, `m`, or empty for a plain number.
         where: path of the figure in `Scores`; its first part is the figure's group.
         meaning: what it says, for a reader who does not know the name.
     """
@@ -27,11 +30,13 @@ class Figure:
 
     @property
     def group(self) -> str:
-        """Family of the figure: counts, thesis, paper or mot."""
+        """Family of the figure: counts, thesis, paper, mot or floor."""
         return self.where.partition(".")[0]
 
     def is_told_by(self, scores: Scores) -> bool:
-        """Tell whether the truth of these scores has everybody whom the figure needs."""
+        """Tell whether truth and tracks of these scores have what the figure needs."""
+        if self.group == FLOOR:
+            return len(scores.floor) > 0
         return not (scores.counts.partly_annotated and self.name in NEED_EVERYBODY)
 
     def of(self, scores: Scores) -> float:
@@ -101,6 +106,11 @@ FIGURES: tuple[Figure, ...] = (
     Figure(
         "AssA", "%", "mot.hota.assa", "Association accuracy: how constantly matched boxes keep their person."
     ),
+    Figure("mean error", "m", "floor.mean_m", "How far off the person a match is said to stand, mean."),
+    Figure("median error", "m", "floor.median_m", "The same, which half of the matches do not exceed."),
+    Figure("95 % error", "m", "floor.p95_m", "The same, which 95 % of the matches do not exceed."),
+    Figure("NEES", "", "floor.nees", "Error squared over its claimed variance; 2 if that is honest."),
+    Figure("in ellipse", "%", "floor.inside", "Matches within the 95 % ellipse of the claimed covariance."),
     Figure("frames", "", "counts.frames", "Frames of the sequence, with or without people."),
     Figure("targets", "", "counts.targets", "Boxes of people to find."),
     Figure("candidates", "", "counts.candidates", "Boxes that the tracker gave."),
@@ -136,6 +146,8 @@ def to_json(scores: Scores) -> dict[str, dict[str, float | int | None]]:
     """Give the figures by group and name, as JSON can hold them: None for undefined."""
     groups: dict[str, dict[str, float | int | None]] = {}
     for row in rows(scores):
+        if row.figure.group == FLOOR and not row.figure.is_told_by(scores):
+            continue
         value = None if math.isnan(row.value) else row.value
         groups.setdefault(row.figure.group, {})[row.figure.name] = value
     return groups

@@ -16,11 +16,14 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.association import GATE, associate, pair_up
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
+Flags = NDArray[np.bool_]
+Floats = NDArray[np.float64]
 Rule = Literal["ignore", "absent"]
 MIN_VISIBLE = 0.0  # a target counts if more than this fraction of the person is visible
 
@@ -40,6 +43,17 @@ class Judged:
     ignored: TrackBoxes
 
 
+def counts(counted: Flags, visible: Floats, min_visible: float = MIN_VISIBLE) -> Flags:
+    """Tell who is a target: near enough to be counted, and more than a share of the person visible.
+
+    Args:
+        counted: (N,) whether the truth counts the person.
+        visible: (N,) visible fraction, 0..1.
+        min_visible: that share.
+    """
+    return np.asarray(counted & (visible > min_visible))
+
+
 def settle_uncounted(
     truth: TrueBoxes, tracks: TrackBoxes, *, rule: Rule = "ignore", min_visible: float = MIN_VISIBLE
 ) -> Judged:
@@ -52,7 +66,7 @@ def settle_uncounted(
         raise BadInput(f"uncounted must be one of {', '.join(get_args(Rule))}, got {rule!r}")
     if not 0.0 <= min_visible <= 1.0:
         raise BadInput(f"min_visible must be 0 to 1, got {min_visible}")
-    counted = truth.counted & (truth.visible > min_visible)
+    counted = counts(truth.counted, truth.visible, min_visible)
     truth = TrueBoxes(frame=truth.frame, id=truth.id, box=truth.box, counted=counted, visible=truth.visible)
     if rule == "ignore":
         return ignore_uncounted(truth, tracks)

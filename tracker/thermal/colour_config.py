@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.thermal.check_config import check_not_negative, check_positive, check_share
+from peopleboy.tracker.thermal.check_config import check_not_negative, check_positive
 
 Affine = tuple[float, float, float, float, float, float]
 
@@ -50,8 +50,6 @@ class ColourConfig:
         space: "rgb", "grey" or "hsv".
         frames: n_k, how many of the last descriptions make the model.
         sharpness: lambda of the likelihood.
-        bins: of a histogram.
-        least_seen: share of a part that must lie in the colour image, or the part counts as unseen.
 
     Raises:
         BadInput: a name that does not exist, or a number out of its range.
@@ -65,23 +63,15 @@ class ColourConfig:
     space: str = "rgb"
     frames: int = 10
     sharpness: float = 50.0
-    bins: int = 20
-    least_seen: float = 0.5
 
     def __post_init__(self) -> None:
-        check_positive(self, "frames", "bins")
+        check_positive(self, "frames")
         check_not_negative(self, "sharpness")
-        check_share(self, "least_seen")
         _check_name("representation", self.representation, REPRESENTATIONS)
         _check_name("space", self.space, SPACES)
         _check_affine(self.affine)
         if not math.isfinite(self.parallax):
             raise BadInput(f"ColourConfig: parallax must be a finite number, got {self.parallax}")
-
-    @property
-    def moments(self) -> int:
-        """How many moments are taken; 0 for histograms."""
-        return REPRESENTATIONS[self.representation]
 
 
 def _check_name(key: str, name: str, known: dict[str, int]) -> None:

@@ -1,4 +1,4 @@
-"""Every constant of the tracker, under its name; the variants are values of these records.
+"""In what the variants of the tracker differ; each is a value of these records.
 
 Pixels are meant for an image of 240 rows and are scaled by image height / 240.
 """
@@ -26,16 +26,11 @@ class ContourConfig:
     """Where a contour is looked at, and how a difference of grey counts.
 
     The thesis says that inner and outer pixels along the ellipses are compared; how far from the contour, at
-    how many points, and how wide the head is, it leaves open: `reach_px`, `points`, `head_aspect` and the
-    angles are readings.
+    how many points, and where the sides end, it leaves open: `reach_px`, `points` and `side_end_deg` are
+    readings.
     """
 
-    head_divisor: float = 4.4  # body semi-height / head semi-height
-    head_aspect: float = 0.75  # head semi-width / head semi-height
     points: int = 8  # pairs of inner and outer points a section
-    neck_deg: float = 60.0  # opening of the head ellipse at the neck
-    head_top_deg: float = 90.0  # arc of the head's top section
-    shoulder_deg: float = 60.0  # arc of a shoulder, from the top of the body down
     side_end_deg: float = 180.0  # where the sides end: 180 is the bottom of the body
     reach_px: float = 2.0  # distance of the points from the contour, whatever its size
     body_reach: tuple[float, ...] = (0.0,)  # plus this share of the body's semi-width; the points take turns
@@ -46,21 +41,17 @@ class ContourConfig:
     # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
     cold_response: float = 1.0
     cold_feet_response: float = 1.0  # the same for feet colder than the floor
-    # alpha_1..7 of the sections: head left, top, right, shoulders, sides.
-    weights: tuple[float, ...] = (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16)
-    feet_weight: float = 0.0  # weight of an eighth section, the line under the feet
-    feet_line: float = 2.05  # its distance below the body's centre, in body semi-heights
-    feet_span: float = 0.6  # how far it reaches to both sides, in body semi-heights
-    feet_gain: float = 3.0  # factor on its response, up to 1: feet fill only a third of the line
+    # Weight of an eighth section, the line under the feet; those of the other seven add up to 1.
+    feet_weight: float = 0.0
     unseen_response: float = 0.0  # response of a point outside the image
     hottest_grey: int = 256  # grey from which a surface is too hot for a person and counts as cold
     hot_margin_px: int = 0  # so do the pixels around it, whose grey is a blend
 
     def __post_init__(self) -> None:
-        check_positive(self, "head_divisor", "head_aspect", "points", "feet_line")
-        check_not_negative(self, "saturation_grey", "reach_px", "inner_depth", "far_head_reach")
-        if len(self.weights) != 7:
-            raise BadInput(f"ContourConfig: weights must be 7 numbers, got {len(self.weights)}")
+        check_positive(self, "points")
+        check_not_negative(
+            self, "saturation_grey", "reach_px", "inner_depth", "far_head_reach", "feet_weight"
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,17 +62,14 @@ class LimitsConfig:
     ratio_dw: tuple[float, float] = (-1.5, 1.5)
     y: tuple[float, float] = (0.2, 0.8)  # [image heights]
     h: tuple[float, float] = (0.02, 0.5)  # [image heights]; the sources name no largest
-    horizon: float = 0.5  # row of the horizon [image heights]; the middle for a level camera
     # [body semi-heights]: where people who stand on the floor are.
     y_below_horizon: tuple[float, float] = (-math.inf, math.inf)
-    outside_weight: float = 1e-6  # factor on the weight of a sample outside: "a very low chance"
 
     def __post_init__(self) -> None:
         for name in ("ratio_wh", "ratio_dw", "y", "h"):
             low, high = getattr(self, name)
             if not (math.isfinite(low) and math.isfinite(high) and low < high):
                 raise BadInput(f"LimitsConfig: {name} must be low < high, got {low}..{high}")
-        check_share(self, "outside_weight")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,12 +106,10 @@ class MotionConfig:
     place_memory: float = 1.0  # share of (vx, vy) that lasts to the next step
     size_memory: float = 1.0  # the same for (vw, vh)
     uses_odometry: bool = False
-    view_angle_deg: float = 44.0  # vertical field of view, from which a turn becomes a shift in pixels
 
     def __post_init__(self) -> None:
         check_not_negative(self, "noise_x", "noise_y", "noise_w", "noise_h", "noise_d", "noise_by_height")
         check_share(self, "place_memory", "size_memory")
-        refuse_unless(0 < self.view_angle_deg < 180, self, "view_angle_deg", "between 0 and 180")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -188,20 +174,13 @@ class SmoothingConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AppearanceConfig:
-    """By how much the looks of one person differ from frame to frame: head, torso, legs.
+    """By how much the thermal pattern of one person differs from frame to frame, and what it tells."""
 
-    Colours and greys are means over the part, 0..1; colours after the light has been divided out.
-    """
-
-    colour_spread: tuple[float, float, float] = (0.06, 0.02, 0.035)
-    grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)
-    brightness: float = 80.0  # mean of the colour image [grey] to which all are scaled
-    darkest: float = 12.0  # mean below which colours are noise
+    grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)  # of the mean of head, torso, legs, 0..1
     needs_colour: bool = False  # whether nobody is recognised by the thermal pattern alone
 
     def __post_init__(self) -> None:
-        for spread in (*self.colour_spread, *self.grey_spread, self.brightness):
-            refuse_unless(spread > 0, self, "colour_spread", "positive")
+        refuse_unless(min(self.grey_spread) > 0, self, "grey_spread", "positive")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -222,52 +201,60 @@ class InteractionConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OcclusionConfig:
-    """What happens when people hide each other, and who is remembered.
+class DepthConfig:
+    """Who is in front of whom, and what that means for the evidence."""
 
-    The defaults are section 7.3 of the thesis; what follows `forget_s` goes beyond it.
-    """
-
-    is_handled: bool = False  # whether it matters who is in front
-    # How that is told: "foot" by whose feet are lower, "appearance" by looks as well, "contour" by
-    # contours too.
-    order: str = "foot"
-    head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
-    kept_frames: int = 8  # frames for which a hidden person's samples are kept
-    forget_s: float = 10.0  # time after which a hidden person is forgotten
+    # By whose feet are lower ("foot"), by looks as well ("appearance"), by contours too ("contour"); None:
+    # nobody is in front of anybody.
+    order: str | None = None
     removes_front: bool = False  # points of the contour on people in front are left out of the evidence
-    covered_response: float = 0.4  # what such a point counts
     growth: float = 1.0  # by which the people in front are enlarged for that
-    keeps_velocity: bool = False  # hidden people walk on; otherwise they are where their occluder is
-    hidden_memory: float = 0.97  # share of a hidden person's velocity that lasts to the next step
-    hidden_noise: float = 1.0  # share of the motion noise along the floor while hidden
-    hidden_stiffness: float = 0.1  # the same for all other directions and the size
-    # Spread of the logarithm of an overlapped person's height around that when seen whole; 0: as it may be.
-    size_spread: float = 0.0
-    seen_size_spread: float = 0.0  # the same for a person who is seen whole
-    size_s: float = 0.5  # time constant of that height
-    hidden_w: float = 0.0  # semi-width of a hidden person, who may turn, in semi-heights; 0: as last seen
-    colour_gate: float = 40.0  # largest squared distance of colours of who comes back to sight
-    size_gate: float = 0.25  # largest change of the logarithm of its height
-    remembers_lost: bool = False  # who is lost in any other way is remembered as well
-    lost_frames: int = 3  # frames without evidence after which somebody counts as hidden by something unknown
-    searched_frames: int = 45  # frames for which a hidden person's samples look for it in the open
-    # How long a hidden person is shown: hidden by nobody known; on its way out of the image; behind somebody,
-    # if its samples are farther apart than this share of its semi-width. Others are until they are forgotten.
-    shown_s: float = 10.0
-    shown_leaving_s: float = 10.0
-    shown_behind_s: float = 10.0
-    sure_spread: float = 0.35
 
     def __post_init__(self) -> None:
         refuse_unless(
-            self.order in ("foot", "appearance", "contour"), self, "order", "foot, appearance or contour"
+            self.order in (None, "foot", "appearance", "contour"),
+            self,
+            "order",
+            "foot, appearance or contour",
         )
-        check_share(self, "head_covered", "hidden_memory", "hidden_stiffness")
-        check_not_negative(self, "kept_frames", "forget_s", "hidden_noise", "hidden_w")
-        check_not_negative(self, "size_spread", "seen_size_spread")
-        check_not_negative(self, "shown_s", "shown_leaving_s", "shown_behind_s", "sure_spread")
-        check_positive(self, "growth", "size_s")
+        check_positive(self, "growth")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeightConfig:
+    """How far a person's height may stray from what it was when the person was last seen whole.
+
+    Spreads are those of the logarithm; 0: as far as it may.
+    """
+
+    overlapped_spread: float = 0.0  # of a person who is overlapped or hidden
+    seen_spread: float = 0.0  # of a person who is seen whole
+    memory_s: float = 0.5  # time constant of that height
+
+    def __post_init__(self) -> None:
+        check_not_negative(self, "overlapped_spread", "seen_spread")
+        check_positive(self, "memory_s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StayBehindConfig:
+    """Hidden people are where their occluder is (thesis, section 7.3).
+
+    Without an order in depth nobody is ever in front, and nobody hidden.
+    """
+
+    head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
+
+    def __post_init__(self) -> None:
+        check_share(self, "head_covered")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WalkOnConfig:
+    """Hidden people walk on with the velocity that they had."""
+
+    remembers_lost: bool = False  # who is lost in any other way walks on, and is remembered as well
+    shows_only_sure: bool = False  # the hidden are shown only while it is fairly certain where they are
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -285,4 +272,6 @@ class TrackerConfig:
     interaction: InteractionConfig = field(default_factory=InteractionConfig)
     colour: ColourConfig | None = None  # None: thermal alone
     appearance: AppearanceConfig | None = None  # None: colours as they are
-    occlusion: OcclusionConfig = field(default_factory=OcclusionConfig)
+    depth: DepthConfig = field(default_factory=DepthConfig)
+    height: HeightConfig = field(default_factory=HeightConfig)
+    occlusion: StayBehindConfig | WalkOnConfig = field(default_factory=StayBehindConfig)

@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.thermal.particles import VH, VW, VX, VY, D, H, W, X, Y
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ellipse:
@@ -29,3 +34,18 @@ class Ellipse:
     vy: float
     vw: float
     vh: float
+
+
+def ellipse_of(state: NDArray[np.floating]) -> Ellipse:
+    """Name the entries of one (9,) state."""
+    return Ellipse(
+        x=float(state[X]),
+        y=float(state[Y]),
+        w=float(state[W]),
+        h=float(state[H]),
+        d=float(state[D]),
+        vx=float(state[VX]),
+        vy=float(state[VY]),
+        vw=float(state[VW]),
+        vh=float(state[VH]),
+    )

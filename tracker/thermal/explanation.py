@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.ellipse import Ellipse
-from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.thermal.particles import Particles
 
 DETECTOR_KEY = 0
 

@@ -8,20 +8,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
+from peopleboy.tracker.thermal.appearance.appearance_model import AppearanceView, visible
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.appearance.part_appearance import AppearanceView
-from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, FilterConfig, MotionConfig, TrackerConfig
-from peopleboy.tracker.thermal.contour.likelihood import (
-    ContourModel,
-    fitness,
-    is_within,
-    probability,
-    sample_weights,
+from peopleboy.tracker.thermal.config import (
+    REFERENCE_HEIGHT_PX,
+    FilterConfig,
+    LimitsConfig,
+    MotionConfig,
+    TrackerConfig,
 )
-from peopleboy.tracker.thermal.filter.motion import Columns, predict, turned
-from peopleboy.tracker.thermal.filter.particles import (
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.thermal.particles import (
+    CROWN,
     FOOT,
+    HORIZON,
+    Columns,
+    D,
     Floats,
     H,
     Particles,
@@ -29,15 +32,21 @@ from peopleboy.tracker.thermal.filter.particles import (
     X,
     Y,
     core_rows,
+    draw_prior,
     mean_state,
     normalised,
+    predict,
     resample,
     select,
+    turned,
     uncertainty_px2,
 )
-from peopleboy.tracker.thermal.filter.prior import draw_prior
+from peopleboy.tracker.thermal.whereabouts import Regions
 
+STANDING = Odometry()
 RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
+OUTSIDE_WEIGHT = 1e-6  # factor on the weight of a sample outside the limits: "a very low chance"
+VIEW_ANGLE_DEG = 44.0  # vertical, of the robot's thermal camera: makes a shift in pixels of a turn
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,19 +85,27 @@ class FrameView:
         """Tell where columns x [px] of the last frame lie in this one but for people's own motion."""
         return turned(x, self.turn_rad, self.focal_px, (self.image.shape[1] - 1) / 2)
 
+    def describe(self, state: Floats, hiding: Regions) -> Floats | None:
+        """Describe people (N, 9) as their models do, (N, F), if that can be told.
+
+        NaN for parts that lie behind people with regions (M, 4).
+        """
+        source = self.colour if self.appearance is None else self.appearance
+        return None if source is None else visible(source.describe(state), state, hiding)
+
 
 def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig) -> FrameView:
     """Prepare a frame for all filters."""
     motion = config.motion
-    turn = frame.turn_rad if motion.uses_odometry and frame.turn_rad is not None else 0.0
-    focal = frame.height_px / 2 / math.tan(math.radians(motion.view_angle_deg) / 2)
-    advance = frame.advance_m if motion.uses_odometry and frame.advance_m is not None else 0.0
-    image = model.prepare(frame.thermal)
+    moved = frame.odometry if motion.uses_odometry and frame.odometry is not None else STANDING
+    thermal = frame.grey(THERMAL)
+    focal = len(thermal) / 2 / math.tan(math.radians(VIEW_ANGLE_DEG) / 2)
+    image = model.prepare(thermal)
     colour = None
-    if config.colour is not None and frame.colour is not None:
-        colour = ColourView.build(frame.colour, frame.thermal.shape, config.colour)
+    if config.colour is not None and COLOUR in frame.images:
+        colour = ColourView.build(frame.rgb(COLOUR), thermal.shape, config.colour)
     appearance = None if config.appearance is None else AppearanceView.build(image, colour, config.appearance)
-    return FrameView(image, model, dt_s, turn, focal, colour, appearance, advance_m=advance)
+    return FrameView(image, model, dt_s, moved.turn_rad, focal, colour, appearance, advance_m=moved.advance_m)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -166,6 +183,46 @@ def _floored(fit: Floats, likeness: Floats | None, config: FilterConfig) -> Floa
     return floored
 
 
+def sample_weights(
+    fit: Floats, chance: Floats, is_inside: NDArray[np.bool_], model: str, config: FilterConfig
+) -> Floats:
+    """Weigh the samples (N,), to sum to 1.
+
+    The thesis weighs with the probability, which is flat once the fitness is well above the threshold; with a
+    sharpness, the weight goes on growing with the fitness. The paper weighs with the fitness itself.
+
+    Source: thesis, equation 4.5; paper, equation 3.
+    """
+    if config.sharpness > 0:
+        weight = np.exp(config.sharpness * (fit - fit.max()))
+    elif model == "paper":
+        weight = np.maximum(fit, 1e-6)
+    else:
+        weight = chance
+    return normalised(np.where(is_inside, weight, np.float32(OUTSIDE_WEIGHT) * weight).astype(np.float32))
+
+
+def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np.bool_]:
+    """Tell which samples (N,) have a person's proportions and place.
+
+    Source: thesis, section 4.2 and the table of section 4.4.
+    """
+    w, h = state[:, W], state[:, H]
+    below_horizon = state[:, Y] - HORIZON * height_px
+    return (
+        (w > limits.ratio_wh[0] * h)
+        & (w < limits.ratio_wh[1] * h)
+        & (state[:, D] > limits.ratio_dw[0] * w)
+        & (state[:, D] < limits.ratio_dw[1] * w)
+        & (state[:, Y] > limits.y[0] * height_px)
+        & (state[:, Y] < limits.y[1] * height_px)
+        & (below_horizon > limits.y_below_horizon[0] * h)
+        & (below_horizon < limits.y_below_horizon[1] * h)
+        & (h > limits.h[0] * height_px)
+        & (h < limits.h[1] * height_px)
+    )
+
+
 def step(
     particles: Particles,
     view: FrameView,
@@ -190,20 +247,31 @@ def advance(
     config: TrackerConfig,
     rng: np.random.Generator,
     motion: MotionConfig | None = None,
+    resizes: bool = True,
 ) -> Floats:
-    """Draw the samples (N, 9) of this frame from those of the last one, some of them from the prior."""
+    """Draw the samples (N, 9) of this frame from those of the last one, some of them from the prior.
+
+    Args:
+        particles: of the last frame.
+        view: this frame.
+        filter_config: of this filter.
+        config: of the tracker.
+        rng: source of chance.
+        motion: how the samples move; None for the tracker's own.
+        resizes: whether the filter's share of samples is tried at another size.
+    """
     fresh = round(filter_config.fresh_share * filter_config.count)
     kept = resample(particles, filter_config.count - fresh, rng)
     moved = predict(kept, view.dt_s, view.size, config.motion if motion is None else motion, rng)
     moved[:, X] = view.after_turn(moved[:, X])
-    if filter_config.resized_share > 0:
-        _resize(moved, filter_config.resized_share, config.contour.head_divisor, rng)
+    if resizes and filter_config.resized_share > 0:
+        _resize(moved, filter_config.resized_share, rng)
     if fresh == 0:
         return moved
     return np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)])
 
 
-def _resize(state: Floats, share: float, head_divisor: float, rng: np.random.Generator) -> None:
+def _resize(state: Floats, share: float, rng: np.random.Generator) -> None:
     """Make a share of the samples (N, 9) larger or smaller, in place.
 
     Every other one keeps the top of its head where it is, the others keep their feet: a torso that was taken
@@ -211,7 +279,7 @@ def _resize(state: Floats, share: float, head_divisor: float, rng: np.random.Gen
     """
     tried = state[:: round(1 / share)]
     factor = np.exp(RESIZING * rng.standard_normal(len(tried), dtype=np.float32))
-    kept = np.where(np.arange(len(tried)) % 2 == 0, -(1 + 2 / head_divisor), FOOT).astype(np.float32)
+    kept = np.where(np.arange(len(tried)) % 2 == 0, -CROWN, FOOT).astype(np.float32)
     tried[:, Y] -= kept * (factor - 1) * tried[:, H]
     tried[:, W : H + 1] *= factor[:, None]
 

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.thermal.appearance.appearance_model import likelihood
+from peopleboy.tracker.thermal.config import FilterConfig, TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.contour.outline import box_of
+from peopleboy.tracker.thermal.ellipse import ellipse_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
-from peopleboy.tracker.thermal.filter.particles import W, ellipse_of
-from peopleboy.tracker.thermal.filter.prior import draw_around
-from peopleboy.tracker.thermal.interaction import detector_factor, least_overlaps, regions_of
-from peopleboy.tracker.thermal.joint_update import follow
-from peopleboy.tracker.thermal.life import is_born
-from peopleboy.tracker.thermal.occlusion.depth_order import ORDERS, Order
-from peopleboy.tracker.thermal.occlusion.occlusion_status import foot_of, learn
+from peopleboy.tracker.thermal.occlusion.depth_order import (
+    ORDERS,
+    ExpectedPerson,
+    Order,
+    Surroundings,
+    expected,
+    front_to_back,
+    surroundings_of,
+)
+from peopleboy.tracker.thermal.occlusion.policy import OcclusionPolicy, make_policy
 from peopleboy.tracker.thermal.particle_filter import (
     Belief,
     FrameView,
@@ -27,11 +33,22 @@ from peopleboy.tracker.thermal.particle_filter import (
     view_frame,
     weigh,
 )
-from peopleboy.tracker.thermal.reidentification import recognised, remembered
-from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.thermal.particles import Floats, H, draw_around
+from peopleboy.tracker.thermal.tracked_person import FORGET_S, TrackedPerson, is_born, newborn
+from peopleboy.tracker.thermal.whereabouts import (
+    box_of,
+    detector_factor,
+    least_overlaps,
+    overlap_shares,
+    person_factor,
+    places_on_floor,
+    regions_of,
+)
+from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 FIRST_STEP_S = 1 / 15
+COVERED_RESPONSE = 0.4  # what a point of the contour on people in front counts: neither for nor against
+NOBODY = np.empty((0, 4), dtype=np.float32)
 
 
 class PeopleTracker:
@@ -43,7 +60,9 @@ class PeopleTracker:
     def __init__(self, config: TrackerConfig, rng: np.random.Generator, order: Order | None = None) -> None:
         self._config = config
         self._rng = rng
-        self._order = ORDERS[config.occlusion.order] if order is None else order
+        by = config.depth.order
+        self._order = None if by is None else order or ORDERS[by]
+        self._policy = make_policy(config)
         self._model: ContourModel | None = None
         self._last_s: float | None = None
         self._detector: Belief | None = None
@@ -52,9 +71,14 @@ class PeopleTracker:
         self._memories: tuple[TrackedPerson, ...] = ()
         self._told: tuple[TrackedPerson, ...] = ()
         self._born = 0
-        self._introduced: tuple[float, float, float, float] | None = None
+        self._introduced: Box | None = None
 
-    def introduce(self, box: tuple[float, float, float, float]) -> None:
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The thermal camera, and the colour one if colours are looked at; without it, heat must do."""
+        return (THERMAL,) if self._config.colour is None else (THERMAL, COLOUR)
+
+    def introduce(self, box: Box) -> None:
         """Tell that a person is at this box [px] in the next frame, as trackers of single objects are told.
 
         The person's filter starts there, and the detector keeps off it.
@@ -80,16 +104,11 @@ class PeopleTracker:
         Raises:
             BadInput: time that does not go forward.
         """
-        view = view_frame(frame, self._time_step(frame.time_s), self._model_for(frame), self._config)
+        model = self._model_for(frame.grey(THERMAL))
+        view = view_frame(frame, self._time_step(frame.time_s), model, self._config)
         self._last_s = frame.time_s
-        self._memories = tuple(
-            person
-            for memory in self._memories
-            if (person := remembered(memory, view, self._persons, self._config)).hidden_s
-            <= self._config.occlusion.forget_s
-        )
-        persons = follow(self._persons, view, self._config, self._order, self._rng)
-        self._part(persons)
+        self._memories = self._remembered(view)
+        self._part(_follow(self._persons, view, self._config, self._order, self._policy, self._rng))
         if self._introduced is not None:
             self._meet(self._introduced, view, frame.time_s)
             self._introduced = None
@@ -97,7 +116,7 @@ class PeopleTracker:
         known = (*self._persons, *self._memories)
         shown = [person for person in known if not person.is_hidden or self._is_shown(person, view)]
         self._told = (*shown, *newcomer)
-        return tuple(self._track(person, frame.time_s) for person in self._told)
+        return self._tracks(frame)
 
     def _time_step(self, time_s: float) -> float:
         if self._last_s is None:
@@ -106,11 +125,24 @@ class PeopleTracker:
             raise BadInput(f"time_s must go forward, got {time_s} after {self._last_s}")
         return time_s - self._last_s
 
-    def _model_for(self, frame: Frame) -> ContourModel:
-        shape = (frame.height_px, frame.width_px)
+    def _model_for(self, image: NDArray[np.uint8]) -> ContourModel:
+        shape = (image.shape[0], image.shape[1])
         if self._model is None or self._model.shape != shape:
             self._model = ContourModel.build(shape, self._config.contour)
         return self._model
+
+    def _remembered(self, view: FrameView) -> tuple[TrackedPerson, ...]:
+        """Carry on the memory of people for whom no samples look any more, but of those not for too long."""
+        later = (
+            replace(
+                person,
+                shown=self._policy.whereabouts(person, self._persons, view),
+                hidden_s=person.hidden_s + view.dt_s,
+                hidden_frames=person.hidden_frames + 1,
+            )
+            for person in self._memories
+        )
+        return tuple(person for person in later if person.hidden_s <= FORGET_S)
 
     def _part(self, persons: tuple[TrackedPerson, ...]) -> None:
         """Divide people into those who are kept, those who are only remembered, and those who are gone."""
@@ -118,22 +150,16 @@ class PeopleTracker:
         for person in persons:
             if self._is_kept(person):
                 kept.append(person)
-            elif self._is_remembered(person):
+            elif person.is_hidden or self._policy.remembers_lost(person):
                 memories.append(replace(person, status=Status.TOTALLY_OCCLUDED, is_behind=False))
         self._persons = tuple(kept)
         self._memories = (*self._memories, *memories)
 
     def _is_kept(self, person: TrackedPerson) -> bool:
-        handling = self._config.occlusion
+        if person.is_hidden:
+            return self._policy.searches(person)
         # Without confidence no sample is within the limits, and the estimate may be no ellipse at all.
-        if not person.is_hidden:
-            return person.missing < self._config.life.death_frames and person.belief.confidence > 0
-        if handling.keeps_velocity:
-            return person.missing < handling.searched_frames
-        return person.hidden_frames <= handling.kept_frames
-
-    def _is_remembered(self, person: TrackedPerson) -> bool:
-        return person.is_hidden or (self._config.occlusion.remembers_lost and person.is_settled)
+        return person.missing < self._config.life.death_frames and person.belief.confidence > 0
 
     def _search(self, view: FrameView, time_s: float) -> tuple[TrackedPerson, ...]:
         """Carry the detector on; a person is born when it has settled on one for long enough.
@@ -149,12 +175,12 @@ class PeopleTracker:
         self._hits = self._hits + 1 if is_born(self._detector, view, config.life) else 0
         if self._hits == 0:
             return ()
-        found = self._newborn(self._detector, view, time_s)
+        found = newborn(self._born + 1, self._detector, view, time_s, config)
         if self._hits < config.life.birth_frames:
             return (replace(found, status=Status.TENTATIVE),)
         self._hits, self._detector = 0, None
         lost = (*self._memories, *(person for person in self._persons if person.is_hidden))
-        known = recognised(found, lost, view, config)
+        known = self._policy.recognised(found, lost, view) if lost else None
         if known is None:
             self._born = found.id
         else:
@@ -170,24 +196,13 @@ class PeopleTracker:
         self._persons = tuple(sorted((*self._persons, found), key=lambda person: person.id))
         return ()
 
-    def _meet(self, box: tuple[float, float, float, float], view: FrameView, time_s: float) -> None:
+    def _meet(self, box: Box, view: FrameView, time_s: float) -> None:
         """Start a filter on samples around a person who is pointed out."""
         state = draw_around(box, self._config, self._rng)
-        found = self._newborn(weigh(state, view, self._config.person, self._config), view, time_s)
+        belief = weigh(state, view, self._config.person, self._config)
+        found = newborn(self._born + 1, belief, view, time_s, self._config)
         self._born = found.id
         self._persons = (*self._persons, found)
-
-    def _newborn(self, belief: Belief, view: FrameView, time_s: float) -> TrackedPerson:
-        person = TrackedPerson(
-            id=self._born + 1,
-            born_s=time_s,
-            belief=belief,
-            shown=belief.estimate,
-            velocity=np.zeros(2),
-            foot=foot_of(belief.estimate),
-            size=belief.estimate[SIZE],
-        )
-        return learn(person, belief.estimate, view, self._config)
 
     def _detected(self, view: FrameView) -> Belief:
         """Weigh the detector's samples, kept off the people that are tracked."""
@@ -201,28 +216,110 @@ class PeopleTracker:
         return weigh(state, view, config.detector, config, factor)
 
     def _is_shown(self, person: TrackedPerson, view: FrameView) -> bool:
-        """Tell whether a hidden person is shown: as long as it is fairly certain where it is."""
-        handling = self._config.occlusion
-        left, top, width, height = regions_of([person.shown], self._config)[0]
-        rows, columns = view.image.shape
-        if left > columns or left + width < 0:
-            return False
-        if person.is_behind:
-            is_sure = person.belief.uncertainty_px2 < (handling.sure_spread * float(person.shown[W])) ** 2
-            return person.hidden_s <= (handling.forget_s if is_sure else handling.shown_behind_s)
-        walks_out = (left < 0 and person.velocity[0] < 0) or (
-            left + width > columns and person.velocity[0] > 0
-        )
-        is_whole = top + height < rows
-        return person.hidden_s <= (handling.shown_leaving_s if walks_out and is_whole else handling.shown_s)
+        """Tell whether a hidden person is shown: nobody outside of the image is."""
+        region = regions_of([person.shown], self._config)[0]
+        is_in_image = region[0] <= view.image.shape[1] and region[0] + region[2] >= 0
+        return bool(is_in_image) and self._policy.is_shown(person, region, view)
 
-    def _track(self, person: TrackedPerson, time_s: float) -> Track:
-        ellipse = ellipse_of(person.shown)
-        return Track(
-            id=person.id,
-            box=box_of(ellipse, self._config.box, self._config.contour.head_divisor),
-            confidence=person.belief.confidence,
-            status=person.status,
-            age_s=time_s - person.born_s,
-            occluder=person.occluder,
+    def _tracks(self, frame: Frame) -> tuple[Track, ...]:
+        config, calibration = self._config, frame.calibrations.get(THERMAL)
+        boxes = [box_of(person.shown, config.box) for person in self._told]
+        places: Sequence[FloorPlace | None] = [None] * len(boxes)
+        if calibration is not None:
+            places = places_on_floor(boxes, [person.status for person in self._told], calibration)
+        return tuple(
+            Track(
+                id=person.id,
+                boxes={THERMAL: box},
+                place=place,
+                confidence=person.belief.confidence,
+                status=person.status,
+                age_s=frame.time_s - person.born_s,
+                occluder=person.occluder,
+            )
+            for person, box, place in zip(self._told, boxes, places, strict=True)
         )
+
+
+def _follow(
+    persons: Sequence[TrackedPerson],
+    view: FrameView,
+    config: TrackerConfig,
+    order: Order | None,
+    policy: OcclusionPolicy,
+    rng: np.random.Generator,
+) -> tuple[TrackedPerson, ...]:
+    """Carry everybody's filter on to this frame.
+
+    Source: thesis, algorithm 6; but the order is found on the predictions, before the image is measured, so
+    that those in front can be taken out of the evidence for those behind.
+    """
+    figures: Sequence[ExpectedPerson] = expected(persons, view, config)
+    if order is not None:
+        figures = front_to_back(figures, order, view)
+    samples = _shared_filter(config, len(persons))
+    followed: list[TrackedPerson] = []
+    for number, figure in enumerate(figures):
+        surroundings = surroundings_of(figure, followed, figures[number + 1 :], view, config)
+        followed.append(_carried_on(figure.person, surroundings, view, samples, config, policy, rng))
+    return tuple(sorted(followed, key=lambda person: person.id))
+
+
+def _shared_filter(config: TrackerConfig, persons: int) -> FilterConfig:
+    """Give everybody N samples, or an equal part of what all share."""
+    if config.interaction.total_count == 0 or persons == 0:
+        return config.person
+    return replace(config.person, count=max(1, config.interaction.total_count // persons))
+
+
+def _carried_on(
+    person: TrackedPerson,
+    surroundings: Surroundings,
+    view: FrameView,
+    samples: FilterConfig,
+    config: TrackerConfig,
+    policy: OcclusionPolicy,
+    rng: np.random.Generator,
+) -> TrackedPerson:
+    """Predict, weigh and judge one person."""
+    is_overlapped = bool(surroundings.front) or person.is_hidden
+    particles = person.belief.particles if person.is_hidden else person.belief.core
+    state = advance(particles, view, samples, config, rng, policy.motion_of(person), not is_overlapped)
+    own_view = view
+    if surroundings.front and config.depth.removes_front:
+        own_view = replace(view, image=surroundings.image, covered=COVERED_RESPONSE)
+    likeness = _likeness(person, state, surroundings, view, config)
+    factor = None
+    if policy.keeps_off(person):
+        shares = overlap_shares(state, surroundings.others, config)
+        factor = person_factor(shares, surroundings.strength)
+        spread = config.height.overlapped_spread if is_overlapped else config.height.seen_spread
+        if spread > 0:
+            factor = factor * _height_kept(person, state, spread)
+    belief = weigh(state, own_view, config.person, config, factor, likeness)
+    return policy.judge(person, belief, surroundings, view, rng)
+
+
+def _height_kept(person: TrackedPerson, state: Floats, spread: float) -> Floats:
+    """Penalise samples (N,) that have not the height that the person had of late when seen whole."""
+    growth = np.log(np.maximum(state[:, H], np.float32(1)) / np.float32(max(person.size[1], 1.0)))
+    factor: Floats = np.exp(np.float32(-0.5 / spread**2) * growth * growth)
+    return factor
+
+
+def _likeness(
+    person: TrackedPerson, state: Floats, surroundings: Surroundings, view: FrameView, config: TrackerConfig
+) -> Floats | None:
+    """Tell how likely samples (N,) look like the person (thesis, equation 6.4); None if nobody knows."""
+    if person.looks is None or config.colour is None:
+        return None
+    removes = config.depth.removes_front
+    features = view.describe(state, surroundings.hiding if removes else NOBODY)
+    if features is None:
+        return None
+    likeness = likelihood(features, person.looks, config.colour)
+    if removes:
+        # Who is not seen at all looks as a person usually does: one spread off in every feature.
+        unseen = np.isnan(features).all(axis=1)
+        likeness[unseen] = np.exp(-config.colour.sharpness * features.shape[1])
+    return likeness

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from peopleboy.tracker.thermal.appearance.colour_model import squared_distances
-from peopleboy.tracker.thermal.appearance.part_appearance import knows_colour
+from peopleboy.tracker.thermal.appearance.appearance_model import knows_colour, squared_distances
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.filter.particles import VW, VX, H, X, Y
 from peopleboy.tracker.thermal.particle_filter import FrameView
-from peopleboy.tracker.thermal.tracked_person import TrackedPerson, moved_on
+from peopleboy.tracker.thermal.particles import H, X, Y
+from peopleboy.tracker.thermal.tracked_person import TrackedPerson
 
 PLACE_PX = 12.0  # [px] of 240 rows: spread of the place of a person who was just lost
 PLACE_PX_S = 40.0  # [px/s] by which it grows
@@ -26,47 +24,22 @@ WORST = 6.8
 GROWTH = 0.7  # largest change of the logarithm of the height
 
 
-def remembered(
-    person: TrackedPerson, view: FrameView, leaders: Sequence[TrackedPerson], config: TrackerConfig
-) -> TrackedPerson:
-    """Carry on the memory of a person of whom nothing is seen.
-
-    Source: thesis, section 7.3: it is where its occluder is; ours: it walks on.
-    """
-    shown = moved_on(person.shown, view)
-    shown[VW:] = 0.0
-    if config.occlusion.keeps_velocity:
-        shown[VX:] *= 0.96
-    else:
-        shown = next((leader.shown for leader in leaders if leader.id == person.occluder), shown)
-    return replace(
-        person,
-        shown=shown,
-        hidden_s=person.hidden_s + view.dt_s,
-        hidden_frames=person.hidden_frames + 1,
-    )
-
-
-def recognised(
-    found: TrackedPerson, memories: Sequence[TrackedPerson], view: FrameView, config: TrackerConfig
+def least_mismatch(
+    found: TrackedPerson, lost: Sequence[TrackedPerson], view: FrameView, config: TrackerConfig
 ) -> TrackedPerson | None:
-    """Find the remembered person who is the found one; None if nobody is."""
-    if not memories:
-        return None
-    if config.occlusion.keeps_velocity:
-        costs = [mismatch(found, person, view, config) for person in memories]
-        best = int(np.argmin(costs))
-        return memories[best] if costs[best] < WORST else None
-    return most_alike_and_nearest(found, memories)
+    """Take the one of the people who were lost against whom least speaks; None if that is too much."""
+    costs = [mismatch(found, person, view, config) for person in lost]
+    best = int(np.argmin(costs))
+    return lost[best] if costs[best] < WORST else None
 
 
-def most_alike_and_nearest(found: TrackedPerson, memories: Sequence[TrackedPerson]) -> TrackedPerson | None:
-    """Take the nearest remembered person if none other's colours are more like those of the found one.
+def most_alike_and_nearest(found: TrackedPerson, lost: Sequence[TrackedPerson]) -> TrackedPerson | None:
+    """Take the nearest of those who were lost if nobody else's colours are more like the found one's.
 
     Source: thesis, section 7.3.
     """
-    nearest = min(memories, key=lambda person: float(np.hypot(*(person.shown - found.shown)[[X, Y]])))
-    alike = min(memories, key=lambda person: colour_distance(found, person))
+    nearest = min(lost, key=lambda person: float(np.hypot(*(person.shown - found.shown)[[X, Y]])))
+    alike = min(lost, key=lambda person: colour_distance(found, person))
     return nearest if nearest is alike else None
 
 

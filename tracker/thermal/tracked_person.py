@@ -1,21 +1,30 @@
-"""What is kept of a person between two frames."""
+"""What is kept of a person between two frames, and what the next frame makes of it."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
-from peopleboy.tracker.thermal.filter.particles import VX, D, H, W, X
+from peopleboy.tracker.thermal.appearance.appearance_model import AppearanceView, ColourModel
+from peopleboy.tracker.thermal.appearance.colour_view import ColourView
+from peopleboy.tracker.thermal.colour_config import ColourConfig
+from peopleboy.tracker.thermal.config import LifeConfig, SmoothingConfig, TrackerConfig
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
+from peopleboy.tracker.thermal.particles import FOOT, STATE_SIZE, VX, D, Floats, H, W, X, Y
+from peopleboy.tracker.thermal.whereabouts import PERSON_M
 from peopleboy.tracker.track import Status
 
 SETTLED = 6  # frames
 SIZE = [W, H, D]  # columns of a state
-PERSON_M = 1.72  # height of people [m]
-HEIGHT = 3.7  # the same, in body semi-heights
+HEIGHT = 3.7  # of people, in body semi-heights
+VELOCITY_S = 0.4  # time constant of the velocity with which a hidden person walks on
+FOOT_S = 0.5
+FORGET_S = 10.0  # time after which a hidden person is forgotten
+Value = TypeVar("Value", float, NDArray[np.float64])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,6 +77,42 @@ class TrackedPerson:
         """Whether nothing of it is seen."""
         return self.status is Status.TOTALLY_OCCLUDED
 
+    @property
+    def looks(self) -> ColourModel | None:
+        """What its samples are compared with."""
+        return self.colour if self.appearance is None else self.appearance
+
+
+def is_born(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
+    """Tell whether a detector has settled on a person: it fits the image, and the samples agree.
+
+    Source: thesis, section 4.2: mean of equation 4.4 above 0.5 and equation 4.6 below its threshold.
+    """
+    return belief.confidence > config.birth_confidence and _agrees(belief, view, config)
+
+
+def is_kept(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
+    """Tell whether a tracked person is still seen.
+
+    Source: thesis, section 5.1: a filter is deleted when its mean is smaller than 0.5 or its uncertainty too
+    large.
+    """
+    return belief.confidence >= config.death_confidence and _agrees(belief, view, config)
+
+
+def _agrees(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
+    """Compare the spread with its threshold, an area, which grows with the square of the image's size."""
+    return belief.uncertainty_px2 < config.uncertainty_px2 * view.size**2
+
+
+def newborn(
+    number: int, belief: Belief, view: FrameView, time_s: float, config: TrackerConfig
+) -> TrackedPerson:
+    """Make a person of what a filter has settled on."""
+    state = belief.estimate
+    person = TrackedPerson(number, time_s, belief, state, np.zeros(2), _foot_of(state), state[SIZE])
+    return _learned(person, view, config)
+
 
 def approached(person: TrackedPerson, view: FrameView) -> TrackedPerson:
     """Let what is kept of a standing person grow as the camera comes nearer."""
@@ -83,3 +128,105 @@ def moved_on(state: NDArray[np.float64], view: FrameView) -> NDArray[np.float64]
     later[:4] += view.dt_s * later[VX:]
     later[[X]] = view.after_turn(later[[X]])
     return later
+
+
+def hidden(person: TrackedPerson, view: FrameView) -> TrackedPerson:
+    """Count one more frame in which nothing is seen of a person."""
+    return replace(
+        person,
+        status=Status.TOTALLY_OCCLUDED,
+        missing=0,
+        hidden_frames=person.hidden_frames + 1,
+        hidden_s=person.hidden_s + view.dt_s,
+    )
+
+
+def seen(
+    person: TrackedPerson, belief: Belief, occluder: int | None, view: FrameView, config: TrackerConfig
+) -> TrackedPerson:
+    """Take in a frame in which a person is not hidden, and learn from it what may be learnt.
+
+    Args:
+        person: as the last frame left it.
+        belief: its filter in this frame.
+        occluder: id of who overlaps it from in front; None if nobody does.
+        view: this frame.
+        config: of the tracker.
+    """
+    missing = 0 if is_kept(belief, view, config.life) else person.missing + 1
+    status = Status.TRACKED if occluder is None else Status.PARTLY_OCCLUDED
+    moved = replace(
+        person,
+        belief=belief,
+        shown=smoothed(person.shown, belief.estimate, view, config.smoothing),
+        status=Status.TENTATIVE if missing >= config.life.doubt_frames else status,
+        occluder=occluder,
+        is_behind=occluder is not None,
+        missing=missing,
+        hidden_frames=0,
+        hidden_s=0.0,
+    )
+    if missing > 0 or occluder is not None:
+        return moved
+    before = moved_on(person.belief.estimate, replace(view, dt_s=0.0))
+    speed = (belief.estimate[[X, Y]] - before[[X, Y]]) / view.dt_s
+    return replace(
+        _learned(moved, view, config),
+        seen_frames=person.seen_frames + 1,
+        velocity=_blend(person.velocity, speed, max(view.dt_s / VELOCITY_S, 1 / (person.seen_frames + 1))),
+        foot=_blend(person.foot, _foot_of(belief.estimate), view.dt_s / FOOT_S),
+        size=_blend(person.size, belief.estimate[SIZE], view.dt_s / config.height.memory_s),
+    )
+
+
+def smoothed(
+    before: NDArray[np.float64], now: NDArray[np.float64], view: FrameView, config: SmoothingConfig
+) -> NDArray[np.float64]:
+    """Blend the estimate (9,) of this frame into the one shown before: a first-order low pass against jitter.
+
+    The place shown before moves on with the estimated velocity and the camera's turn, so that a steady walk
+    is not shown late. A person's size changes slowly, and may be smoothed for longer than the place.
+    """
+    expected = moved_on(before, view)
+    gain = np.ones(STATE_SIZE)
+    gain[[X, Y]] = _gain(view.dt_s, config.place_s)
+    gain[SIZE] = _gain(view.dt_s, config.size_s)
+    return expected + gain * (now - expected)
+
+
+def _gain(dt_s: float, time_constant_s: float) -> float:
+    return 1.0 if time_constant_s == 0 else 1 - math.exp(-dt_s / time_constant_s)
+
+
+def _learned(person: TrackedPerson, view: FrameView, config: TrackerConfig) -> TrackedPerson:
+    """Remember what a person looks like who is seen whole.
+
+    Source: thesis, sections 6.1.3 and 7.4, by which the model is not updated during occlusions.
+    """
+    if config.colour is None:
+        return person
+    rows = person.belief.estimate.astype(np.float32)[None]
+    return replace(
+        person,
+        colour=_updated(person.colour, view.colour, rows, config.colour),
+        appearance=_updated(person.appearance, view.appearance, rows, config.colour),
+    )
+
+
+def _updated(
+    model: ColourModel | None, source: ColourView | AppearanceView | None, rows: Floats, config: ColourConfig
+) -> ColourModel | None:
+    if source is None:
+        return model
+    features = source.describe(rows)[0]
+    return ColourModel.begin(features, config) if model is None else model.updated(features)
+
+
+def _foot_of(state: NDArray[np.float64]) -> float:
+    """Give the row of a person's feet [px]."""
+    return float(state[Y] + FOOT * state[H])
+
+
+def _blend(before: Value, now: Value, share: float) -> Value:
+    """Move a smoothed value on by a share of the way."""
+    return before + min(share, 1.0) * (now - before)

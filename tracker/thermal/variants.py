@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Final
 
 from peopleboy.tracker.thermal.colour_config import (
     FAR_AFFINE,
@@ -15,15 +17,18 @@ from peopleboy.tracker.thermal.config import (
     AppearanceConfig,
     BoxConfig,
     ContourConfig,
+    DepthConfig,
     FilterConfig,
+    HeightConfig,
     InteractionConfig,
     LifeConfig,
     LikelihoodConfig,
     LimitsConfig,
     MotionConfig,
-    OcclusionConfig,
     SmoothingConfig,
+    StayBehindConfig,
     TrackerConfig,
+    WalkOnConfig,
 )
 
 _BEND_GREY = 40.0  # unit of the fitness, in which kappa and theta are given below
@@ -77,7 +82,8 @@ cameras are 6 cm apart, which no affine map makes up for at every distance, so t
 THESIS_OCCLUSION = replace(
     THESIS_COLOUR,
     interaction=InteractionConfig(occluded_penalty=0.5),
-    occlusion=OcclusionConfig(is_handled=True, head_covered=1.0),
+    depth=DepthConfig(order="foot"),
+    occlusion=StayBehindConfig(head_covered=1.0),
 )
 """With the occlusion handling of chapter 7; a head is hidden once no point of it is seen."""
 
@@ -165,22 +171,9 @@ PEOPLEBOY = TrackerConfig(
     ),
     colour=_PEOPLEBOY_COLOUR,
     appearance=AppearanceConfig(),
-    occlusion=OcclusionConfig(
-        is_handled=True,
-        order="appearance",
-        removes_front=True,
-        growth=1.2,
-        keeps_velocity=True,
-        hidden_memory=0.985,
-        hidden_noise=0.5,
-        size_spread=0.1,
-        hidden_w=0.46,
-        remembers_lost=True,
-        shown_s=0.3,
-        shown_leaving_s=0.5,
-        shown_behind_s=0.8,
-        sure_spread=0.4,
-    ),
+    depth=DepthConfig(order="appearance", removes_front=True, growth=1.2),
+    height=HeightConfig(overlapped_spread=0.1),
+    occlusion=WalkOnConfig(remembers_lost=True, shows_only_sure=True),
 )
 """What works on the robot: the default."""
 
@@ -202,7 +195,8 @@ FOOTAGE = replace(
     box=BoxConfig(width_per_w=2.0, height_per_h=3.5),
     colour=replace(_PEOPLEBOY_COLOUR, affine=SAME_VIEW, parallax=0.0),
     appearance=AppearanceConfig(grey_spread=(0.15, 0.1, 0.15), needs_colour=True),
-    occlusion=replace(PEOPLEBOY.occlusion, order="contour", seen_size_spread=0.3, size_s=2.0),
+    depth=replace(PEOPLEBOY.depth, order="contour"),
+    height=HeightConfig(overlapped_spread=0.1, seen_spread=0.3, memory_s=2.0),
 )
 """For footage of any camera, in which degC, horizon and the camera's own motion are unknown.
 
@@ -215,3 +209,17 @@ and looks are seen as much as by the floor. A colour picture, if there is one, s
 shows. The box is that of the thesis, whose people were real ones in wide clothes. Values were chosen on
 simulated scenes, with garments warmer and colder than the walls, and on a real clip.
 """
+
+LEARNED: Final = "learned"
+"""The default with a learned order in depth."""
+
+VARIANTS: Final[Mapping[str, TrackerConfig]] = {
+    "peopleboy": PEOPLEBOY,
+    LEARNED: PEOPLEBOY,
+    "footage": FOOTAGE,
+    "thesis": THESIS_OCCLUSION,
+    "thermal": THESIS,
+    "colour": THESIS_COLOUR,
+    "paper": PAPER,
+}
+"""The settings of each tracker by name; the first is the default."""

@@ -12,9 +12,7 @@ from docs.generate.pictures.paper import panels, plot, show, zoom
 from docs.generate.pictures.tracker import place_probes
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.tracker.thermal.contour.contour import COVERED, pixels_under
-from peopleboy.tracker.thermal.contour.coverage import covered_by
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.contour.likelihood import COVERED, ContourModel, covered_by, pixels_under
 from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status, Track
@@ -39,7 +37,7 @@ def explained_away() -> Figure:
     model = ContourModel.build(tick.observation.images["thermal"].shape, PEOPLEBOY.contour)
     image = model.prepare(tick.observation.images["thermal"])
     front = [state_of(tick, NEAR)]
-    marked = covered_by(image, front, PEOPLEBOY.contour, PEOPLEBOY.occlusion.growth)
+    marked = covered_by(image, front, PEOPLEBOY.depth.growth)
     figure, axes = panels(("two people, two tracks", "what the filter of the one behind is shown"), 5.0)
     show(axes[0], image)
     for track in tracks.values():
@@ -59,7 +57,7 @@ def explained_away() -> Figure:
             points[~pairs, 0], points[~pairs, 1], s=14, facecolors="none", edgecolors="0.7", linewidths=0.8
         )
     for panel in axes:
-        zoom(panel, tracks[NEAR].box, 16.0, 1.1)
+        zoom(panel, tracks[NEAR].boxes["thermal"], 16.0, 1.1)
     return figure
 
 
@@ -107,9 +105,9 @@ def _moment(panel: Axes, tick: Tick) -> None:
 def _outlined(panel: Axes, tick: Tick, track: Track) -> None:
     """Draw a contour; dashed if its person is hidden."""
     style = ":" if track.status is Status.TOTALLY_OCCLUDED else "-"
-    for line in outline(explained(tick).ellipses[track.id], PEOPLEBOY.contour):
+    for line in outline(explained(tick).ellipses[track.id]):
         panel.plot(*line.T, style, color=_hex(track.id), linewidth=1.8)
-    left, top, *_ = track.box
+    left, top, *_ = track.boxes["thermal"]
     panel.text(left, top - 3, str(track.id), color=_hex(track.id), fontsize=11, fontweight="bold")
 
 

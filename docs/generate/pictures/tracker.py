@@ -18,7 +18,7 @@ from peopleboy.tracker.thermal.contour.contour import Probes
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY
-from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.thermal.particles import Particles
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 
 SHOWN = (1, 3, 4, 24)
@@ -47,7 +47,7 @@ def contour() -> Figure:
     for panel, state in zip(axes, (good, shifted), strict=True):
         show(panel, image)
         points = _judged(panel, model, image, state)
-        zoom(panel, track.box, 24.0, 0.98)
+        zoom(panel, track.boxes["thermal"], 24.0, 0.98)
     figure.colorbar(
         points, ax=axes, label="what the section says: -1 against a person, 1 for one", shrink=0.8
     )
@@ -90,7 +90,7 @@ def _cloud(panel: Axes, tick: Tick) -> None:
     for key, cloud in explained(tick).particles.items():
         _samples(panel, cloud, "#56b4e9" if key == DETECTOR_KEY else "#e69f00")
     for track in tick.tracks:
-        for line in outline(explained(tick).ellipses[track.id], PEOPLEBOY.contour):
+        for line in outline(explained(tick).ellipses[track.id]):
             panel.plot(*line.T, color="#e69f00", linewidth=1.4)
     panel.set_xlim(-0.5, 319.5)
     panel.set_ylim(239.5, -0.5)

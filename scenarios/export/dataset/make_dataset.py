@@ -24,8 +24,9 @@ from peopleboy.scenarios.export.dataset.statistics import Statistics, measure
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import check_named, writing_to
+from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions
-from peopleboy.scenarios.running.sweep import Job, run_jobs, unfinished
+from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +56,7 @@ class RenderedSet:
 
 
 def render_set(
-    scenarios: Sequence[str], seeds: int, folder: Path, *, frames: bool, tracker: str, processes: int
+    scenarios: Sequence[str], seeds: int, folder: Path, *, frames: bool, tracker: str, workers: Workers
 ) -> RenderedSet:
     """Render a set, or what is missing of it; complete runs stay.
 
@@ -67,37 +68,38 @@ def render_set(
         folder: of the set.
         frames: whether images are written.
         tracker: whose eyes steer robots that follow people; "truth" for the true boxes.
-        processes: how many runs at the same time.
+        workers: who does the runs.
 
     Raises:
         BadInput: as for a run; or the folder holds something that is no set.
+        TasksFailed: some runs failed.
     """
     loaded = [load_scenario(scenario) for scenario in scenarios]
     names = [scenario.name for scenario in loaded]
     if len(set(names)) < len(names):
         raise BadInput(f"render: {', '.join(names)}: two scenarios have the same name; give each once")
     _claim(folder)
-    jobs = [
-        Job(
+    tasks = [
+        RunTask(
             scenario,
             RunOptions(
                 seed=seed, out=folder / f"{name}-{seed}", frames=frames, tracker=tracker, record=False
             ),
         )
-        for scenario, name in zip(scenarios, names, strict=True)
+        for scenario, name in zip(loaded, names, strict=True)
         for seed in range(seeds)
     ]
-    waiting = unfinished(jobs)
+    waiting = unfinished(tasks)
     _reopen(folder)
-    runs = tuple(job.options.out for job in jobs)
-    numbers = [job.options.seed for job in jobs]
+    runs = tuple(task.options.out for task in tasks)
+    numbers = [task.options.seed for task in tasks]
     _write_splits(folder, [run.name for run in runs], numbers)
-    run_jobs(waiting, processes, folder.name)
+    play(waiting, workers, folder.name)
     done = RenderedSet(
         folder=folder,
         runs=runs,
         statistics=_statistics(runs, numbers),
-        checks=tuple(check_set(folder, runs, loaded[0], jobs[0].options)),
+        checks=tuple(check_set(folder, runs, loaded[0], tasks[0].options)),
         size_mb=sum(path.stat().st_size for run in runs for path in run.rglob("*") if path.is_file()) / 1e6,
         lacking=lacking_splits(seeds),
     )

@@ -20,6 +20,10 @@ from peopleboy.sim.cameras.kinds import KINDS
 Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
 
 
+ORACLE = "truth"
+"""Name of the eyes that are told who is where."""
+
+
 class _Camera(Strict):
     """What all cameras have; what is left out is as usual for the kind."""
 
@@ -127,6 +131,12 @@ class RobotSpec(Strict):
     walls_by: Literal["sonar", "image"] | None = Field(
         default=None,
         description="of a robot in corridors: the sense that tells it the walls; left out, the sonar",
+    )
+    tracker: str | None = Field(
+        default=None,
+        pattern="^[a-z][a-z0-9_-]*$",
+        description="whose eyes the robot sees people with, by a name that `--tracker` takes, and which that "
+        "option overrules; left out, `peopleboy`",
     )
     cameras: dict[CameraName, SerializeAsAny[Annotated[_ByKind, WrapValidator(_by_kind)]]] = Field(
         default={},

@@ -14,6 +14,7 @@ from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, lettered
 from peopleboy.scenarios.report.columns import Column
 from peopleboy.scenarios.report.findings.spans import Floats
 from peopleboy.scenarios.report.findings.summary import RunFindings
+from peopleboy.tracker.evaluation.uncounted import counts
 
 DISTANCES_M = (3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0)
 VISIBLE = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
@@ -42,7 +43,7 @@ def samples(found: RunFindings) -> Samples:
     """Collect what curves are made of."""
     parts: list[list[Floats]] = [[np.zeros(0)] * 4]
     for person in found.people:
-        at = person.is_counted & (person.visible > 0.0)
+        at = counts(person.is_counted, person.visible)
         hits = np.where(np.isfinite(person.iou), 100.0, 0.0)
         parts.append([c[at] for c in (person.distance_m, person.visible, hits, person.offset_px)])
     columns = [np.concatenate(part) for part in zip(*parts, strict=True)]

@@ -12,6 +12,7 @@ import numpy as np
 
 from peopleboy.scenarios.report.findings.spans import Flags, Floats, Ints, between, settle
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.on_floor import as_squares, is_on_floor_alone
 from peopleboy.scenarios.run_folder.run_files import RunFiles
 from peopleboy.sim.truth.events import (
     LEAVES_INSIDE,
@@ -22,6 +23,7 @@ from peopleboy.sim.truth.events import (
 )
 from peopleboy.sim.truth.truth import BORDER
 from peopleboy.tracker.evaluation.association import associate, pair_up
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 STEADY_S = 0.3  # a number that lies on a person for less is fleeting
 _BOX = ("left_px", "top_px", "width_px", "height_px")
@@ -29,7 +31,7 @@ _PEOPLE = (
     *("frame", "id", "name", "x_m", "y_m", "distance_m", "is_counted", *_BOX, "whole_px"),
     *("visible_fraction", "occluded_fraction", "occluder", "hidden_by"),
 )
-_ROBOT = ("frame", "x_m", "y_m", "mode")
+_ROBOT = ("frame", "x_m", "y_m", "heading_rad", "mode")
 
 
 class PersonView(IntEnum):
@@ -95,13 +97,28 @@ class RunStory:
     @cached_property
     def shown(self) -> dict[int, Flags]:
         """For each confirmed track the frames (F,) in which it is shown."""
-        every, tracks = np.arange(1, self.run.frames + 1), self.files.tracks
+        every, (_, tracks) = np.arange(1, self.run.frames + 1), self.boxes
         return {n: np.isin(every, tracks.frame[tracks.id == n]) for n in np.unique(tracks.id).tolist()}
+
+    @cached_property
+    def is_on_floor(self) -> bool:
+        """Whether the tracker gave no boxes, but places on the floor."""
+        return is_on_floor_alone(self.files.beliefs)
+
+    @cached_property
+    def boxes(self) -> tuple[TrueBoxes, TrackBoxes]:
+        """What is matched: boxes in the thermal image, or, of a tracker without any, squares on the floor."""
+        files = self.files
+        if self.is_on_floor:
+            return as_squares(files.people, files.beliefs, files.robot)
+        return files.truth, files.tracks
 
     @cached_property
     def people(self) -> tuple[Story, ...]:
         """The story of everybody, in the scenario's order."""
-        lying = _lying(self.files)
+        lying = _lying(*self.boxes)
+        if self.is_on_floor:
+            lying.offset[:] = np.nan  # it is none of pixels
         return tuple(_tell(self, who, lying) for who in np.unique(self.files.people["id"]).tolist())
 
     def called(self, name: str) -> Story:
@@ -118,14 +135,14 @@ def read_files(run: FinishedRun) -> RunFiles:
     return run.files(_PEOPLE, _ROBOT)
 
 
-def _lying(files: RunFiles) -> Any:
+def _lying(truth: TrueBoxes, tracks: TrackBoxes) -> Any:
     """Which track lies on whom: records frame (from 0), person, number, iou, offset [px]."""
-    pairs = pair_up(files.truth, files.tracks)
+    pairs = pair_up(truth, tracks)
     chosen = associate(pairs)
     target, candidate = pairs.target[chosen], pairs.candidate[chosen]
-    true, given = files.truth.box[target], files.tracks.box[candidate]
+    true, given = truth.box[target], tracks.box[candidate]
     offset = np.hypot(*(true[:, :2] + true[:, 2:] / 2.0 - given[:, :2] - given[:, 2:] / 2.0).T)
-    columns = (files.truth.frame[target] - 1, files.truth.id[target], files.tracks.id[candidate])
+    columns = (truth.frame[target] - 1, truth.id[target], tracks.id[candidate])
     return np.rec.fromarrays(
         [*columns, pairs.iou[chosen], offset],
         dtype=[("frame", int), ("person", int), ("number", int), ("iou", float), ("offset", float)],

@@ -11,8 +11,8 @@ from peopleboy.scenarios.report.findings.sentences import seconds, spoken
 from peopleboy.scenarios.report.findings.spans import spans
 from peopleboy.scenarios.report.findings.story import Hold, Story
 from peopleboy.scenarios.report.findings.summary import RunFindings
+from peopleboy.sim.truth.seen import SEEN
 
-_WELL_VISIBLE = 0.3
 _APART_S = 1.0  # two moments of one person nearer than this are one
 
 
@@ -71,11 +71,11 @@ def _strays(found: RunFindings) -> Iterator[BadMoment]:
 
 
 def _gaps(found: RunFindings, person: Story) -> Iterator[BadMoment]:
-    """Times at which a person who could be seen well had no box."""
+    """Times at which a person who was seen had no box."""
     name = spoken(person.name)
     for span in spans(person.hold):
         seen = person.visible[span.start : span.end]
-        well = np.flatnonzero(seen >= _WELL_VISIBLE).tolist()
+        well = np.flatnonzero(seen > SEEN).tolist()
         if span.value not in (Hold.MISSED, Hold.ADRIFT) or not well:
             continue
         lasts_s, is_missed = span.length / found.run.rate_hz, span.value == Hold.MISSED

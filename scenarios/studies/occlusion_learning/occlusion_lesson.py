@@ -10,8 +10,13 @@ from rich.console import Console
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.out_folder import writing_to
-from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, collect
+from peopleboy.scenarios.running.engine.engine import work_through
+from peopleboy.scenarios.running.engine.store import Store, code_digest
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.studies.occlusion_learning import occlusion_pairs
+from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import PairExample
 from peopleboy.scenarios.studies.occlusion_learning.pair_files import read_pairs, write_pairs
+from peopleboy.scenarios.studies.occlusion_learning.pair_task import PairTask, examples_of
 from peopleboy.scenarios.studies.occlusion_learning.show_training import print_best, print_trials
 from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import (
     TRAINING,
@@ -28,7 +33,9 @@ PUPILS: dict[str, TrackerConfig] = {"peopleboy": PEOPLEBOY, "thesis": THESIS_OCC
 """The trackers that put people in order, by name."""
 
 
-def give_lesson(out: Path, tracker: str, seeds: int, *, triplets: bool, again: bool, ship: bool) -> Path:
+def give_lesson(
+    out: Path, tracker: str, seeds: int, workers: Workers, *, triplets: bool, again: bool, ship: bool
+) -> Path:
     """Learn from scenarios and leave the examples and the learned table in a folder.
 
     Examples that an earlier lesson left there are used as they are.
@@ -37,6 +44,7 @@ def give_lesson(out: Path, tracker: str, seeds: int, *, triplets: bool, again: b
         out: the folder.
         tracker: name of the tracker to learn for, one that puts people in order.
         seeds: runs of each scenario.
+        workers: who runs them.
         triplets: whether to try weighted triplets as well.
         again: whether to run the scenarios even if the examples are there.
         ship: whether to put the table in the place of the tracker's own.
@@ -46,13 +54,16 @@ def give_lesson(out: Path, tracker: str, seeds: int, *, triplets: bool, again: b
 
     Raises:
         BadInput: a tracker that has nothing to learn, a path that cannot be used, or too few examples.
+        TasksFailed: some runs failed, after all others were done.
     """
     if tracker not in PUPILS:
         raise BadInput(f"--tracker {tracker}: must be one that orders people: {', '.join(PUPILS)}")
     with writing_to(out):
         out.mkdir(parents=True, exist_ok=True)
-    training = _examples(out / "training.csv", TRAINING, tracker, seeds, again=again)
-    unseen = _examples(out / "unseen.csv", UNSEEN, tracker, seeds, again=again)
+    training = _examples(out / "training.csv", TRAINING, tracker, seeds, workers, again=again)
+    unseen = _examples(out / "unseen.csv", UNSEEN, tracker, seeds, workers, again=again)
+    for path in out.glob("*.jsonl"):
+        path.unlink()
     check_examples(training, "training")
     check_examples(unseen, "unseen")
     with Console(stderr=True).status("learning"):
@@ -66,16 +77,19 @@ def give_lesson(out: Path, tracker: str, seeds: int, *, triplets: bool, again: b
 
 
 def _examples(
-    path: Path, scenarios: Sequence[str], tracker: str, seeds: int, *, again: bool
+    path: Path, scenarios: Sequence[str], tracker: str, seeds: int, workers: Workers, *, again: bool
 ) -> list[PairExample]:
-    """Read the examples, or run the scenarios and write them."""
+    """Read the examples, or run the scenarios and write them; what a killed call has collected is used."""
     if path.exists() and not again:
         return read_pairs(path)
-    examples: list[PairExample] = []
-    with Console(stderr=True).status("") as status:
-        for number, name in enumerate(scenarios, start=1):
-            for seed in range(seeds):
-                status.update(f"{name}, seed {seed} ({number} of {len(scenarios)}): {len(examples)} pairs")
-                examples += collect(name, seed, PUPILS[tracker])
+    store = Store(path.with_suffix(".jsonl"), code_digest(*map(Path, (occlusion_pairs.__file__, __file__))))
+    tasks = [PairTask(name, seed, tracker, PUPILS[tracker]) for name in scenarios for seed in range(seeds)]
+    missing = [task for task in tasks if task.name not in store]
+    work_through(missing, workers, path.stem, lambda task, result: store.add(task.name, result))
+    examples = [
+        example
+        for task in tasks
+        for example in examples_of(task.scenario, task.seed, store[task.name]["pairs"])
+    ]
     write_pairs(path, examples)
     return examples

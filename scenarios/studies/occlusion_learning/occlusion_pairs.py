@@ -12,7 +12,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.evaluation.boxes import iou
+from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.occlusion.depth_order import ExpectedPerson, Order, lower_foot
 from peopleboy.tracker.thermal.occlusion.learned_order import features_of
@@ -22,7 +22,8 @@ from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 
 # A tracked person is the true one whose box it overlaps most, and by at least this (thesis, section 3.4).
 _LEAST_IOU = 0.5
-# With less than this of a person in view, the moment of total occlusion has come.
+# With less than this of a person in view, the moment of total occlusion has come: earlier than in the event
+# log, as so little of a person has no looks to learn from.
 _TOTAL = 0.15
 # Nobody is in front of whom the other hides less than this share, and who is no nearer than that.
 _LEAST_HIDDEN, _LEAST_GAP_M = 0.02, 0.3

@@ -6,14 +6,15 @@ import os
 import platform
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.running.engine.store import Store
+from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
-from peopleboy.scenarios.studies.reproduce.measuring.store import Store
+from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
-from peopleboy.scenarios.studies.reproduce.measuring.workers import Report, run_units
 from peopleboy.scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan
 from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, write_page
 
@@ -27,18 +28,16 @@ class Means:
 
     Attributes:
         out: folder of the page and the results.
-        jobs: processes at the same time; -1 for one a core.
-        scheduler: address of a Dask scheduler; None to work here.
+        workers: who does it.
         command: by which the user began it.
     """
 
     out: Path
-    jobs: int = -1
-    scheduler: str | None = None
+    workers: Workers = field(default_factory=Workers)
     command: str = "peopleboy reproduce"
 
 
-def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means, report: Report) -> Path:
+def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> Path:
     """Do what is missing, and write the page.
 
     Whoever is killed begins again with the same folder: results that are there are taken from there.
@@ -47,12 +46,13 @@ def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means, repor
         The page.
 
     Raises:
-        BadInput: the folder or the scheduler cannot be used.
+        BadInput: the folder or the cluster cannot be used.
+        TasksFailed: some of it failed, after all else was done.
     """
     start = time.monotonic()
-    store = Store(means.out / RESULTS)
+    store = open_store(means.out / RESULTS)
     while wanted := unique_units(experiments, plan, store):
-        run_units(wanted, store, means.jobs, means.scheduler, report)
+        run_units(wanted, store, means.workers)
     results: list[tuple[Experiment, Samples]] = [(one, one.samples(plan, store)) for one in experiments]
     page = means.out / PAGE
     write_page(page, results, _about(plan, means, store, time.monotonic() - start))

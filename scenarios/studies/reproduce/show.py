@@ -1,4 +1,4 @@
-"""The command: which tables and figures there are, and a bar while they are measured."""
+"""The command: which tables and figures there are, and to measure those that are named."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from peopleboy.scenarios.progress_bar import progress_bar
+from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.reproduce.experiments.catalogue import choose
 from peopleboy.scenarios.studies.reproduce.measuring.workload import full_plan, quick_plan
 from peopleboy.scenarios.studies.reproduce.reproduce import Means, reproduce
@@ -25,26 +25,17 @@ def list_experiments(names: Sequence[str]) -> None:
     Console().print(table)
 
 
-def reproduce_with_progress(
-    names: Sequence[str], out: Path, films: Path, jobs: int | None, scheduler: str | None, *, quick: bool
-) -> Path:
-    """Reproduce with a progress bar on standard error, and return the page.
+def reproduce_named(names: Sequence[str], out: Path, films: Path, workers: Workers, *, quick: bool) -> Path:
+    """Reproduce what is called so, and return the page.
 
     Raises:
-        BadInput: an unknown name, or a folder or scheduler that cannot be used.
+        BadInput: an unknown name, or a folder or cluster that cannot be used.
+        TasksFailed: some of it failed, after all else was done.
     """
     experiments = choose(names)
     # Workers may have another working directory.
     plan = quick_plan(films.resolve()) if quick else full_plan(films.resolve())
-    means = Means(
-        out=out, jobs=-1 if jobs is None else jobs, scheduler=scheduler, command=_command(names, quick=quick)
-    )
-    with progress_bar("reproduce") as show:
-
-        def report(finished: int, total: int, last: str) -> None:
-            show(finished, total, last.split(" ")[0])
-
-        return reproduce(experiments, plan, means, report)
+    return reproduce(experiments, plan, Means(out=out, workers=workers, command=_command(names, quick=quick)))
 
 
 def _command(names: Sequence[str], *, quick: bool) -> str:

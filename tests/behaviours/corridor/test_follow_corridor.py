@@ -117,12 +117,12 @@ def test_the_robot_turns_into_the_side_that_is_open():
 def test_in_the_dark_the_sonars_take_over_and_the_reason_says_so():
     behaviour = FollowCorridor(CorridorConfig(sense="image", camera=CAMERA))
     ranges = sonar_in_corridor(0.4, 0.0, 3.0)
-    behaviour.command(percept_of(ranges, 1.0, colour=drawn_corridor(0.2, 0.0, 3.0)))
+    behaviour.command(percept_of(ranges, 1.0, images={"colour": drawn_corridor(0.2, 0.0, 3.0)}))
     assert behaviour.mode == "corridor"
     assert behaviour.state.corridor.offset_m == pytest.approx(0.2, abs=0.05)  # the image's word
     for step in range(1, 30):
         dark = drawn_corridor(0.2, 0.0, 3.0, light=0.0)
-        command = behaviour.command(percept_of(ranges, 1.0 + step / 15.0, colour=dark))
+        command = behaviour.command(percept_of(ranges, 1.0 + step / 15.0, images={"colour": dark}))
     assert behaviour.mode == "sonar"
     assert "too dark" in behaviour.reason
     assert behaviour.state.corridor.offset_m == pytest.approx(0.4, abs=0.03)  # the sonars'

@@ -9,14 +9,14 @@ from peopleboy.tracker.track import Track
 
 def middle(track: Track) -> float:
     """Column [px] of the body's centre."""
-    return track.box[0] + track.box[2] / 2.0
+    return track.boxes["thermal"][0] + track.boxes["thermal"][2] / 2.0
 
 
 def semi_height(track: Track, box: BoxConfig = PEOPLEBOY.box) -> float:
     """Semi-height [px] of the body."""
-    return track.box[3] / box.height_per_h
+    return track.boxes["thermal"][3] / box.height_per_h
 
 
 def head_top(track: Track, box: BoxConfig = PEOPLEBOY.box) -> float:
     """Row [px] of the top of the head's ellipse."""
-    return track.box[1] + box.hair_per_h * semi_height(track, box)
+    return track.boxes["thermal"][1] + box.hair_per_h * semi_height(track, box)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame
 
 BACKGROUND, WARM, RADIATOR = 10, 160, 255
 
@@ -33,4 +33,4 @@ def draw_person(image: NDArray[np.uint8], x: float, y: float, w: float, h: float
 def person_frame(time_s: float, x: float = 150.0, h: float = 28.0) -> Frame:
     image = blank()
     draw_person(image, x, 120 + 0.36 * h, 0.38 * h, h)
-    return Frame(thermal=image, time_s=time_s)
+    return Frame(images={THERMAL: image}, time_s=time_s)

@@ -22,14 +22,14 @@ from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
-from peopleboy.tracker.thermal.filter.particles import Particles
+from peopleboy.tracker.thermal.particles import Particles
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status, Track
 
 CAMERA = Pinhole()
 ELLIPSE = Ellipse(x=160.0, y=120.0, w=20.0, h=50.0, d=3.0, vx=0.0, vy=0.0, vw=0.0, vh=0.0)
 TRACK = Track(
-    id=1, box=(140.0, 47.3, 40.0, 175.0), confidence=0.9, status=Status.TRACKED, age_s=1.0,
+    id=1, boxes={"thermal": (140.0, 47.3, 40.0, 175.0)}, confidence=0.9, status=Status.TRACKED, age_s=1.0,
 )  # fmt: skip
 
 
@@ -163,7 +163,7 @@ def make_run(frames: int = 75) -> list[tuple[Tick, list[LogLine]]]:
 
 def with_box(box: tuple[float, float, float, float]) -> Track:
     """The track, elsewhere."""
-    return replace(TRACK, box=box)
+    return replace(TRACK, boxes={"thermal": box})
 
 
 def with_status(status: Status) -> Track:

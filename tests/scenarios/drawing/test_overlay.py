@@ -39,14 +39,14 @@ def is_coloured(
 
 def test_the_outline_of_a_track_has_its_colour_all_around() -> None:
     picture = draw_tracks(GREY, [made.TRACK], explanation=made.explain())
-    for line in outline(made.ELLIPSE, made.explain().config.contour, 200):
+    for line in outline(made.ELLIPSE, 200):
         assert is_coloured(picture, line, track_colour(1))
 
 
 def test_the_box_of_a_track_is_drawn_where_the_affine_puts_it() -> None:
     affine = np.array([[1.2, 0.0, -30.0], [0.0, 1.2, -20.0]])
     picture = draw_tracks(GREY, [made.TRACK], affine=affine)
-    left, top, width, height = map_box(made.TRACK.box, affine)
+    left, top, width, height = map_box(made.TRACK.boxes["thermal"], affine)
     corners = np.array([[left, top], [left + width, top], [left, top + 0.5 * height]])
     assert is_coloured(picture, corners, track_colour(1))
 
@@ -95,7 +95,7 @@ def test_truth_outside_the_image_is_left_out() -> None:
 
 @pytest.mark.parametrize("box", [(-900.0, -900.0, 50.0, 60.0), (1e6, 0.0, 1e9, 10.0), (0.0, 0.0, 0.0, 0.0)])
 def test_a_track_anywhere_can_be_drawn(box: tuple[float, float, float, float]) -> None:
-    assert draw_tracks(GREY, [replace(made.TRACK, box=box)]).shape == GREY.shape
+    assert draw_tracks(GREY, [made.with_box(box)]).shape == GREY.shape
 
 
 def test_lines_go_through_the_middles_of_enlarged_pixels() -> None:

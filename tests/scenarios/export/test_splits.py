@@ -28,7 +28,7 @@ def people(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A rendered set that has all splits."""
     home = tmp_path_factory.mktemp("split")
     (home / "short.yaml").write_text(yaml.safe_dump(SHORT))
-    order = (home / "short.yaml", "--seeds", 7, "--jobs", 1, "--out", home / "people")
+    order = (home / "short.yaml", "--seeds", 7, "--workers", 1, "--out", home / "people")
     assert run_cli("render", *order) == 0
     return home / "people"
 

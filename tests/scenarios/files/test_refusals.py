@@ -95,7 +95,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "images that are too large for a tracker": (
         camera(width_px=4096, height_px=4096),
-        ("robot.cameras: rear: 4096 x 4096 pixels are too many; at most 8388608",),
+        ("robot.cameras.rear: 4096 x 4096 pixels are too many; at most 8388608",),
     ),
     "colour camera that looks away": (
         lambda d: d["robot"].update(cameras={"colour": {"kind": "colour", "yaw_deg": 180.0}}),

@@ -5,7 +5,7 @@ import pytest
 from peopleboy.scenarios.footage.outcome import outcome_lines
 from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
 from peopleboy.tracker.footage.grey import Radiometry
-from peopleboy.tracker.trackers import TRACKERS
+from peopleboy.tracker.thermal.variants import VARIANTS
 from tests.helpers.calls.footage_calls import call
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.images.footage_files import box, write_empty, write_folder
@@ -26,12 +26,12 @@ def test_if_nobody_is_found_that_is_said_with_what_to_look_at(tmp_path):
     assert "--black-hot" in told
 
 
-@pytest.mark.parametrize("name", TRACKERS)
+@pytest.mark.parametrize("name", VARIANTS)
 def test_the_heights_told_are_those_that_the_tracker_looks_for(tmp_path, name):
     options = TrackOptions(footage=tmp_path, out=tmp_path, tracker=name)
     shown = outcome_lines(tracked(tracks=0), options)[1]
     least, *most = (int(number) for number in re.findall(r"(\d+)%", shown))
-    config = TRACKERS[name]
+    config = VARIANTS[name]
     limits = [100 * config.box.height_per_h * share for share in config.detector.limits.h]
     assert least == pytest.approx(limits[0], abs=1)
     assert most == ([pytest.approx(limits[1], abs=1)] if limits[1] < 100 else [])

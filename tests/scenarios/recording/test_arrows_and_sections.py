@@ -15,11 +15,11 @@ from peopleboy.scenarios.recording.explanations import (
 )
 from peopleboy.tracker.thermal.contour.contour import SECTIONS
 from peopleboy.tracker.thermal.contour.section_evidence import Evidence
+from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import Status
-from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers.runs import synthetic_ticks as made
 
-PEOPLEBOY = TRACKERS["peopleboy"]
+PEOPLEBOY = VARIANTS["peopleboy"]
 BEHIND = replace(made.with_box((200.0, 60.0, 30.0, 120.0)), id=2, occluder=1, status=Status.PARTLY_OCCLUDED)
 
 
@@ -63,7 +63,7 @@ def test_a_section_that_is_mostly_hidden_is_grey_whatever_was_measured() -> None
 
 
 def test_a_tracker_that_looks_at_no_feet_has_seven_sections() -> None:
-    explanation = replace(made.explain(), config=TRACKERS["thesis"])
+    explanation = replace(made.explain(), config=VARIANTS["thesis"])
     assert len(section_marks([made.TRACK], evidence(0.5), explanation).line) == 7 + 1
 
 

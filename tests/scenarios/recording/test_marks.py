@@ -10,9 +10,9 @@ from peopleboy.scenarios.recording.marks import (
     PARTICLES_A_FILTER,
     PARTICLES_AT_MOST,
     Trails,
+    box_offset,
     particle_points,
     track_boxes,
-    track_offset,
     truth_boxes,
 )
 from peopleboy.tracker.track import Status
@@ -23,7 +23,7 @@ def test_boxes_of_tracks_say_the_id_and_what_is_unusual() -> None:
     hidden = replace(made.with_status(Status.TOTALLY_OCCLUDED), occluder=2)
     boxes = track_boxes([made.TRACK, made.with_status(Status.TENTATIVE), hidden])
     assert boxes.label == ["1", "1 doubtful", "1 hidden behind 2"]
-    assert boxes.box == pytest.approx(np.array([made.TRACK.box] * 3), rel=1e-6)
+    assert boxes.box == pytest.approx(np.array([made.TRACK.boxes["thermal"]] * 3), rel=1e-6)
     assert boxes.colour.tolist() == [list(track_colour(1))] * 3
 
 
@@ -35,9 +35,9 @@ def test_true_boxes_leave_out_who_is_behind_the_camera() -> None:
 
 
 def test_the_offset_is_one_at_the_right_edge_of_the_image() -> None:
-    _, top, width, height = made.TRACK.box
+    _, top, width, height = made.TRACK.boxes["thermal"]
     at_edge = made.with_box((319.5 - width / 2.0, top, width, height))
-    assert track_offset(at_edge, 320) == pytest.approx(1.0)
+    assert box_offset(at_edge.boxes["thermal"], 320) == pytest.approx(1.0)
 
 
 def test_many_filters_share_the_particles_that_are_shown() -> None:

@@ -23,7 +23,8 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.thermal.contour.outline import section_lines
-from peopleboy.tracker.trackers import TRACKERS, make_tracker
+from peopleboy.tracker.thermal.variants import VARIANTS
+from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.runs import synthetic_ticks as made
 
 THERMAL, COLOUR = "/world/robot/thermal", "/world/robot/colour"
@@ -113,7 +114,7 @@ def test_a_closed_recording_holds_each_layer_in_one_piece(recording: Recording) 
 def test_every_section_of_a_contour_has_its_points_and_its_colour(recording: Recording) -> None:
     strips = recording.column(f"{THERMAL}/tracks/contours", "LineStrips2D:strips")
     colours = recording.column(f"{THERMAL}/tracks/contours", "LineStrips2D:colors")
-    lines = section_lines(made.ELLIPSE, TRACKERS["peopleboy"].contour)
+    lines = section_lines(made.ELLIPSE, VARIANTS["peopleboy"].contour)
     for frame, (drawn, colour) in enumerate(zip(strips, colours, strict=True), start=1):
         expected = lines if 5 <= frame < 70 else lines[:0]
         assert len(drawn) == len(colour) == len(expected)  # type: ignore[arg-type]
@@ -129,7 +130,7 @@ def test_the_name_of_a_person_is_on_the_body(recording: Recording) -> None:
 def test_boxes_lie_where_the_track_is_and_in_the_colour_image_where_the_affine_says(
     recording: Recording,
 ) -> None:
-    left, top, width, height = made.TRACK.box
+    left, top, width, height = made.TRACK.boxes["thermal"]
     robot = made.config().robot
     affine = colour_from_thermal(robot.cameras)
     for path, mapping in ((THERMAL, np.eye(3)[:2]), (COLOUR, affine)):

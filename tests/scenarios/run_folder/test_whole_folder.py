@@ -2,6 +2,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,12 @@ from peopleboy.scenarios.drawing.plan import draw_plan
 from peopleboy.scenarios.export.dataset.make_dataset import render_set
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.folder import claim_folder
+from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
+from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.frame_cache import film
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
-from peopleboy.scenarios.studies.reproduce.measuring.store import Store
+from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store
 from tests.helpers.calls.footage_calls import refusal
 from tests.helpers.images.footage_files import write_folder
 
@@ -66,20 +69,35 @@ def test_what_a_killed_process_has_left_goes_with_the_next_call_and_a_running_on
 
 
 def test_an_earlier_folder_is_back_if_the_new_one_cannot_take_its_place(tmp_path, monkeypatch):
-    out, rename = tmp_path / "out", Path.rename
+    out = tmp_path / "out"
     with whole_folder(out, {}, overwrite=False):
         pass
 
-    def fail_at_the_second(path: Path, target: Path) -> Path:
-        if path.name.endswith(".new"):
-            raise OSError(28, "No space left on device")
-        return rename(path, target)
+    def fail(*_: Path) -> Path:
+        raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "rename", fail_at_the_second)
+    monkeypatch.setattr(Path, "replace", fail)
     with pytest.raises(BadInput, match="No space left"), whole_folder(out, {}, overwrite=True):
         pass
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
     assert (out / "export.json").is_file()
+
+
+def test_a_file_is_replaced_whole_or_stays_as_it_is(tmp_path):
+    page = tmp_path / "page.html"
+    for text in ("first", "second"):
+        with whole(page) as part:
+            part.write_text(text)
+        assert page.read_text() == text
+    with suppress(KeyboardInterrupt), whole(page) as part:
+        part.write_text("half")
+        raise KeyboardInterrupt
+    with whole(page):
+        pass  # made nothing
+    with whole(page, stays=page.exists) as part:
+        part.write_text("too late")
+    assert page.read_text() == "second"
+    assert list(tmp_path.iterdir()) == [page]
 
 
 def test_handlers_of_sigterm_are_as_before(tmp_path):
@@ -97,13 +115,15 @@ def write_run(path):
 FOLDERS = {
     "export or track": write_run,
     "run": lambda path: claim_folder(path, overwrite=False),
-    "render": lambda path: render_set(["pass_behind"], 1, path, frames=False, tracker="truth", processes=1),
+    "render": lambda path: render_set(
+        ["pass_behind"], 1, path, frames=False, tracker="truth", workers=Workers()
+    ),
 }
 OTHERS = {
     "show": lambda path: draw_plan(load_scenario("pass_behind"), 0, path),
-    "reproduce": lambda path: Store(path / "units.jsonl"),
+    "reproduce": lambda path: open_store(path / "units.jsonl"),
     "train-occlusion": lambda path: give_lesson(
-        path, "peopleboy", 1, triplets=False, again=False, ship=False
+        path, "peopleboy", 1, Workers(), triplets=False, again=False, ship=False
     ),
     "datasets": lambda path: film(load_scenario("pass_behind"), 0, path),
 }

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.scenarios.running.compare_controllers import Controller, compare, intervals, parse_controller
+from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.show_comparison import show_comparison
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from tests.helpers.calls.refused import refused
@@ -42,7 +43,9 @@ def test_a_controller_is_a_behaviour_and_the_eyes_it_sees_by():
 
 def test_a_controller_named_twice_is_refused(tmp_path):
     with refused("--controllers stand,stand"):
-        compare("single_follow", [parse_controller("stand")] * 2, range(1), tmp_path, 1)
+        compare(
+            "single_follow", [parse_controller("stand")] * 2, range(1), tmp_path, Workers(), overwrite=False
+        )
 
 
 def test_a_comparison_is_printed_drawn_and_kept(tmp_path, capsys):

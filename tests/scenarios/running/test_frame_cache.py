@@ -9,10 +9,11 @@ import pytest
 from peopleboy.behaviours.command import Command
 from peopleboy.scenarios.files.drives import read_drive, write_drive
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
 from peopleboy.sim.world import World
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from tests.helpers.calls.refused import refused
 
 SCENARIO = load_scenario("fast_turn").lasting(2.6)
@@ -26,9 +27,10 @@ def shot(tmp_path_factory: pytest.TempPathFactory) -> Film:
 def played() -> Iterator[Frame]:
     before = None
     with World(SCENARIO.world(3)) as world:
+        calibrations = calibrations_of(world.cameras)
         for k in range(39):
             seen = world.observe()
-            yield make_frame(seen, before)
+            yield make_frame(seen, calibrations, before)
             before = seen.odometry
             # The script turns the robot from second 2 on; nothing is in its way.
             world.step(0.0, np.radians(90.0) if 30 <= k < 37.5 else 0.0)
@@ -38,9 +40,13 @@ def test_frames_from_disk_equal_those_of_the_run_to_the_byte(shot: Film) -> None
     kept = list(frames_of(shot))
     assert len(kept) == shot.frames == 39
     for one, other in zip(kept, played(), strict=True):
-        assert np.array_equal(one.thermal, other.thermal)
-        assert np.array_equal(one.colour, other.colour)  # type: ignore[arg-type]
-        assert (one.time_s, one.turn_rad, one.advance_m) == (other.time_s, other.turn_rad, other.advance_m)
+        assert np.array_equal(one.grey(THERMAL), other.grey(THERMAL))
+        assert np.array_equal(one.rgb(COLOUR), other.rgb(COLOUR))
+        assert (one.time_s, one.odometry) == (other.time_s, other.odometry)
+        points = np.array([[4.0, 0.3, 0.0], [7.0, -1.0, 1.7]])
+        for camera in (THERMAL, COLOUR):
+            pixels = [frame.calibrations[camera].project(points) for frame in (one, other)]
+            assert np.array_equal(*pixels)
 
 
 def test_truth_lies_beside_the_frames(shot: Film) -> None:

@@ -273,14 +273,16 @@ def test_a_sweep_goes_on_where_it_was_and_takes_no_other_run_for_its_own(
 ) -> None:
     scenario = write_scene(tmp_path / "tiny.yaml", duration_s=0.2)
     out = tmp_path / "runs"
-    assert run_cli("sweep", scenario, "--seeds", 1, "--out", out) == 0
+    assert run_cli("sweep", scenario, "--workers", 1, "--seeds", 1, "--out", out) == 0
     stamp = (out / "tiny-0" / "run.json").stat().st_mtime_ns
-    assert run_cli("sweep", scenario, "--seeds", 2, "--out", out) == 0
+    assert run_cli("sweep", scenario, "--workers", 1, "--seeds", 2, "--out", out) == 0
     assert (out / "tiny-0" / "run.json").stat().st_mtime_ns == stamp
     for folder in out.iterdir():
         about = json.loads((folder / "run.json").read_text())
         (folder / "run.json").write_text(json.dumps(about | {"status": "running"}))
-    assert run_cli("sweep", scenario, "--seeds", 2, "--out", out) == 0
+    assert run_cli("sweep", scenario, "--workers", 1, "--seeds", 2, "--out", out) == 0
     assert (out / "tiny-0" / "run.json").stat().st_mtime_ns != stamp
     write_scene(tmp_path / "tiny.yaml", duration_s=0.4)
-    assert_names(refusal(capsys, "sweep", scenario, "--seeds", 2, "--out", out), out / "tiny-0")
+    assert_names(
+        refusal(capsys, "sweep", scenario, "--workers", 1, "--seeds", 2, "--out", out), out / "tiny-0"
+    )

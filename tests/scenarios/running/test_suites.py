@@ -12,6 +12,7 @@ from peopleboy.scenarios.cli import cli
 from peopleboy.scenarios.files import suite as suites
 from peopleboy.scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, runs_of, suite_names
 from peopleboy.scenarios.running import run_suite as module
+from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run_suite import run_suite
 from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
@@ -67,16 +68,16 @@ def tiny(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("tiny")
 def test_a_suite_skips_complete_runs_and_redoes_those_that_were_cut_off(tmp_path: Path) -> None:
     options = RunOptions(seed=0, out=tmp_path)
-    first, second = run_suite("tiny", options)
+    first, second = run_suite("tiny", options, Workers())
     made = [path.stat().st_mtime_ns for path in (first / "tracks.txt", second / "tracks.txt")]
     about = json.loads((second / "run.json").read_text())
     (second / "run.json").write_text(json.dumps(about | {"status": "running"}))  # as a killed run leaves it
-    assert run_suite("tiny", options) == [first, second]
+    assert run_suite("tiny", options, Workers()) == [first, second]
     assert (first / "tracks.txt").stat().st_mtime_ns == made[0]
     assert (second / "tracks.txt").stat().st_mtime_ns > made[1]
     assert json.loads((second / "run.json").read_text())["status"] == "complete"
     with refused(first, "'peopleboy'"):
-        run_suite("tiny", RunOptions(seed=0, out=tmp_path, tracker="thesis"))
+        run_suite("tiny", RunOptions(seed=0, out=tmp_path, tracker="thesis"), Workers())
 
 
 def test_an_unknown_suite_or_data_set_is_refused() -> None:

@@ -54,7 +54,7 @@ def test_distance_errors_are_mean_and_root_mean_square():
 
 
 def test_band_and_facing_are_shares_of_frames():
-    task = FollowingTask(band_m=(1.2, 3.5), facing_rad=0.2)
+    task = FollowingTask(keep_m=2.35, within_m=1.15, facing_rad=0.2)
     result = score([1.0, 2.0, 3.0, 4.0], bearing=[0.1, -0.1, 0.3, 6.4], task=task)
     assert result.in_band == 0.5
     assert result.facing == 0.75  # 6.4 is 0.12 past a full turn
@@ -131,6 +131,7 @@ def test_a_person_lost_or_exchanged_in_the_last_seconds_was_not_followed_to_the_
     assert score([3.0] * 20, tracked=[False] * 13 + [True] * 7).followed_to_end
     assert not score([3.0] * 20, is_wrong=np.arange(20) == 16).followed_to_end
     assert score([3.0] * 20, is_wrong=np.arange(20) == 3).wrong_person_s == STEP_S
+    assert math.isnan(score([3.0] * 20).wrong_person_s)
 
 
 def test_new_numbers_of_the_track_and_intrusions_are_counted():
@@ -159,4 +160,4 @@ def test_the_distance_to_keep_is_the_one_that_shows_the_person_as_tall_as_asked(
     away = task.keep_m - camera.position_m[0]
     feet, head = camera.project(np.array([[0.0, 1.2, away], [0.0, 1.2 - person.height_m, away]]))
     assert feet[1] - head[1] == pytest.approx(0.5 * camera.height)
-    assert task.band_m == pytest.approx((task.keep_m - 1.2, task.keep_m + 1.2))
+    assert task.within_m == 1.2

@@ -90,7 +90,7 @@ def test_cameras_cannot_be_changed_and_can_be_sent_to_other_processes() -> None:
 
 def test_a_rate_that_does_not_divide_is_refused() -> None:
     cameras = {**robot().cameras, "slow": ThermalConfig(rate_hz=4)}
-    with pytest.raises(BadInput, match="camera 'slow': rate_hz: 4 must divide the control rate, 15 Hz"):
+    with pytest.raises(BadInput, match=r"cameras\.slow\.rate_hz: 4 must divide the control rate, 15 Hz"):
         config(robot=RobotConfig(cameras=cameras))
 
 

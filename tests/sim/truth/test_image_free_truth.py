@@ -4,6 +4,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.sim.truth.seen import is_seen
 from peopleboy.sim.world import World
 
 
@@ -22,9 +23,29 @@ def test_an_upright_body_is_about_where_the_exact_boxes_and_pixels_say() -> None
                     assert person.box[0] + person.box[2] / 2 == pytest.approx(
                         left + width / 2, abs=0.5 * width
                     )
-                    assert person.visible_share == 1.0
+                    assert person.free_ray_share == 1.0
                     compared += 1
         assert compared > 10
+
+
+def test_rays_and_pixels_agree_on_who_is_seen() -> None:
+    agree = []
+    with World(load_scenario("crossing_2").world(0)) as world:
+        for _ in range(150):
+            world.step(0.0, 0.0)
+            exact = {person.id: person for person in world.truth().people}
+            agree += [
+                person.is_seen == is_seen(exact[person.id].visible_fraction)
+                for person in world.scene().people
+                if exact[person.id].is_in_image
+            ]
+    assert len(agree) > 100
+    assert sum(agree) > 0.9 * len(agree)
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.0, False), (0.3, False), (0.31, True), (1.0, True)])
+def test_who_is_seen_shows_more_than_the_least_share(share: float, expected: bool) -> None:
+    assert is_seen(share) is expected
 
 
 def test_a_world_without_images_moves_like_one_with_them_and_refuses_to_look() -> None:

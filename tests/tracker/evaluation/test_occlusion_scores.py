@@ -8,6 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from peopleboy.sim.truth import events
+from peopleboy.tracker.evaluation import occlusion_scores
 from peopleboy.tracker.evaluation.occlusion_scores import (
     Occlusion,
     by_length,
@@ -18,6 +20,11 @@ from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 BOX = (100.0, 50.0, 30.0, 90.0)
 RATE_HZ = 10.0
+
+
+def test_a_total_occlusion_is_the_event_logs() -> None:
+    assert occlusion_scores.TOTAL_STARTS == events.TOTAL_STARTS
+    assert occlusion_scores.TOTAL_ENDS == events.TOTAL_ENDS
 
 
 def scene(hidden: list[float], track_ids: list[int | None]) -> list[Occlusion]:

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import FOOTAGE
 from peopleboy.tracker.track import Status
@@ -20,7 +20,7 @@ def frame(i, colour):
     if colour is not None:
         draw_person(thermal, 150, 130, 11, 30)
         picture[2 * 80 : 2 * 195, 2 * 135 : 2 * 165] = colour
-    return Frame(thermal=thermal, time_s=i / 15, colour=picture)
+    return Frame(images={THERMAL: thermal, COLOUR: picture}, time_s=i / 15)
 
 
 def ids_of(tracker, colours):
@@ -46,11 +46,11 @@ def test_nobody_who_is_settled_grows_at_once():
         for i in range(60):
             image = blank()
             draw_person(image, 150, 130, 11, 30 if i < 45 else 42)
-            tracks = tracker.update(Frame(thermal=image, time_s=i / 15))
+            tracks = tracker.update(Frame(images={THERMAL: image}, time_s=i / 15))
             if i == 44:
-                before = tracks[0].box[3]
-        return tracks[0].box[3] / before
+                before = tracks[0].boxes["thermal"][3]
+        return tracks[0].boxes["thermal"][3] / before
 
-    free = replace(FOOTAGE, occlusion=replace(FOOTAGE.occlusion, seen_size_spread=0.0))
-    stiff = replace(FOOTAGE, occlusion=replace(FOOTAGE.occlusion, seen_size_spread=0.02))
+    free = replace(FOOTAGE, height=replace(FOOTAGE.height, seen_spread=0.0))
+    stiff = replace(FOOTAGE, height=replace(FOOTAGE.height, seen_spread=0.02))
     assert height_after(stiff) < 1.12 < 1.3 < height_after(free)

@@ -4,8 +4,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal import joint_update, people_tracker
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.thermal import people_tracker
 from peopleboy.tracker.thermal.config import InteractionConfig
 from peopleboy.tracker.thermal.particle_filter import weigh
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
@@ -22,7 +22,7 @@ def frame(i, *people):
     image = blank()
     for x, h in people:
         draw_person(image, x, 120 + 0.36 * h, 0.38 * h, h)
-    return Frame(thermal=image, time_s=i / 15)
+    return Frame(images={THERMAL: image}, time_s=i / 15)
 
 
 def confirmed(tracks):
@@ -72,8 +72,7 @@ def test_equal_seeds_give_equal_tracks():
 
 def test_the_image_is_measured_once_for_each_person_and_once_for_the_detector(monkeypatch):
     calls = []
-    for module in (people_tracker, joint_update):
-        monkeypatch.setattr(module, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
+    monkeypatch.setattr(people_tracker, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
     tracker = PeopleTracker(APART, np.random.default_rng(0))
     for i in range(60):
         calls.clear()
@@ -112,7 +111,7 @@ def dressed(i, *people):
             for right in (0, 1):
                 row, column = np.minimum(at[0] + down, 239), np.minimum(at[1] + right, 319)
                 colour[row[inside], column[inside]] = rgb
-    return Frame(thermal=thermal, colour=colour, time_s=i / 15)
+    return Frame(images={THERMAL: thermal, COLOUR: colour}, time_s=i / 15)
 
 
 def passing(i):
@@ -173,11 +172,15 @@ def test_every_tracker_gives_finite_tracks_with_ids_of_their_own(name):
     for i in range(30, 90, 2):
         tracks = tracker.update(passing(i))
         assert len({track.id for track in tracks}) == len(tracks)
-        assert np.isfinite([track.box for track in tracks]).all()
-        assert all(track.box[2] >= 0 and track.box[3] >= 0 for track in tracks)
+        assert np.isfinite([track.boxes["thermal"] for track in tracks]).all()
+        assert all(track.boxes["thermal"][2] >= 0 and track.boxes["thermal"][3] >= 0 for track in tracks)
+
+
+def heat_alone(frame):
+    return replace(frame, images={THERMAL: frame.grey(THERMAL)})
 
 
 def test_without_a_colour_camera_people_are_told_apart_by_their_warmth():
     tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(0))
-    tracks = [tracker.update(replace(passing(i), colour=None)) for i in range(115)]
+    tracks = [tracker.update(heat_alone(passing(i))) for i in range(115)]
     assert identity_at(tracks[45], 60 + 2.2 * 15) == identity_at(tracks[-1], 60 + 2.2 * 84) is not None

@@ -3,19 +3,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.filter.particles import equally_weighted
 from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
-from peopleboy.tracker.thermal.reidentification import most_alike_and_nearest, recognised, remembered
+from peopleboy.tracker.thermal.particles import equally_weighted
+from peopleboy.tracker.thermal.reidentification import least_mismatch, most_alike_and_nearest
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
-from peopleboy.tracker.thermal.variants import FOOTAGE, PEOPLEBOY, THESIS_OCCLUSION
+from peopleboy.tracker.thermal.variants import FOOTAGE, PEOPLEBOY
 from peopleboy.tracker.track import Status
 from tests.helpers.images.drawn_people import blank
 
 VIEW = view_frame(
-    Frame(thermal=blank(), time_s=1.0),
+    Frame(images={THERMAL: blank()}, time_s=1.0),
     1 / 15,
     ContourModel.build((240, 320), PEOPLEBOY.contour),
     PEOPLEBOY,
@@ -42,23 +42,19 @@ def person(number, x=160.0, h=30.0, colour=0.0, hidden_s=1.0, **more):
     )
 
 
-def test_nobody_is_recognised_where_nobody_is_remembered():
-    assert recognised(person(9), (), VIEW, PEOPLEBOY) is None
-
-
-def test_of_two_at_the_same_place_the_one_with_the_same_looks_is_recognised():
+def test_of_two_at_the_same_place_the_one_with_the_same_looks_is_least_mismatch():
     lost = person(1, colour=0.0), person(2, colour=3.0)
-    assert recognised(person(9, colour=3.1), lost, VIEW, PEOPLEBOY) is lost[1]
+    assert least_mismatch(person(9, colour=3.1), lost, VIEW, PEOPLEBOY) is lost[1]
 
 
-def test_of_two_with_the_same_looks_the_nearer_one_is_recognised():
+def test_of_two_with_the_same_looks_the_nearer_one_is_least_mismatch():
     lost = person(1, x=60.0), person(2, x=150.0)
-    assert recognised(person(9, x=160.0), lost, VIEW, PEOPLEBOY) is lost[1]
+    assert least_mismatch(person(9, x=160.0), lost, VIEW, PEOPLEBOY) is lost[1]
 
 
 @pytest.mark.parametrize("found", [person(9, colour=5.0), person(9, h=80.0)])
 def test_a_stranger_is_nobody_who_was_lost(found):
-    assert recognised(found, (person(1, hidden_s=0.3),), VIEW, PEOPLEBOY) is None
+    assert least_mismatch(found, (person(1, hidden_s=0.3),), VIEW, PEOPLEBOY) is None
 
 
 def thermal_only(one):
@@ -69,9 +65,9 @@ def thermal_only(one):
 
 def test_in_footage_nobody_far_away_is_recognised_by_the_thermal_pattern_alone():
     lost, found = person(1, x=60.0, hidden_s=0.5), person(9, x=160.0)
-    assert recognised(found, (lost,), VIEW, FOOTAGE) is lost
-    assert recognised(thermal_only(found), (thermal_only(lost),), VIEW, PEOPLEBOY) is not None
-    assert recognised(thermal_only(found), (thermal_only(lost),), VIEW, FOOTAGE) is None
+    assert least_mismatch(found, (lost,), VIEW, FOOTAGE) is lost
+    assert least_mismatch(thermal_only(found), (thermal_only(lost),), VIEW, PEOPLEBOY) is not None
+    assert least_mismatch(thermal_only(found), (thermal_only(lost),), VIEW, FOOTAGE) is None
 
 
 def test_the_thesis_asks_that_the_nearest_is_also_the_most_alike():
@@ -82,13 +78,3 @@ def test_the_thesis_asks_that_the_nearest_is_also_the_most_alike():
         most_alike_and_nearest(person(9), (near, replace(far_but_alike, colour=near_but_other.colour)))
         is near
     )
-
-
-def test_in_the_thesis_the_remembered_stay_with_their_occluder_and_in_ours_they_walk_on():
-    leader = person(1, x=100.0)
-    walker = replace(person(2, occluder=1), shown=np.array([50.0, 131, 11, 30, 0, 30.0, 0, 0, 0]))
-    behind = remembered(walker, VIEW, (leader,), THESIS_OCCLUSION)
-    assert behind.shown[0] == 100.0
-    ahead = remembered(walker, VIEW, (leader,), PEOPLEBOY)
-    assert ahead.shown[0] == pytest.approx(50.0 + 30.0 / 15)
-    assert ahead.hidden_s == pytest.approx(walker.hidden_s + 1 / 15)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import THERMAL, Frame, Odometry
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
 from peopleboy.tracker.track import Status
@@ -64,7 +64,7 @@ def test_a_person_is_confirmed_within_a_second(seed):
 @pytest.mark.parametrize("name", VARIANTS)
 @pytest.mark.parametrize("grey", [0, 20, 255])
 def test_nobody_is_found_in_a_uniform_image(name, grey):
-    frames = [Frame(thermal=np.full((240, 320), grey, np.uint8), time_s=i / 15) for i in range(30)]
+    frames = [Frame(images={THERMAL: np.full((240, 320), grey, np.uint8)}, time_s=i / 15) for i in range(30)]
     assert not any(confirmed(tracks) for tracks in follow(frames, name=name))
 
 
@@ -75,7 +75,7 @@ def test_nobody_is_found_among_radiators_and_lamps(seed):
     image[60:70, 200:300] = RADIATOR
     image[100:200, 250:256] = RADIATOR
     image[105:125, 180:205] = 150
-    frames = [Frame(thermal=image, time_s=i / 15) for i in range(45)]
+    frames = [Frame(images={THERMAL: image}, time_s=i / 15) for i in range(45)]
     assert not any(confirmed(tracks) for tracks in follow(frames, seed))
 
 
@@ -85,14 +85,17 @@ def test_a_walking_person_keeps_one_id_and_a_box_near_the_truth():
     found = [(i, confirmed(t)[0]) for i, t in enumerate(tracks) if confirmed(t)]
     assert {track.id for _, track in found} == {1}
     assert len(found) > 70
-    late = [(track.box[0] + track.box[2] / 2) - (60 + 2.0 * i) for i, track in found[10:]]
+    late = [
+        (track.boxes["thermal"][0] + track.boxes["thermal"][2] / 2) - (60 + 2.0 * i)
+        for i, track in found[10:]
+    ]
     assert np.abs(late).max() < 6
 
 
 @pytest.mark.parametrize(("name", "later"), [("default", 1), ("footage", 1)])
 def test_a_person_who_was_lost_comes_back_as_itself_if_it_is_remembered(name, later):
     frames = [person_frame(i / 15) for i in range(20)]
-    frames += [Frame(thermal=blank(), time_s=i / 15) for i in range(20, 45)]
+    frames += [Frame(images={THERMAL: blank()}, time_s=i / 15) for i in range(20, 45)]
     frames += [person_frame(i / 15) for i in range(45, 70)]
     tracks = follow(frames, name=name)
     assert [confirmed(tracks[i])[0].id for i in (19, 69)] == [1, later]
@@ -105,9 +108,9 @@ def test_odometry_keeps_the_person_through_a_turn_that_jumps_far():
     def frames(turn):
         return [
             Frame(
-                thermal=person_frame(0.0, x=250 - step * max(0, i - 20)).thermal,
+                images=person_frame(0.0, x=250 - step * max(0, i - 20)).images,
                 time_s=i / 15,
-                turn_rad=turn(i),
+                odometry=Odometry(turn_rad=turn(i)),
             )
             for i in range(28)
         ]
@@ -128,7 +131,7 @@ def test_a_person_cut_by_the_lower_border_stays_tracked():
 def test_an_image_of_twice_the_size_gives_a_person_of_twice_the_size():
     image = blank(480, 640)
     draw_person(image, 300, 240 + 0.36 * 56, 0.38 * 56, 56)
-    tracks = follow([Frame(thermal=image, time_s=i / 15) for i in range(25)])[-1]
+    tracks = follow([Frame(images={THERMAL: image}, time_s=i / 15) for i in range(25)])[-1]
     assert semi_height(confirmed(tracks)[0]) == pytest.approx(56, rel=0.2)
 
 
@@ -159,7 +162,7 @@ def test_a_fresh_process_gives_the_same_tracks():
 
 def test_particles_are_those_of_the_detector_first_and_of_the_person_then():
     tracker = make()
-    tracker.update(Frame(thermal=blank(), time_s=0.0))
+    tracker.update(Frame(images={THERMAL: blank()}, time_s=0.0))
     assert set(tracker.explanation.particles) == {0}
     for i in range(1, 20):
         tracker.update(person_frame(i / 15))
@@ -174,9 +177,9 @@ def test_particles_are_those_of_the_detector_first_and_of_the_person_then():
 @pytest.mark.parametrize("second", [1.0, 0.5])
 def test_time_that_does_not_go_forward_is_refused(second):
     tracker = make("thesis")
-    tracker.update(Frame(thermal=blank(), time_s=1.0))
+    tracker.update(Frame(images={THERMAL: blank()}, time_s=1.0))
     with refused("time_s", second):
-        tracker.update(Frame(thermal=blank(), time_s=second))
+        tracker.update(Frame(images={THERMAL: blank()}, time_s=second))
 
 
 def test_an_unknown_tracker_is_refused_with_the_names_of_those_that_exist():

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.thermal.filter.particles import equally_weighted
 from peopleboy.tracker.thermal.particle_filter import Belief
+from peopleboy.tracker.thermal.particles import equally_weighted
 from peopleboy.tracker.thermal.tracked_person import HEIGHT, PERSON_M, SIZE, TrackedPerson, approached
 
 FOCAL_PX = 297.0

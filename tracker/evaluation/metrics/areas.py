@@ -5,8 +5,8 @@ from typing import Self
 
 import numpy as np
 
+from peopleboy.tracker.boxes import Floats, area, cover, intersection
 from peopleboy.tracker.evaluation.association import Pairs
-from peopleboy.tracker.evaluation.boxes import Floats, area, cover, intersection
 from peopleboy.tracker.evaluation.metrics.sums import Sums, percent, sum_by
 from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 

@@ -6,8 +6,8 @@ from typing import Self
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.association import GATE, Pairs
-from peopleboy.tracker.evaluation.boxes import Floats
 from peopleboy.tracker.evaluation.metrics.sums import Sums, percent
 from peopleboy.tracker.evaluation.sequence import Bools, Ints, TrackBoxes, TrueBoxes
 

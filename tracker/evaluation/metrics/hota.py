@@ -6,8 +6,8 @@ from typing import Self
 
 import numpy as np
 
+from peopleboy.tracker.boxes import Floats, cover
 from peopleboy.tracker.evaluation.association import Pairs, assign
-from peopleboy.tracker.evaluation.boxes import Floats, cover
 from peopleboy.tracker.evaluation.metrics.sums import Sums, sum_by
 from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 

@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from peopleboy.tracker.evaluation.boxes import Floats
+from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.sequence import Ints
 
 

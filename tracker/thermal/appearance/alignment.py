@@ -2,55 +2,49 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
 
-from peopleboy.tracker.thermal.colour_config import ColourConfig
-from peopleboy.tracker.thermal.filter.particles import Floats
+from peopleboy.tracker.thermal.colour_config import Affine
+from peopleboy.tracker.thermal.particles import Floats
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Alignment:
-    """Equation 6.1 in pixels, for images of given sizes.
+@lru_cache(maxsize=16)
+def alignment(
+    thermal_shape: tuple[int, int], colour_shape: tuple[int, int], affine: Affine, parallax: float
+) -> Floats:
+    """Give equation 6.1 in pixels for images of given sizes, its parallax included.
 
-    Attributes:
-        matrix: (2, 4) float32 that maps thermal u, v, h, 1 [px] to colour x, y [px]; h is the semi-height of
-            the person who is looked at.
+    Pixel (u, v) has its centre at the shares (u + 1/2) / W, (v + 1/2) / H.
+
+    Returns:
+        (2, 4) that maps thermal u, v, h, 1 [px] to colour x, y [px]; h is the semi-height of the person who
+        is looked at. Read-only.
     """
-
-    matrix: Floats
-
-    @classmethod
-    def build(
-        cls, thermal_shape: tuple[int, int], colour_shape: tuple[int, int], config: ColourConfig
-    ) -> Alignment:
-        """Turn shares into pixels; pixel (u, v) has its centre at the shares (u + 1/2) / W, (v + 1/2) / H."""
-        p1, p2, p3, p4, p5, p6 = config.affine
-        to_share = np.diag([1 / thermal_shape[1], 1 / thermal_shape[0], 1 / thermal_shape[1], 1.0])
-        to_share[:2, 3] = 0.5 * np.diag(to_share)[:2]
-        to_pixel = np.diag([colour_shape[1], colour_shape[0]])
-        shares = np.array([[p2, p3, config.parallax, p1], [p5, p6, 0.0, p4]])
-        matrix = to_pixel @ shares @ to_share - np.array([[0, 0, 0, 0.5]])
-        return cls(matrix.astype(np.float32))
-
-    def apply(self, rectangles: Floats, height: Floats) -> Floats:
-        """Map rectangles of the thermal image to upright ones of the colour image.
-
-        A sheared map makes parallelograms; their place is that of their centre, and their size that of their
-        middle lines.
-
-        Args:
-            rectangles: (N, P, 4) left, top, right, bottom [px].
-            height: (N,) semi-height h [px] of the people they belong to.
-        """
-        mapped: Floats = _apply(self.matrix, rectangles, height)
-        return mapped
+    p1, p2, p3, p4, p5, p6 = affine
+    to_share = np.diag([1 / thermal_shape[1], 1 / thermal_shape[0], 1 / thermal_shape[1], 1.0])
+    to_share[:2, 3] = 0.5 * np.diag(to_share)[:2]
+    to_pixel = np.diag([colour_shape[1], colour_shape[0]])
+    shares = np.array([[p2, p3, parallax, p1], [p5, p6, 0.0, p4]])
+    matrix: Floats = (to_pixel @ shares @ to_share - np.array([[0, 0, 0, 0.5]])).astype(np.float32)
+    matrix.setflags(write=False)
+    return matrix
 
 
 @njit(cache=True, nogil=True)
-def _apply(matrix: Floats, rectangles: Floats, height: Floats) -> Floats:
+def aligned(matrix: Floats, rectangles: Floats, height: Floats) -> Floats:
+    """Map rectangles of the thermal image to upright ones of the colour image.
+
+    A sheared map makes parallelograms; their place is that of their centre, and their size that of their
+    middle lines.
+
+    Args:
+        matrix: of `alignment`.
+        rectangles: (N, P, 4) left, top, right, bottom [px].
+        height: (N,) semi-height h [px] of the people they belong to.
+    """
     half = np.float32(0.5)
     result = np.empty_like(rectangles)
     for i in range(rectangles.shape[0]):

@@ -7,7 +7,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.appearance.regions import Bounds
-from peopleboy.tracker.thermal.filter.particles import Floats
+from peopleboy.tracker.thermal.particles import Floats
+
+BINS = 20  # of even width
 
 
 def cumulative_histograms(

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.filter.particles import D, Floats, H, W, X, Y
+from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y
 
 Bounds = NDArray[np.int32]
 HEAD, TORSO, LEGS = range(3)
@@ -25,6 +25,7 @@ _LAYOUT = np.array(
 )
 
 
+@njit(cache=True, nogil=True)
 def part_rectangles(state: Floats) -> Floats:
     """Lay out head, torso and legs of people.
 
@@ -36,33 +37,27 @@ def part_rectangles(state: Floats) -> Floats:
 
     Source: thesis, section 6.1.2 and figure 6.2 b.
     """
-    rectangles: Floats = _part_rectangles(state, _LAYOUT)
-    return rectangles
-
-
-@njit(cache=True, nogil=True)
-def _part_rectangles(state: Floats, layout: Floats) -> Floats:
     result = np.empty((len(state), PARTS, 4), dtype=np.float32)
     for i in range(len(state)):
         w, h = max(state[i, W], np.float32(0)), max(state[i, H], np.float32(0))
         for part in range(PARTS):
-            middle = state[i, X] + layout[part, 0] * state[i, D]
-            half = layout[part, 1] * w + layout[part, 2] * h
+            middle = state[i, X] + _LAYOUT[part, 0] * state[i, D]
+            half = _LAYOUT[part, 1] * w + _LAYOUT[part, 2] * h
             result[i, part, 0], result[i, part, 2] = middle - half, middle + half
-            result[i, part, 1] = state[i, Y] + layout[part, 3] * h
-            result[i, part, 3] = state[i, Y] + layout[part, 4] * h
+            result[i, part, 1] = state[i, Y] + _LAYOUT[part, 3] * h
+            result[i, part, 3] = state[i, Y] + _LAYOUT[part, 4] * h
     return result
 
 
+@njit(cache=True, nogil=True)
 def pixel_bounds(rectangles: Floats) -> Bounds:
-    """Tell which pixels rectangles (..., 4) cover: those with their centre inside.
+    """Tell which pixels rectangles (N, P, 4) cover: those with their centre inside.
 
     Returns:
-        (..., 4) first column, first row, and those after the last ones; they may lie outside the image.
+        (N P, 4) first column, first row, and those after the last ones; they may lie outside the image.
     """
     # Far beyond any image and still an int32, whatever a stray sample asks for.
-    bounds: Bounds = np.ceil(np.clip(rectangles, -1e6, 1e6)).astype(np.int32)
-    return bounds
+    return np.ceil(np.clip(rectangles, -1e6, 1e6)).astype(np.int32).reshape(-1, 4)
 
 
 @njit(cache=True, nogil=True)

@@ -1,29 +1,50 @@
-"""How likely a sample is, given the image: from section differences to weight and probability."""
+"""What the image says of contours: how well they fit it, and what of them is in view.
+
+All variants share the one kernel that reads the image.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.config import (
-    REFERENCE_HEIGHT_PX,
-    ContourConfig,
-    FilterConfig,
-    LikelihoodConfig,
-    LimitsConfig,
-)
+from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, ContourConfig, LikelihoodConfig
 from peopleboy.tracker.thermal.contour.contour import (
     FEET,
+    GREYS,
+    HEAD_ASPECT,
+    HEAD_RIGHT,
+    SECTIONS,
     Probes,
     build_probes,
     build_response,
-    person_grey,
-    section_differences,
     section_weights,
 )
-from peopleboy.tracker.thermal.filter.particles import D, Floats, H, W, Y, normalised
+from peopleboy.tracker.thermal.particles import FOOT, HEAD_DIVISOR, D, Floats, H, W, X, Y
+
+FEET_GAIN = 3.0  # factor on the response of the feet, up to 1: they fill only a third of their line
+COVERED = 0
+"""Grey of the pixels of people in front, in an image where no other pixel has it."""
+NO_GREY = -2
+LEGS_WIDTH = 0.75  # half width of the legs, in body semi-widths
+_SUBPIXEL_BITS = 4
+_SCALE = 1 << _SUBPIXEL_BITS
+
+
+def _superellipse(power: float, count: int = 32) -> NDArray[np.float64]:
+    """Give the outline (count, 2) of a shape between an ellipse (power 2) and a square."""
+    angle = np.linspace(0.0, 2 * np.pi, count, endpoint=False)
+    around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    outline: NDArray[np.float64] = np.sign(around) * np.abs(around) ** (2 / power)
+    return outline
+
+
+BODY = _superellipse(3.5)  # shoulders and arms reach into the corners of the ellipse
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,7 +86,7 @@ class ContourModel:
         unseen = self.config.unseen_response
         result = section_differences(image, state, self.probes, self.response, unseen, covered)
         if self.config.feet_weight > 0:
-            result[:, FEET] = np.minimum(1.0, self.config.feet_gain * result[:, FEET])
+            result[:, FEET] = np.minimum(1.0, FEET_GAIN * result[:, FEET])
         return result
 
 
@@ -100,43 +121,179 @@ def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
     return result
 
 
-def sample_weights(
-    fit: Floats, chance: Floats, is_inside: NDArray[np.bool_], model: str, config: FilterConfig
+def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np.uint8]:
+    """Turn what is too hot for a person as dark as the coldest surface, (H, W) in and out.
+
+    Lamps and radiators lose their bright outline that way, and people in front of them regain theirs.
+    """
+    if config.hottest_grey >= GREYS:
+        return np.ascontiguousarray(thermal)
+    is_hot = (thermal >= config.hottest_grey).view(np.uint8)
+    if not is_hot.any():
+        return np.ascontiguousarray(thermal)
+    side = 2 * config.hot_margin_px + 1
+    return np.where(cv2.dilate(is_hot, np.ones((side, side), np.uint8)), np.uint8(0), thermal)
+
+
+def section_differences(
+    image: NDArray[np.uint8],
+    state: Floats,
+    probes: Probes,
+    response: Floats,
+    unseen: float,
+    covered: float | None = None,
 ) -> Floats:
-    """Weigh the samples (N,), to sum to 1.
+    """Measure the mean response (N, 8) of every section of every sample, D_j of equation 4.3.
 
-    The thesis weighs with the probability, which is flat once the fitness is well above the threshold; with a
-    sharpness, the weight goes on growing with the fitness. The paper weighs with the fitness itself.
-
-    Source: thesis, equation 4.5; paper, equation 3.
+    Args:
+        image: (H, W) grey.
+        state: (N, 9) samples.
+        probes: the points to look at.
+        response: (8, 511) what a difference counts.
+        unseen: what a pair counts with a point outside the image.
+        covered: what a pair counts with a point on a person in front; None in an image without such marks.
     """
-    if config.sharpness > 0:
-        weight = np.exp(config.sharpness * (fit - fit.max()))
-    elif model == "paper":
-        weight = np.maximum(fit, 1e-6)
-    else:
-        weight = chance
-    return normalised(
-        np.where(is_inside, weight, np.float32(config.limits.outside_weight) * weight).astype(np.float32)
+    return _differences(
+        image,
+        state,
+        probes.mix,
+        probes.section,
+        response,
+        np.float32(unseen),
+        NO_GREY if covered is None else COVERED,
+        np.float32(0 if covered is None else covered),
     )
 
 
-def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np.bool_]:
-    """Tell which samples (N,) have a person's proportions and place.
+def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArray[np.int32]:
+    """Find the pixels nearest to a contour's points (2 P,), all inner ones before all outer ones.
 
-    Source: thesis, section 4.2 and the table of section 4.4.
+    Args:
+        state: (9,) of a person.
+        probes: the points.
+        shape: (H, W) of the image.
+
+    Returns:
+        Number of each pixel, counted row by row; -1 outside the image.
     """
-    w, h = state[:, W], state[:, H]
-    below_horizon = state[:, Y] - limits.horizon * height_px
-    return (
-        (w > limits.ratio_wh[0] * h)
-        & (w < limits.ratio_wh[1] * h)
-        & (state[:, D] > limits.ratio_dw[0] * w)
-        & (state[:, D] < limits.ratio_dw[1] * w)
-        & (state[:, Y] > limits.y[0] * height_px)
-        & (state[:, Y] < limits.y[1] * height_px)
-        & (below_horizon > limits.y_below_horizon[0] * h)
-        & (below_horizon < limits.y_below_horizon[1] * h)
-        & (h > limits.h[0] * height_px)
-        & (h < limits.h[1] * height_px)
-    )
+    at = np.empty(probes.mix.shape[1], dtype=np.int32)
+    _locate(at, state, probes.mix, shape[1], shape[0])
+    return at
+
+
+def covered_by(
+    image: NDArray[np.uint8],
+    states: Sequence[NDArray[np.float64]],
+    growth: float = 1.0,
+) -> NDArray[np.uint8]:
+    """Copy an image (H, W) and mark in it what people with these states (9,) cover."""
+    marked = uncovered(image)
+    for state in states:
+        cover(marked, state, growth)
+    return marked
+
+
+def uncovered(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Copy a grey image (H, W) into one where no pixel is marked as covered."""
+    return np.maximum(image, np.uint8(COVERED + 1))
+
+
+def cover(image: NDArray[np.uint8], state: NDArray[np.float64], growth: float = 1.0) -> None:
+    """Mark the pixels (H, W) of a person with this state (9,) as covered, in place.
+
+    Args:
+        image: grey, (H, W).
+        state: of the person in front.
+        growth: by which body, head and legs are made wider.
+    """
+    x, y, d, w, h = (float(state[k]) for k in (X, Y, D, W, H))
+    if not (w > 0 and h > 0 and np.isfinite(state[:5]).all()):
+        return
+    head = h / HEAD_DIVISOR
+    outline = BODY * (growth * w, h) + (x, y)
+    cv2.fillPoly(image, [np.rint(outline * _SCALE).astype(np.int32)], COVERED, cv2.LINE_8, _SUBPIXEL_BITS)
+    _fill_ellipse(image, x + d, y - h - head, growth * HEAD_ASPECT * head, growth * head)
+    legs = growth * LEGS_WIDTH * w
+    left, right = round(x - legs), round(x + legs)
+    image[max(round(y), 0) : max(round(y + FOOT * h), 0), max(left, 0) : max(right + 1, 0)] = COVERED
+
+
+def seen_shares(image: NDArray[np.uint8], state: NDArray[np.float64], probes: Probes) -> NDArray[np.float64]:
+    """Measure which share (8,) of every section's pairs of points is in the image and not covered.
+
+    A section without points counts as seen.
+
+    Args:
+        image: (H, W) with covered pixels marked.
+        state: (9,) of a person.
+        probes: the points of its contour.
+    """
+    at = pixels_under(state.astype(np.float32), probes, image.shape)
+    is_seen = (at >= 0) & (image.reshape(-1)[at] != COVERED)
+    seen = is_seen[: len(probes.section)] & is_seen[len(probes.section) :]
+    count = np.bincount(probes.section, minlength=SECTIONS)
+    shares: NDArray[np.float64] = np.bincount(probes.section, seen, SECTIONS) / np.maximum(count, 1)
+    return np.where(count > 0, shares, 1.0)
+
+
+def head_share(shares: NDArray[np.float64]) -> float:
+    """Average over the head's sections (8,) what is seen of them."""
+    return float(shares[: HEAD_RIGHT + 1].mean())
+
+
+def body_share(shares: NDArray[np.float64]) -> float:
+    """Average over all sections (8,) but the feet what is seen of them."""
+    return float(shares[:FEET].mean())
+
+
+def _fill_ellipse(image: NDArray[np.uint8], x: float, y: float, a: float, b: float) -> None:
+    centre, axes = (round(x * _SCALE), round(y * _SCALE)), (round(a * _SCALE), round(b * _SCALE))
+    cv2.ellipse(image, centre, axes, 0, 0, 360, COVERED, cv2.FILLED, cv2.LINE_8, _SUBPIXEL_BITS)
+
+
+@njit(cache=True, fastmath={"contract"}, nogil=True)
+def _locate(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, height: int) -> None:
+    """Write the pixels of `pixels_under` into (2 P,): without branches, many points at a time."""
+    half, columns, right, bottom = np.float32(0.5), np.int32(width), np.float32(width), np.float32(height)
+    x, y, d, w, h = sample[X] + half, sample[Y] + half, sample[D], sample[W], sample[H]
+    du, wu, hu, u0, wv, hv, v0 = mix[0], mix[1], mix[2], mix[3], mix[4], mix[5], mix[6]
+    for q in range(len(at)):
+        u = x + du[q] * d + wu[q] * w + hu[q] * h + u0[q]
+        v = y + wv[q] * w + hv[q] * h + v0[q]
+        is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
+        at[q] = np.int32(v) * columns + np.int32(u) if is_inside else np.int32(-1)
+
+
+@njit(cache=True, fastmath={"contract"}, nogil=True)
+def _differences(
+    image: NDArray[np.uint8],
+    state: Floats,
+    mix: Floats,
+    section: NDArray[np.int64],
+    response: Floats,
+    unseen: np.float32,
+    covered_grey: int,
+    covered: np.float32,
+) -> Floats:
+    share = np.zeros(SECTIONS, dtype=np.float32)
+    for j in section:
+        share[j] += np.float32(1)
+    grey, at = image.reshape(-1), np.empty(mix.shape[1], dtype=np.int32)
+    inner, outer = at[: len(section)], at[len(section) :]
+    result = np.zeros((len(state), SECTIONS), dtype=np.float32)
+    for i in range(len(state)):
+        _locate(at, state[i], mix, image.shape[1], image.shape[0])
+        for p in range(len(section)):
+            j = section[p]
+            if inner[p] < 0 or outer[p] < 0:
+                result[i, j] += unseen
+                continue
+            inside, outside = int(grey[inner[p]]), int(grey[outer[p]])
+            if inside == covered_grey or outside == covered_grey:
+                result[i, j] += covered
+            else:
+                result[i, j] += response[j, GREYS - 1 + inside - outside]
+        for j in range(SECTIONS):
+            if share[j] > 0:
+                result[i, j] /= share[j]
+    return result

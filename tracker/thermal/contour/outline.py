@@ -1,4 +1,4 @@
-"""From a contour to what people look at: its box, and its outline for drawing."""
+"""The outline of a contour, for drawing."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.config import BoxConfig, ContourConfig
+from peopleboy.tracker.thermal.config import ContourConfig
 from peopleboy.tracker.thermal.contour.contour import (
     FEET,
+    FEET_SPAN,
     HEAD_LEFT,
     HEAD_RIGHT,
     HEAD_TOP,
@@ -20,33 +21,16 @@ from peopleboy.tracker.thermal.contour.contour import (
     section_angles,
 )
 from peopleboy.tracker.thermal.ellipse import Ellipse
-
-Box = tuple[float, float, float, float]
-
-
-def box_of(ellipse: Ellipse, config: BoxConfig, head_divisor: float) -> Box:
-    """Give the box left, top, width, height [px] of a contour.
-
-    Its top is the top of the head, its centre column the body's.
-
-    Source: thesis, section 3.4 (2 w by 3.5 h); paper, section 4.1 (2 w by 3 h).
-    """
-    width, height = config.width_per_w * ellipse.w, config.height_per_h * ellipse.h
-    top = ellipse.y - (1 + 2 / head_divisor + config.hair_per_h) * ellipse.h
-    return ellipse.x - width / 2, top, width, height
+from peopleboy.tracker.thermal.particles import FOOT
 
 
-def outline(
-    ellipse: Ellipse, config: ContourConfig, count: int = 48
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def outline(ellipse: Ellipse, count: int = 48) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Give the outlines of body and head as two closed lines (count, 2) [px]."""
     angle = np.linspace(0.0, 2 * np.pi, count)
     nothing = np.zeros(count)
     mix = np.array([ellipse.d, ellipse.w, ellipse.h, 1.0])
     centre = np.array([ellipse.x, ellipse.y])
-    return centre + body_points(angle, nothing, 0.0) @ mix, centre + head_points(
-        angle, config, nothing, 0.0
-    ) @ mix
+    return centre + body_points(angle, nothing, 0.0) @ mix, centre + head_points(angle, nothing, 0.0) @ mix
 
 
 def section_lines(ellipse: Ellipse, config: ContourConfig) -> NDArray[np.float64]:
@@ -68,10 +52,10 @@ def _section_points(config: ContourConfig, count: int = 5) -> NDArray[np.float64
     for line, (start, end) in {**arcs, SECTIONS: (side_end, 2.0 * np.pi - side_end)}.items():
         angle = np.linspace(start, end, count)
         if line in (HEAD_LEFT, HEAD_TOP, HEAD_RIGHT):
-            points[line] = head_points(angle, config, nothing, 0.0)
+            points[line] = head_points(angle, nothing, 0.0)
         else:
             points[line] = body_points(angle, nothing, 0.0)
-    points[FEET, :, 0, 2] = np.linspace(-config.feet_span, config.feet_span, count)
-    points[FEET, :, 1, 2] = config.feet_line
+    points[FEET, :, 0, 2] = np.linspace(-FEET_SPAN, FEET_SPAN, count)
+    points[FEET, :, 1, 2] = FOOT
     points.setflags(write=False)
     return points

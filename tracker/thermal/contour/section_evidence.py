@@ -10,9 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import ContourConfig
-from peopleboy.tracker.thermal.contour.contour import FEET, section_differences
-from peopleboy.tracker.thermal.contour.coverage import covered_by, seen_shares
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.contour.contour import FEET
+from peopleboy.tracker.thermal.contour.likelihood import (
+    FEET_GAIN,
+    ContourModel,
+    covered_by,
+    section_differences,
+    seen_shares,
+)
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.track import Track
@@ -51,7 +56,7 @@ def evidence_of(
     evidence = {}
     for track in tracks:
         front = [states[track.occluder]] if track.occluder in states else []
-        marked = covered_by(image, front, config.contour, config.occlusion.growth)
+        marked = covered_by(image, front, config.depth.growth)
         evidence[track.id] = _measure(marked, states[track.id], model)
     return evidence
 
@@ -64,7 +69,7 @@ def _measure(marked: NDArray[np.uint8], state: NDArray[np.float64], model: Conto
     mean = section_differences(marked, rows, model.probes, model.response, 0.0, 0.0)[0].astype(np.float64)
     response = np.where(seen > _NOTHING, mean / np.maximum(seen, _NOTHING), np.nan)
     if model.config.feet_weight > 0:
-        response[FEET] = np.minimum(1.0, model.config.feet_gain * response[FEET])
+        response[FEET] = np.minimum(1.0, FEET_GAIN * response[FEET])
     else:
         response[FEET] = np.nan
     return Evidence(response, seen)

@@ -1,1 +1,1 @@
-"""Who is in front of whom: by feet, by looks, or as learned; and what is seen of those behind."""
+"""Who is in front of whom: by feet, by looks, or as learned; and what becomes of those who are hidden."""

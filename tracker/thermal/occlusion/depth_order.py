@@ -1,4 +1,4 @@
-"""Who is in front of whom."""
+"""Who is in front of whom, as expected before the image is measured."""
 
 from __future__ import annotations
 
@@ -10,9 +10,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.interaction import Regions
+from peopleboy.tracker.thermal.appearance.appearance_model import squared_distances
+from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.thermal.contour.likelihood import covered_by, fitness
 from peopleboy.tracker.thermal.particle_filter import FrameView
-from peopleboy.tracker.thermal.tracked_person import TrackedPerson
+from peopleboy.tracker.thermal.particles import STATE_SIZE, Floats
+from peopleboy.tracker.thermal.tracked_person import TrackedPerson, moved_on
+from peopleboy.tracker.thermal.whereabouts import Regions, overlap_shares, regions_of
 
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
 LOOKS = 12.0  # difference of squared distances of looks that counts 1
@@ -41,6 +45,32 @@ class ExpectedPerson:
     region: Regions
     unlikeness: float = 0.0
     fit: float = 0.0
+
+
+def expected(
+    persons: Sequence[TrackedPerson], view: FrameView, config: TrackerConfig
+) -> list[ExpectedPerson]:
+    """Predict where people are in this frame, and compare what is seen there with what is known of them."""
+    states = [
+        moved_on(person.shown if person.is_hidden else person.belief.estimate, view) for person in persons
+    ]
+    unlikeness, fits = [0.0] * len(persons), [0.0] * len(persons)
+    rows, order = np.array(states, dtype=np.float32).reshape(-1, STATE_SIZE), config.depth.order
+    if order in ("appearance", "contour") and view.appearance is not None and len(persons) > 1:
+        features = view.appearance.describe(rows)
+        unlikeness = [_unlikeness(*each) for each in zip(persons, features, strict=True)]
+    if order == "contour" and len(persons) > 1:
+        differences = view.model.differences(view.image, rows)
+        fits = fitness(differences, view.model.weights, config.likelihood).tolist()
+    regions = regions_of(states, config)
+    return [ExpectedPerson(*each) for each in zip(persons, states, regions, unlikeness, fits, strict=True)]
+
+
+def _unlikeness(person: TrackedPerson, features: Floats) -> float:
+    if person.appearance is None:
+        return 0.0
+    distance = float(squared_distances(features[None], person.appearance)[0])
+    return 0.0 if np.isnan(distance) else distance
 
 
 class Order(Protocol):
@@ -100,3 +130,64 @@ def front_to_back(
 
 ORDERS: Mapping[str, Order] = {"foot": lower_foot, "appearance": likelier_front, "contour": plainer_contour}
 """Ways to compare by name."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surroundings:
+    """The others, as one person's filter sees them.
+
+    Attributes:
+        front: those in front who overlap the person, as they are in this frame.
+        others: everybody else who is seen, those in front first: their regions (M, 4) [px].
+        strength: (M,) rho of equation 5.3 towards each.
+        image: (H, W) with the people in front marked as covered, if there are any.
+    """
+
+    front: tuple[TrackedPerson, ...]
+    others: Regions
+    strength: NDArray[np.float64]
+    image: NDArray[np.uint8]
+
+    @property
+    def hiding(self) -> Regions:
+        """Regions of those in front."""
+        return self.others[: len(self.front)]
+
+    @property
+    def rivals(self) -> Regions:
+        """Regions of those who are seen and not in front."""
+        return self.others[len(self.front) :]
+
+    def occluder(self, state: NDArray[np.float64], config: TrackerConfig) -> TrackedPerson | None:
+        """Find the one of those in front who covers most of a person with this state (9,)."""
+        if not self.front:
+            return None
+        shares = overlap_shares(state.astype(np.float32)[None], self.hiding, config)[0]
+        return self.front[int(np.argmax(shares))]
+
+
+def surroundings_of(
+    figure: ExpectedPerson,
+    ahead: Sequence[TrackedPerson],
+    behind: Sequence[ExpectedPerson],
+    view: FrameView,
+    config: TrackerConfig,
+) -> Surroundings:
+    """Sort the others into those who hide this person and those whom it is to keep off."""
+    near = [person for person in ahead if not person.is_hidden]
+    regions = regions_of([person.belief.estimate for person in near], config)
+    overlaps = overlap_shares(figure.state.astype(np.float32)[None], regions, config)[0] > 0
+    is_front = overlaps & (config.depth.order is not None)
+    front = tuple(person for person, hides in zip(near, is_front, strict=True) if hides)
+    later = [other.region for other in behind if not other.person.is_hidden]
+    rivals = np.concatenate([regions[~is_front], np.array(later, dtype=np.float32).reshape(-1, 4)])
+    interaction, image = config.interaction, view.image
+    if front:
+        states = [person.belief.estimate for person in front]
+        image = covered_by(image, states, config.depth.growth)
+    return Surroundings(
+        front=front,
+        others=np.concatenate([regions[is_front], rivals]),
+        strength=np.repeat([interaction.occluded_penalty, interaction.penalty], [len(front), len(rivals)]),
+        image=image,
+    )

@@ -18,7 +18,6 @@ from peopleboy.tracker.thermal.occlusion.pair_features import (
     overlapping_pairs,
     pair_features,
 )
-from peopleboy.tracker.thermal.occlusion.visibility import appearance
 from peopleboy.tracker.thermal.particle_filter import FrameView
 
 
@@ -88,7 +87,7 @@ class LearnedOrder:
 def features_of(figures: Sequence[ExpectedPerson], pairs: Pairs, view: FrameView) -> Features:
     """Measure the features (P, 6) of pairs (P, 2) among people (M,)."""
     states = np.array([figure.state for figure in figures])
-    models = [appearance(figure.person) for figure in figures]
+    models = [figure.person.looks for figure in figures]
     return pair_features(states, models, pairs, view, [figure.person.foot for figure in figures])
 
 

@@ -7,17 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, squared_distances
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, squared_distances
 from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangles
-from peopleboy.tracker.thermal.filter.particles import Floats, H, W, X, Y
 from peopleboy.tracker.thermal.particle_filter import FrameView
+from peopleboy.tracker.thermal.particles import CROWN, FOOT, Floats, H, W, X, Y
 
 FEATURES = ("strength", "top", "bottom", "colour", "colour_o", "colour_no")
 """Table 7.3's names: of the filter, the contour, and the colours of all, the shared and the other area."""
 
 THERMAL, COLOUR = FEATURES[:3], FEATURES[3:]
 
-HEAD_TOP, FEET = -1 - 2 / 4.4, 2.05  # below the body's centre, in body semi-heights
 _SLIVER = 0.1  # share of a part below which an area of it tells nothing
 
 Pairs = NDArray[np.int64]
@@ -74,7 +73,7 @@ def _ends(people: Floats, view: FrameView) -> tuple[Features, Features]:
     """Give the rows (M,) of heads and feet in image heights."""
     y, h = people[:, Y].astype(np.float64), people[:, H]
     rows = view.image.shape[0]
-    return (y + HEAD_TOP * h) / rows, (y + FEET * h) / rows
+    return (y - CROWN * h) / rows, (y + FOOT * h) / rows
 
 
 def _similarities(
@@ -115,7 +114,7 @@ def _described(view: FrameView, areas: Floats, height: Floats, holes: Floats | N
 def boxes(people: Floats) -> Floats:
     """Give the boxes (M, 4) of people: left, top, right, bottom [px]; head to feet, as wide as the body."""
     x, y, w, h = (people[:, k] for k in (X, Y, W, H))
-    return np.stack([x - w, y + np.float32(HEAD_TOP) * h, x + w, y + np.float32(FEET) * h], axis=1)
+    return np.stack([x - w, y - np.float32(CROWN) * h, x + w, y + np.float32(FOOT) * h], axis=1)
 
 
 def cut(rectangles: Floats, by: Floats) -> Floats:

@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.studies.reproduce.measuring.store import Result
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 

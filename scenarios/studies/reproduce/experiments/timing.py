@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.scenarios.studies.reproduce.measuring.stopwatch import (
     Milliseconds,
@@ -15,7 +16,6 @@ from peopleboy.scenarios.studies.reproduce.measuring.stopwatch import (
     time_people,
     time_steps,
 )
-from peopleboy.scenarios.studies.reproduce.measuring.store import Result
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.running.frame_cache import film, frames_of
-from peopleboy.scenarios.studies.reproduce.measuring.store import Result
 from peopleboy.scenarios.studies.reproduce.measuring.units import Showing
 from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.association import GATE
-from peopleboy.tracker.evaluation.boxes import iou
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.track import Status
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import Tracker
 
 PATIENCE = 30  # frames after which a tracker has not found the person
@@ -44,7 +45,7 @@ class DelayUnit(Showing):
             if number in starts:
                 waiting.append((number, self.setting.make(rng)))
             for start, tracker in list(waiting):
-                said = [track.box for track in tracker.update(frame) if track.status is not Status.TENTATIVE]
+                said = [box for _, box in confirmed(tracker.update(frame), THERMAL)]
                 if said and iou(boxes[number][None], np.array(said)).max() > GATE:
                     needed.append(number - start + 1)
                     waiting.remove((start, tracker))

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import PairExample, collect, mirrored
+from peopleboy.scenarios.studies.occlusion_learning.pair_task import examples_of, plain_pairs
 from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import PAIRS, accuracy
-from peopleboy.scenarios.studies.reproduce.measuring.store import Result
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.sim.random_streams import stream
 
@@ -31,28 +30,12 @@ class PairUnit:
 
     def run(self) -> Result:
         """Collect the examples."""
-        found = collect(self.scenario, self.seed, COLLECTS.config())
-        return {"pairs": [_plain(example) for example in found]}
-
-
-def _plain(example: PairExample) -> list[object]:
-    return [example.frame, example.one, example.other, bool(example.is_front), *example.features.tolist()]
+        return {"pairs": plain_pairs(collect(self.scenario, self.seed, COLLECTS.config()))}
 
 
 def examples(unit: PairUnit, result: Result) -> list[PairExample]:
     """Make examples out of a unit's result."""
-    return [
-        PairExample(
-            scenario=unit.scenario,
-            seed=unit.seed,
-            frame=frame,
-            one=one,
-            other=other,
-            is_front=is_front,
-            features=np.array(features),
-        )
-        for frame, one, other, is_front, *features in result["pairs"]
-    ]
+    return examples_of(unit.scenario, unit.seed, result["pairs"])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

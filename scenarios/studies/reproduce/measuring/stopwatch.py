@@ -13,22 +13,21 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.sim.random_streams import stream
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood
-from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, likelihood
+from peopleboy.tracker.thermal.appearance.colour_view import ColourView, PowerSums
 from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.contour.likelihood import (
-    ContourModel,
-    fitness,
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.thermal.particle_filter import (
+    advance,
+    begin,
     is_within,
-    probability,
     sample_weights,
+    step,
+    view_frame,
 )
-from peopleboy.tracker.thermal.filter.motion import predict
-from peopleboy.tracker.thermal.filter.particles import Particles, mean_state, resample, uncertainty_px2
-from peopleboy.tracker.thermal.particle_filter import advance, begin, step, view_frame
+from peopleboy.tracker.thermal.particles import Particles, mean_state, predict, resample, uncertainty_px2
 
 SHAPE = (240, 320)
 COUNT = 1000
@@ -52,7 +51,8 @@ def drawn_people(count: int) -> NDArray[np.uint8]:
 def frame_of(people: int, time_s: float = 0.0) -> Frame:
     """Give a frame with drawn people in both images."""
     thermal = drawn_people(people)
-    return Frame(thermal=thermal, time_s=time_s, colour=np.stack([thermal] * 3, axis=-1), turn_rad=0.0)
+    images = {THERMAL: thermal, COLOUR: np.stack([thermal] * 3, axis=-1)}
+    return Frame(images=images, time_s=time_s, odometry=Odometry())
 
 
 def milliseconds(work: Callable[[], object], steps: int) -> float:
@@ -167,8 +167,7 @@ def _time_colour(config: TrackerConfig, colour: ColourConfig | None, steps: int)
         after = step(belief.core, view, person, config, rng)
         if colour is None:
             return after
-        assert frame.colour is not None
-        picture = ColourView.build(frame.colour, SHAPE, colour)
+        picture = ColourView.build(frame.rgb(COLOUR), SHAPE, colour)
         features = picture.describe(after.particles.state)
         return likelihood(features, ColourModel.begin(features[0], colour), colour)
 

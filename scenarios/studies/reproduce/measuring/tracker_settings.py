@@ -9,7 +9,13 @@ from typing import Any
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.thermal.config import InteractionConfig, OcclusionConfig, TrackerConfig
+from peopleboy.tracker.thermal.config import (
+    DepthConfig,
+    HeightConfig,
+    InteractionConfig,
+    StayBehindConfig,
+    TrackerConfig,
+)
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
 
@@ -17,7 +23,7 @@ Value = float | int | str | None
 Changes = tuple[tuple[str, Value], ...]
 
 _ONE_PERSON = InteractionConfig(max_persons=1)
-_OPEN = OcclusionConfig()
+_OPEN = replace(PEOPLEBOY, depth=DepthConfig(), height=HeightConfig(), occlusion=StayBehindConfig())
 
 BASES: Mapping[str, TrackerConfig] = {
     "thesis-single": replace(THESIS, interaction=_ONE_PERSON),
@@ -27,10 +33,10 @@ BASES: Mapping[str, TrackerConfig] = {
     "thesis-occlusion": THESIS_OCCLUSION,
     "paper-several": PAPER,
     "peopleboy": PEOPLEBOY,
-    "peopleboy-thermal": replace(PEOPLEBOY, colour=None, appearance=None, occlusion=_OPEN),
-    "peopleboy-colour": replace(PEOPLEBOY, occlusion=_OPEN),
+    "peopleboy-thermal": replace(_OPEN, colour=None, appearance=None),
+    "peopleboy-colour": _OPEN,
     # The default's contour with the thesis's colour model, whose descriptions can be exchanged.
-    "peopleboy-moments": replace(PEOPLEBOY, colour=THESIS_COLOUR.colour, appearance=None, occlusion=_OPEN),
+    "peopleboy-moments": replace(_OPEN, colour=THESIS_COLOUR.colour, appearance=None),
 }
 """Every tracker that the sources report on, and the default with as much as each of them."""
 

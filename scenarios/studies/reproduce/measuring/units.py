@@ -11,9 +11,9 @@ from typing import Any, Protocol, TypeVar, get_type_hints
 import numpy as np
 
 from peopleboy.scenarios.files.suite import SuiteRun
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.scenarios.scores.suite_table import count
-from peopleboy.scenarios.studies.reproduce.measuring.store import Result
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
@@ -22,7 +22,8 @@ from peopleboy.tracker.evaluation.metrics.sums import Sums
 from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.evaluation.uncounted import Rule
-from peopleboy.tracker.track import Status
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import Tracker
 
 RULES: tuple[Rule, ...] = ("ignore", "absent")
@@ -121,10 +122,9 @@ def play_key(play: SuiteRun) -> str:
 def track_film(shot: Film, tracker: Tracker) -> TrackBoxes:
     """Let a tracker see a film; who is only tentative is not yet claimed."""
     rows = [
-        (number, track.id, track.box, track.confidence)
+        (number, track.id, box, track.confidence)
         for number, frame in enumerate(frames_of(shot), 1)
-        for track in tracker.update(frame)
-        if track.status is not Status.TENTATIVE
+        for track, box in confirmed(tracker.update(frame), THERMAL)
     ]
     frame, identity, box, confidence = zip(*rows, strict=True) if rows else ((), (), (), ())
     return TrackBoxes(

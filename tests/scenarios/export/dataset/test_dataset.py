@@ -37,7 +37,7 @@ def rendered(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("rendered")
     (home / "tiny.yaml").write_text(SCENE)
     assert (
-        run_cli("render", home / "tiny.yaml", "--frames", "--seeds", 2, "--jobs", 1, "--out", home / "set")
+        run_cli("render", home / "tiny.yaml", "--frames", "--seeds", 2, "--workers", 1, "--out", home / "set")
         == 0
     )
     return home
@@ -106,7 +106,7 @@ def test_an_image_without_content_is_found(rendered: Path) -> None:
 def test_a_call_that_is_refused_leaves_a_finished_set_as_it_was(rendered: Path) -> None:
     folder = rendered / "set"
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    order = (rendered / "tiny.yaml", "--seeds", 9, "--jobs", 1, "--out", folder)
+    order = (rendered / "tiny.yaml", "--seeds", 9, "--workers", 1, "--out", folder)
     assert run_cli("render", *order, "--tracker", "thesis") == 2
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
 
@@ -121,7 +121,7 @@ def test_a_set_grows_without_rendering_again_and_broken_images_are_found(
     (folder / "export-coco").mkdir()
     with (folder / "export-coco" / "images.bin").open("wb") as export:
         export.truncate(500_000_000)
-    order = (rendered / "tiny.yaml", "--frames", "--seeds", 3, "--jobs", 1, "--out", folder)
+    order = (rendered / "tiny.yaml", "--frames", "--seeds", 3, "--workers", 1, "--out", folder)
     assert run_cli("render", *order) == 1
     told, sheet = capsys.readouterr().out, (folder / "README.md").read_text()
     assert "FAILS: every image is there" in told

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_pairs import (
     Episodes,
@@ -101,13 +102,13 @@ def test_what_is_learned_says_from_how_much_and_how_well():
 
 def test_a_tracker_that_does_not_order_people_has_nothing_to_learn(tmp_path):
     with refused("paper", "peopleboy, thesis"):
-        give_lesson(tmp_path, "paper", 1, triplets=False, again=False, ship=False)
+        give_lesson(tmp_path, "paper", 1, Workers(), triplets=False, again=False, ship=False)
 
 
 def test_a_lesson_from_kept_examples_prints_the_tables_and_leaves_a_table_that_loads(tmp_path, capsys):
     write_pairs(tmp_path / "training.csv", examples(60, 0))
     write_pairs(tmp_path / "unseen.csv", examples(40, 1))
-    path = give_lesson(tmp_path, "peopleboy", 1, triplets=False, again=False, ship=False)
+    path = give_lesson(tmp_path, "peopleboy", 1, Workers(), triplets=False, again=False, ship=False)
     assert path == tmp_path / "peopleboy.yaml"
     assert len(LearnedTable.load(path).classifiers) > 1
     printed = capsys.readouterr().out

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,7 +20,6 @@ from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Set
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.filter.particles import Particles
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import Tracker
 
@@ -69,7 +67,7 @@ class Late:
         left, top, width, height = (float(value) for value in box)
         track = Track(
             id=1,
-            box=(left, top, width, height),
+            boxes={"thermal": (left, top, width, height)},
             confidence=1.0,
             status=status,
             age_s=0.0,
@@ -77,8 +75,8 @@ class Late:
         return (track,)
 
     @property
-    def particles(self) -> Mapping[int, Particles]:
-        return {}
+    def cameras(self) -> tuple[str, ...]:
+        return ("thermal",)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from html.parser import HTMLParser
@@ -17,7 +18,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.tracking import Tracking
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import BASES, Setting, changed
 from peopleboy.scenarios.studies.reproduce.measuring.units import RECORDS, TrackUnit, restored
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan, full_plan
-from peopleboy.scenarios.studies.reproduce.reproduce import Means, reproduce
+from peopleboy.scenarios.studies.reproduce.reproduce import RESULTS, Means, reproduce
 from peopleboy.scenarios.studies.reproduce.showing.against_source import ClaimStatus, judge, paired_t_test
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim, source_tables
 from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, write_page
@@ -198,18 +199,12 @@ def toy_runs() -> Iterator[tuple[str, tuple[SuiteRun, ...]]]:
 def test_a_little_of_everything_becomes_a_page_and_is_done_once(tmp_path: Path) -> None:
     plan = Plan(cache=tmp_path / "films", suites=dict(toy_runs()), repeats=2, is_quick=True, timing_steps=2)
     chosen = choose(["3.1", "4.1", "4.8", "5.5", "figure-7.3", "paper-table-3"])
-    seen: list[str] = []
-
-    def report(_finished: int, _total: int, last: str) -> None:
-        seen.append(last)
-
-    page = reproduce(chosen, plan, Means(out=tmp_path, jobs=1), report)
+    page = reproduce(chosen, plan, Means(out=tmp_path))
     assert read(page)[1].ids >= {one.id for one in chosen}
-    done = [key for key in seen if key]
+    done = [json.loads(line)["key"] for line in (tmp_path / RESULTS).read_text().splitlines()]
     assert len(done) == len(set(done)) > 30
-    seen.clear()
-    assert reproduce(chosen, plan, Means(out=tmp_path, jobs=1), report) == page
-    assert seen == []
+    assert reproduce(chosen, plan, Means(out=tmp_path)) == page
+    assert len((tmp_path / RESULTS).read_text().splitlines()) == len(done)
 
 
 def test_a_unit_gives_the_same_result_again_and_its_sums_come_back(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel, likelihood, squared_distances
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, likelihood, squared_distances
 from peopleboy.tracker.thermal.colour_config import ColourConfig
 
 CONFIG = ColourConfig()
@@ -51,8 +51,8 @@ def test_an_unseen_part_keeps_what_is_known_of_it_and_learns_nothing():
 
 def test_a_model_that_never_saw_anything_says_so():
     empty = ColourModel.begin(np.full(3, NAN), CONFIG)
-    assert empty.is_empty
-    assert not empty.updated(np.array([0.1, NAN, NAN], np.float32)).is_empty
+    assert np.isnan(empty.mean).all()
+    assert empty.updated(np.array([0.1, NAN, NAN], np.float32)).mean[0] == np.float32(0.1)
 
 
 @settings(deadline=None)

@@ -5,9 +5,8 @@ from hypothesis import strategies as st
 from scipy.stats import kstat
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.thermal.appearance.colour_moments import normalised_moments
+from peopleboy.tracker.thermal.appearance.colour_view import PowerSums, normalised_moments
 from peopleboy.tracker.thermal.appearance.histograms import cumulative_histograms
-from peopleboy.tracker.thermal.appearance.power_sums import PowerSums
 
 HEIGHT, WIDTH = 24, 32
 PICTURE = np.random.default_rng(0).integers(0, 256, (HEIGHT, WIDTH, 3), dtype=np.uint8)

@@ -7,9 +7,11 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.thermal.config import ContourConfig
 from peopleboy.tracker.thermal.contour.contour import (
     FEET,
+    HEAD_ASPECT,
     HEAD_LEFT,
     HEAD_RIGHT,
     HEAD_TOP,
+    NECK_DEG,
     SHOULDER_LEFT,
     SHOULDER_RIGHT,
     SIDE_LEFT,
@@ -18,12 +20,11 @@ from peopleboy.tracker.thermal.contour.contour import (
     build_probes,
     build_response,
     head_points,
-    person_grey,
-    pixels_under,
     section_angles,
     section_weights,
 )
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, person_grey, pixels_under
+from peopleboy.tracker.thermal.particles import HEAD_DIVISOR
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS
 from tests.helpers.images.drawn_people import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
 
@@ -43,7 +44,7 @@ def test_the_head_sections_cover_its_ellipse_but_for_the_neck():
     assert angles[HEAD_LEFT][1] == pytest.approx(angles[HEAD_TOP][0])
     assert angles[HEAD_TOP][1] == pytest.approx(angles[HEAD_RIGHT][0])
     open_at_the_neck = 2 * np.pi - (angles[HEAD_RIGHT][1] - angles[HEAD_LEFT][0])
-    assert open_at_the_neck == pytest.approx(np.radians(LITERAL.neck_deg))
+    assert open_at_the_neck == pytest.approx(np.radians(NECK_DEG))
 
 
 def test_points_lie_on_their_ellipses():
@@ -51,7 +52,7 @@ def test_points_lie_on_their_ellipses():
     mix = np.array([3.0, 12.0, 30.0, 1.0])  # d, w, h, 1
     body = body_points(angle, np.zeros(50), 0.0) @ mix
     assert np.allclose((body[:, 0] / 12) ** 2 + (body[:, 1] / 30) ** 2, 1, atol=1e-5)
-    head = head_points(angle, LITERAL, np.zeros(50), 0.0) @ mix
+    head = head_points(angle, np.zeros(50), 0.0) @ mix
     tall = 30 / 4.4
     assert np.allclose(
         ((head[:, 0] - 3) / (0.75 * tall)) ** 2 + ((head[:, 1] + 30 + tall) / tall) ** 2, 1, atol=1e-5
@@ -59,7 +60,7 @@ def test_points_lie_on_their_ellipses():
 
 
 def test_the_head_stands_on_top_of_the_body():
-    bottom = head_points(np.array([np.pi]), LITERAL, np.zeros(1), 0.0) @ np.array([0, 12.0, 30.0, 1])
+    bottom = head_points(np.array([np.pi]), np.zeros(1), 0.0) @ np.array([0, 12.0, 30.0, 1])
     assert np.allclose(bottom, [[0, -30]], atol=1e-5)
 
 
@@ -87,9 +88,9 @@ def test_the_pixels_under_a_contour_are_those_nearest_to_its_points(x):
 def literal_difference(image, x, y, w, h, config, section):
     """Compute a section's mean difference by its definition, point by point."""
     start, end = section_angles(config)[section]
-    tall = h / config.head_divisor
+    tall = h / HEAD_DIVISOR
     is_head = section in (HEAD_LEFT, HEAD_TOP, HEAD_RIGHT)
-    a, b = (config.head_aspect * tall, tall) if is_head else (w, h)
+    a, b = (HEAD_ASPECT * tall, tall) if is_head else (w, h)
     middle = y - h - tall if is_head else y
     differences = []
     for k in range(config.points):
@@ -170,9 +171,7 @@ def test_what_is_too_hot_becomes_cold_with_a_margin_and_the_rest_stays():
     assert dark[97, 60] == BACKGROUND
 
 
-@pytest.mark.parametrize(
-    "bad", [{"points": 0}, {"head_divisor": -1.0}, {"weights": (1.0,)}, {"reach_px": float("nan")}]
-)
+@pytest.mark.parametrize("bad", [{"points": 0}, {"feet_weight": -1.0}, {"reach_px": float("nan")}])
 def test_a_contour_that_cannot_be_is_refused(bad):
     with pytest.raises(BadInput, match="ContourConfig"):
         ContourConfig(**bad)

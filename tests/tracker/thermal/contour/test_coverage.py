@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
 
-from peopleboy.tracker.thermal.contour.contour import COVERED, SECTIONS
-from peopleboy.tracker.thermal.contour.coverage import (
+from peopleboy.tracker.thermal.contour.contour import SECTIONS
+from peopleboy.tracker.thermal.contour.likelihood import (
+    COVERED,
+    ContourModel,
     body_share,
     cover,
     covered_by,
@@ -10,8 +12,7 @@ from peopleboy.tracker.thermal.contour.coverage import (
     seen_shares,
     uncovered,
 )
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS
+from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from tests.helpers.images.drawn_people import blank, draw_person
 
 MODEL = ContourModel.build((240, 320), PEOPLEBOY.contour)
@@ -30,22 +31,22 @@ def test_no_pixel_is_marked_before_anybody_is():
 def test_a_person_covers_its_own_drawing():
     image = blank()
     draw_person(image, 160, 120 + 0.36 * 30, 0.38 * 30, 30)
-    marked = covered_by(image, [state()], THESIS.contour, 1.1)
+    marked = covered_by(image, [state()], 1.1)
     assert (marked[image > 100] == COVERED).mean() > 0.99
     assert (marked == COVERED).sum() < 2 * (image > 100).sum()
 
 
 def test_nothing_is_hidden_by_somebody_far_aside_and_all_by_somebody_large():
-    far = covered_by(blank(), [state(x=40.0)], PEOPLEBOY.contour)
+    far = covered_by(blank(), [state(x=40.0)])
     assert (seen_shares(far, state(), MODEL.probes) == 1).all()
-    large = covered_by(blank(), [state(h=90.0)], PEOPLEBOY.contour)
+    large = covered_by(blank(), [state(h=90.0)])
     shares = seen_shares(large, state(h=20.0), MODEL.probes)
     assert head_share(shares) == 0
     assert body_share(shares) == 0
 
 
 def test_somebody_half_aside_hides_one_side_and_leaves_the_other():
-    beside = covered_by(blank(), [state(x=130.0, h=60.0)], PEOPLEBOY.contour)
+    beside = covered_by(blank(), [state(x=130.0, h=60.0)])
     shares = seen_shares(beside, state(h=30.0), MODEL.probes)
     assert len(shares) == SECTIONS
     assert 0.2 < body_share(shares) < 0.9
@@ -54,13 +55,13 @@ def test_somebody_half_aside_hides_one_side_and_leaves_the_other():
 @pytest.mark.parametrize("wrong", [np.nan, np.inf])
 def test_an_impossible_person_covers_nothing(wrong):
     image = uncovered(blank())
-    cover(image, np.full(9, wrong), PEOPLEBOY.contour)
+    cover(image, np.full(9, wrong))
     assert (image != COVERED).all()
 
 
 def test_covered_points_count_what_they_are_told_to_and_no_other_does():
     samples = state(h=20.0)[None].astype(np.float32)
-    covered = covered_by(blank(), [state(h=90.0)], PEOPLEBOY.contour)
+    covered = covered_by(blank(), [state(h=90.0)])
     differences = MODEL.differences(covered, samples, 0.4)
     assert differences[0, :7] == pytest.approx(np.full(7, 0.4))
     plain = MODEL.differences(uncovered(blank()), samples, 0.4)

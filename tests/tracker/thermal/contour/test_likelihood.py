@@ -4,9 +4,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.thermal.config import FilterConfig, LikelihoodConfig, LimitsConfig, MotionConfig
-from peopleboy.tracker.thermal.contour.likelihood import fitness, is_within, probability, sample_weights
-from peopleboy.tracker.thermal.filter.prior import draw_prior
+from peopleboy.tracker.thermal.config import (
+    AppearanceConfig,
+    DepthConfig,
+    FilterConfig,
+    HeightConfig,
+    LikelihoodConfig,
+    LimitsConfig,
+    MotionConfig,
+    StayBehindConfig,
+)
+from peopleboy.tracker.thermal.contour.likelihood import fitness, probability
+from peopleboy.tracker.thermal.particle_filter import is_within, sample_weights
+from peopleboy.tracker.thermal.particles import draw_prior
 
 THESIS = LikelihoodConfig()
 ALPHA = np.array([0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16, 0.0])
@@ -122,7 +132,13 @@ def test_samples_from_the_prior_have_the_speeds_they_are_given():
         lambda: FilterConfig(count=0),
         lambda: FilterConfig(fresh_share=1.5),
         lambda: MotionConfig(noise_x=-1.0),
-        lambda: MotionConfig(view_angle_deg=200.0),
+        lambda: MotionConfig(place_memory=1.5),
+        lambda: AppearanceConfig(grey_spread=(0.1, 0.0, 0.1)),
+        lambda: DepthConfig(order="height"),
+        lambda: DepthConfig(growth=0.0),
+        lambda: HeightConfig(memory_s=0.0),
+        lambda: HeightConfig(seen_spread=-0.1),
+        lambda: StayBehindConfig(head_covered=1.5),
     ],
 )
 def test_settings_that_cannot_be_are_refused_in_one_line(make):

@@ -9,16 +9,24 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS, SHOULDER_LEFT, SIDE_LEFT, SIDE_RIGHT
+from peopleboy.tracker.thermal.contour.contour import (
+    FEET,
+    HEAD_ASPECT,
+    SECTIONS,
+    SHOULDER_LEFT,
+    SIDE_LEFT,
+    SIDE_RIGHT,
+)
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.contour.outline import outline, section_lines
 from peopleboy.tracker.thermal.contour.section_evidence import evidence_of
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import ContourExplanation
+from peopleboy.tracker.thermal.particles import HEAD_DIVISOR
+from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.trackers import TRACKERS
 
-PEOPLEBOY = TRACKERS["peopleboy"]
+PEOPLEBOY = VARIANTS["peopleboy"]
 AT_REST = {"vx": 0.0, "vy": 0.0, "vw": 0.0, "vh": 0.0}
 STANDING = Ellipse(x=160.0, y=120.0, w=20.0, h=45.0, d=0.0, **AT_REST)
 
@@ -26,7 +34,7 @@ STANDING = Ellipse(x=160.0, y=120.0, w=20.0, h=45.0, d=0.0, **AT_REST)
 def track(number: int = 1, occluder: int | None = None) -> Track:
     return Track(
         id=number,
-        box=(0.0, 0.0, 1.0, 1.0),
+        boxes={"thermal": (0.0, 0.0, 1.0, 1.0)},
         confidence=1.0,
         status=Status.TRACKED,
         age_s=1.0,
@@ -43,17 +51,17 @@ def explain(config: TrackerConfig = PEOPLEBOY, *ellipses: Ellipse) -> ContourExp
 def person(ellipse: Ellipse = STANDING) -> NDArray[np.uint8]:
     """(240, 320) a warm body and head where the contour is, legs and all."""
     v, u = np.mgrid[:240, :320].astype(float)
-    head = ellipse.h / PEOPLEBOY.contour.head_divisor
+    head = ellipse.h / HEAD_DIVISOR
     body = ((u - ellipse.x) / ellipse.w) ** 2 + ((v - ellipse.y) / ellipse.h) ** 2 < 1
     top = ellipse.y - ellipse.h - head
-    face = ((u - ellipse.x) / (PEOPLEBOY.contour.head_aspect * head)) ** 2 + ((v - top) / head) ** 2 < 1
+    face = ((u - ellipse.x) / (HEAD_ASPECT * head)) ** 2 + ((v - top) / head) ** 2 < 1
     legs = (abs(u - ellipse.x) < 0.6 * ellipse.h) & (v > ellipse.y) & (v < ellipse.y + 2.05 * ellipse.h)
     return np.where(body | face | legs, 150, 5).astype(np.uint8)
 
 
-@pytest.mark.parametrize("name", TRACKERS)
+@pytest.mark.parametrize("name", VARIANTS)
 def test_what_is_wholly_in_view_responds_as_the_tracker_measures_it(name: str) -> None:
-    config, image = TRACKERS[name], person()
+    config, image = VARIANTS[name], person()
     model = ContourModel.build((240, 320), config.contour)
     state = np.array([[160.0, 120.0, 20.0, 45.0, 0.0, 0.0, 0.0, 0.0, 0.0]], np.float32)
     measured = model.differences(model.prepare(image), state)[0]
@@ -95,7 +103,7 @@ def test_evidence_is_between_minus_one_and_one_or_out_of_view_anywhere(
 def test_sections_are_drawn_along_the_outlines_and_none_over_another() -> None:
     lines = section_lines(STANDING, PEOPLEBOY.contour)
     assert len(lines) == SECTIONS + 1
-    body, head = outline(STANDING, PEOPLEBOY.contour, count=3000)
+    body, head = outline(STANDING, count=3000)
     around = np.concatenate([body, head])
     for line in np.delete(lines, FEET, axis=0):
         away = np.linalg.norm(line[:, None] - around[None], axis=2).min(axis=1)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.thermal.appearance.colour_model import ColourModel
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.config import ContourConfig
@@ -58,7 +58,7 @@ def test_a_cut_lies_inside_of_what_was_cut_and_is_empty_outside_of_the_other(one
 
 
 NEAR, FAR = (150.0, 130.0, 16.0, 42.0), (164.0, 122.0, 10.0, 28.0)
-ALONE = ColourConfig(affine=(0.0, 1.0, 0.0, 0.0, 0.0, 1.0), least_seen=0.0)
+ALONE = ColourConfig(affine=(0.0, 1.0, 0.0, 0.0, 0.0, 1.0))
 
 
 def surroundings(*drawn: int) -> FrameView:
@@ -113,9 +113,7 @@ def test_everybody_is_compared_at_once_as_they_are_two_by_two():
     models = known_colours()
     states = [NEAR, FAR, (290.0, 120.0, 9.0, 25.0)]
     figures = [
-        SimpleNamespace(
-            state=people(state)[0], person=SimpleNamespace(appearance=None, colour=model, foot=foot)
-        )
+        SimpleNamespace(state=people(state)[0], person=SimpleNamespace(looks=model, foot=foot))
         for state, model, foot in zip(states, [*models, None], [216.0, 179.0, 171.0], strict=True)
     ]
     view = surroundings(1, 0)

@@ -1,0 +1,94 @@
+"""Tasks on the workers of a Dask scheduler."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.running.engine.source import Source, running_source
+from peopleboy.scenarios.running.engine.task import Failure, Task, attempt
+
+try:
+    from distributed import Client, KilledWorker, as_completed
+except ImportError:
+    raise BadInput("--scheduler: needs Dask; pip install '.[cluster]'") from None
+
+CONNECT_S = 10.0  # [s] to wait for the scheduler
+WORKERS_S = 30.0  # [s] to wait for its first worker
+
+
+def on_cluster(tasks: Sequence[Task[Any]], scheduler: str) -> Generator[tuple[int, Any], None, None]:
+    """Yield the number of each task with its result or failure, as they are finished.
+
+    Raises:
+        BadInput: the scheduler cannot be reached, or its workers would not do the same as this process.
+    """
+    with _client(scheduler) as client:
+        _check_workers(client, scheduler)
+        futures = client.map(_attempt_there, tasks, ours=running_source(), pure=False)
+        numbers = {future.key: number for number, future in enumerate(futures)}
+        done = as_completed(futures)  # type: ignore[no-untyped-call]
+        del futures  # so that the cluster forgets what was handed over
+        for future in done:
+            number = numbers[future.key]
+            yield number, _outcome(tasks[number], future)
+
+
+def _attempt_there(task: Task[Any], ours: Source) -> Any:
+    """Do a task, unless this worker, which may have come later, would do it differently."""
+    fault = _difference(ours, running_source())
+    return Failure(task.name, f"its worker {fault}") if fault else attempt(task, lambda _part: None)
+
+
+def _outcome(task: Task[Any], future: Any) -> Any:
+    try:
+        return future.result()
+    except KilledWorker:
+        return Failure(task.name, "its workers were killed again and again, perhaps for want of memory")
+    except Exception as error:
+        return Failure(task.name, f"was lost by the cluster: {type(error).__name__}")
+
+
+@contextmanager
+def _client(scheduler: str) -> Iterator[Any]:
+    try:
+        client = Client(scheduler, timeout=CONNECT_S)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError) as error:
+        raise BadInput(f"--scheduler {scheduler}: cannot be reached: {error}") from None
+    with client:
+        yield client
+
+
+def _check_workers(client: Any, scheduler: str) -> None:
+    """Refuse a cluster that would not do the same as this process.
+
+    Raises:
+        BadInput: it has no worker, or one with another PeopleBoy or with several threads.
+    """
+    try:
+        client.wait_for_workers(1, timeout=WORKERS_S)
+    except TimeoutError:
+        raise BadInput(f"--scheduler {scheduler}: has no workers; start some with dask worker") from None
+    for address, threads in client.nthreads().items():
+        if threads > 1:
+            raise BadInput(
+                f"--scheduler {scheduler}: worker {address} has {threads} threads, and a run wants a process "
+                "of its own; start it with --nthreads 1"
+            )
+    ours = running_source()
+    for address, theirs in client.run(running_source, on_error="return").items():
+        fault = "has no such peopleboy" if isinstance(theirs, Exception) else _difference(ours, theirs)
+        if fault:
+            raise BadInput(f"--scheduler {scheduler}: worker {address} {fault}; give it the same environment")
+
+
+def _difference(ours: Source, theirs: Source) -> str:
+    """Say what a worker has otherwise; empty if all is the same."""
+    for name in ours:
+        if ours[name] != theirs.get(name):
+            if name == "source":
+                return "has another source of peopleboy"
+            return f"has {name} {theirs.get(name, 'missing')} instead of {ours[name]}"
+    return ""

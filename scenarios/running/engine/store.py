@@ -1,0 +1,82 @@
+"""Results of finished tasks, one JSON line each: whoever is killed goes on from there."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from peopleboy import sim, tracker
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.out_folder import writing_to
+
+Result = dict[str, Any]
+
+
+class Store(Mapping[str, Result]):
+    """Results by key, on disk as soon as they are added.
+
+    A line that was cut off by a kill is left out, and so are results of other code.
+    """
+
+    def __init__(self, path: Path, code: str) -> None:
+        """Open it, or make it.
+
+        Args:
+            path: of the file.
+            code: on which results depend, as a hash.
+
+        Raises:
+            BadInput: the file's folder cannot be written to.
+        """
+        self.path = path
+        self._code = code
+        self._results: dict[str, Result] = {}
+        with writing_to(path.parent):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            text = path.read_text(encoding="utf-8") if path.is_file() else ""
+        for line in text.splitlines():
+            self._take(line)
+        self._is_torn = bool(text) and not text.endswith("\n")
+
+    def __getitem__(self, key: str) -> Result:
+        return self._results[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._results)
+
+    def __len__(self) -> int:
+        return len(self._results)
+
+    def add(self, key: str, result: Result) -> None:
+        """Keep a result; it is on disk when this returns."""
+        line = json.dumps({"key": key, "code": self._code, "result": result}) + "\n"
+        with self.path.open("a", encoding="utf-8") as file:
+            file.write("\n" + line if self._is_torn else line)
+            file.flush()
+            os.fsync(file.fileno())
+        self._is_torn = False
+        self._results[key] = result
+
+    def _take(self, line: str) -> None:
+        try:
+            entry = json.loads(line)
+        except ValueError:
+            return
+        if entry["code"] == self._code:
+            self._results[entry["key"]] = entry["result"]
+
+
+@cache
+def code_digest(*further: Path) -> str:
+    """Hash what results depend on: trackers, simulator, packages, and files that say how they come about."""
+    digest = sha256(json.dumps(versions(), sort_keys=True).encode())
+    roots = [Path(tracker.__path__[0]), Path(sim.__path__[0])]
+    files = [path for root in roots for path in root.rglob("*") if path.suffix in (".py", ".yaml")]
+    for path in sorted([*files, *further]):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]

@@ -1,0 +1,64 @@
+"""Do units of work that are missing, and keep their results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from peopleboy.scenarios.running.engine.engine import work_through
+from peopleboy.scenarios.running.engine.store import Result, Store, code_digest
+from peopleboy.scenarios.running.engine.task import Task, Tell
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
+
+MEASURES = ("delay_units.py", "learn_units.py", "units.py")
+"""The files beside this one that say how results are measured."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnitTask:
+    """A unit for the engine."""
+
+    unit: Unit
+    size: int = 1
+
+    @property
+    def name(self) -> str:
+        """Its key."""
+        return self.unit.key
+
+    def __call__(self, tell: Tell) -> Result:  # noqa: ARG002
+        """Do it."""
+        return self.unit.run()
+
+
+def open_store(path: Path) -> Store:
+    """Open the file of results, of which those count that this code would give again.
+
+    Raises:
+        BadInput: its folder cannot be written to.
+    """
+    return Store(path, code_digest(*(Path(__file__).with_name(name) for name in MEASURES)))
+
+
+def run_units(units: Sequence[Unit], store: Store, workers: Workers) -> None:
+    """Do the units that are not in the store yet, and put each there as soon as it is finished.
+
+    Units that measure time are done one after the other in this process, after all others; several with the
+    same key are done once.
+
+    Raises:
+        BadInput: the cluster cannot be used.
+        TasksFailed: some units failed, after all others were done.
+    """
+    missing = {unit.key: unit for unit in units if unit.key not in store}
+    keep = partial(_keep, store)
+    for is_timing, who in ((False, workers), (True, Workers(1))):
+        tasks = [UnitTask(unit) for unit in missing.values() if unit.is_timing == is_timing]
+        work_through(tasks, who, "reproduce", keep)
+
+
+def _keep(store: Store, task: Task[Result], result: Result) -> None:
+    store.add(task.name, result)

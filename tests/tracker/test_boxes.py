@@ -1,0 +1,69 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from trackeval.datasets._base_dataset import _BaseDataset
+
+from peopleboy.tracker.boxes import area, corners, image_shares, intersection, iou
+
+
+def random_boxes(seed: int, count: int) -> np.ndarray:
+    return np.random.default_rng(seed).uniform([-20, -20, 0, 0], [80, 80, 60, 60], (count, 4))
+
+
+@pytest.mark.parametrize(
+    ("other", "shared", "overlap"),
+    [
+        ((0, 0, 10, 10), 100, 1.0),
+        ((5, 0, 10, 10), 50, 1 / 3),
+        ((2, 2, 5, 5), 25, 0.25),
+        ((10, 0, 10, 10), 0, 0.0),
+        ((20, 20, 5, 5), 0, 0.0),
+        ((5, 5, 0, 3), 0, 0.0),
+        ((-5, -5, 10, 10), 25, 25 / 175),
+    ],
+)
+def test_overlaps_match_those_worked_by_hand(other, shared, overlap):
+    box, other = np.array([0.0, 0.0, 10.0, 10.0]), np.array(other, dtype=float)
+    assert intersection(box, other) == shared
+    assert iou(box, other) == pytest.approx(overlap)
+
+
+def test_two_boxes_without_area_do_not_overlap():
+    nothing = np.array([[3.0, 3.0, 0.0, 0.0]])
+    assert iou(nothing, nothing) == 0.0
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(0, 6), st.integers(0, 6))
+def test_iou_agrees_with_trackeval(seed, rows, columns):
+    a, b = random_boxes(seed, rows), random_boxes(seed + 1, columns)
+    expected = _BaseDataset._calculate_box_ious(a, b, box_format="xywh")
+    assert_allclose(iou(a[:, None], b[None]), expected, atol=1e-12)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_iou_is_symmetric_within_0_and_1_and_1_only_for_a_box_with_itself(seed):
+    a, b = random_boxes(seed, 20), random_boxes(seed + 1, 20)
+    assert_allclose(iou(a, b), iou(b, a), atol=1e-15)
+    assert np.all((iou(a, b) >= 0.0) & (iou(a, b) < 1.0))
+    assert_allclose(iou(a, a), 1.0, atol=1e-12)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_the_shared_area_of_whole_pixel_boxes_is_the_number_of_shared_pixels(seed):
+    a, b = np.floor(random_boxes(seed, 2) / 2.0)
+
+    def pixels(box):
+        left, top, width, height = box.astype(int)
+        return {(u, v) for u in range(left, left + width) for v in range(top, top + height)}
+
+    assert area(a) == len(pixels(a))
+    assert intersection(a, b) == len(pixels(a) & pixels(b))
+
+
+def test_corners_and_shares_of_the_image_are_those_of_the_box():
+    box = (-0.5, 59.5, 320.0, 120.0)
+    assert corners(box) == (-0.5, 59.5, 319.5, 179.5)
+    assert image_shares(box, 320, 240) == (0.0, 0.5, 0.25, 0.75)
+    assert image_shares((319.0, -0.5, 1.0, 240.0), 320, 240) == (1.0, 1.0, 0.0, 1.0)

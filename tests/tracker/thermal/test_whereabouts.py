@@ -1,0 +1,97 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.config import BoxConfig, InteractionConfig, TrackerConfig
+from peopleboy.tracker.thermal.variants import PAPER, THESIS
+from peopleboy.tracker.thermal.whereabouts import (
+    box_of,
+    detector_factor,
+    overlap_shares,
+    person_factor,
+    regions_of,
+)
+
+CONFIG = TrackerConfig()
+TALL = np.array([100.0, 120.0, 12.0, 44.0, 3.0, 0.0, 0.0, 0.0, 0.0])
+
+
+def state(x=100.0, y=120.0, w=10.0, h=30.0):
+    return np.array([x, y, w, h, 0, 0, 0, 0, 0], dtype=np.float32)
+
+
+def test_the_thesis_box_is_2_w_by_3_5_h_from_the_top_of_the_head():
+    assert box_of(TALL, BoxConfig()) == pytest.approx((88, 120 - 44 - 20, 24, 154))
+    assert THESIS.box.height_per_h == 3.5
+
+
+def test_the_paper_box_is_3_h_high():
+    assert box_of(TALL, PAPER.box)[3] == pytest.approx(132)
+
+
+def test_hair_raises_the_top_of_the_box_and_nothing_else():
+    bald, haired = (box_of(TALL, BoxConfig(hair_per_h=hair)) for hair in (0.0, 0.1))
+    assert haired == pytest.approx((bald[0], bald[1] - 4.4, bald[2], bald[3]))
+
+
+def test_the_region_is_the_box_that_is_shown():
+    region = regions_of([state()], CONFIG)[0]
+    box = box_of(state(), CONFIG.box)
+    assert region == pytest.approx(box, rel=1e-6)
+
+
+def test_a_sample_on_a_person_overlaps_it_wholly_and_one_beside_it_not_at_all():
+    shares = overlap_shares(np.stack([state(), state(x=120.0)]), regions_of([state()], CONFIG), CONFIG)
+    assert shares[:, 0] == pytest.approx([1.0, 0.0], abs=1e-6)
+
+
+def test_half_a_width_aside_half_of_the_sample_overlaps():
+    shares = overlap_shares(state(x=110.0)[None], regions_of([state()], CONFIG), CONFIG)
+    assert shares[0, 0] == pytest.approx(0.5, abs=1e-5)
+
+
+@settings(deadline=None, max_examples=30)
+@given(
+    st.lists(st.tuples(*[st.floats(5, 200)] * 4), min_size=1, max_size=5),
+    st.lists(st.tuples(*[st.floats(5, 200)] * 4), min_size=1, max_size=5),
+)
+def test_overlaps_agree_with_counting_by_hand(samples, people):
+    sample = np.array([state(*row) for row in samples])
+    regions = regions_of([state(*row) for row in people], CONFIG)
+    shares = overlap_shares(sample, regions, CONFIG)
+    for i, (left, top, width, height) in enumerate(regions_of(list(sample), CONFIG).astype(float)):
+        for j, (other_left, other_top, other_width, other_height) in enumerate(regions.astype(float)):
+            across = min(left + width, other_left + other_width) - max(left, other_left)
+            down = min(top + height, other_top + other_height) - max(top, other_top)
+            assert shares[i, j] == pytest.approx(
+                max(across, 0) * max(down, 0) / (width * height), rel=1e-3, abs=1e-4
+            )
+
+
+def test_a_persons_samples_are_penalised_once_by_the_overlap_that_costs_most():
+    shares = np.array([[0.0, 0.0], [0.5, 0.25], [0.2, 1.0]], dtype=np.float32)
+    factor = person_factor(shares, np.array([2.0, 0.5]))
+    assert factor == pytest.approx(np.exp([0.0, -1.0, -0.5]), rel=1e-6)
+
+
+def test_alone_nobody_is_penalised():
+    assert (person_factor(np.zeros((4, 0), dtype=np.float32), np.zeros(0)) == 1).all()
+
+
+def test_a_detectors_samples_are_penalised_once_however_many_they_overlap():
+    shares = np.array([[0.0, 0.0], [0.01, 0.0], [0.4, 0.9]], dtype=np.float32)
+    assert detector_factor(shares, InteractionConfig()) == pytest.approx([1.0, 0.01, 0.01])
+    lenient = InteractionConfig(detector_overlap=0.3)
+    assert detector_factor(shares, lenient) == pytest.approx([1.0, 1.0, 0.01])
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"penalty": -1.0}, {"detector_penalty": 1.5}, {"max_persons": 0}, {"occluded_penalty": -0.1}]
+)
+def test_impossible_interactions_are_refused(wrong):
+    with pytest.raises(BadInput, match=next(iter(wrong))):
+        replace(InteractionConfig(), **wrong)

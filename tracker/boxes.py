@@ -1,0 +1,72 @@
+"""Boxes: their corners and shares of the image, their areas and overlaps.
+
+A box is left, top, width, height in pixels; pixel (0, 0) spans -0.5..0.5.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+Box = tuple[float, float, float, float]
+
+
+class ImageShares(NamedTuple):
+    """Where a box is, in shares of the image.
+
+    x is that of its middle in half image widths, 0 in the middle of the image, 1 at the right border; the
+    others are in image heights, counted from the top.
+    """
+
+    x: float
+    height: float
+    top: float
+    bottom: float
+
+
+def corners(box: Box) -> Box:
+    """Give left, top, right, bottom [px] of a box."""
+    left, top, width, height = box
+    return left, top, left + width, top + height
+
+
+def image_shares(box: Box, width_px: int, height_px: int) -> ImageShares:
+    """Express a box in shares of an image of that size."""
+    left, top, width, height = box
+    return ImageShares(
+        x=(left + width / 2.0 - (width_px - 1) / 2.0) / (width_px / 2.0),
+        height=height / height_px,
+        top=(top + 0.5) / height_px,
+        bottom=(top + height + 0.5) / height_px,
+    )
+
+
+def area(box: Floats) -> Floats:
+    """Give the areas (...) [px^2] of boxes (..., 4)."""
+    return np.asarray(box[..., 2] * box[..., 3])
+
+
+def intersection(a: Floats, b: Floats) -> Floats:
+    """Give the areas (...) [px^2] that boxes a (..., 4) and b (..., 4) share; leading axes broadcast."""
+    near = np.maximum(a[..., :2], b[..., :2])
+    far = np.minimum(a[..., :2] + a[..., 2:], b[..., :2] + b[..., 2:])
+    side = np.maximum(far - near, 0.0)
+    return np.asarray(side[..., 0] * side[..., 1])
+
+
+def iou(a: Floats, b: Floats) -> Floats:
+    """Give intersection over union (...) of boxes a (..., 4) and b (..., 4); leading axes broadcast.
+
+    Symmetric, in 0..1; 1 for a box with itself, 0 where either box has no area.
+    """
+    shared = intersection(a, b)
+    return cover(shared, area(a) + area(b) - shared)
+
+
+def cover(shared: Floats, whole: Floats) -> Floats:
+    """Give the shares (...) shared / whole, at most 1, and 0 where there is no whole to cover."""
+    ratio = np.divide(shared, whole, out=np.zeros_like(shared), where=whole > 0.0)
+    return np.minimum(ratio, 1.0)

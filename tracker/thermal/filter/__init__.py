@@ -1,1 +1,0 @@
-"""Particles: motion, prior, resampling."""

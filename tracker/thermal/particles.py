@@ -1,0 +1,286 @@
+"""Weighted hypotheses of one person's contour: where they come from, how they move, and what they say."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.thermal.config import (
+    REFERENCE_HEIGHT_PX,
+    FilterConfig,
+    LimitsConfig,
+    MotionConfig,
+    TrackerConfig,
+)
+
+X: Final = 0
+Y: Final = 1
+W: Final = 2
+H: Final = 3
+D: Final = 4
+VX: Final = 5
+VY: Final = 6
+VW: Final = 7
+VH: Final = 8
+STATE_SIZE: Final = 9
+# A person in body semi-heights: the thesis's head (section 4.2), and feet as seen on people who stand.
+HEAD_DIVISOR: Final = 4.4  # body semi-height / head semi-height
+CROWN: Final = 1 + 2 / HEAD_DIVISOR  # top of the head above the body's centre
+FOOT: Final = 2.05  # feet below it
+HORIZON: Final = 0.5  # row of the horizon [image heights]: the middle, for a level camera
+
+BOX_SPREAD = 0.05  # of a person within a box that is known, as a share of its sides
+
+Floats = NDArray[np.float32]
+Columns = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Particles:
+    """N weighted hypotheses of one person's contour in the thermal image.
+
+    Image frame: u right, v down, origin at the centre of the top-left pixel. Both arrays become read-only.
+
+    Attributes:
+        state: (N, 9) float32 [px, px/s] columns X, Y, W, H, D, VX, VY, VW, VH.
+        weight: (N,) float32, non-negative, sums to 1.
+    """
+
+    state: Floats
+    weight: Floats
+
+    def __post_init__(self) -> None:
+        self.state.setflags(write=False)
+        self.weight.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.weight)
+
+
+def draw_prior(
+    count: int,
+    shape: tuple[int, int],
+    motion: MotionConfig,
+    filter_config: FilterConfig,
+    rng: np.random.Generator,
+) -> Floats:
+    """Draw samples (count, 9) evenly over the limits; velocities normal around standing still.
+
+    Source: thesis, section 4.1, "in our case uniform".
+    """
+    height, width = shape
+    limits = filter_config.limits
+    chance = rng.random((count, 5), dtype=np.float32)
+    velocity = rng.standard_normal((count, 4), dtype=np.float32)
+    state = np.empty((count, STATE_SIZE), dtype=np.float32)
+    state[:, X] = width * chance[:, 0]
+    state[:, H] = height * _heights(limits.h, chance[:, 2], filter_config.log_uniform_h)
+    state[:, Y] = _rows(height, state[:, H], limits, chance[:, 1])
+    state[:, W] = state[:, H] * _between(limits.ratio_wh, chance[:, 3])
+    state[:, D] = state[:, W] * _between(limits.ratio_dw, chance[:, 4])
+    noise = (motion.noise_x, motion.noise_y, motion.noise_w, motion.noise_h)
+    amplitude = np.array(noise if motion.fresh_speed is None else motion.fresh_speed, dtype=np.float32)
+    state[:, [VX, VY, VW, VH]] = height / REFERENCE_HEIGHT_PX * amplitude * velocity
+    return state
+
+
+def _heights(limits: tuple[float, float], chance: Floats, is_log_uniform: bool) -> Floats:
+    """Draw h in image heights; log-uniform, small and far people are as many as large and near ones."""
+    if not is_log_uniform:
+        return _between(limits, chance)
+    h: Floats = np.exp(_between((math.log(limits[0]), math.log(limits[1])), chance))
+    return h
+
+
+def _rows(height: int, h: Floats, limits: LimitsConfig, chance: Floats) -> Floats:
+    """Draw y [px] between the limits, those of the floor included."""
+    low = np.maximum(limits.y[0] * height, HORIZON * height + limits.y_below_horizon[0] * h)
+    high = np.minimum(limits.y[1] * height, HORIZON * height + limits.y_below_horizon[1] * h)
+    y: Floats = low + (high - low) * chance
+    return y
+
+
+def _between(limits: tuple[float, float], chance: Floats) -> Floats:
+    drawn: Floats = np.float32(limits[0]) + np.float32(limits[1] - limits[0]) * chance
+    return drawn
+
+
+def draw_around(
+    box: tuple[float, float, float, float], config: TrackerConfig, rng: np.random.Generator
+) -> Floats:
+    """Draw samples (N, 9) of a standing person whose box [px] is known.
+
+    The box gives top, height and column; its width may be that of arms and a stride, so that of the body is
+    drawn from what bodies may have.
+    """
+    left, top, width, height = box
+    limits, count = config.person.limits, config.person.count
+    h = height / config.box.height_per_h * np.exp(BOX_SPREAD * rng.standard_normal(count))
+    state = np.zeros((count, STATE_SIZE), dtype=np.float32)
+    state[:, H] = h
+    state[:, X] = left + width / 2 + BOX_SPREAD * width * rng.standard_normal(count)
+    state[:, Y] = top + (CROWN + config.box.hair_per_h) * h
+    state[:, W] = h * rng.uniform(*limits.ratio_wh, count)
+    state[:, D] = state[:, W] * rng.uniform(*limits.ratio_dw, count)
+    return state
+
+
+def predict(
+    state: Floats, dt_s: float, size: float, config: MotionConfig, rng: np.random.Generator
+) -> Floats:
+    """Draw the (N, 9) states one time step later.
+
+    Constant velocity in (x, y, w, h), a random walk in d and in the velocities.
+
+    Args:
+        state: (N, 9) particles now.
+        dt_s: time step [s].
+        size: image height / 240; the amplitudes are given for an image of 240 rows.
+        config: amplitudes of the random walk.
+        rng: source of chance.
+
+    Source: thesis, equations 4.7 and 4.8.
+    """
+    noise = rng.standard_normal((len(state), 5), dtype=np.float32)
+    amplitude = noise_per_step(dt_s, size, config)
+    memory = np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
+    moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, memory)
+    return moved
+
+
+def turned(x: Columns, turn_rad: float, focal_px: float, centre_px: float) -> Columns:
+    """Tell where columns x [px] lie after the camera has turned to the left, which moves them to the right.
+
+    The thesis leaves the robot's motion to chance; its turn is known from odometry and need not be.
+    """
+    tangent, slope = math.tan(turn_rad), (x - centre_px) / focal_px
+    moved: Columns = centre_px + focal_px * (slope + tangent) / (1 - slope * tangent)
+    return moved
+
+
+def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
+    """Give the amplitudes (5,) of the random walk in d, vx, vy, vw, vh over one step, the last entries of B.
+
+    The sources mean magnitudes a second: the velocities' entries reach the position times dt by way of A, so
+    d's entry is multiplied by dt here.
+    """
+    amplitude = np.array(
+        [config.noise_d * dt_s, config.noise_x, config.noise_y, config.noise_w, config.noise_h]
+    )
+    return (size * amplitude).astype(np.float32)
+
+
+def equally_weighted(state: Floats) -> Particles:
+    """Give every one of the (N, 9) states the weight 1/N."""
+    return Particles(state, np.full(len(state), 1 / len(state), dtype=np.float32))
+
+
+def normalised(weight: Floats) -> Floats:
+    """Scale (N,) non-negative weights to sum to 1; equal weights where none is positive."""
+    total = float(weight.sum(dtype=np.float64))
+    if not total > 0:
+        return np.full(len(weight), 1 / len(weight), dtype=np.float32)
+    return (weight / total).astype(np.float32)
+
+
+def resample(particles: Particles, count: int, rng: np.random.Generator) -> Floats:
+    """Draw the states (count, 9) of equally weighted particles by systematic resampling.
+
+    Row i appears floor(count w_i) or ceil(count w_i) times; the whole draw uses one random number.
+
+    Source: thesis, algorithm 4.
+    """
+    return particles.state[systematic_rows(particles.weight, count, rng.random())]
+
+
+def mean_state(particles: Particles) -> NDArray[np.float64]:
+    """Average the (9,) state by weight.
+
+    Source: thesis, equation 4.2; its extra 1/N is a slip once the weights are normalised.
+    """
+    return particles.weight.astype(np.float64) @ particles.state.astype(np.float64)
+
+
+def uncertainty_px2(particles: Particles) -> float:
+    """Measure the weighted squared distance of the particles from their mean, over x and y [px^2].
+
+    Source: thesis, equation 4.6; read over the position alone, since the sources' threshold of 400 counts
+    pixels.
+    """
+    weight = particles.weight.astype(np.float64)
+    away = particles.state[:, :2].astype(np.float64)
+    away -= weight @ away
+    return float(weight @ (away * away).sum(axis=1))
+
+
+def select(particles: Particles, rows: NDArray[np.int64]) -> Particles:
+    """Keep some of the particles, their weights scaled to sum to 1."""
+    return Particles(particles.state[rows], normalised(particles.weight[rows]))
+
+
+def core_rows(particles: Particles, share: float, reach: float) -> NDArray[np.int64]:
+    """Choose the particles that make the estimate: of the best ones, those near the very best.
+
+    With several people in view the mean over all particles lies between them (thesis, figure 4.5); the mean
+    over those near the best lies on one of them.
+
+    Args:
+        particles: the weighted samples.
+        share: the ceil(share N) heaviest particles are kept, and their equals (paper: the best 30 %).
+        reach: largest distance from the heaviest one, in its semi-axes; infinite for all.
+    """
+    count = math.ceil(share * len(particles))
+    # The count-th heaviest weight: those equal to it stay, so that no sorting order decides.
+    least = np.partition(particles.weight, len(particles) - count)[len(particles) - count]
+    rows = np.flatnonzero(particles.weight >= least)
+    if math.isinf(reach):
+        return rows
+    best = particles.state[np.argmax(particles.weight)]
+    away = (particles.state[rows, :2] - best[:2]) / best[W : H + 1]
+    near: NDArray[np.int64] = rows[(away * away).sum(axis=1) <= reach * reach]
+    return near
+
+
+@njit(cache=True, nogil=True)
+def _predicted(
+    state: Floats,
+    noise: Floats,
+    amplitude: Floats,
+    dt_s: float,
+    by_height: float,
+    memory: Floats,
+) -> Floats:
+    result = np.empty_like(state)
+    for i in range(len(state)):
+        # by_height is the semi-height at which the amplitudes hold as they are; 0 keeps them for every size.
+        scale = state[i, H] / by_height if by_height > 0 else 1.0
+        for k in range(4):
+            result[i, k] = state[i, k] + dt_s * state[i, VX + k]
+            result[i, VX + k] = memory[k] * state[i, VX + k] + scale * amplitude[1 + k] * noise[i, 1 + k]
+        result[i, D] = state[i, D] + scale * amplitude[0] * noise[i, 0]
+    return result
+
+
+@njit(cache=True, nogil=True)
+def systematic_rows(weight: Floats, count: int, offset: float) -> NDArray[np.int64]:
+    """Find the rows (count,) under `count` evenly spaced marks on the cumulated weights; offset in [0, 1)."""
+    rows = np.empty(count, dtype=np.int64)
+    total, last = 0.0, 0
+    for k in range(len(weight)):
+        total += weight[k]
+        if weight[k] > 0:
+            last = k
+    row = 0
+    cumulated = float(weight[0])
+    for j in range(count):
+        mark = total * (offset + j) / count
+        while mark >= cumulated and row < last:
+            row += 1
+            cumulated += weight[row]
+        rows[j] = row
+    return rows
