@@ -119,7 +119,7 @@ def _tick(frame: int, boxes: Boxes, hidden: float) -> Tick:
             ben, box=None, whole_box=None, visible_box=None, whole_px=0, visible_fraction=0.0, hidden_by={}
         )
     people = (_at(made.person(1, "anna", 4.0), ANNA), ben)
-    tracks = tuple(replace(made.TRACK, id=number, box=box) for number, box in boxes.items())
+    tracks = tuple(replace(made.with_box(box), id=number) for number, box in boxes.items())
     ellipses = {number: replace(made.ELLIPSE, x=box[0] + box[2] / 2.0) for number, box in boxes.items()}
     explanation = replace(made.explain(tracks), ellipses=ellipses)
     truth = replace(tick.truth, people=people)
