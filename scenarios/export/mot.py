@@ -6,8 +6,8 @@ gt/mot_challenge/peopleboy-all/SEQUENCE/seqinfo.ini      length, frame rate, siz
 /img1/000001.png  images of the camera
 trackers/mot_challenge/peopleboy-all/TRACKER/data/SEQUENCE.txt
 
-The camera is the thermal one unless another is asked for, whose images are counted from 1 too; tracks are
-boxes in the thermal image, so there are none beside the truth of another.
+The camera is the thermal one unless another is asked for, whose images are counted from 1 too; results are
+there if the tracker gave boxes in its images.
 
 Runs of a rendered set are written by split: instead of peopleboy-all there are peopleboy-train, peopleboy-val
 and peopleboy-test.
@@ -17,7 +17,7 @@ There is no det/det.txt: nothing in a run finds people in single images, and tru
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
@@ -58,10 +58,15 @@ def _write_set(name: str, sequences: _Sequences, folder: Path, play: Play) -> No
     for sequence, own in sequences.items():
         _write_sequence(sequence, next(iter(own.values())), truth / name / sequence, play)
         for tracker, shots in own.items():
-            if shots.name == "thermal":
+            if shots.tracks_file.is_file():
                 data = results / name / tracker / "data"
                 data.mkdir(parents=True, exist_ok=True)
-                (data / f"{sequence}.txt").write_bytes((shots.run.folder / "tracks.txt").read_bytes())
+                (data / f"{sequence}.txt").write_text(tracks_text(shots), encoding="utf-8")
+
+
+def tracks_text(shots: OneCamera) -> str:
+    """Give the boxes of the tracker in a camera's images."""
+    return "".join(f"{','.join(cells)}\n" for cells in _numbered(shots, shots.tracks_file))
 
 
 def gt_text(shots: OneCamera) -> str:
@@ -69,10 +74,15 @@ def gt_text(shots: OneCamera) -> str:
 
     These are people nearer than 3 m or farther than 10 m, and those of whom nothing is visible.
     """
-    lines = shots.truth_file.read_text(encoding="utf-8").splitlines()
-    found = (line.split(",") for line in lines)
-    numbered = ([str(shots.number(int(frame))), *rest] for frame, *rest in found)
-    return "".join(f"{','.join(_judged(cells))}\n" for cells in numbered)
+    return "".join(f"{','.join(_judged(cells))}\n" for cells in _numbered(shots, shots.truth_file))
+
+
+def _numbered(shots: OneCamera, path: Path) -> Iterator[list[str]]:
+    """Yield the cells of each line, the frames of the run replaced by the camera's images."""
+    for line in path.read_text(encoding="utf-8").splitlines():
+        frame, *rest = line.split(",")
+        if int(frame) in shots.frames:
+            yield [str(shots.number(int(frame))), *rest]
 
 
 def _sequences(every: Sequence[OneCamera]) -> _Sequences:

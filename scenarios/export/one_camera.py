@@ -47,6 +47,12 @@ class OneCamera:
         name = "gt.txt" if self.name == "thermal" else f"{self.name}.gt.txt"
         return self.run.folder / "truth" / name
 
+    @property
+    def tracks_file(self) -> Path:
+        """What the tracker gave in its images as MOTChallenge text, with the run's frames; may be missing."""
+        folder = self.run.folder
+        return folder / "tracks.txt" if self.name == "thermal" else folder / "tracks" / f"{self.name}.txt"
+
     def number(self, frame: int) -> int:
         """The number of the image that it took in a frame of the run."""
         return (frame - 1) // self.every + 1

@@ -27,7 +27,7 @@ from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Box, Truth
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.track import confirmed
+from peopleboy.tracker.track import FloorPlace, Status, Track, confirmed
 
 Message = tuple[str, str, Any]  # topic, type, content
 
@@ -48,6 +48,12 @@ _VISION: Final = {
         "vision_msgs/BoundingBox2D bbox\nstring id"
     ),
     "Detection2DArray": "std_msgs/Header header\nvision_msgs/Detection2D[] detections",
+    "BoundingBox3D": "geometry_msgs/Pose center\ngeometry_msgs/Vector3 size",
+    "Detection3D": (
+        "std_msgs/Header header\nvision_msgs/ObjectHypothesisWithPose[] results\n"
+        "vision_msgs/BoundingBox3D bbox\nstring id"
+    ),
+    "Detection3DArray": "std_msgs/Header header\nvision_msgs/Detection3D[] detections",
 }
 
 
@@ -90,8 +96,13 @@ class Messenger:
         yield self._detections("/truth/people", _people(tick.truth), time_s)
         for name in (name for name in self._further if name in tick.truths):
             yield self._detections(f"/truth/{name}/people", _people(tick.truths[name]), time_s, name)
-        tracks = [(str(t.id), box, t.confidence) for t, box in confirmed(tick.tracks, THERMAL)]
-        yield self._detections("/tracks", tracks, time_s)
+        for name in due:
+            tracks = [(str(t.id), box, t.confidence) for t, box in confirmed(tick.tracks, name)]
+            if name == THERMAL:
+                yield self._detections("/tracks", tracks, time_s)
+            elif tracks:
+                yield self._detections(f"/tracks/{name}", tracks, time_s, name)
+        yield self._places(tick.tracks, time_s)
         yield "/odom", "nav_msgs/msg/Odometry", self._odometry(tick)
         yield "/tf", "tf2_msgs/msg/TFMessage", self._make("tf2_msgs/TFMessage", transforms=self._frames(tick))
 
@@ -155,6 +166,30 @@ class Messenger:
             header=header,
             results=[self._make("vision_msgs/ObjectHypothesisWithPose", hypothesis=hypothesis, pose=nowhere)],
             bbox=self._make("vision_msgs/BoundingBox2D", center=centre, size_x=width, size_y=height),
+            id=name,
+        )
+
+    def _places(self, tracks: Sequence[Track], time_s: float) -> Message:
+        """Say where on the floor the tracker takes people to stand, with the covariance."""
+        header = self._header(_BASE, time_s)
+        detections = [
+            self._standing(header, str(track.id), track.place, track.confidence)
+            for track in tracks
+            if track.status is not Status.TENTATIVE and track.place is not None
+        ]
+        content = self._make("vision_msgs/Detection3DArray", header=header, detections=detections)
+        return "/tracks/places", "vision_msgs/msg/Detection3DArray", content
+
+    def _standing(self, header: Any, name: str, place: FloorPlace, score: float) -> Any:
+        pose = self._pose_with_covariance(Planar(*place.position_m, 0.0))
+        xx, xy, yy = place.covariance_m2
+        pose.covariance[[0, 1, 6, 7]] = xx, xy, xy, yy
+        hypothesis = self._make("vision_msgs/ObjectHypothesis", class_id="person", score=score)
+        return self._make(
+            "vision_msgs/Detection3D",
+            header=header,
+            results=[self._make("vision_msgs/ObjectHypothesisWithPose", hypothesis=hypothesis, pose=pose)],
+            bbox=self._make("vision_msgs/BoundingBox3D", center=pose.pose, size=self._vector(0.0, 0.0, 0.0)),
             id=name,
         )
 

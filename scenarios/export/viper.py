@@ -1,7 +1,7 @@
 """ViPER XML, the format of the sources' evaluation tool: RUN/truth.xgtf and RUN/tracks.xgtf.
 
 They speak of the thermal images unless another camera is asked for, whose images are counted from 1 too;
-tracks are boxes in the thermal image, so there is the truth alone of another.
+there is a file of results if the tracker gave boxes in them.
 
 People and tracks are objects whose attributes change from frame to frame. ViPER's schema allows whole pixels
 inside the image only in a `bbox`; the four decimal attributes beside it hold the box as it is.
@@ -71,8 +71,9 @@ def write_viper(
         shots, files = with_people(run, camera), run.files()
         (folder / run.name).mkdir()
         _write(folder / run.name / "truth.xgtf", shots, _people(shots, files.people), TRUTH)
-        if camera == "thermal":
-            _write(folder / run.name / "tracks.xgtf", shots, _tracks(files.tracks), TRACK)
+        tracks = files.tracks if camera == "thermal" else files.further.get(camera)
+        if tracks is not None:
+            _write(folder / run.name / "tracks.xgtf", shots, _tracks(shots, tracks), TRACK)
 
 
 def whole_pixels(box: Box, width: int, height: int) -> tuple[int, int, int, int] | None:
@@ -95,13 +96,15 @@ def _people(shots: OneCamera, people: pa.Table) -> dict[int, _Person]:
     return found
 
 
-def _tracks(tracks: TrackBoxes) -> dict[int, _Person]:
+def _tracks(shots: OneCamera, tracks: TrackBoxes) -> dict[int, _Person]:
     found: dict[int, _Person] = {}
     for frame, number, box, confidence in zip(
         tracks.frame, tracks.id, tracks.box, tracks.confidence, strict=True
     ):
         track = found.setdefault(int(number), _Person(f"track {number}"))
-        track.add(int(frame), box, CONFIDENCE=f"{confidence:.4f}")
+        if frame not in shots.frames:
+            continue
+        track.add(shots.number(int(frame)), box, CONFIDENCE=f"{confidence:.4f}")
     return found
 
 

@@ -19,7 +19,7 @@ from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
-from peopleboy.tracker.evaluation.table import FIGURES, Figure
+from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, Figure
 
 LONGEST = 40  # runs that are listed one by one
 _FEWEST_PAIRS = 3  # runs of the same scenario and seed, for an interval of their differences
@@ -136,8 +136,10 @@ def plain_figures(columns: Sequence[Column]) -> PageTable:
 
 
 def all_figures(columns: Sequence[Column]) -> PageTable:
-    """Every figure, with its usual name."""
-    return _figures(columns, [(f.name, f.meaning, f.unit, _values(columns, f)) for f in FIGURES])
+    """Every figure that some run tells of, with its usual name."""
+    every = [scores for column in columns for scores in column.scores]
+    told = [f for f in FIGURES if f.group != FLOOR or any(map(f.is_told_by, every))]
+    return _figures(columns, [(f.name, f.meaning, f.unit, _values(columns, f)) for f in told])
 
 
 def drive_figures(columns: Sequence[Column], group: str) -> PageTable:

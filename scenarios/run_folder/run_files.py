@@ -6,8 +6,8 @@ A run of another version, or one whose files were changed since, is refused here
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pyarrow as pa
@@ -27,7 +27,7 @@ from peopleboy.scenarios.run_folder.tables import (
 )
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 from peopleboy.tracker.evaluation.sequence import Rows, TrackBoxes, TrueBoxes
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.track import Box, Status, Track
 
 _AGAIN = "run the scenario again"
 _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
@@ -42,11 +42,13 @@ class RunFiles:
 
     Attributes:
         truth, tracks: truth/gt.txt and tracks.txt.
+        further: tracks/CAMERA.txt by camera, of those in whose images the tracker gave boxes.
         people, beliefs, robot: truth.parquet, tracks.parquet, robot.parquet.
     """
 
     truth: TrueBoxes
     tracks: TrackBoxes
+    further: Mapping[str, TrackBoxes]
     people: pa.Table
     beliefs: pa.Table
     robot: pa.Table
@@ -58,7 +60,23 @@ class RunFiles:
     def tracks_by_frame(self) -> dict[int, list[Track]]:
         """Give what the tracker said, tentative tracks too."""
         found = _by_frame(self.beliefs).items()
-        return defaultdict(list, {frame: [track_of(row) for row in rows] for frame, rows in found})
+        boxes = self._further_boxes()
+        return defaultdict(
+            list,
+            {
+                frame: [_with_boxes(track_of(row), boxes[frame, row["id"]]) for row in rows]
+                for frame, rows in found
+            },
+        )
+
+    def _further_boxes(self) -> dict[tuple[int, int], dict[str, Box]]:
+        """Give the boxes in further cameras' images, by frame and id."""
+        found: dict[tuple[int, int], dict[str, Box]] = defaultdict(dict)
+        for camera, rows in self.further.items():
+            columns = (rows.frame.tolist(), rows.id.tolist(), rows.box.tolist())
+            for frame, number, (left, top, width, height) in zip(*columns, strict=True):
+                found[frame, number][camera] = (left, top, width, height)
+        return found
 
     def explanations_by_frame(self, tracker: str) -> dict[int, object]:
         """Give what the tracker of that name explained, as far as the table holds it; None where nothing."""
@@ -87,6 +105,7 @@ def read_files(
     files = RunFiles(
         truth=read_truth(folder / _TRUTH_TEXT),
         tracks=read_tracks(folder / _TRACKS_TEXT),
+        further={path.stem: read_tracks(path) for path in sorted((folder / "tracks").glob("*.txt"))},
         people=read_table(folder / "truth.parquet", TRUTH, people),
         beliefs=read_table(folder / "tracks.parquet", TRACKS, TRACKS.names),
         robot=read_table(folder / "robot.parquet", ROBOT, robot),
@@ -166,6 +185,10 @@ def _written_tracks(beliefs: pa.Table) -> pa.Table:
     """Keep the rows of tracks that have a line in tracks.txt."""
     is_sure = pc.not_equal(beliefs["status"], str(Status.TENTATIVE))
     return beliefs.filter(pc.and_(is_sure, pc.is_valid(beliefs["left_px"])))
+
+
+def _with_boxes(track: Track, boxes: Mapping[str, Box]) -> Track:
+    return replace(track, boxes={**track.boxes, **boxes}) if boxes else track
 
 
 def _by_frame(table: pa.Table) -> dict[int, list[Row]]:

@@ -12,6 +12,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 import yaml
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
 from rerun.chunk import RrdReader
 
 from peopleboy.scenarios.files.load import load_scenario
@@ -62,7 +64,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
         make_run(STANDING, folder)
         assert run_cli("run", folder.parent / "standing.yaml", "--out", folder, "--overwrite") == 0
         assert run_cli("report", folder, "--out", folder.parent / "page.html") == 0
-        export(folder, "mot", folder.parent / "mot")
+        export(folder, "mcap", folder.parent / "mcap")
         return folder
 
 
@@ -87,6 +89,17 @@ def test_it_is_in_recording_and_report(run: Path) -> None:
     page = (run.parent / "page.html").read_text(encoding="utf-8")
     assert "1 person, tracked to the end; no identity lost" in page
     assert "mean error" in page
+
+
+def test_it_is_in_a_bag_with_its_covariances(run: Path) -> None:
+    with next((run.parent / "mcap").rglob("*.mcap")).open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        told = [m for _, c, _, m in reader.iter_decoded_messages() if c.topic == "/tracks/places"]
+    assert len(told) == 30
+    (standing,) = told[0].detections
+    assert (told[0].header.frame_id, standing.id) == ("base_link", "1")
+    assert standing.results[0].pose.pose.position.x == 4.0
+    assert standing.results[0].pose.covariance[0] == standing.results[0].pose.covariance[7] == 0.01
 
 
 def test_one_in_a_module_of_one_s_own_is_found_by_name_in_the_working_directory(
@@ -145,6 +158,11 @@ def test_a_camera_that_it_wants_is_mounted_and_nothing_else_changes(
     assert len((more / "tracks" / "rear.txt").read_text(encoding="utf-8").splitlines()) == 30
     assert run_cli("evaluate", more, "--camera", "rear") == 0
     assert run_cli("evaluate", plain, "--camera", "rear") == 2
+    assert run_cli("export", more, "--format", "mot", "--camera", "rear", "--out", tmp_path / "mot") == 0
+    given = next((tmp_path / "mot" / "trackers").rglob("standing-0.txt")).read_text(encoding="utf-8")
+    assert given == (more / "tracks" / "rear.txt").read_text(encoding="utf-8")
+    metrics = json.loads((more / "metrics.json").read_text(encoding="utf-8"))
+    assert metrics["cameras"]["rear"]["counts"]["candidates"] == 30
     # Its scenario.yaml plays the same again.
     assert run_cli("run", more / "scenario.yaml", "--tracker", "peeping", "--out", tmp_path / "again") == 0
     assert (tmp_path / "again" / "tracks" / "rear.txt").read_bytes() == (

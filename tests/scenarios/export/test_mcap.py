@@ -26,16 +26,18 @@ from tests.helpers.runs.exported import export
 
 TOPICS = {
     "/thermal/image/compressed", "/colour/image/compressed", "/thermal/camera_info", "/colour/camera_info",
-    "/truth/people", "/truth/colour/people", "/tracks", "/odom", "/tf",
+    "/truth/people", "/truth/colour/people", "/tracks", "/tracks/places", "/odom", "/tf",
 }  # fmt: skip
 
-# SHA-256 of a type and all that it is made of, as ROS 2's own builds have them (REP 2011).
+# SHA-256 of a type and all that it is made of, as ROS 2's own builds have them (REP 2011); that of
+# Detection3DArray follows from the published definitions.
 HASHES = {
     "nav_msgs/msg/Odometry": "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0",
     "sensor_msgs/msg/CameraInfo": "b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275",
     "sensor_msgs/msg/CompressedImage": "15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a",
     "tf2_msgs/msg/TFMessage": "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
     "vision_msgs/msg/Detection2DArray": "214274120007f4a683866481336b70310268cfa107aebe9d594a6acf75bda968",
+    "vision_msgs/msg/Detection3DArray": "793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018",
 }
 
 lengths, turns = st.floats(-20.0, 20.0), st.floats(-math.pi, math.pi)
