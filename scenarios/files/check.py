@@ -184,7 +184,7 @@ def _check_tracker(name: str) -> None:
 
     if name not in (*TRACKERS, ORACLE):
         known = ", ".join((*TRACKERS, ORACLE))
-        raise BadInput(f"robot.tracker: unknown name {name!r}; there are {known}")
+        raise BadInput(f"unknown name {name!r}; there are {known}", key=("tracker",))
 
 
 def _check_cameras(robot: RobotSpec) -> None:

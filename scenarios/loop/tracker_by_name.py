@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.tracker.trackers import Tracker, make_tracker
+from peopleboy.tracker.trackers import TRACKERS, Tracker, make_tracker
 
 
 def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
@@ -17,7 +18,7 @@ def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
     Raises:
         BadInput: an unknown name, or a tracker of your own that cannot be made.
     """
-    return OracleTracker(truth) if name == ORACLE else make_tracker(name, stream(seed, "tracker"))
+    return OracleTracker(truth) if name == ORACLE else _make(name, seed)
 
 
 def camera_names(name: str) -> tuple[str, ...]:
@@ -26,4 +27,11 @@ def camera_names(name: str) -> tuple[str, ...]:
     Raises:
         BadInput: an unknown name, or a tracker of your own that cannot be made.
     """
-    return () if name == ORACLE else make_tracker(name, stream(0, "tracker")).cameras
+    return () if name == ORACLE else _make(name, seed=0).cameras
+
+
+def _make(name: str, seed: int) -> Tracker:
+    if ":" not in name and name not in TRACKERS:
+        known = ", ".join((*TRACKERS, ORACLE))
+        raise BadInput(f"unknown tracker {name!r}; there are: {known}, and your own as module:Class")
+    return make_tracker(name, stream(seed, "tracker"))
