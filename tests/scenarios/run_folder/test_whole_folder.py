@@ -19,6 +19,7 @@ from peopleboy.scenarios.running.frame_cache import film
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store
 from tests.helpers.calls.footage_calls import refusal
+from tests.helpers.calls.processes import start
 from tests.helpers.images.footage_files import write_folder
 
 WAIT = """
@@ -34,7 +35,7 @@ with whole_folder(Path(sys.argv[1]), {}, overwrite=True) as folder:
 
 def begin(out: Path) -> "subprocess.Popen[str]":
     """Start a process that writes a folder, and wait until it has begun."""
-    process = subprocess.Popen([sys.executable, "-c", WAIT, str(out)], stdout=subprocess.PIPE, text=True)
+    process = start([sys.executable, "-c", WAIT, str(out)], stdout=subprocess.PIPE)
     assert process.stdout is not None
     assert process.stdout.readline() == "begun\n"
     return process

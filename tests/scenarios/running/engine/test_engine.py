@@ -14,6 +14,7 @@ from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.task import TasksFailed
 from peopleboy.scenarios.running.engine.workers import Workers, chosen_workers
+from tests.helpers.calls.processes import start
 from tests.helpers.calls.refused import refused
 from tests.helpers.runs.toy_tasks import ToyTask, diary, diary_lines, squares, toys, work
 
@@ -85,7 +86,7 @@ def test_who_is_ended_midway_takes_its_workers_along_and_goes_on_from_there(
     tmp_path: Path, store: Store, number: int, code: int
 ) -> None:
     command = [sys.executable, "-m", "tests.helpers.runs.toy_tasks", str(tmp_path)]
-    ended = subprocess.Popen([*command, "0.3", "2"], stderr=subprocess.DEVNULL)
+    ended = start([*command, "0.3", "2"], stderr=subprocess.DEVNULL)
     wait_for(lambda: len(Store(store.path, "toys")) >= 3)
     ended.send_signal(number)
     assert ended.wait() == code
