@@ -137,10 +137,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._frame = 0
         self._action = (0.0, 0.0)
         self._tracker: Tracker = make_eyes(self._tracker_name, self._seed, self._world.truth)
-        plan, following = (
-            self._scenario.plan,
-            following_task(config, self._scenario.follow_config().keep_height),
-        )
+        plan, follow = self._scenario.plan, self._scenario.follow_config()
+        following = following_task(config, follow.keep_height)
         self._keep_m = following.keep_m
         self._episode = Episode(plan, self._dt_s, may_lose=self._task != "corridor")
         self._figures = EpisodeFigures(plan, following)
