@@ -1,4 +1,4 @@
-"""Every table and figure with numbers of the two sources."""
+"""Every table and figure with numbers of the sources."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experim
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
 from peopleboy.scenarios.studies.reproduce.experiments.timing import TIMINGS
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, TrackerTrial, Tracking
+from peopleboy.scenarios.studies.reproduce.experiments.webcams import Webcams
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting, Value
 from peopleboy.tracker.evaluation.uncounted import Rule
 from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
@@ -233,6 +234,7 @@ _ALL: tuple[Experiment, ...] = (
     _chapters("figure-7.3", _STEPS),
     *_SWEEPS[5:],
     _paper_figure_5(),
+    Webcams(),
 )
 
 EXPERIMENTS: dict[str, Experiment] = {experiment.id: experiment for experiment in _ALL}

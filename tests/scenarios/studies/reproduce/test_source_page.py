@@ -36,6 +36,7 @@ ALL = {
     *(f"table-{number}" for number in TABLES),
     *(f"paper-{number}" for number in PAPER),
     "section-5.3",
+    "panoramic-webcams",
 }
 
 
