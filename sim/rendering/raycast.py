@@ -63,14 +63,14 @@ def draw(
         if skip[part]:
             continue
         compose(camera_from_part[part], table.part_from_shape[shape], canvas.pose)
-        bounds = _quick_bounds(table, shape, canvas.pose)
+        bounds = quick_bounds(table, shape, canvas.pose)
         area = pixels(lens, bounds)
         if area[0] <= area[2] and area[1] <= area[3]:
-            _draw_shape(table, shape, bits[part], lens, area, canvas)
+            draw_shape(table, shape, bits[part], lens, area, canvas)
 
 
 @njit(cache=True, error_model="numpy")
-def _quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
+def quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
     """Bounds of a shape; of a mesh those of its box."""
     if table.kind[shape] == _MESH:
         low, high = table.extent[shape, 0], table.extent[shape, 1]
@@ -79,9 +79,10 @@ def _quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_shape(
+def draw_shape(
     table: ShapeTable, shape: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
 ) -> None:
+    """Draw one shape at the canvas's pose; arguments as in `draw`, but for its own number and bit."""
     kind, size, surface = table.kind[shape], table.size[shape], table.first_surface[shape]
     pose = canvas.pose
     if kind == _SPHERE:
