@@ -71,7 +71,7 @@ def first_and_last(columns: Mask) -> tuple[int, int]:
     found = np.flatnonzero(columns)
     gaps = np.diff(found, append=found[0] + len(columns))
     widest = int(gaps.argmax())
-    if widest == len(found) - 1:
+    if gaps[widest] == gaps[-1]:
         return int(found[0]), int(found[-1])
     return int(found[widest + 1]), int(found[widest]) + len(columns)
 

@@ -96,10 +96,10 @@ class MirrorSpec(Strict):
     """The mirror of a panoramic camera, a cone over a lens that looks up; what is left out is as usual."""
 
     half_apex_deg: float | None = Field(
-        default=None, gt=45.0, lt=90.0, description="between the cone's axis and its side; usually 72.5"
+        default=None, gt=45.0, le=89.0, description="between the cone's axis and its side; usually 72.5"
     )
     lens_half_angle_deg: float | None = Field(
-        default=None, gt=0.0, lt=90.0, description="between the lens's axis and the image's rim; usually 47"
+        default=None, gt=0.0, le=85.0, description="between the lens's axis and the image's rim; usually 47"
     )
     lens_m: float | None = Field(
         default=None, gt=0.0, le=1.0, description="from the lens up to the cone's tip; usually 0.04"
