@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -37,8 +38,8 @@ def panorama_times(instants: int = 60) -> PanoramaTimes:
             world.step(0.0, 0.0)
             images = world.observe().images
             for found, name in zip(row, CAMERAS, strict=True):
-                found[0] = _timed(lambda name=name: world.truth(name))  # type: ignore[misc]
-                found[1] = found[0] + _timed(lambda name=name: images[name])  # type: ignore[misc]
+                found[0] = _timed(partial(world.truth, name))
+                found[1] = found[0] + _timed(partial(images.__getitem__, name))
     # The first instants compile the kernels.
     truth, whole = np.median(1000.0 * times[3:], axis=0).T
     return PanoramaTimes(truth_ms=tuple(truth.tolist()), whole_ms=tuple(whole.tolist()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, invert_pose
 from peopleboy.sim.rendering.cover import Cover, count_cover
 from peopleboy.sim.rendering.ring import Outline, draw_ring, make_drawing, outline, ring_of
 from peopleboy.sim.rendering.sight import Edges, Mask, Scene, Sight
-from peopleboy.sim.rendering.view import View, person_bits
+from peopleboy.sim.rendering.view import NOBODY, View, person_bits
 
 
 class PanoramicSight(Sight):
@@ -23,6 +24,10 @@ class PanoramicSight(Sight):
     width right of where it would lie in the image. Edges are those of whole pixels; above and below, outlines
     go on beyond the image as `outline` says.
     """
+
+    def __init__(self) -> None:
+        self._outlines: WeakKeyDictionary[Scene, dict[tuple[Panorama, bytes, bytes], Outline]]
+        self._outlines = WeakKeyDictionary()
 
     def view(self, scene: Scene, camera: Panorama, world_from_camera: Matrix) -> View:
         """Draw what a camera sees of a scene."""
@@ -42,15 +47,18 @@ class PanoramicSight(Sight):
 
     def bounds(self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask) -> Edges:
         """Find the rectangle around all pixels that some parts (P,) would fill if nothing hid them."""
-        filled = _alone(scene, camera, world_from_camera, parts)
-        if not filled.pixels:
+        filled, wanted = self._outline(scene, camera, world_from_camera, parts)
+        rows, columns = np.flatnonzero(filled.rows & wanted), filled.columns & wanted
+        if not len(rows):
             return math.nan, math.nan, math.nan, math.nan
-        first, last = first_and_last(filled.columns)
-        return first - 0.5, filled.top - 0.5, last + 0.5, filled.bottom + 0.5
+        first, last = first_and_last(columns != 0)
+        top, bottom = int(rows[0]) + filled.first_row, int(rows[-1]) + filled.first_row
+        return first - 0.5, top - 0.5, last + 0.5, bottom + 0.5
 
     def area(self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask) -> int:
         """Count the pixels that some parts (P,) would fill if nothing hid them."""
-        return _alone(scene, camera, world_from_camera, parts).pixels
+        filled, wanted = self._outline(scene, camera, world_from_camera, parts)
+        return int(np.count_nonzero(filled.pixels & wanted))
 
     def cover(self, view: View, owner_of_part: NDArray[np.int64], people: int, owners: int) -> Cover:
         """Count who covers whom; the last column of who is seen on both sides of the seam is beyond it."""
@@ -60,6 +68,20 @@ class PanoramicSight(Sight):
             is_own = (view.part >= 0) & (owner_of_part[view.part] == person)
             cover.bounds[person, :2] = first_and_last(is_own.any(axis=0))
         return cover
+
+    def _outline(
+        self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask
+    ) -> tuple[Outline, np.uint64]:
+        """Give the outline of whoever some parts (P,) belong to, drawn once a scene, and their own bits."""
+        people = np.unique(scene.person_of_part[parts])
+        of_one = parts if len(people) != 1 or people[0] == NOBODY else scene.person_of_part == people[0]
+        key = camera, world_from_camera.tobytes(), of_one.tobytes()
+        known = self._outlines.setdefault(scene, {})
+        bits = np.where(of_one, np.uint64(1) << (np.cumsum(of_one) % 64).astype(np.uint64), np.uint64(0))
+        if key not in known:
+            ring_from_part = invert_pose(world_from_camera) @ scene.world_from_part
+            known[key] = outline(scene.table, ring_from_part, bits, camera)
+        return known[key], np.bitwise_or.reduce(bits[parts], initial=np.uint64(0))
 
 
 def first_and_last(columns: Mask) -> tuple[int, int]:
@@ -74,10 +96,6 @@ def first_and_last(columns: Mask) -> tuple[int, int]:
     if gaps[widest] == gaps[-1]:
         return int(found[0]), int(found[-1])
     return int(found[widest + 1]), int(found[widest]) + len(columns)
-
-
-def _alone(scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask) -> Outline:
-    return outline(scene.table, invert_pose(world_from_camera) @ scene.world_from_part, parts, camera)
 
 
 def _horizontal(camera: Panorama) -> NDArray[np.float32]:

@@ -98,7 +98,7 @@ def draw_shape(
             _draw_lid((i - 0.5) * size[0], size[1], surface + 1 + i, bit, lens, area, canvas)
     elif kind == _BOX:
         for i in range(6):
-            _draw_face(size, i % 3, 1.0 if i < 3 else -1.0, surface + i, bit, lens, area, canvas)
+            draw_face(size, i % 3, 1.0 if i < 3 else -1.0, surface + i, bit, lens, area, canvas)
     elif kind == _PLANE:
         normal = (pose[0, 2], pose[1, 2], pose[2, 2])
         _draw_flat(normal, map_point(pose, 0.0, 0.0, 0.0), 0, surface, bit, lens, area, canvas)
@@ -189,7 +189,7 @@ def _draw_lid(
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_face(
+def draw_face(
     size: Array,
     axis: int,
     sign: float,

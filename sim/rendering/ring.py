@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.vectors import compose, map_point
 from peopleboy.sim.rendering.canvas import Canvas, Lens, pixels, shade
-from peopleboy.sim.rendering.raycast import draw_shape, quick_bounds
+from peopleboy.sim.rendering.raycast import draw_face, draw_shape, quick_bounds
+from peopleboy.sim.shapes.bounds import FAR_M
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
 
@@ -36,6 +37,22 @@ class Ring(NamedTuple):
 
     lens: Lens
     column_from_ring: Array
+
+
+class Pieces(NamedTuple):
+    """Shapes, and of boxes their faces, that may be seen in some columns.
+
+    Attributes:
+        shape: (N,) number of the shape.
+        face: (N,) number of the face, -1 for the whole shape.
+        pose: (N, 3, 4) ring from shape.
+        span: (N, 2) first column, and number of columns.
+    """
+
+    shape: NDArray[np.int64]
+    face: NDArray[np.int64]
+    pose: Array
+    span: NDArray[np.int64]
 
 
 class Drawing(NamedTuple):
@@ -73,21 +90,22 @@ def make_drawing(camera: Panorama) -> Drawing:
 
 
 class Outline(NamedTuple):
-    """What some parts fill of a panorama that goes on beyond its top and bottom.
+    """What parts fill of a panorama that goes on beyond its top and bottom, as bits of the parts.
 
     Attributes:
-        pixels: how many.
-        top, bottom: first and last row.
-        columns: (W,) whether there are any.
+        pixels: (N,) those that fill a pixel, for each that any does.
+        rows: (R,) those that fill any of a row.
+        columns: (W,) those that fill any of a column.
+        first_row: number of the first row, negative above the image.
     """
 
-    pixels: int
-    top: int
-    bottom: int
-    columns: NDArray[np.bool_]
+    pixels: NDArray[np.uint64]
+    rows: NDArray[np.uint64]
+    columns: NDArray[np.uint64]
+    first_row: int
 
 
-def outline(table: ShapeTable, ring_from_part: Array, parts: NDArray[np.bool_], camera: Panorama) -> Outline:
+def outline(table: ShapeTable, ring_from_part: Array, bits: NDArray[np.uint64], camera: Panorama) -> Outline:
     """Find what some parts would fill if nothing hid them, the image's top and bottom neither.
 
     The image is continued by its own height upwards, and downwards as well or to where it would look straight
@@ -96,38 +114,43 @@ def outline(table: ShapeTable, ring_from_part: Array, parts: NDArray[np.bool_], 
     Args:
         table: the shapes.
         ring_from_part: (P, 4, 4).
-        parts: (P,) which parts.
+        bits: (P,) of each part, 0 for those that do not count.
         camera: the panorama.
     """
     lens, poses = ring_of(camera)
     below = min(camera.height, math.floor(camera.focal_px / math.tan(camera.mirror.axis_rad) - 0.5))
     longer = lens._replace(centre_u=lens.centre_u + camera.height, width=2 * camera.height + below)
     shading = np.empty((len(table.surface_part), 7))
-    pixels, top, bottom, columns = _outline(table, ring_from_part, ~parts, Ring(longer, poses), shading)
-    return Outline(pixels, top - camera.height, bottom - camera.height, columns)
+    return Outline(*_outline(table, ring_from_part, bits, Ring(longer, poses), shading), -camera.height)
 
 
 @njit(cache=True, error_model="numpy")
 def _outline(
-    table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], ring: Ring, shading: Array
-) -> tuple[int, int, int, NDArray[np.bool_]]:
+    table: ShapeTable, ring_from_part: Array, bits: NDArray[np.uint64], ring: Ring, shading: Array
+) -> tuple[NDArray[np.uint64], NDArray[np.uint64], NDArray[np.uint64]]:
     width, height = len(ring.column_from_ring), ring.lens.width
-    shapes, poses, spans = _before(table, ring_from_part, skip, width)
+    pieces = _before(table, ring_from_part, bits == 0, ring)
     drawing = Drawing(
         np.zeros((1, height)), np.empty((1, height), np.int32), np.zeros((1, height), np.uint64)
     )
-    canvas, bits = _canvas(drawing, 0, shading), np.ones(len(skip), np.uint64)
-    pixels, top, bottom, columns = 0, height, -1, np.zeros(width, np.bool_)
-    is_near = _any_span(spans, width)
+    canvas, cover = _canvas(drawing, 0, shading), drawing.cover[0]
+    rows, columns = np.zeros(height, np.uint64), np.zeros(width, np.uint64)
+    found, count = np.empty(1024, np.uint64), 0
+    is_near = _any_span(pieces.span, width)
     for u in range(width):
         if not is_near[u]:
             continue
-        _draw_column(table, bits, ring, u, shapes, poses, spans, canvas)
+        _draw_column(table, bits, ring, u, pieces, canvas)
+        if count + height > len(found):
+            found = np.concatenate((found, np.empty(len(found) + height, np.uint64)))
         for v in range(height):
-            if canvas.cover[0, v]:
-                pixels, top, bottom, columns[u] = pixels + 1, min(top, v), max(bottom, v), True
-        canvas.cover[:] = 0
-    return pixels, top, bottom, columns
+            if cover[v] != 0:
+                rows[v] |= cover[v]
+                columns[u] |= cover[v]
+                found[count] = cover[v]
+                count += 1
+        cover[:] = 0
+    return found[:count], rows, columns
 
 
 @njit(cache=True)
@@ -169,10 +192,10 @@ def draw_ring(
         depth: (W, H) gets the depths [m] along the axis of the column's camera, inf where nothing is.
         normal: (W, H, 3) gets the unit normals, world frame, 0 where nothing is.
     """
-    shapes, poses, spans = _before(table, ring_from_part, skip, len(drawing.nearness))
+    pieces = _before(table, ring_from_part, skip, ring)
     for u in range(len(drawing.nearness)):
         canvas = _canvas(drawing, u, shading)
-        _draw_column(table, bits, ring, u, shapes, poses, spans, canvas)
+        _draw_column(table, bits, ring, u, pieces, canvas)
         turned = np.empty((3, 3))
         for i in range(3):
             for j in range(3):
@@ -199,51 +222,81 @@ def _canvas(drawing: Drawing, u: int, shading: Array) -> Canvas:
 
 @njit(cache=True, error_model="numpy")
 def _draw_column(
-    table: ShapeTable,
-    bits: NDArray[np.uint64],
-    ring: Ring,
-    u: int,
-    shapes: NDArray[np.int64],
-    poses: Array,
-    spans: NDArray[np.int64],
-    canvas: Canvas,
+    table: ShapeTable, bits: NDArray[np.uint64], ring: Ring, u: int, pieces: Pieces, canvas: Canvas
 ) -> None:
-    """Draw the shapes that may be seen in one column."""
+    """Draw the pieces that may be seen in one column."""
     width = len(ring.column_from_ring)
-    for i in range(len(shapes)):
-        if (u - spans[i, 0]) % width >= spans[i, 1]:
+    for i in range(len(pieces.shape)):
+        if (u - pieces.span[i, 0]) % width >= pieces.span[i, 1]:
             continue
-        shape = shapes[i]
-        compose(ring.column_from_ring[u], poses[i], canvas.pose)
+        shape, face = pieces.shape[i], pieces.face[i]
+        bit = bits[table.part[shape]]
+        compose(ring.column_from_ring[u], pieces.pose[i], canvas.pose)
+        if face >= 0:
+            whole = (0, 0, ring.lens.width - 1, 0)
+            sign, surface = 1.0 if face < 3 else -1.0, table.first_surface[shape] + face
+            draw_face(table.size[shape], face % 3, sign, surface, bit, ring.lens, whole, canvas)
+            continue
         area = pixels(ring.lens, quick_bounds(table, shape, canvas.pose))
         if area[0] <= area[2] and area[1] <= area[3]:
-            draw_shape(table, shape, bits[table.part[shape]], ring.lens, area, canvas)
+            draw_shape(table, shape, bit, ring.lens, area, canvas)
 
 
 @njit(cache=True, error_model="numpy")
-def _before(
-    table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], width: int
-) -> tuple[NDArray[np.int64], Array, NDArray[np.int64]]:
-    """The shapes not to skip: (N,) numbers, (N, 3, 4) poses, (N, 2) first column and number of columns."""
-    shapes = np.array([s for s in range(len(table.kind)) if not skip[table.part[s]]], np.int64)
-    poses = np.empty((len(shapes), 3, 4))
-    spans = np.empty((len(shapes), 2), np.int64)
-    for i in range(len(shapes)):
-        shape = shapes[i]
-        compose(ring_from_part[table.part[shape]], table.part_from_shape[shape], poses[i])
-        spans[i, 0], spans[i, 1] = _span(table, shape, poses[i], width)
-    return shapes, poses, spans
+def _before(table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], ring: Ring) -> Pieces:
+    """Find what may be seen of the shapes not to skip."""
+    most, width = 6 * len(table.kind), len(ring.column_from_ring)
+    pieces = Pieces(
+        np.empty(most, np.int64),
+        np.empty(most, np.int64),
+        np.empty((most, 3, 4)),
+        np.empty((most, 2), np.int64),
+    )
+    offset = ring.column_from_ring[0, :, 3]
+    radius, count = math.sqrt((offset * offset).sum()), 0
+    for shape in range(len(table.kind)):
+        if skip[table.part[shape]]:
+            continue
+        pose = pieces.pose[count]
+        compose(ring_from_part[table.part[shape]], table.part_from_shape[shape], pose)
+        first, end = (0, 6) if table.kind[shape] == _BOX else (-1, 0)
+        low, high = _corners(table, shape)
+        for face in range(first, end):
+            if face >= 0 and not _may_face(pose, table.size[shape], face, radius):
+                continue
+            pieces.shape[count], pieces.face[count], pieces.pose[count] = shape, face, pose
+            pieces.span[count] = _span(
+                pose, _flattened(low, face, high), _flattened(high, face - 3, low), width
+            )
+            count += 1
+    return Pieces(pieces.shape[:count], pieces.face[:count], pieces.pose[:count], pieces.span[:count])
 
 
 @njit(cache=True, error_model="numpy")
-def _span(table: ShapeTable, shape: int, pose: Array, width: int) -> tuple[int, int]:
-    """First column, and number of columns, in which a shape may be seen: all directions of its box.
+def _may_face(pose: Array, size: Array, face: int, radius: float) -> bool:
+    """Whether a box's face may be turned to one of the cameras, which are so far from the middle."""
+    axis, sign = face % 3, 1.0 if face < 3 else -1.0
+    distance = size[axis] / 2.0
+    for i in range(3):
+        distance += sign * pose[i, axis] * pose[i, 3]
+    return bool(distance < radius)
+
+
+@njit(cache=True, error_model="numpy")
+def _flattened(corner: Array, axis: int, other: Array) -> Array:
+    """A corner of a box that is moved to the opposite one's plane along an axis, if it is one."""
+    moved = corner.copy()
+    if 0 <= axis < 3:
+        moved[axis] = other[axis]
+    return moved
+
+
+@njit(cache=True, error_model="numpy")
+def _span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, int]:
+    """First column, and number of columns, in which the box between two corners may be seen.
 
     Seen from the middle, a box that does not stand round it spans less than half the horizon.
     """
-    if table.kind[shape] == _PLANE:
-        return 0, width
-    low, high = _corners(table, shape)
     x, _, z = map_point(pose, (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0)
     middle, least, most = math.atan2(x, z), 0.0, 0.0
     for corner in range(8):
@@ -270,7 +323,9 @@ def _corners(table: ShapeTable, shape: int) -> tuple[Array, Array]:
     if kind == _MESH:
         return table.extent[shape, 0], table.extent[shape, 1]
     half = size / 2.0
-    if kind == _SPHERE:
+    if kind == _PLANE:
+        half = np.full(3, FAR_M)
+    elif kind == _SPHERE:
         half = np.full(3, size[0])
     elif kind != _BOX:
         # A capsule is as much longer than a cylinder as its ends are round.

@@ -102,7 +102,8 @@ def test_boxes_and_areas_count_on_over_the_seam(world: World) -> None:
         columns = np.arange(round(left + 0.5), round(left + 0.5 + width)) % 480
         assert -0.5 <= left < 479.5
         assert mask[:, columns].sum() == mask.sum()
-        assert mask[:, columns[0]].any() and mask[:, columns[-1]].any()
+        assert mask[:, columns[0]].any()
+        assert mask[:, columns[-1]].any()
         whole_left, _, whole_width, _ = who.whole_box
         assert (left - whole_left) % 480 + width <= whole_width
 
@@ -122,7 +123,8 @@ def test_who_stands_behind_the_robot_spans_the_seam_and_hides_others(turned: Wor
     assert behind.hidden_by.keys() <= {"border"}
     assert hidden.hidden_by["behind"] > 0.5
     assert hidden.visible_fraction + sum(hidden.hidden_by.values()) == pytest.approx(1.0)
-    assert behind.joints_px[:, 0].min() < 20.0 and behind.joints_px[:, 0].max() > 460.0
+    assert behind.joints_px[:, 0].min() < 20.0
+    assert behind.joints_px[:, 0].max() > 460.0
 
 
 def test_turning_on_the_axis_rolls_the_panorama(turned: World) -> None:
