@@ -32,4 +32,4 @@ def raw_and_unrolled() -> Image.Image:
     left = (page.shape[1] - raw.shape[1]) // 2
     page[: raw.shape[0], left : left + raw.shape[1]] = raw
     page[-panorama.shape[0] :] = panorama
-    return Image.fromarray(page)
+    return Image.fromarray(page).quantize(128)  # noise would make the file large
