@@ -266,6 +266,7 @@ class World:
         seen = self._see(config)
         return Glimpse(
             view=seen.view,
+            draw=lambda camera: seen.sight.view(seen.scene, camera, seen.world_from_camera),
             world_from_camera=seen.world_from_camera,
             world_from_part=self._scene.world_from_part,
             materials=self._materials,

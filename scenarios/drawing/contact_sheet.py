@@ -6,6 +6,7 @@ What further cameras saw stands below, with their names.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,7 @@ from peopleboy.scenarios.drawing.overlay import (
     draw_tracks,
     draw_truth,
     enlarge,
+    people_parts,
     show_image,
     show_thermal,
 )
@@ -42,6 +44,8 @@ from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.cameras.overlap import colour_from_thermal
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.wording import counted
 
@@ -51,6 +55,9 @@ MOMENTS: Final = 12
 
 _GAP, _CAPTION, _SEAM = 14, 46, 3
 _TILE: Final = (WIDTH_PX - 2 * MARGIN_PX - (COLUMNS - 1) * _GAP) // COLUMNS
+_WIDE: Final = 2.5  # times as wide as high
+_AXIS_PX: Final = 18
+_TICKS_DEG: Final = (180, 90, 0, -90, -180)
 _NOTE: Final = "Moments"  # of the PNG: where each tile is, and what it shows
 _CHIP: Final[Rgb] = (58, 64, 74)
 
@@ -128,8 +135,8 @@ class ContactSheet:
         return f"{counted(self._last.frame, 'frame')}, {self._last.observation.time_s:.1f} s"
 
     def _tile(self, moment: Moment) -> Image.Image:
-        """Draw one moment: caption, thermal, colour, then further cameras, two beside each other."""
-        further = [moment.further[k : k + 2] for k in range(0, len(moment.further), 2)]
+        """Draw one moment: caption, thermal, colour, then further cameras."""
+        further = _rows_of(moment.further)
         rows = [[self._thermal_picture(moment)], [self._colour_picture(moment)]]
         rows += [[self._further_picture(shot, len(row), moment) for shot in row] for row in further]
         heights = [max(picture.shape[0] for picture in row) for row in rows]
@@ -157,11 +164,19 @@ class ContactSheet:
     def _further_picture(self, shot: Shot, beside: int, moment: Moment) -> Picture:
         """Draw what a further camera saw, with truth where that has boxes, its name and how old it is."""
         scale = _fitting_scale(shot.image, _share(beside))
-        picture = enlarge(show_image(shot.image), scale)
+        picture, camera = enlarge(show_image(shot.image), scale), self._robot.cameras[shot.camera].camera
         if kind_of(self._robot.cameras[shot.camera]).has_boxes:
-            picture = draw_truth(picture, shot.people, scale)
+            picture = draw_truth(picture, people_parts(shot.people, camera), scale)
+        picture = _with_bearings(picture, camera)
         age_s = moment.time_s - shot.time_s
         return _named(picture, f"{shot.camera}, {age_s:.1f} s old" if age_s > 1e-6 else shot.camera)
+
+
+def _rows_of(shots: Sequence[Shot]) -> list[Sequence[Shot]]:
+    """Put further cameras into rows: two beside each other, then those with wide images alone."""
+    wide = [shot for shot in shots if shot.image.shape[1] > _WIDE * shot.image.shape[0]]
+    others = [shot for shot in shots if shot.image.shape[1] <= _WIDE * shot.image.shape[0]]
+    return [*(others[k : k + 2] for k in range(0, len(others), 2)), *([shot] for shot in wide)]
 
 
 def _fitting_scale(image: Picture, room_px: int) -> float:
@@ -182,6 +197,22 @@ def _named(picture: Picture, name: str) -> Picture:
     draw.rectangle((0, 0, draw.textlength(name, font(12)) + 10, 18), PAGE)
     draw.text((5, 9), name, STRONG, font(12), anchor="lm")
     return np.asarray(page, np.uint8)
+
+
+def _with_bearings(picture: Picture, camera: CameraGeometry) -> Picture:
+    """Put an axis of bearings below the picture of a panorama; others stay as they are."""
+    if not isinstance(camera, Panorama):
+        return picture
+    width = picture.shape[1]
+    axis = Image.new("RGB", (width, _AXIS_PX), PAGE)
+    draw, letters = ImageDraw.Draw(axis), font(11)
+    for bearing in _TICKS_DEG:
+        x = (0.5 - math.radians(bearing) / math.tau) * (width - 1)
+        words = f"{bearing}°"
+        half = draw.textlength(words, letters) / 2.0
+        draw.line((x, 0, x, 4), WEAK)
+        draw.text((min(max(x, half), width - half), 11), words, WEAK, letters, anchor="mm")
+    return np.concatenate([picture, np.asarray(axis, np.uint8)])
 
 
 def read_tiles(path: Path) -> list[Tile]:

@@ -7,6 +7,7 @@ against people.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import pairwise
 from typing import Protocol
 
@@ -16,7 +17,10 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.drawing.contour_lines import lines_of
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
@@ -163,6 +167,35 @@ def map_box(box: Box, affine: Matrix) -> Box:
     points = box_corners(box) @ affine[:, :2].T + affine[:, 2]
     (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
     return float(left), float(top), float(right - left), float(bottom - top)
+
+
+def box_parts(box: Box, camera: CameraGeometry) -> tuple[Box, ...]:
+    """Cut a box that goes on over a panorama's seam into its parts at the right border and at the left."""
+    left, top, width, height = box
+    over = left + width - (camera.width - 0.5)
+    if not isinstance(camera, Panorama) or over <= 0.0:
+        return (box,)
+    return (left, top, width - over, height), (-0.5, top, over, height)
+
+
+def people_parts(people: Iterable[PersonTruth], camera: CameraGeometry) -> list[PersonTruth]:
+    """Give people as they are drawn: who stands across the seam twice, with a part of the box each time."""
+    return [
+        replace(person, box=part)
+        for person in people
+        if person.box is not None
+        for part in box_parts(person.box, camera)
+    ]
+
+
+def track_parts(tracks: Iterable[Track], name: str, camera: CameraGeometry) -> list[Track]:
+    """Give tracks with a box in the camera of a name as they are drawn, as in `people_parts`."""
+    return [
+        replace(track, boxes={**track.boxes, name: part})
+        for track in tracks
+        if name in track.boxes
+        for part in box_parts(track.boxes[name], camera)
+    ]
 
 
 def box_corners(box: Box) -> NDArray[np.float64]:

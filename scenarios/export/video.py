@@ -9,7 +9,15 @@ from typing import Final
 import cv2
 import numpy as np
 
-from peopleboy.scenarios.drawing.overlay import Picture, Plate, draw_tracks, draw_truth, enlarge, show_image
+from peopleboy.scenarios.drawing.overlay import (
+    Picture,
+    Plate,
+    draw_tracks,
+    draw_truth,
+    enlarge,
+    people_parts,
+    show_image,
+)
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb
 from peopleboy.scenarios.export.extra import need
 from peopleboy.scenarios.export.one_camera import OneCamera, one_camera
@@ -94,7 +102,8 @@ def _picture(tick: Tick, camera: str, robot: RobotConfig) -> Picture:
         affine = None if camera == "thermal" else colour_from_thermal(robot.cameras)
         picture = draw_tracks(picture, tick.tracks, scale, tick.explanation, affine, plates)
     if kind_of(robot.cameras[camera]).has_boxes:
-        picture = draw_truth(picture, tick.truths[camera].people, scale, plates=plates)
+        people = people_parts(tick.truths[camera].people, robot.cameras[camera].camera)
+        picture = draw_truth(picture, people, scale, plates=plates)
     return _framed(picture)
 
 

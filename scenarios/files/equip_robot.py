@@ -6,10 +6,11 @@ import math
 from dataclasses import fields, replace
 from typing import Any
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.schema.robot import CameraSpec, RobotSpec
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import KINDS
+from peopleboy.sim.geometry.mirror import MIRRORS, Mirror
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 _IN_DEGREES = {"vertical_fov_deg": "vertical_fov_rad", "pitch_deg": "pitch_rad", "yaw_deg": "yaw_rad"}
@@ -36,10 +37,21 @@ def equip_robot(spec: RobotSpec) -> RobotConfig:
 def _camera(name: str, spec: CameraSpec) -> CameraConfig:
     """A camera as usual for its kind, but for what the file says."""
     given: dict[str, Any] = spec.model_dump(exclude_none=True)
-    kind = given.pop("kind")
+    kind, mirror = given.pop("kind"), given.pop("mirror", None)
     usual = KINDS[kind].config()
     geometry = {_RENAMED[key]: given.pop(key) for key in _RENAMED if key in given}
     geometry |= {_IN_DEGREES[key]: math.radians(given.pop(key)) for key in _IN_DEGREES if key in given}
+    if mirror is not None:
+        with found_in(name, "mirror"):
+            geometry["mirror"] = _mirror(mirror)
     for unknown in geometry.keys() - {field.name for field in fields(usual.camera)}:
         raise BadInput(f"{name}.{_KEYS[unknown]}: a camera of the kind {kind!r} has none; leave it out")
     return replace(usual, camera=replace(usual.camera, **geometry), **given)
+
+
+def _mirror(said: str | dict[str, float]) -> Mirror:
+    """A mirror by its name, or the usual one but for some values."""
+    if isinstance(said, str):
+        return MIRRORS[said]
+    radians = {f"{key[:-4]}_rad": math.radians(said[key]) for key in said if key.endswith("_deg")}
+    return replace(Mirror(), **radians, **{key: said[key] for key in said if key.endswith("_m")})

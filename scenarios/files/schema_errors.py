@@ -14,7 +14,7 @@ from peopleboy.bad_input import BadInput, Key
 M = TypeVar("M", bound=BaseModel)
 
 _MOST_FAULTS = 3
-_TAGS = ("word", "list")  # of the schema's own unions
+_TAGS = ("word", "list", "values")  # of the schema's own unions
 
 _LIMITS = {
     "greater_than": "must be greater than {gt:g}",

@@ -12,7 +12,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.drawing.event_wording import describe_fully
-from peopleboy.scenarios.drawing.overlay import encode_jpeg
+from peopleboy.scenarios.drawing.overlay import encode_jpeg, people_parts, track_parts
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.recording import marks
@@ -138,7 +138,7 @@ class Recorder:
         self._tracked |= {camera for track in tick.tracks for camera in track.boxes}
         for name in self._boxed:
             if name in self._tracked:
-                boxes = marks.track_boxes(tick.tracks, name)
+                boxes = marks.track_boxes(track_parts(tick.tracks, name, self._cameras[name].camera), name)
             elif name == "colour":
                 boxes = marks.track_boxes(tick.tracks, affine=self._colour_from_thermal)
             else:
@@ -170,7 +170,9 @@ class Recorder:
 
     def _log_truth(self, tick: Tick) -> None:
         for name in (name for name in self._boxed if name in tick.truths):
-            self._log_named_boxes(name, marks.truth_boxes(tick.truths[name].people))
+            self._log_named_boxes(
+                name, marks.truth_boxes(people_parts(tick.truths[name].people, self._cameras[name].camera))
+            )
         self._log_arrows("truth/occlusions", true_arrows(tick.truth.people))
 
     def _log_named_boxes(self, camera: str, boxes: marks.Boxes) -> None:

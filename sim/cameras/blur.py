@@ -68,14 +68,14 @@ def _sweep_weights(sweep: NDArray[np.float64]) -> Image:
         for k in range(2 * farthest + 1):
             away, half = k - farthest, sweep[u] / 2.0
             is_inside = 0 <= u + away < columns
-            area = _hat_integral(half - away) - _hat_integral(-half - away)
+            area = hat_integral(half - away) - hat_integral(-half - away)
             column[k] = area / sweep[u] if is_inside else 0.0
         weights[:, u] = column / column.sum()
     return weights
 
 
 @njit(cache=True)
-def _hat_integral(end: float) -> float:
+def hat_integral(end: float) -> float:
     """Integral up to `end` of the function that falls from 1 at 0 to 0 at -1 and 1."""
     end = min(max(end, -1.0), 1.0)
     return 0.5 + end - 0.5 * end * abs(end)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 
 # The colour camera sits 6 cm to the left of the thermal one and sees an angle narrower by 1.2 (T eq. 6.1).
@@ -82,8 +83,8 @@ class ThermalConfig(CameraConfig):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ColourConfig(CameraConfig):
-    """A colour camera and its image formation.
+class LightConfig(CameraConfig):
+    """A camera that sees light, and its image formation.
 
     Attributes:
         gain: share of full scale that a white surface facing the light has at light level 1.
@@ -91,9 +92,6 @@ class ColourConfig(CameraConfig):
         shot_noise: standard deviation of the noise of a white pixel, share of full scale.
     """
 
-    kind: ClassVar[str] = "colour"
-
-    camera: Pinhole = field(default_factory=_colour_camera)
     exposure_s: float = 0.015
     gain: float = 0.95
     read_noise: float = 0.004
@@ -102,3 +100,27 @@ class ColourConfig(CameraConfig):
     def noisier(self, factor: float) -> Self:
         """The same camera with so many times the noise."""
         return replace(self, read_noise=factor * self.read_noise, shot_noise=factor * self.shot_noise)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ColourConfig(LightConfig):
+    """A colour camera whose image is flat."""
+
+    kind: ClassVar[str] = "colour"
+
+    camera: Pinhole = field(default_factory=_colour_camera)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanoramaConfig(LightConfig):
+    """A panoramic colour camera.
+
+    Attributes:
+        raw: whether the panorama is unrolled from the round image of the lens, which is given, too: coarse
+            where it looks down steeply, as it is there; otherwise each of its pixels is seen by itself.
+    """
+
+    kind: ClassVar[str] = "panorama"
+
+    camera: Panorama = field(default_factory=Panorama)
+    raw: bool = False

@@ -7,14 +7,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import rotation_blur
-from peopleboy.sim.cameras.camera_config import ColourConfig
+from peopleboy.sim.cameras.camera_config import ColourConfig, LightConfig
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.view import View
 
 # The room's lamps hang above and a little to one side, so that walls and sides of people differ in shade.
-_LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])
+LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])
 _AMBIENT = 0.55
 
 
@@ -40,11 +40,18 @@ def _radiance_image(
                 continue
             x, y, z = surface_point(matrices, p, u, v, depth[v, u])
             second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
-            facing = normal[v, u, 0] * light[0] + normal[v, u, 1] * light[1] + normal[v, u, 2] * light[2]
-            shade = level * (_AMBIENT + (1.0 - _AMBIENT) * max(facing, 0.0)) + colour[p, 6]
+            shade = shade_of(normal[v, u], light, level) + colour[p, 6]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
     return image
+
+
+@njit(cache=True, fastmath=True)
+def shade_of(normal: NDArray[np.float32], light: NDArray[np.float64], level: float) -> float:
+    """Give what a surface of this normal (3,) gets of a light of some level from this direction (3,)."""
+    facing = normal[0] * light[0] + normal[1] * light[1] + normal[2] * light[2]
+    shade: float = level * (_AMBIENT + (1.0 - _AMBIENT) * max(facing, 0.0))
+    return shade
 
 
 def _gamma_table() -> NDArray[np.uint8]:
@@ -84,12 +91,12 @@ def colour_image(
     image = _radiance_image(
         view.part, view.depth, view.normal, matrices,
         materials.colour, materials.kind, materials.period, materials.phase,
-        _LIGHT, light_level * config.gain,
+        LIGHT, light_level * config.gain,
     )  # fmt: skip
     return rotation_blur(image, config.camera, turned_rad)
 
 
-def expose(linear: NDArray[np.float32], config: ColourConfig, rng: np.random.Generator) -> NDArray[np.uint8]:
+def expose(linear: NDArray[np.float32], config: LightConfig, rng: np.random.Generator) -> NDArray[np.uint8]:
     """Add read and shot noise to an (H, W, 3) linear image and encode it as 8-bit sRGB."""
     noise = gaussian(linear.shape, rng)
     return _encode(linear, noise, _GAMMA, np.float32(config.read_noise), np.float32(config.shot_noise))

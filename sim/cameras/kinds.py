@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
-from peopleboy.sim.cameras.sensors import ColourSensor, Image, Sensor, ThermalSensor
+from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, PanoramaConfig, ThermalConfig
+from peopleboy.sim.cameras.sensors import ColourSensor, Image, PanoramaSensor, Sensor, ThermalSensor
 from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.rendering.panoramic_sight import PanoramicSight
 from peopleboy.sim.rendering.sight import FLAT, Sight
 
 Stored = NDArray[np.uint8] | NDArray[np.uint16]
@@ -41,6 +42,11 @@ class Layer:
     encode: Callable[[Image], Stored] = _as_it_is
 
 
+def _round_image(config: PanoramaConfig) -> tuple[Layer, ...]:
+    what = "8-bit colour, the round image that a panorama is unrolled from"
+    return (Layer(what=what, suffix="_raw", folder="_raw"),) if config.raw else ()
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CameraKind:
     """A kind of camera.
@@ -50,6 +56,7 @@ class CameraKind:
         sensor: opens a camera by settings, name and seed; the name is that of its streams of noise, too.
         sight: draws what it sees, and tells the outlines of the truth's boxes; by default as a pinhole does.
         layers: its images; the first, without suffixes, is uint8, and what people and controllers are shown.
+        more_layers: what cameras of some settings give besides.
         channels: of that first image: 1 for (H, W) grey, 3 for (H, W, 3) RGB.
         has_boxes: whether a box round a person makes sense in it.
     """
@@ -58,6 +65,7 @@ class CameraKind:
     sensor: Callable[[Any, str, int], Sensor]
     sight: Sight = FLAT
     layers: tuple[Layer, ...] = (Layer(),)
+    more_layers: Callable[[Any], tuple[Layer, ...]] = lambda config: ()  # noqa: ARG005
     channels: int = 1
     has_boxes: bool = True
 
@@ -73,6 +81,14 @@ KINDS: Final[dict[str, CameraKind]] = {
     ),
     "colour": CameraKind(
         config=ColourConfig, sensor=ColourSensor, layers=(Layer(what="8-bit colour"),), channels=3
+    ),
+    "panorama": CameraKind(
+        config=PanoramaConfig,
+        sensor=PanoramaSensor,
+        sight=PanoramicSight(),
+        layers=(Layer(what="8-bit colour all round, from the robot's back by its left, front and right"),),
+        more_layers=_round_image,
+        channels=3,
     ),
 }
 
@@ -100,15 +116,21 @@ def flat_geometry(cameras: Mapping[str, CameraConfig], name: str) -> Pinhole:
     return geometry
 
 
+def layers_of(config: CameraConfig) -> tuple[Layer, ...]:
+    """Tell which images a camera of these settings gives at an instant."""
+    kind = kind_of(config)
+    return (*kind.layers, *kind.more_layers(config))
+
+
 def image_names(name: str, config: CameraConfig) -> tuple[str, ...]:
     """Name the images that a camera gives, such as thermal and thermal_c."""
-    return tuple(f"{name}{layer.suffix}" for layer in kind_of(config).layers)
+    return tuple(f"{name}{layer.suffix}" for layer in layers_of(config))
 
 
 def image_folders(cameras: Mapping[str, CameraConfig]) -> Iterator[tuple[str, str, Layer]]:
     """Yield folder, name and layer of every image that cameras give."""
     for name, config in cameras.items():
-        for layer in kind_of(config).layers:
+        for layer in layers_of(config):
             yield f"{name}{layer.folder}", f"{name}{layer.suffix}", layer
 
 

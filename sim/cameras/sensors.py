@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.camera_config import ColourConfig, PanoramaConfig, ThermalConfig
 from peopleboy.sim.cameras.colour import colour_image, expose
 from peopleboy.sim.cameras.noise import skip_gaussian
+from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.surfaces import MaterialTable
 from peopleboy.sim.cameras.thermal import detect, encode_8bit, make_detector, surface_image
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import View
@@ -25,6 +29,7 @@ class Glimpse:
 
     Attributes:
         view: what lies behind each pixel.
+        draw: draws the same by another geometry in the same place.
         world_from_camera: (4, 4) optical frame to world.
         world_from_part: (P, 4, 4).
         materials: of the P parts.
@@ -34,6 +39,7 @@ class Glimpse:
     """
 
     view: View
+    draw: Callable[[CameraGeometry], View]
     world_from_camera: Matrix
     world_from_part: Matrix
     materials: MaterialTable
@@ -96,3 +102,34 @@ class ColourSensor:
     def skip(self) -> None:
         """Let the noise of an image go by."""
         skip_gaussian((self._config.camera.height, self._config.camera.width, 3), self._noise)
+
+
+class PanoramaSensor:
+    """Gives an 8-bit sRGB panorama; on request it is unrolled from the lens's round image, given as well."""
+
+    def __init__(self, config: PanoramaConfig, name: str, seed: int) -> None:
+        self._config = config
+        self._noise = stream(seed, f"{name}.noise")
+
+    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+        """Take the (H, W, 3), and the (2 H, 2 H, 3), uint8 images of an instant."""
+        config, camera = self._config, self._config.camera
+        if not config.raw:
+            return (expose(self._linear(glimpse, camera, glimpse.view), config, self._noise),)
+        fine = finer(camera)
+        disc = roll_up(self._linear(glimpse, fine, glimpse.draw(fine)), camera)
+        raw = expose(disc, config, self._noise)
+        return unroll(raw, camera), raw
+
+    def skip(self) -> None:
+        """Let the noise of an image go by."""
+        height = self._config.camera.height
+        size = (2 * height, 2 * height) if self._config.raw else (height, self._config.camera.width)
+        skip_gaussian((*size, 3), self._noise)
+
+    def _linear(self, glimpse: Glimpse, camera: Panorama, view: View) -> Image:
+        config = self._config
+        return panorama_image(
+            view, glimpse.materials, camera, glimpse.world_from_camera, glimpse.world_from_part,
+            glimpse.light_level * config.gain, glimpse.turn_rad_s * config.exposure_s,
+        )  # fmt: skip

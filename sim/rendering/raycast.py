@@ -63,14 +63,14 @@ def draw(
         if skip[part]:
             continue
         compose(camera_from_part[part], table.part_from_shape[shape], canvas.pose)
-        bounds = _quick_bounds(table, shape, canvas.pose)
+        bounds = quick_bounds(table, shape, canvas.pose)
         area = pixels(lens, bounds)
         if area[0] <= area[2] and area[1] <= area[3]:
-            _draw_shape(table, shape, bits[part], lens, area, canvas)
+            draw_shape(table, shape, bits[part], lens, area, canvas)
 
 
 @njit(cache=True, error_model="numpy")
-def _quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
+def quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
     """Bounds of a shape; of a mesh those of its box."""
     if table.kind[shape] == _MESH:
         low, high = table.extent[shape, 0], table.extent[shape, 1]
@@ -79,9 +79,10 @@ def _quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_shape(
+def draw_shape(
     table: ShapeTable, shape: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
 ) -> None:
+    """Draw one shape at the canvas's pose; arguments as in `draw`, but for its own number and bit."""
     kind, size, surface = table.kind[shape], table.size[shape], table.first_surface[shape]
     pose = canvas.pose
     if kind == _SPHERE:
@@ -97,7 +98,7 @@ def _draw_shape(
             _draw_lid((i - 0.5) * size[0], size[1], surface + 1 + i, bit, lens, area, canvas)
     elif kind == _BOX:
         for i in range(6):
-            _draw_face(size, i % 3, 1.0 if i < 3 else -1.0, surface + i, bit, lens, area, canvas)
+            draw_face(size, i % 3, 1.0 if i < 3 else -1.0, surface + i, bit, lens, area, canvas)
     elif kind == _PLANE:
         normal = (pose[0, 2], pose[1, 2], pose[2, 2])
         _draw_flat(normal, map_point(pose, 0.0, 0.0, 0.0), 0, surface, bit, lens, area, canvas)
@@ -188,7 +189,7 @@ def _draw_lid(
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_face(
+def draw_face(
     size: Array,
     axis: int,
     sign: float,

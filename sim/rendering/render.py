@@ -11,7 +11,7 @@ from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.rendering.canvas import Lens, make_canvas, shade
 from peopleboy.sim.rendering.depth_normals import normals_from_depth
 from peopleboy.sim.rendering.raycast import draw
-from peopleboy.sim.rendering.view import NOBODY, View
+from peopleboy.sim.rendering.view import NOBODY, View, person_bits
 from peopleboy.sim.shapes.shape_table import ShapeTable
 
 _MOST_PEOPLE = 64
@@ -72,12 +72,6 @@ def cast(
     rotation = np.ascontiguousarray(world_from_camera[:3, :3])
     shade(table.surface_part, lens, canvas, rotation, part, depth, normal)
     return View(part, depth, normal, canvas.cover)
-
-
-def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:
-    """(P,) the bit of the person that a part belongs to, 0 for none."""
-    bits = np.uint64(1) << np.maximum(person_of_part, 0).astype(np.uint64)
-    return np.where(person_of_part == NOBODY, np.uint64(0), bits)
 
 
 def rasterise(

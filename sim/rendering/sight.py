@@ -24,7 +24,7 @@ Edges = tuple[float, float, float, float]
 Mask = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, weakref_slot=True)
 class Scene:
     """All that there is to be seen at an instant.
 

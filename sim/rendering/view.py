@@ -26,3 +26,9 @@ class View:
     depth: NDArray[np.float32]
     normal: NDArray[np.float32]
     cover: NDArray[np.uint64]
+
+
+def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:
+    """(P,) the bit of the person that a part belongs to, 0 for none."""
+    bits = np.uint64(1) << np.maximum(person_of_part, 0).astype(np.uint64)
+    return np.where(person_of_part == NOBODY, np.uint64(0), bits)

@@ -27,7 +27,13 @@ SPECS = [
     for kind in vars(module).values()
     if isinstance(kind, type) and issubclass(kind, BaseModel) and kind.__module__ == module.__name__
 ]
-PARTS_OF_OTHERS = {"_AnyPlace", "_Camera", "PlainCameraSpec", "_Walk"}  # a plain camera has what all have
+PARTS_OF_OTHERS = {
+    "_AnyPlace",
+    "_AnyCamera",
+    "_Camera",
+    "PlainCameraSpec",
+    "_Walk",
+}  # a plain camera has what all have
 KEYS = list(scenario_keys.keys_of(scenario_keys.parts_of_a_file()))
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL.Image import Image
 
-from docs.generate.pictures import occlusion, rays, runs, thermal, tracker
+from docs.generate.pictures import occlusion, panorama, rays, runs, thermal, tracker
 from docs.generate.pictures.paper import save
 
 FOLDER = Path(__file__).parents[2] / "pictures"
@@ -22,6 +22,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "thermal_mirror": thermal.mirror,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
+    "panorama": panorama.raw_and_unrolled,
     "detector": tracker.detector,
     "contour": tracker.contour,
     "explained_away": occlusion.explained_away,

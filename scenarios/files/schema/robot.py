@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, SerializeAsAny, ValidatorFunctionWrapHandler, WrapValidator, model_validator
+from pydantic import (
+    Discriminator,
+    Field,
+    SerializeAsAny,
+    Tag,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
 
 from peopleboy.scenarios.files.schema.values import (
     CameraName,
@@ -24,13 +32,29 @@ ORACLE = "truth"
 """Name of the eyes that are told who is where."""
 
 
-class _Camera(Strict):
+class _AnyCamera(Strict):
     """What all cameras have; what is left out is as usual for the kind."""
 
     width_px: int | None = Field(
-        default=None, ge=16, le=4096, description="columns of the image; usually 320"
+        default=None, ge=16, le=4096, description="columns of the image; usually 320, of a panorama 480"
     )
-    height_px: int | None = Field(default=None, ge=16, le=4096, description="rows of the image; usually 240")
+    height_px: int | None = Field(
+        default=None, ge=16, le=4096, description="rows of the image; usually 240, of a panorama 120"
+    )
+    exposure_s: float | None = Field(
+        default=None, ge=0.0, le=1.0, description="time over which rotation blurs the image"
+    )
+    rate_hz: int | None = Field(
+        default=None,
+        ge=1,
+        le=15,
+        description="images a second: 1, 3, 5 or 15; usually 15, as `thermal` and `colour` always have",
+    )
+
+
+class _Camera(_AnyCamera):
+    """What all cameras have whose image is flat."""
+
     vertical_fov_deg: float | None = Field(
         default=None,
         ge=5.0,
@@ -42,15 +66,6 @@ class _Camera(Strict):
     )
     pitch_deg: float | None = Field(default=None, ge=-90.0, le=90.0, description="tilt; positive looks down")
     yaw_deg: float | None = Field(default=None, ge=-180.0, le=180.0, description="pan; positive looks left")
-    exposure_s: float | None = Field(
-        default=None, ge=0.0, le=1.0, description="time over which rotation blurs the image"
-    )
-    rate_hz: int | None = Field(
-        default=None,
-        ge=1,
-        le=15,
-        description="images a second: 1, 3, 5 or 15; usually 15, as `thermal` and `colour` always have",
-    )
 
 
 class ThermalCameraSpec(_Camera):
@@ -77,23 +92,66 @@ class ColourCameraSpec(_Camera):
     kind: Literal["colour"] = Field(description="what it sees: light")
 
 
+class MirrorSpec(Strict):
+    """The mirror of a panoramic camera, a cone over a lens that looks up; what is left out is as usual."""
+
+    half_apex_deg: float | None = Field(
+        default=None, gt=45.0, le=89.0, description="between the cone's axis and its side; usually 72.5"
+    )
+    lens_half_angle_deg: float | None = Field(
+        default=None, gt=0.0, le=85.0, description="between the lens's axis and the image's rim; usually 47"
+    )
+    lens_m: float | None = Field(
+        default=None, gt=0.0, le=1.0, description="from the lens up to the cone's tip; usually 0.04"
+    )
+    apex_m: float | None = Field(
+        default=None, gt=0.0, le=10.0, description="height of the cone's tip above the floor; usually 1.68"
+    )
+
+
+def _word_or_values(value: Any) -> str:
+    return "word" if isinstance(value, str) else "values"
+
+
+_Mirror = Annotated[
+    Annotated[Literal["default", "narrow"], Tag("word")] | Annotated[MirrorSpec, Tag("values")],
+    Discriminator(_word_or_values),
+]
+
+
+class PanoramaCameraSpec(_AnyCamera):
+    """A colour camera that sees all round, by a mirror over the robot's axis; its image is unrolled."""
+
+    kind: Literal["panorama"] = Field(description="what it sees: light, all round")
+    mirror: _Mirror | None = Field(
+        default=None,
+        description="`default` sees from 8 to 55 degrees below the horizon, `narrow` from 8 to 35; or the "
+        "values of another",
+    )
+    raw: bool | None = Field(
+        default=None,
+        description="whether the image is unrolled from the round one that the lens sees, and that one is "
+        "kept, too; usually false",
+    )
+
+
 class PlainCameraSpec(_Camera):
     """A camera of any further kind: it has the keys that all have, and none of its own."""
 
     kind: str
 
 
-CameraSpec = ThermalCameraSpec | ColourCameraSpec | PlainCameraSpec
+CameraSpec = ThermalCameraSpec | ColourCameraSpec | PanoramaCameraSpec | PlainCameraSpec
 
 
 def _by_kind(data: Any, with_own_keys: ValidatorFunctionWrapHandler) -> Any:
     """Read a camera of a kind that says nothing of its own keys; its kind may be younger than this schema."""
     kind = data.get("kind") if isinstance(data, dict) else None
-    is_plain = isinstance(kind, str) and kind in KINDS and kind not in ("thermal", "colour")
+    is_plain = isinstance(kind, str) and kind in KINDS and kind not in ("thermal", "colour", "panorama")
     return PlainCameraSpec.model_validate(data) if is_plain else with_own_keys(data)
 
 
-_ByKind = Annotated[ThermalCameraSpec | ColourCameraSpec, Field(discriminator="kind")]
+_ByKind = Annotated[ThermalCameraSpec | ColourCameraSpec | PanoramaCameraSpec, Field(discriminator="kind")]
 
 
 class CommandSpec(Strict):

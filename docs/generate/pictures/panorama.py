@@ -1,0 +1,35 @@
+"""What a panoramic camera sees: the lens's round image, and the panorama that it is unrolled to."""
+
+from __future__ import annotations
+
+import numpy as np
+from PIL import Image
+
+from peopleboy.scenarios.drawing.overlay import draw_truth, enlarge, people_parts
+from peopleboy.sim.cameras.camera_config import PanoramaConfig, ThermalConfig
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.world import World
+
+PEOPLE = {"anna": (6.5, -1.2), "carl": (1.6, 0.1), "dora": (4.2, 1.9)}
+SCALE = 2
+
+
+def raw_and_unrolled() -> Image.Image:
+    """The round image above, the panorama with the truth below."""
+    people = tuple(PersonConfig(name=name, path=(Waypoint(at_m=at),)) for name, at in PEOPLE.items())
+    cameras = {"thermal": ThermalConfig(), "panorama": PanoramaConfig(raw=True)}
+    robot = RobotConfig(at_m=(4.0, 0.0), cameras=cameras)
+    place = build_place(straight_corridor(10.0, 8.0))
+    with World(WorldConfig(place=place, people=people, robot=robot)) as world:
+        images, truth = dict(world.observe().images), world.truth("panorama")
+    panorama = draw_truth(enlarge(images["panorama"], SCALE), people_parts(truth.people, truth.camera), SCALE)
+    raw = enlarge(images["panorama_raw"], SCALE)
+    page = np.full((raw.shape[0] + 8 + panorama.shape[0], panorama.shape[1], 3), 255, np.uint8)
+    left = (page.shape[1] - raw.shape[1]) // 2
+    page[: raw.shape[0], left : left + raw.shape[1]] = raw
+    page[-panorama.shape[0] :] = panorama
+    return Image.fromarray(page).quantize(128)  # noise would make the file large

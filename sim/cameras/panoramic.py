@@ -1,0 +1,158 @@
+"""The panoramic image: colours round the robot, and the lens's round image that they are unrolled from."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.cameras.blur import hat_integral
+from peopleboy.sim.cameras.colour import LIGHT, shade_of
+from peopleboy.sim.cameras.surfaces import MaterialTable, pattern_value
+from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.geometry.vectors import map_point
+from peopleboy.sim.rendering.view import View
+
+Linear = NDArray[np.float32]
+
+_FINER = 2  # pixels of what the lens's image is made of for each of its own, in a row and in a column
+
+
+def panorama_image(
+    view: View,
+    materials: MaterialTable,
+    camera: Panorama,
+    world_from_camera: Matrix,
+    world_from_part: Matrix,
+    light: float,
+    turned_rad: float,
+) -> Linear:
+    """Form the noise-free panorama.
+
+    Args:
+        view: what each pixel sees, with depths as in `PanoramicSight`.
+        materials: of the P parts.
+        camera: the panorama.
+        world_from_camera: (4, 4).
+        world_from_part: (P, 4, 4).
+        light: what a white surface facing the light sends, share of full scale.
+        turned_rad: [rad] turned about the vertical axis while the exposure lasted.
+
+    Returns:
+        (H, W, 3) linear light, 1 being full scale.
+    """
+    part_from_camera = np.linalg.inv(world_from_part) @ world_from_camera
+    directions, slopes = _lines(camera)
+    image = _radiance_image(
+        view.part, view.depth, view.normal, part_from_camera, directions, slopes,
+        camera.mirror.ring_radius_m, materials.colour, materials.kind, materials.period, materials.phase,
+        LIGHT, light,
+    )  # fmt: skip
+    return shift_blur(image, abs(turned_rad) / math.tau * camera.width)
+
+
+@lru_cache(maxsize=16)
+def _lines(camera: Panorama) -> tuple[Matrix, Matrix]:
+    """(W, 2) where columns look, x and z of the optical frame; (H,) [m] how far a ray falls on 1 m."""
+    right = -camera.bearing(np.arange(camera.width))
+    return np.stack([np.sin(right), np.cos(right)], axis=1), np.tan(
+        camera.depression(np.arange(camera.height))
+    )
+
+
+@njit(cache=True, fastmath=True)
+def _radiance_image(
+    part: NDArray[np.int32],
+    depth: Linear,
+    normal: Linear,
+    part_from_camera: Matrix,
+    directions: Matrix,
+    slopes: Matrix,
+    ring_radius: float,
+    colour: Matrix,
+    kind: NDArray[np.int64],
+    period: Matrix,
+    phase: Matrix,
+    light: Matrix,
+    level: float,
+) -> Linear:
+    height, width = part.shape
+    image = np.zeros((height, width, 3), np.float32)
+    for v in range(height):
+        for u in range(width):
+            p, out = part[v, u], depth[v, u]
+            if p < 0:
+                continue
+            down = (out - ring_radius) * slopes[v]
+            x, y, z = map_point(part_from_camera[p], out * directions[u, 0], down, out * directions[u, 1])
+            second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
+            shade = shade_of(normal[v, u], light, level) + colour[p, 6]
+            for c in range(3):
+                image[v, u, c] = shade * colour[p, second + c]
+    return image
+
+
+def shift_blur(image: Linear, sweep_px: float) -> Linear:
+    """Smear an (H, W, C) panorama by columns that sweep past while the robot turns.
+
+    Returns:
+        An image of the same shape, each pixel the mean over its sweep, which is centred on the pixel; between
+        pixels the image is taken as linear, and it goes on over the seam.
+    """
+    if sweep_px < 0.05:
+        return image
+    farthest, half = math.ceil(sweep_px / 2.0), sweep_px / 2.0
+    away = range(-farthest, farthest + 1)
+    weights = [(hat_integral(half - k) - hat_integral(-half - k)) / sweep_px for k in away]
+    shifted = (
+        np.float32(weight) * np.roll(image, -k, axis=1) for k, weight in zip(away, weights, strict=True)
+    )
+    return np.asarray(sum(shifted), np.float32)
+
+
+def finer(camera: Panorama) -> Panorama:
+    """The panorama that the lens's round image is made of: so fine that it shows all that that one can."""
+    return Panorama(width=8 * _FINER * camera.height, height=_FINER * camera.height, mirror=camera.mirror)
+
+
+def roll_up(fine: Linear, camera: Panorama) -> Linear:
+    """Turn a panorama of `finer` pixels into the round image of the lens.
+
+    It is as a camera that looks up has it whose image's top is to the robot's front: the robot's left is at
+    the right. Outside the rim, to which a pixel more belongs, it is black.
+
+    Returns:
+        (2 H, 2 H, 3), each pixel the mean over its area.
+    """
+    u, v, is_inside = _disc(camera)
+    # A column more at either side carries the image over the seam.
+    padded = np.concatenate([fine[:, -1:], fine, fine[:, :1]], axis=1)
+    disc = cv2.remap(padded, u + 1.0, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    disc[~is_inside] = 0.0
+    size = 2 * camera.height
+    return np.asarray(cv2.resize(disc, (size, size), interpolation=cv2.INTER_AREA), np.float32)
+
+
+def unroll(raw: NDArray[np.uint8], camera: Panorama) -> NDArray[np.uint8]:
+    """Unroll the (2 H, 2 H, 3) round image of the lens: the (H, W, 3) panorama, linear between its pixels."""
+    radius = camera.height - 0.5 - np.arange(camera.height)[:, None]
+    bearing, middle = camera.bearing(np.arange(camera.width)), camera.height - 0.5
+    x = np.asarray(middle + radius * np.sin(bearing), np.float32)
+    y = np.asarray(middle - radius * np.cos(bearing), np.float32)
+    return np.asarray(cv2.remap(raw, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE), np.uint8)
+
+
+@lru_cache(maxsize=4)
+def _disc(camera: Panorama) -> tuple[Linear, Linear, NDArray[np.bool_]]:
+    """Columns and rows of the finer panorama that the pixels of a finer disc see, and which lie inside it."""
+    source, size = finer(camera), 2 * _FINER * camera.height
+    right = np.arange(size) - (size - 1) / 2.0
+    bearing, radius = np.arctan2(right, -right[:, None]), np.hypot(right, right[:, None])
+    u = (math.pi - bearing) / math.tau * source.width - 0.5
+    v = source.height - 0.5 - radius
+    return np.asarray(u, np.float32), np.asarray(v, np.float32), radius < source.height + 2 * _FINER

@@ -1,0 +1,333 @@
+"""The ray caster for panoramas: each column is a pinhole camera of its own, one pixel wide (numba kernels).
+
+A column is drawn as a row, by a camera that lies on its side: rows are what the ray caster is quick at.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.sim.geometry.vectors import compose, map_point
+from peopleboy.sim.rendering.canvas import Canvas, Lens, pixels, shade
+from peopleboy.sim.rendering.raycast import draw_face, draw_shape, quick_bounds
+from peopleboy.sim.shapes.bounds import FAR_M
+from peopleboy.sim.shapes.shape_table import ShapeTable
+from peopleboy.sim.shapes.shapes import ShapeKind
+
+Array = NDArray[np.float64]
+
+_PLANE, _MESH = int(ShapeKind.PLANE), int(ShapeKind.MESH)
+_SPHERE, _BOX = int(ShapeKind.SPHERE), int(ShapeKind.BOX)
+
+
+class Ring(NamedTuple):
+    """The cameras of a panorama's W columns.
+
+    Attributes:
+        lens: the same for all: its row runs down the column.
+        column_from_ring: (W, 3, 4) poses: x down the column, y to the left, z along the camera's axis.
+    """
+
+    lens: Lens
+    column_from_ring: Array
+
+
+class Pieces(NamedTuple):
+    """Shapes, and of boxes their faces, that may be seen in some columns.
+
+    Attributes:
+        shape: (N,) number of the shape.
+        face: (N,) number of the face, -1 for the whole shape.
+        pose: (N, 3, 4) ring from shape.
+        span: (N, 2) first column, and number of columns.
+    """
+
+    shape: NDArray[np.int64]
+    face: NDArray[np.int64]
+    pose: Array
+    span: NDArray[np.int64]
+
+
+class Drawing(NamedTuple):
+    """What the columns are drawn on, one below the other; see `Canvas`.
+
+    Attributes:
+        nearness, surface, cover: (W, H).
+    """
+
+    nearness: Array
+    surface: NDArray[np.int32]
+    cover: NDArray[np.uint64]
+
+
+@lru_cache(maxsize=16)
+def ring_of(camera: Panorama) -> Ring:
+    """Give the cameras of a panorama's columns."""
+    right = -camera.bearing(np.arange(camera.width))
+    sin, cos, none = np.sin(right), np.cos(right), np.zeros(camera.width)
+    low_sin, low_cos = math.sin(camera.mirror.axis_rad), math.cos(camera.mirror.axis_rad)
+    poses = np.empty((camera.width, 3, 4))
+    poses[:, 0, :3] = np.stack([-low_sin * sin, none + low_cos, -low_sin * cos], axis=1)
+    poses[:, 1, :3] = np.stack([-cos, none, sin], axis=1)
+    poses[:, 2, :3] = np.stack([low_cos * sin, none + low_sin, low_cos * cos], axis=1)
+    origins = camera.mirror.ring_radius_m * np.stack([sin, none, cos], axis=1)
+    poses[:, :, 3] = -np.einsum("wij,wj->wi", poses[:, :, :3], origins)
+    poses.setflags(write=False)
+    return Ring(Lens(camera.focal_px, camera.height - 0.5, 0.0, camera.height, 1), poses)
+
+
+def make_drawing(camera: Panorama) -> Drawing:
+    """Give empty columns."""
+    shape = (camera.width, camera.height)
+    return Drawing(np.zeros(shape), np.empty(shape, np.int32), np.zeros(shape, np.uint64))
+
+
+class Outline(NamedTuple):
+    """What parts fill of a panorama that goes on beyond its top and bottom, as bits of the parts.
+
+    Attributes:
+        pixels: (N,) those that fill a pixel, for each that any does.
+        rows: (R,) those that fill any of a row.
+        columns: (W,) those that fill any of a column.
+        first_row: number of the first row, negative above the image.
+    """
+
+    pixels: NDArray[np.uint64]
+    rows: NDArray[np.uint64]
+    columns: NDArray[np.uint64]
+    first_row: int
+
+
+def outline(table: ShapeTable, ring_from_part: Array, bits: NDArray[np.uint64], camera: Panorama) -> Outline:
+    """Find what some parts would fill if nothing hid them, the image's top and bottom neither.
+
+    The image is continued by its own height upwards, and downwards as well or to where it would look straight
+    down, if that is nearer.
+
+    Args:
+        table: the shapes.
+        ring_from_part: (P, 4, 4).
+        bits: (P,) of each part, 0 for those that do not count.
+        camera: the panorama.
+    """
+    lens, poses = ring_of(camera)
+    below = min(camera.height, math.floor(camera.focal_px / math.tan(camera.mirror.axis_rad) - 0.5))
+    longer = lens._replace(centre_u=lens.centre_u + camera.height, width=2 * camera.height + below)
+    shading = np.empty((len(table.surface_part), 7))
+    return Outline(*_outline(table, ring_from_part, bits, Ring(longer, poses), shading), -camera.height)
+
+
+@njit(cache=True, error_model="numpy")
+def _outline(
+    table: ShapeTable, ring_from_part: Array, bits: NDArray[np.uint64], ring: Ring, shading: Array
+) -> tuple[NDArray[np.uint64], NDArray[np.uint64], NDArray[np.uint64]]:
+    width, height = len(ring.column_from_ring), ring.lens.width
+    pieces = _before(table, ring_from_part, bits == 0, ring)
+    drawing = Drawing(
+        np.zeros((1, height)), np.empty((1, height), np.int32), np.zeros((1, height), np.uint64)
+    )
+    canvas, cover = _canvas(drawing, 0, shading), drawing.cover[0]
+    rows, columns = np.zeros(height, np.uint64), np.zeros(width, np.uint64)
+    found, count = np.empty(1024, np.uint64), 0
+    is_near = _any_span(pieces.span, width)
+    for u in range(width):
+        if not is_near[u]:
+            continue
+        _draw_column(table, bits, ring, u, pieces, canvas)
+        if count + height > len(found):
+            found = np.concatenate((found, np.empty(len(found) + height, np.uint64)))
+        for v in range(height):
+            if cover[v] != 0:
+                rows[v] |= cover[v]
+                columns[u] |= cover[v]
+                found[count] = cover[v]
+                count += 1
+        cover[:] = 0
+    return found[:count], rows, columns
+
+
+@njit(cache=True)
+def _any_span(spans: NDArray[np.int64], width: int) -> NDArray[np.bool_]:
+    """(W,) the columns that are in any of the spans (N, 2)."""
+    columns = np.zeros(width, np.bool_)
+    for i in range(len(spans)):
+        for k in range(spans[i, 1]):
+            columns[(spans[i, 0] + k) % width] = True
+    return columns
+
+
+@njit(cache=True, error_model="numpy")
+def draw_ring(
+    table: ShapeTable,
+    ring_from_part: Array,
+    skip: NDArray[np.bool_],
+    bits: NDArray[np.uint64],
+    ring: Ring,
+    shading: Array,
+    drawing: Drawing,
+    rotation: Array,
+    part: NDArray[np.int32],
+    depth: NDArray[np.float32],
+    normal: NDArray[np.float32],
+) -> None:
+    """Draw all shapes but those of parts to skip, and turn each column into what `shade` tells.
+
+    Args:
+        table: the shapes.
+        ring_from_part: (P, 4, 4).
+        skip: (P,) parts that are not drawn.
+        bits: (P,) what a part's silhouette adds to the cover.
+        ring: the columns' cameras.
+        shading: (M, 7) space, as in `Canvas`.
+        drawing: what to draw on.
+        rotation: (3, 3) world from the panorama's optical frame.
+        part: (W, H) gets the part numbers, -1 where nothing is.
+        depth: (W, H) gets the depths [m] along the axis of the column's camera, inf where nothing is.
+        normal: (W, H, 3) gets the unit normals, world frame, 0 where nothing is.
+    """
+    pieces = _before(table, ring_from_part, skip, ring)
+    for u in range(len(drawing.nearness)):
+        canvas = _canvas(drawing, u, shading)
+        _draw_column(table, bits, ring, u, pieces, canvas)
+        turned = np.empty((3, 3))
+        for i in range(3):
+            for j in range(3):
+                turned[i, j] = 0.0
+                for k in range(3):
+                    turned[i, j] += rotation[i, k] * ring.column_from_ring[u, j, k]
+        row = slice(u, u + 1)
+        shade(table.surface_part, ring.lens, canvas, turned, part[row], depth[row], normal[row])
+
+
+@njit(cache=True, error_model="numpy")
+def _canvas(drawing: Drawing, u: int, shading: Array) -> Canvas:
+    """The canvas of one column."""
+    row = slice(u, u + 1)
+    return Canvas(
+        drawing.nearness[row],
+        drawing.surface[row],
+        drawing.cover[row],
+        shading,
+        np.empty((6, 3)),
+        np.empty((3, 4)),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_column(
+    table: ShapeTable, bits: NDArray[np.uint64], ring: Ring, u: int, pieces: Pieces, canvas: Canvas
+) -> None:
+    """Draw the pieces that may be seen in one column."""
+    width = len(ring.column_from_ring)
+    for i in range(len(pieces.shape)):
+        if (u - pieces.span[i, 0]) % width >= pieces.span[i, 1]:
+            continue
+        shape, face = pieces.shape[i], pieces.face[i]
+        bit = bits[table.part[shape]]
+        compose(ring.column_from_ring[u], pieces.pose[i], canvas.pose)
+        if face >= 0:
+            whole = (0, 0, ring.lens.width - 1, 0)
+            sign, surface = 1.0 if face < 3 else -1.0, table.first_surface[shape] + face
+            draw_face(table.size[shape], face % 3, sign, surface, bit, ring.lens, whole, canvas)
+            continue
+        area = pixels(ring.lens, quick_bounds(table, shape, canvas.pose))
+        if area[0] <= area[2] and area[1] <= area[3]:
+            draw_shape(table, shape, bit, ring.lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _before(table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], ring: Ring) -> Pieces:
+    """Find what may be seen of the shapes not to skip."""
+    most, width = 6 * len(table.kind), len(ring.column_from_ring)
+    pieces = Pieces(
+        np.empty(most, np.int64),
+        np.empty(most, np.int64),
+        np.empty((most, 3, 4)),
+        np.empty((most, 2), np.int64),
+    )
+    offset = ring.column_from_ring[0, :, 3]
+    radius, count = math.sqrt((offset * offset).sum()), 0
+    for shape in range(len(table.kind)):
+        if skip[table.part[shape]]:
+            continue
+        pose = pieces.pose[count]
+        compose(ring_from_part[table.part[shape]], table.part_from_shape[shape], pose)
+        first, end = (0, 6) if table.kind[shape] == _BOX else (-1, 0)
+        low, high = _corners(table, shape)
+        for face in range(first, end):
+            if face >= 0 and not _may_face(pose, table.size[shape], face, radius):
+                continue
+            pieces.shape[count], pieces.face[count], pieces.pose[count] = shape, face, pose
+            pieces.span[count] = _span(
+                pose, _flattened(low, face, high), _flattened(high, face - 3, low), width
+            )
+            count += 1
+    return Pieces(pieces.shape[:count], pieces.face[:count], pieces.pose[:count], pieces.span[:count])
+
+
+@njit(cache=True, error_model="numpy")
+def _may_face(pose: Array, size: Array, face: int, radius: float) -> bool:
+    """Whether a box's face may be turned to one of the cameras, which are so far from the middle."""
+    axis, sign = face % 3, 1.0 if face < 3 else -1.0
+    distance = size[axis] / 2.0
+    for i in range(3):
+        distance += sign * pose[i, axis] * pose[i, 3]
+    return bool(distance < radius)
+
+
+@njit(cache=True, error_model="numpy")
+def _flattened(corner: Array, axis: int, other: Array) -> Array:
+    """A corner of a box that is moved to the opposite one's plane along an axis, if it is one."""
+    moved = corner.copy()
+    if 0 <= axis < 3:
+        moved[axis] = other[axis]
+    return moved
+
+
+@njit(cache=True, error_model="numpy")
+def _span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, int]:
+    """First column, and number of columns, in which the box between two corners may be seen.
+
+    Seen from the middle, a box that does not stand round it spans less than half the horizon.
+    """
+    x, _, z = map_point(pose, (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0)
+    middle, least, most = math.atan2(x, z), 0.0, 0.0
+    for corner in range(8):
+        x, _, z = map_point(
+            pose,
+            high[0] if corner & 1 else low[0],
+            high[1] if corner & 2 else low[1],
+            high[2] if corner & 4 else low[2],
+        )
+        away = math.atan2(x, z) - middle
+        away -= math.tau * math.floor(away / math.tau + 0.5)
+        least, most = min(least, away), max(most, away)
+    if not most - least < math.pi:
+        return 0, width
+    first = math.floor(((middle + least) / math.tau + 0.5) * width - 0.5)
+    last = math.ceil(((middle + most) / math.tau + 0.5) * width - 0.5)
+    return first, min(last - first + 1, width)
+
+
+@njit(cache=True, error_model="numpy")
+def _corners(table: ShapeTable, shape: int) -> tuple[Array, Array]:
+    """Least and greatest corner of a shape's box, in its own frame."""
+    kind, size = table.kind[shape], table.size[shape]
+    if kind == _MESH:
+        return table.extent[shape, 0], table.extent[shape, 1]
+    half = size / 2.0
+    if kind == _PLANE:
+        half = np.full(3, FAR_M)
+    elif kind == _SPHERE:
+        half = np.full(3, size[0])
+    elif kind != _BOX:
+        # A capsule is as much longer than a cylinder as its ends are round.
+        half = np.array([size[1], size[1], size[0] / 2.0 + size[1]])
+    return -half, half

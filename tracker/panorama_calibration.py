@@ -1,0 +1,91 @@
+"""What a tracker must know of a camera that sees all round by a mirror."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import Floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanoramaCalibration:
+    """Calibration of a camera that sees all round by a cone-shaped mirror over the robot's axis.
+
+    Columns look in one direction each, the first to the robot's back, then by its left, front and right to
+    its back again; a column beyond the last one is the first again. In each the mirror makes a pinhole
+    camera, whose centre lies on a ring round the axis, and whose own axis looks at the image's lower border.
+
+    Attributes:
+        width, height: of the image [px].
+        focal_px: of the lens [px].
+        axis_rad: how far below the horizon the image's lower border looks [rad].
+        ring_radius_m: how far off the axis the centres are, in their direction of view [m]; negative: behind.
+        ring_height_m: how far above the floor they are [m].
+
+    Raises:
+        BadInput: a number that is not finite, or an image or focal length that is none.
+    """
+
+    width: int
+    height: int
+    focal_px: float
+    axis_rad: float
+    ring_radius_m: float
+    ring_height_m: float
+
+    def __post_init__(self) -> None:
+        """Refuse what is no calibration."""
+        for name, value in asdict(self).items():
+            if not math.isfinite(value):
+                raise BadInput(f"calibration: {name} must be a finite number, got {value}")
+        if min(self.width, self.height, self.focal_px) <= 0:
+            size = f"{self.width} x {self.height} px"
+            raise BadInput(f"calibration: {size} at a focal length of {self.focal_px} px is no image")
+
+    @property
+    def position_m(self) -> tuple[float, float, float]:
+        """Middle of the ring in the robot's frame [m]."""
+        return 0.0, 0.0, self.ring_height_m
+
+    def bearing(self, columns: Floats) -> Floats:
+        """Tell where columns (N,) look: from the robot's nose, positive to the left [rad], within -pi..pi."""
+        turns = 0.5 - (columns + 0.5) / self.width
+        return np.asarray(math.tau * (turns - np.rint(turns)), np.float64)
+
+    def depression(self, rows: Floats) -> Floats:
+        """Tell how far below the horizon rows (N,) look [rad]."""
+        return np.asarray(self.axis_rad - np.arctan((self.height - 0.5 - rows) / self.focal_px), np.float64)
+
+    def project(self, points_m: Floats) -> Floats:
+        """Map points (N, 3) of the robot's frame to pixels (N, 2), the column within the image.
+
+        NaN for those that the ring's cameras do not have before them.
+        """
+        x, y, z = points_m.T
+        above = self.axis_rad - np.arctan2(self.ring_height_m - z, np.hypot(x, y) - self.ring_radius_m)
+        radius = self.focal_px * np.tan(np.where(np.abs(above) < math.pi / 2.0, above, np.nan))
+        u = (0.5 - np.arctan2(y, x) / math.tau) * self.width - 0.5
+        return np.stack([u, self.height - 0.5 - radius], axis=1)
+
+    def rays(self, pixels: Floats) -> Floats:
+        """Give the unit directions (N, 3) in the robot's frame in which pixels (N, 2) look.
+
+        They start on the ring, which `ring_radius_m` says how to find from `position_m`.
+        """
+        bearing, down = self.bearing(pixels[:, 0]), self.depression(pixels[:, 1])
+        level = np.cos(down)
+        return np.stack([level * np.cos(bearing), level * np.sin(bearing), -np.sin(down)], axis=1)
+
+    def on_floor(self, pixels: Floats) -> Floats:
+        """Find the points (N, 2) of the floor, in the robot's frame [m], that pixels (N, 2) see.
+
+        NaN at the horizon and above.
+        """
+        bearing, down = self.bearing(pixels[:, 0]), self.depression(pixels[:, 1])
+        slope = np.tan(np.where(down > 0.0, down, np.nan))
+        distance = self.ring_radius_m + self.ring_height_m / slope
+        return np.stack([distance * np.cos(bearing), distance * np.sin(bearing)], axis=1)
