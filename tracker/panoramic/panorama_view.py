@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +28,11 @@ class PanoramaView:
     height_px: int
     centre_m: float
     depression_deg: tuple[float, float, float]
+
+    @classmethod
+    def of_plain(cls, plain: Mapping[str, Any]) -> PanoramaView:
+        """Make a view out of plain data, as `asdict` and JSON leave it."""
+        return cls(**{**plain, "depression_deg": tuple(plain["depression_deg"])})
 
     def refusal(self, other: PanoramaView) -> str:
         """Say why what was learned with this camera does not hold for another; empty if it does."""

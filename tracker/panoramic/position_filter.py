@@ -92,13 +92,13 @@ class PositionFilter:
 def estimate_noise(walks: Iterable[tuple[Floats, Floats]], *, uses_velocity: bool) -> MotionNoise:
     """Estimate Q and R from walks of three or more steps of `STEP_S`, each true and measured (N, 2) [m].
 
-    With a velocity, Q is of what a true step differs from the one before; that the filter knows the one
-    before only by estimate is left out.
+    With a velocity, Q is of what a true step differs from the last one as it was measured: a filter knows
+    that one only by estimate, and runs away if it takes it for true.
     """
     unknown, errors = [], []
     for true, measured in walks:
         steps = np.diff(true, axis=0)
-        unknown.append(np.diff(steps, axis=0) if uses_velocity else steps)
+        unknown.append(steps[1:] - np.diff(measured, axis=0)[:-1] if uses_velocity else steps)
         errors.append(measured - true)
     return MotionNoise(
         step_m2=np.cov(np.concatenate(unknown), rowvar=False),
