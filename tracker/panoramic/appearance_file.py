@@ -92,7 +92,7 @@ class AppearanceModel:
                 "measurement_m2": noise.measurement_m2.tolist(),
             },
         }
-        path.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+        path.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
     @classmethod
     def load(cls, path: Path) -> AppearanceModel:
