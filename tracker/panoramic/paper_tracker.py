@@ -75,8 +75,9 @@ class PanoramicPaperTracker:
     becomes part of it, and later leaves a hole, which is taken for a person from then on. Two people at a
     time are taken for one.
 
-    Between two images, and for a while when nobody is seen, the filter only predicts. A person who was gone
-    has a new id. Room coordinates are those of the robot's frame at the start.
+    Between two images, and for a while when nobody is seen, the filter only predicts, and the track has no
+    box. A person who was gone has a new id; one who takes another's place between two images has not. Room
+    coordinates are those of the robot's frame at the start.
 
     Args:
         model: the appearance model; it holds for one mirror.
@@ -160,7 +161,7 @@ class PanoramicPaperTracker:
         (xx, xy), (_, yy) = self._pose.turned(believed.covariance_m2).tolist()
         return Track(
             id=person.id,
-            boxes={PANORAMA: person.box},
+            boxes={PANORAMA: person.box} if person.seen_s == time_s else {},
             place=FloorPlace(position_m=(x, y), covariance_m2=(xx, xy, yy)),
             confidence=1.0,
             status=Status.TRACKED if self._is_seen else Status.TOTALLY_OCCLUDED,

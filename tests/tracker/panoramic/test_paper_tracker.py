@@ -85,7 +85,7 @@ def test_between_images_the_person_goes_on_by_the_last_step_and_grows_uncertain(
     np.testing.assert_allclose(np.subtract(latest.place.position_m, seen.place.position_m), 2 * way)
     spread = np.subtract(latest.place.covariance_m2, seen.place.covariance_m2)
     np.testing.assert_allclose(spread, [0.024, -0.001, 0.043], atol=1e-12)
-    assert later.boxes == seen.boxes
+    assert later.boxes == latest.boxes == {} != seen.boxes
     assert latest.age_s == pytest.approx(1.0)
 
 
