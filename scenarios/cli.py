@@ -16,7 +16,7 @@ from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
 from peopleboy.scenarios.commands.report import report
 from peopleboy.scenarios.commands.run import run
-from peopleboy.scenarios.commands.study import datasets, reproduce, train_occlusion
+from peopleboy.scenarios.commands.study import datasets, reproduce, train_distance, train_occlusion
 from peopleboy.scenarios.commands.track import track
 from peopleboy.scenarios.commands.view import view
 from peopleboy.scenarios.running.engine.task import TasksFailed
@@ -38,6 +38,7 @@ COMMANDS = (
     export,
     datasets,
     train_occlusion,
+    train_distance,
     reproduce,
 )
 

@@ -13,6 +13,8 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.panoramic.appearance_file import shipped_model
+from peopleboy.tracker.panoramic.paper_tracker import PanoramicPaperTracker
 from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import LEARNED, VARIANTS
@@ -65,7 +67,14 @@ def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
     return PeopleTracker(VARIANTS[name], rng, shipped_order() if name == LEARNED else None)
 
 
-TRACKERS: Final[dict[str, Factory]] = {name: partial(_contour_tracker, name) for name in VARIANTS}
+def _panoramic_tracker(rng: np.random.Generator) -> PanoramicPaperTracker:  # noqa: ARG001
+    return PanoramicPaperTracker(shipped_model())
+
+
+TRACKERS: Final[dict[str, Factory]] = {
+    **{name: partial(_contour_tracker, name) for name in VARIANTS},
+    "panoramic-paper": _panoramic_tracker,
+}
 """Each tracker's factory by name; the first is the default. Whoever has a further one adds it here."""
 
 DEFAULT_TRACKER: Final = "peopleboy"

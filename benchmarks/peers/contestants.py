@@ -13,8 +13,9 @@ from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import confirmed
-from peopleboy.tracker.trackers import TRACKERS, make_tracker
+from peopleboy.tracker.trackers import make_tracker
 
 RATE_HZ = 15.0
 # The package counts in frames at 30 Hz: five seconds. Of 1, 2, 5 and 10 s it is best for the oracle's IDF1,
@@ -91,7 +92,7 @@ PEERS: dict[str, Callable[[TrueBoxes], Contestant]] = {
 
 def contestants() -> list[str]:
     """Name all who can compete."""
-    return [*TRACKERS, *PEERS]
+    return [*VARIANTS, *PEERS]
 
 
 def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:

@@ -29,6 +29,11 @@ ABOUT: Mapping[str, tuple[str, str]] = {
     "thermal": ("thesis, chapters 4 and 5", "Thermal image alone."),
     "colour": ("thesis, chapters 4 to 6", "With colour, without occlusion handling."),
     "paper": ("the 2005 paper", "Its measurement model, its 30 % best samples, three frames to detect."),
+    "panoramic-paper": (
+        "the 2003 paper",
+        "One person all round a standing robot, by the panoramic camera alone: background subtraction, a "
+        "network for the distance, which `peopleboy train-distance` trains, a Kalman filter on the floor.",
+    ),
 }
 
 

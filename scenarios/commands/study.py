@@ -1,4 +1,4 @@
-"""Commands that follow the sources: `datasets`, `train-occlusion`, `reproduce`."""
+"""Commands that follow the sources: `datasets`, `train-occlusion`, `train-distance`, `reproduce`."""
 
 from __future__ import annotations
 
@@ -73,6 +73,49 @@ def train_occlusion(
     who = chosen_workers(workers, scheduler)
     folder = out if out is not None else Path("runs") / f"occlusion-{tracker}"
     click.echo(give_lesson(folder, tracker, seeds, who, triplets=triplets, again=again, ship=ship))
+
+
+@click.command("train-distance")
+@click.argument("scenario", default="room_long")
+@click.option("--seeds", type=click.IntRange(min=1), default=10, show_default=True, help="Runs of it.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder for the examples and the network.  [default: runs/distance-SCENARIO]",
+)
+@click.option(
+    "--epochs",
+    type=click.IntRange(min=1),
+    default=2000,
+    show_default=True,
+    help="How often the network goes through its examples.",
+)
+@click.option("--trials/--no-trials", default=True, help="Repeat the paper's experiments (minutes).")
+@click.option("--ship", is_flag=True, help="Put the network in the place of the tracker's own.")
+@workers_options
+def train_distance(
+    scenario: str,
+    seeds: int,
+    out: Path | None,
+    epochs: int,
+    trials: bool,
+    ship: bool,
+    workers: int | None,
+    scheduler: str | None,
+) -> None:
+    """Learn from a scenario how far away a person in the panorama is, and compare with the 2003 paper.
+
+    SCENARIO is a name or a path, room_long if left out. It begins with five empty panoramas, and one person
+    at a time is there later. A killed call goes on where it was.
+    """
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.studies.distance_learning.distance_lesson import give_distance_lesson
+    from peopleboy.tracker.panoramic.distance_network import Lessons
+
+    who = chosen_workers(workers, scheduler)
+    folder = out if out is not None else Path("runs") / f"distance-{Path(scenario).stem}"
+    lessons = Lessons(epochs=epochs)
+    click.echo(give_distance_lesson(folder, scenario, seeds, who, lessons=lessons, trials=trials, ship=ship))
 
 
 @click.command()

@@ -16,8 +16,10 @@ from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.frame_cache import film
+from peopleboy.scenarios.studies.distance_learning.distance_lesson import give_distance_lesson
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store
+from peopleboy.tracker.panoramic.distance_network import Lessons
 from tests.helpers.calls.footage_calls import refusal
 from tests.helpers.calls.processes import start
 from tests.helpers.images.footage_files import write_folder
@@ -125,6 +127,9 @@ OTHERS = {
     "reproduce": lambda path: open_store(path / "units.jsonl"),
     "train-occlusion": lambda path: give_lesson(
         path, "peopleboy", 1, Workers(), triplets=False, again=False, ship=False
+    ),
+    "train-distance": lambda path: give_distance_lesson(
+        path, "pass_behind", 1, Workers(), lessons=Lessons(), trials=False, ship=False
     ),
     "datasets": lambda path: film(load_scenario("pass_behind"), 0, path),
 }

@@ -9,9 +9,9 @@ from peopleboy.tracker.thermal import people_tracker
 from peopleboy.tracker.thermal.config import InteractionConfig
 from peopleboy.tracker.thermal.particle_filter import weigh
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.thermal.variants import PEOPLEBOY, VARIANTS
 from peopleboy.tracker.track import Status
-from peopleboy.tracker.trackers import TRACKERS, make_tracker
+from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.images.contours import middle, semi_height
 from tests.helpers.images.drawn_people import blank, draw_person
 
@@ -166,8 +166,8 @@ def test_who_was_lost_is_remembered_for_ten_seconds(seconds, is_known):
     assert (confirmed(before)[0].id == confirmed(after)[0].id) is is_known
 
 
-@pytest.mark.parametrize("name", TRACKERS)
-def test_every_tracker_gives_finite_tracks_with_ids_of_their_own(name):
+@pytest.mark.parametrize("name", VARIANTS)
+def test_every_contour_tracker_gives_finite_tracks_with_ids_of_their_own(name):
     tracker = make_tracker(name, np.random.default_rng(3))
     for i in range(30, 90, 2):
         tracks = tracker.update(passing(i))

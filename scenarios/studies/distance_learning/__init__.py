@@ -1,0 +1,1 @@
+"""Learning from runs how far away a person is in the panorama."""

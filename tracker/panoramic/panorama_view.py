@@ -1,0 +1,85 @@
+"""What tells one panoramic camera from another: its image's size, its height, how low its rows look."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import Calibration
+
+_SAME_M, _SAME_DEG = 0.01, 0.1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanoramaView:
+    """A panoramic camera as a network knows it, which holds for no other mirror.
+
+    Attributes:
+        width_px, height_px: of the unrolled image.
+        centre_m: its optical centre above the floor [m].
+        depression_deg: how far below the horizon the top, the middle and the bottom row look [deg].
+    """
+
+    width_px: int
+    height_px: int
+    centre_m: float
+    depression_deg: tuple[float, float, float]
+
+    @classmethod
+    def of_plain(cls, plain: Mapping[str, Any]) -> PanoramaView:
+        """Make a view out of plain data, as `asdict` and JSON leave it."""
+        return cls(**{**plain, "depression_deg": tuple(plain["depression_deg"])})
+
+    def refusal(self, other: PanoramaView) -> str:
+        """Say why what was learned with this camera does not hold for another; empty if it does."""
+        if (self.width_px, self.height_px) != (other.width_px, other.height_px):
+            return f"panorama is {other.size}, but the network was trained on {self.size}"
+        looks = np.subtract(self.depression_deg, other.depression_deg)
+        if abs(self.centre_m - other.centre_m) > _SAME_M or np.any(np.abs(looks) > _SAME_DEG):
+            return f"panorama is of a mirror {other.mirror}, but the network was trained on one {self.mirror}"
+        return ""
+
+    @property
+    def size(self) -> str:
+        """Width and height in words."""
+        return f"{self.width_px}x{self.height_px}"
+
+    @property
+    def mirror(self) -> str:
+        """What the mirror shows, in words."""
+        top, _, bottom = self.depression_deg
+        return f"at {self.centre_m:.2f} m that looks {top:.1f} to {bottom:.1f} deg down"
+
+
+def view_of(calibration: Calibration, width_px: int, height_px: int) -> PanoramaView:
+    """Describe a camera by its calibration and the size of its image."""
+    rows = np.array([0.0, (height_px - 1) / 2.0, height_px - 1.0])
+    column = np.full(3, (width_px - 1) / 2.0)
+    x, y, z = calibration.rays(np.stack([column, rows], axis=1)).T
+    top, middle, bottom = np.round(np.degrees(np.arctan2(-z, np.hypot(x, y))), 3).tolist()
+    return PanoramaView(
+        width_px=width_px,
+        height_px=height_px,
+        centre_m=round(calibration.position_m[2], 4),
+        depression_deg=(top, middle, bottom),
+    )
+
+
+def check_view(trained: PanoramaView, size: tuple[int, int], calibration: Calibration | None) -> None:
+    """Refuse images (height, width) of another size, or of another mirror where the calibration is known.
+
+    Raises:
+        BadInput: the network was trained on another camera.
+    """
+    height, width = size
+    if calibration is None:
+        seen = replace(trained, width_px=width, height_px=height)
+    else:
+        seen = view_of(calibration, width, height)
+    why = trained.refusal(seen)
+    if why:
+        raise BadInput(f"{why}; train another with `peopleboy train-distance`")

@@ -1,0 +1,174 @@
+"""One person tracked all round a standing robot, as the OMNIVIS 2003 paper does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.panoramic.appearance_file import AppearanceModel
+from peopleboy.tracker.panoramic.background import (
+    CLEAN,
+    EMPTY_IMAGES,
+    Background,
+    Subtraction,
+    learn_background,
+)
+from peopleboy.tracker.panoramic.depth_cues import MeasuredFigure, measure
+from peopleboy.tracker.panoramic.panorama_view import check_view
+from peopleboy.tracker.panoramic.panoramic_explanation import PanoramicExplanation
+from peopleboy.tracker.panoramic.position_filter import PRINTED, STEP_S, Estimate, MotionNoise, PositionFilter
+from peopleboy.tracker.panoramic.robot_pose import RobotPose
+from peopleboy.tracker.track import Box, FloorPlace, Status, Track
+
+PANORAMA = "panorama"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanoramicConfig:
+    """Settings of the panoramic tracker.
+
+    Attributes:
+        subtraction: how the background is taken away.
+        noise: Q and R of the filter; None for those that come with the network.
+        uses_velocity: whether the filter predicts by the last estimated step ("the estimated velocity of the
+            person is used to predict their next position"), or by none.
+        least_px: silhouettes of fewer pixels are nobody.
+        forget_s: who is not seen for longer is gone [s].
+    """
+
+    subtraction: Subtraction = CLEAN
+    noise: MotionNoise | None = PRINTED
+    uses_velocity: bool = True
+    least_px: int = 8
+    forget_s: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Person:
+    """Who is tracked.
+
+    Attributes:
+        id, born_s: number, and when the track began [s].
+        seen_s: time of the newest image with the person in it [s].
+        box: there [px].
+        estimate: of the filter then.
+    """
+
+    id: int
+    born_s: float
+    seen_s: float
+    box: Box
+    estimate: Estimate
+
+    def age_steps(self, time_s: float) -> float:
+        """Tell how many steps of the filter have gone since the person was last seen."""
+        return (time_s - self.seen_s) / STEP_S
+
+
+class PanoramicPaperTracker:
+    """Tracks one person by a silhouette in the panorama, a network for the distance, and a Kalman filter.
+
+    The robot stands, and the first five images must show nobody: they become the background. Who is in them
+    becomes part of it, and later leaves a hole, which is taken for a person from then on. Two people at a
+    time are taken for one.
+
+    Between two images, and for a while when nobody is seen, the filter only predicts, and the track has no
+    box. A person who was gone has a new id; one who takes another's place between two images has not. Room
+    coordinates are those of the robot's frame at the start.
+
+    Args:
+        model: the appearance model; it holds for one mirror.
+        config: settings.
+
+    Source: OMNIVIS 2003, sections 4 and 5.
+    """
+
+    def __init__(self, model: AppearanceModel, config: PanoramicConfig | None = None) -> None:
+        self.config = PanoramicConfig() if config is None else config
+        self._model = model
+        noise = model.noise if self.config.noise is None else self.config.noise
+        self._filter = PositionFilter(noise, self.config.uses_velocity)
+        self._pose = RobotPose()
+        self._empty: list[NDArray[np.uint8]] = []
+        self._background: Background | None = None
+        self._person: _Person | None = None
+        self._newest_id = 0
+        self.explanation: PanoramicExplanation | None = None
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The panoramic camera."""
+        return (PANORAMA,)
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame and tell where the person is, if somebody is there.
+
+        Raises:
+            BadInput: an image that is none, or of another camera than the network was trained on.
+        """
+        if frame.odometry is not None:
+            self._pose = self._pose.moved(frame.odometry)
+        if PANORAMA in frame.images:
+            image = frame.rgb(PANORAMA)
+            check_view(self._model.view, image.shape[:2], frame.calibrations.get(PANORAMA))
+            self._look(image, frame.time_s)
+        if self._person is None or frame.time_s - self._person.seen_s > self.config.forget_s:
+            self._person = None
+            return ()
+        return (self._track(self._person, frame.time_s),)
+
+    def _look(self, image: NDArray[np.uint8], time_s: float) -> None:
+        """See who is in a new image; the first ones become the background."""
+        if self._background is None:
+            self._empty.append(image)
+            if len(self._empty) == EMPTY_IMAGES:
+                self._background = learn_background(self._empty, self.config.subtraction)
+                self._empty.clear()
+            return
+        silhouette = self._background.silhouette(image)
+        figure = measure(silhouette, self.config.least_px)
+        distance_m = None if figure is None else self._meet(figure, time_s)
+        self.explanation = PanoramicExplanation(
+            background=self._background,
+            silhouette=silhouette,
+            figure=figure,
+            distance_m=distance_m,
+            estimate=None if self._person is None else self._person.estimate,
+        )
+
+    def _meet(self, figure: MeasuredFigure, time_s: float) -> float:
+        """Let the filter know where the person is seen, and tell how far away [m]."""
+        distance_m = float(self._model.network.distance(np.array([figure.cues]))[0])
+        place = self._pose.place(distance_m, figure.bearing_rad)
+        before = self._person
+        if before is None or time_s - before.seen_s > self.config.forget_s:
+            self._newest_id += 1
+            born_s, estimate = time_s, self._filter.start(place)
+        else:
+            born_s = before.born_s
+            estimate = self._filter.update(before.estimate, place, before.age_steps(time_s))
+        self._person = _Person(
+            id=self._newest_id, born_s=born_s, seen_s=time_s, box=figure.box, estimate=estimate
+        )
+        return distance_m
+
+    def _track(self, person: _Person, time_s: float) -> Track:
+        believed = self._filter.predict(person.estimate, person.age_steps(time_s))
+        x, y = self._pose.locate(believed.position_m).tolist()
+        (xx, xy), (_, yy) = self._pose.turned(believed.covariance_m2).tolist()
+        return Track(
+            id=person.id,
+            boxes={PANORAMA: person.box} if person.seen_s == time_s else {},
+            place=FloorPlace(position_m=(x, y), covariance_m2=(xx, xy, yy)),
+            confidence=1.0,
+            status=Status.TRACKED if self._is_seen else Status.TOTALLY_OCCLUDED,
+            age_s=time_s - person.born_s,
+        )
+
+    @property
+    def _is_seen(self) -> bool:
+        """Whether the person is in the newest image."""
+        return self.explanation is not None and self.explanation.figure is not None
