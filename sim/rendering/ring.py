@@ -268,6 +268,8 @@ def _before(table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], r
             pieces.span[count] = _span(
                 pose, _flattened(low, face, high), _flattened(high, face - 3, low), width
             )
+            if pieces.span[count, 1] == width and _is_out_of_sight(pose, low, high, ring, radius):
+                continue
             count += 1
     return Pieces(pieces.shape[:count], pieces.face[:count], pieces.pose[:count], pieces.span[:count])
 
@@ -280,6 +282,33 @@ def _may_face(pose: Array, size: Array, face: int, radius: float) -> bool:
     for i in range(3):
         distance += sign * pose[i, axis] * pose[i, 3]
     return bool(distance < radius)
+
+
+@njit(cache=True, error_model="numpy")
+def _is_out_of_sight(pose: Array, low: Array, high: Array, ring: Ring, radius: float) -> bool:
+    """Whether the box between two corners is above all views or below them, as ceiling and robot are.
+
+    Args:
+        pose: ring from shape.
+        low: one corner, in the shape's frame.
+        high: the other one.
+        ring: the cameras.
+        radius: [m] of the ring.
+    """
+    lens, axis = ring.lens, math.atan2(ring.column_from_ring[0, 2, 1], ring.column_from_ring[0, 0, 1])
+    highest = axis + math.atan((-0.5 - lens.centre_u) / lens.focal)
+    slope = math.tan(axis + math.atan((lens.width - 0.5 - lens.centre_u) / lens.focal))
+    is_above, is_below = highest > 0.0, slope > 0.0
+    for corner in range(8):
+        x, y, z = map_point(
+            pose,
+            high[0] if corner & 1 else low[0],
+            high[1] if corner & 2 else low[1],
+            high[2] if corner & 4 else low[2],
+        )
+        is_above &= y < 0.0
+        is_below &= y > slope * (math.hypot(x, z) + radius)
+    return bool(is_above or is_below)
 
 
 @njit(cache=True, error_model="numpy")

@@ -15,7 +15,7 @@ from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 
 PEOPLE = {"anna": (6.5, -1.2), "carl": (1.6, 0.1), "dora": (4.2, 1.9)}
-SCALE = 2
+SCALE = 1.5
 
 
 def raw_and_unrolled() -> Image.Image:
