@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -15,6 +16,7 @@ try:
 except ImportError:
     raise BadInput("--scheduler: needs Dask; pip install '.[cluster]'") from None
 
+ADDRESS = r"(tcp|tls|ucx|ws|wss|inproc)://\S+"  # those that Dask knows
 CONNECT_S = 10.0  # [s] to wait for the scheduler
 WORKERS_S = 30.0  # [s] to wait for its first worker
 
@@ -53,6 +55,8 @@ def _outcome(task: Task[Any], future: Any) -> Any:
 
 @contextmanager
 def _client(scheduler: str) -> Iterator[Any]:
+    if re.fullmatch(ADDRESS, scheduler) is None:
+        raise BadInput(f"--scheduler {scheduler}: must be an address such as tcp://10.0.0.1:8786")
     try:
         client = Client(scheduler, timeout=CONNECT_S)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
