@@ -34,13 +34,14 @@ class CameraTruth:
             self._lines.writelines(gt_lines(tick, self._camera))
 
     def flush(self) -> None:
-        """Bring the text to disk."""
+        """Bring text and table to disk."""
         self._lines.flush()
+        write_table(self._table, self._rows, TRUTH)
 
     def close(self) -> None:
-        """Close the text, and write the table."""
+        """Bring both to disk, and close the text."""
+        self.flush()
         self._lines.close()
-        write_table(self._table, self._rows, TRUTH)
 
 
 def gt_lines(tick: Tick, camera: str = "thermal") -> list[str]:

@@ -106,7 +106,7 @@ class RunFolder:
         self._is_complete = True
 
     def flush(self) -> None:
-        """Bring all files but the further cameras' tables to disk, so that the run can be scored."""
+        """Bring all files to disk, so that the run can be scored."""
         self._write_tables()
         for file in self._texts():
             file.flush()

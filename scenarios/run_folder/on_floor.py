@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 import pyarrow as pa
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.tables import PLACE
+from peopleboy.scenarios.run_folder.run_files import read_table
+from peopleboy.scenarios.run_folder.tables import PLACE, TRUTH
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.floor import Places, floor_squares
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.track import Status
 
 POSE: Final = ("frame", "x_m", "y_m", "heading_rad")
-PEOPLE: Final = ("frame", "id", "x_m", "y_m", "is_counted", "visible_fraction", "whole_px")
+VIEW: Final = ("frame", "id", "visible_fraction")
+PEOPLE: Final = (*VIEW, "x_m", "y_m", "is_counted")
 BELIEFS: Final = ("frame", "id", "confidence", "status", "left_px", *PLACE)
 """The columns of robot.parquet, truth.parquet and tracks.parquet that are needed here."""
 
@@ -54,22 +58,45 @@ def is_on_floor_alone(beliefs: pa.Table) -> bool:
     return bool(len(beliefs)) and beliefs["left_px"].null_count == len(beliefs) and len(_placed(beliefs)) > 0
 
 
-def as_squares(people: pa.Table, beliefs: pa.Table, robot: pa.Table) -> tuple[TrueBoxes, TrackBoxes]:
-    """Put squares on the floor [m] for the boxes of people within the image, and of confirmed tracks."""
-    seen = people.filter(pa.array(people["whole_px"].to_numpy() > 0))
-    standing, believed = places_of_people(seen, robot), places_of_tracks(beliefs)
+def as_squares(
+    folder: Path, people: pa.Table, beliefs: pa.Table, robot: pa.Table
+) -> tuple[TrueBoxes, TrackBoxes]:
+    """Put squares on the floor [m] for the boxes of everybody who is there, and of confirmed tracks.
+
+    How much of a person is visible is told by the cameras in whose images the tracker gave boxes, or else by
+    the thermal one; who is in no image is nobody to find, and no false alarm either.
+
+    Args:
+        folder: of the run.
+        people: its truth.parquet, the columns `PEOPLE` among others.
+        beliefs: its tracks.parquet.
+        robot: its robot.parquet.
+    """
+    standing, believed = places_of_people(people, robot), places_of_tracks(beliefs)
     return TrueBoxes(
         frame=standing.frame,
         id=standing.id,
         box=floor_squares(standing.position_m),
-        counted=seen["is_counted"].to_numpy(zero_copy_only=False),
-        visible=seen["visible_fraction"].to_numpy(),
+        counted=people["is_counted"].to_numpy(zero_copy_only=False),
+        visible=_visible(folder, people),
     ), TrackBoxes(
         frame=believed.frame,
         id=believed.id,
         box=floor_squares(believed.position_m),
         confidence=_placed(beliefs)["confidence"].to_numpy(),
     )
+
+
+def _visible(folder: Path, people: pa.Table) -> Floats:
+    """Tell how much of people is visible (N,), in the image that shows most of them."""
+    boxed = [folder / "truth" / f"{path.stem}.parquet" for path in sorted((folder / "tracks").glob("*.txt"))]
+    views = [read_table(path, TRUTH, VIEW) for path in boxed] or [people]
+    most: dict[tuple[int, int], float] = defaultdict(float)
+    for view in views:
+        for frame, number, visible in zip(*(view[name].to_pylist() for name in VIEW), strict=True):
+            most[frame, number] = max(most[frame, number], visible)
+    rows = zip(people["frame"].to_pylist(), people["id"].to_pylist(), strict=True)
+    return np.array([most[row] for row in rows], np.float64)
 
 
 def _placed(beliefs: pa.Table) -> pa.Table:

@@ -41,7 +41,7 @@ def score_people(
     people = read_table(folder / "truth.parquet", TRUTH, PEOPLE)
     beliefs = read_table(folder / "tracks.parquet", TRACKS, BELIEFS)
     if is_on_floor_alone(beliefs):
-        truth, tracks = as_squares(people, beliefs, robot)
+        truth, tracks = as_squares(folder, people, beliefs, robot)
     return evaluate(
         truth,
         tracks,

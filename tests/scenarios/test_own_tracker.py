@@ -77,6 +77,36 @@ def test_it_is_scored_on_the_floor_in_metres(run: Path) -> None:
     assert (run / "tracks.txt").read_text(encoding="utf-8") == ""
 
 
+class Seer(Reckoner):
+    """Knows of somebody behind the robot, too, whom no camera sees."""
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        behind = FloorPlace(position_m=(-1.0, 0.5), covariance_m2=(0.01, 0.0, 0.01))
+        (ahead,) = super().update(frame)
+        return (ahead, replace(ahead, id=2, place=behind))
+
+
+def test_who_is_in_no_image_is_nobody_to_find_and_no_false_alarm(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(TRACKERS, "reckoner", Seer)
+    robot = {
+        name: value for name, value in STANDING["robot"].items() if name not in ("commands", "behaviour")
+    }
+    ben = {"name": "ben", "path": [{"at_m": [1.0, 0.5]}]}
+    scene = STANDING | {"people": [*STANDING["people"], ben], "robot": robot | {"at_m": [2.0, 0.0]}}
+    scene["people"][0] = {"name": "anna", "path": [{"at_m": [6.0, 0.0]}]}
+    counts = json.loads((make_run(scene, tmp_path / "run") / "metrics.json").read_text(encoding="utf-8"))[
+        "counts"
+    ]
+    assert (counts["targets"], counts["matches"], counts["false_alarms"], counts["ignored"]) == (
+        30,
+        30,
+        0,
+        30,
+    )
+
+
 def test_its_places_are_in_the_tables_and_no_boxes(run: Path) -> None:
     rows = pq.read_table(run / "tracks.parquet").to_pylist()
     assert len(rows) == 30

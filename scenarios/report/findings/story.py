@@ -110,7 +110,7 @@ class RunStory:
         """What is matched: boxes in the thermal image, or, of a tracker without any, squares on the floor."""
         files = self.files
         if self.is_on_floor:
-            return as_squares(files.people, files.beliefs, files.robot)
+            return as_squares(self.run.folder, files.people, files.beliefs, files.robot)
         return files.truth, files.tracks
 
     @cached_property
