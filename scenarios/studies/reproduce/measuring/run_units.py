@@ -13,8 +13,13 @@ from peopleboy.scenarios.running.engine.task import Task, Tell
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 
-MEASURES = ("delay_units.py", "learn_units.py", "units.py")
-"""The files beside this one that say how results are measured."""
+STUDIES = Path(__file__).parents[2]
+MEASURES = (
+    *(Path(__file__).with_name(name) for name in ("delay_units.py", "learn_units.py", "units.py")),
+    *sorted((STUDIES / "webcams").glob("*.py")),
+    STUDIES.with_name("library") / "corner_webcams.yaml",
+)
+"""The files that say how results are measured, beside trackers and simulator."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +45,7 @@ def open_store(path: Path) -> Store:
     Raises:
         BadInput: its folder cannot be written to.
     """
-    return Store(path, code_digest(*(Path(__file__).with_name(name) for name in MEASURES)))
+    return Store(path, code_digest(*MEASURES))
 
 
 def run_units(units: Sequence[Unit], store: Store, workers: Workers) -> None:
