@@ -79,13 +79,3 @@ class PanoramaCalibration:
         bearing, down = self.bearing(pixels[:, 0]), self.depression(pixels[:, 1])
         level = np.cos(down)
         return np.stack([level * np.cos(bearing), level * np.sin(bearing), -np.sin(down)], axis=1)
-
-    def on_floor(self, pixels: Floats) -> Floats:
-        """Find the points (N, 2) of the floor, in the robot's frame [m], that pixels (N, 2) see.
-
-        NaN at the horizon and above.
-        """
-        bearing, down = self.bearing(pixels[:, 0]), self.depression(pixels[:, 1])
-        slope = np.tan(np.where(down > 0.0, down, np.nan))
-        distance = self.ring_radius_m + self.ring_height_m / slope
-        return np.stack([distance * np.cos(bearing), distance * np.sin(bearing)], axis=1)

@@ -8,9 +8,10 @@ from typing import Final
 import numpy as np
 
 from peopleboy.tracker.frame import THERMAL, Calibration
+from peopleboy.tracker.thermal.whereabouts import PERSON_M
 from peopleboy.tracker.track import Box, FloorPlace, Track
 
-PERSON_M: Final = (1.72, 0.5)  # height and width of who has no box
+WIDTH_M: Final = 0.5  # of who has no box
 WIDEST_RAD: Final = math.radians(75.0)  # who is farther to the side, or behind, is put here
 NEAREST_M: Final = 0.3
 
@@ -36,7 +37,6 @@ def _standing(place: FloorPlace, calibration: Calibration) -> Box:
     away = max(math.hypot(forward, aside), NEAREST_M)
     bearing = max(-WIDEST_RAD, min(math.atan2(aside, forward), WIDEST_RAD))
     x, y = camera_x + away * math.cos(bearing), camera_y + away * math.sin(bearing)
-    height_m, width_m = PERSON_M
-    (u, top), (_, bottom) = calibration.project(np.array([[x, y, height_m], [x, y, 0.0]])).tolist()
-    width = (bottom - top) * width_m / height_m
+    (u, top), (_, bottom) = calibration.project(np.array([[x, y, PERSON_M], [x, y, 0.0]])).tolist()
+    width = (bottom - top) * WIDTH_M / PERSON_M
     return u - width / 2.0, top, width, bottom - top

@@ -88,7 +88,7 @@ def compare(
             loaded.steered_by(controller.behaviour),
             RunOptions(
                 seed=seed,
-                out=out / f"{controller}-{seed}",
+                out=out / f"{controller}-{seed}".replace(":", "."),
                 tracker=controller.eyes,
                 record=False,
                 overwrite=overwrite,

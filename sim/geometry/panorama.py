@@ -50,14 +50,6 @@ class Panorama:
         radius = self.height - 0.5 - np.asarray(rows, np.float64)
         return np.asarray(self.mirror.axis_rad - np.arctan(radius / self.focal_px), np.float64)
 
-    def floor_distance(self, rows: ArrayLike) -> Matrix:
-        """[m] from the axis to the floor that rows see; inf at the horizon and above."""
-        slope = np.tan(self.depression(rows))
-        reach = np.divide(
-            self.mirror.ring_height_m, slope, where=slope > 0.0, out=np.full_like(slope, np.inf)
-        )
-        return np.asarray(self.mirror.ring_radius_m + reach, np.float64)
-
     def project(self, camera_points: Matrix) -> Matrix:
         """Project points of the optical frame to the image.
 

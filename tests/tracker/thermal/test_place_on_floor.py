@@ -103,8 +103,7 @@ def test_feet_and_head_are_mixed_as_least_squares_would():
 
 @pytest.mark.parametrize("status", list(Status))
 def test_who_is_seen_less_is_placed_less_surely(status: Status):
-    along, across = ERRORS[status]
-    assert (along, across) >= ERRORS[Status.TRACKED]
+    assert all(error >= usual for error, usual in zip(ERRORS[status], ERRORS[Status.TRACKED], strict=True))
 
 
 def test_feet_above_the_horizon_are_far_away_and_not_behind():
