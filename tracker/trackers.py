@@ -13,8 +13,8 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.panoramic.appearance_file import shipped_model
-from peopleboy.tracker.panoramic.paper_tracker import PanoramicPaperTracker
+from peopleboy.tracker.panoramic.paper.appearance_file import shipped_model
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
 from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import LEARNED, VARIANTS

@@ -110,7 +110,7 @@ def train_distance(
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.distance_learning.distance_lesson import give_distance_lesson
-    from peopleboy.tracker.panoramic.distance_network import Lessons
+    from peopleboy.tracker.panoramic.paper.distance_network import Lessons
 
     who = chosen_workers(workers, scheduler)
     folder = out if out is not None else Path("runs") / f"distance-{Path(scenario).stem}"

@@ -1,1 +1,1 @@
-"""Tracking one person all round a standing robot with a panoramic camera, as the OMNIVIS 2003 paper does."""
+"""Tracking people all round the robot with a panoramic camera."""

@@ -16,10 +16,10 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.panoramic.background import EMPTY_IMAGES, learn_background
-from peopleboy.tracker.panoramic.depth_cues import MeasuredFigure, measure
-from peopleboy.tracker.panoramic.panorama_view import view_of
-from peopleboy.tracker.panoramic.paper_tracker import PANORAMA, PanoramicConfig
+from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, learn_background
+from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure, measure
+from peopleboy.tracker.panoramic.paper.panorama_view import view_of
+from peopleboy.tracker.panoramic.paper.paper_tracker import PANORAMA, PanoramicConfig
 
 Floats = NDArray[np.float64]
 Row = list[float]

@@ -20,11 +20,11 @@ from peopleboy.scenarios.studies.distance_learning.distance_examples import Exam
 from peopleboy.scenarios.studies.distance_learning.distance_task import DistanceTask
 from peopleboy.scenarios.studies.distance_learning.distance_trials import walks
 from peopleboy.scenarios.studies.distance_learning.show_distances import print_trials
-from peopleboy.tracker.panoramic.appearance_file import SHIPPED, AppearanceModel
-from peopleboy.tracker.panoramic.distance_network import Lessons, teach
-from peopleboy.tracker.panoramic.panorama_view import PanoramaView
-from peopleboy.tracker.panoramic.paper_tracker import PANORAMA
-from peopleboy.tracker.panoramic.position_filter import estimate_noise
+from peopleboy.tracker.panoramic.paper.appearance_file import SHIPPED, AppearanceModel
+from peopleboy.tracker.panoramic.paper.distance_network import Lessons, teach
+from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.paper.paper_tracker import PANORAMA
+from peopleboy.tracker.panoramic.paper.position_filter import estimate_noise
 
 
 def give_distance_lesson(

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.distance_learning.distance_examples import Examples
-from peopleboy.tracker.panoramic.distance_network import Lessons, teach
-from peopleboy.tracker.panoramic.position_filter import PRINTED, STEP_S, PositionFilter, estimate_noise
+from peopleboy.tracker.panoramic.paper.distance_network import Lessons, teach
+from peopleboy.tracker.panoramic.paper.position_filter import PRINTED, STEP_S, PositionFilter, estimate_noise
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]

@@ -20,8 +20,8 @@ from peopleboy.scenarios.studies.distance_learning.distance_trials import (
     personal_trials,
     position_trials,
 )
-from peopleboy.tracker.panoramic.depth_cues import DepthCues
-from peopleboy.tracker.panoramic.distance_network import Lessons
+from peopleboy.tracker.panoramic.paper.depth_cues import DepthCues
+from peopleboy.tracker.panoramic.paper.distance_network import Lessons
 
 _ANGLE = (2.01, 1.60)
 _GENERAL = {"average": (0.126, 0.167), "best": (0.110, 0.099), "worst": (0.163, 0.325)}

@@ -19,7 +19,7 @@ from peopleboy.scenarios.running.frame_cache import film
 from peopleboy.scenarios.studies.distance_learning.distance_lesson import give_distance_lesson
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store
-from peopleboy.tracker.panoramic.distance_network import Lessons
+from peopleboy.tracker.panoramic.paper.distance_network import Lessons
 from tests.helpers.calls.footage_calls import refusal
 from tests.helpers.calls.processes import start
 from tests.helpers.images.footage_files import write_folder

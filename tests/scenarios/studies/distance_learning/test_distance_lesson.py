@@ -8,10 +8,10 @@ import yaml
 
 from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
-from peopleboy.tracker.panoramic import appearance_file
-from peopleboy.tracker.panoramic.appearance_file import SHIPPED, AppearanceModel
-from peopleboy.tracker.panoramic.panorama_view import check_view
-from peopleboy.tracker.panoramic.paper_tracker import PanoramicPaperTracker
+from peopleboy.tracker.panoramic.paper import appearance_file
+from peopleboy.tracker.panoramic.paper.appearance_file import SHIPPED, AppearanceModel
+from peopleboy.tracker.panoramic.paper.panorama_view import check_view
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
 from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.calls.command_line import refusal, run_cli
 

@@ -18,7 +18,7 @@ from peopleboy.scenarios.studies.distance_learning.distance_trials import (
     walks,
 )
 from peopleboy.scenarios.studies.distance_learning.show_distances import of_three, pooled, print_trials
-from peopleboy.tracker.panoramic.distance_network import Lessons
+from peopleboy.tracker.panoramic.paper.distance_network import Lessons
 
 QUICK = Lessons(epochs=60)
 

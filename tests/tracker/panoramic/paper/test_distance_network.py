@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from peopleboy.tracker.panoramic.distance_network import DistanceNetwork, Lessons, learn_in_order, teach
+from peopleboy.tracker.panoramic.paper.distance_network import DistanceNetwork, Lessons, learn_in_order, teach
 from tests.helpers.calls.refused import refused
 
 QUICK = Lessons(epochs=300)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.panoramic.background import Mask
+from peopleboy.tracker.panoramic.paper.background import Mask
 from peopleboy.tracker.track import Box
 
 

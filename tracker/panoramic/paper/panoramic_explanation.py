@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from peopleboy.tracker.panoramic.background import Background, Mask
-from peopleboy.tracker.panoramic.depth_cues import MeasuredFigure
-from peopleboy.tracker.panoramic.position_filter import Estimate
+from peopleboy.tracker.panoramic.paper.background import Background, Mask
+from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
+from peopleboy.tracker.panoramic.paper.position_filter import Estimate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.tracker.panoramic import appearance_file
-from peopleboy.tracker.panoramic.appearance_file import AppearanceModel
-from peopleboy.tracker.panoramic.depth_cues import measure
-from peopleboy.tracker.panoramic.distance_network import Lessons, teach
-from peopleboy.tracker.panoramic.panorama_view import view_of
-from peopleboy.tracker.panoramic.paper_tracker import PanoramicConfig, PanoramicPaperTracker
-from peopleboy.tracker.panoramic.position_filter import PRINTED
+from peopleboy.tracker.panoramic.paper import appearance_file
+from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel
+from peopleboy.tracker.panoramic.paper.depth_cues import measure
+from peopleboy.tracker.panoramic.paper.distance_network import Lessons, teach
+from peopleboy.tracker.panoramic.paper.panorama_view import view_of
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig, PanoramicPaperTracker
+from peopleboy.tracker.panoramic.paper.position_filter import PRINTED
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.calls.refused import refused

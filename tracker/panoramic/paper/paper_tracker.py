@@ -8,18 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.panoramic.appearance_file import AppearanceModel
-from peopleboy.tracker.panoramic.background import (
+from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel
+from peopleboy.tracker.panoramic.paper.background import (
     CLEAN,
     EMPTY_IMAGES,
     Background,
     Subtraction,
     learn_background,
 )
-from peopleboy.tracker.panoramic.depth_cues import MeasuredFigure, measure
-from peopleboy.tracker.panoramic.panorama_view import check_view
-from peopleboy.tracker.panoramic.panoramic_explanation import PanoramicExplanation
-from peopleboy.tracker.panoramic.position_filter import PRINTED, STEP_S, Estimate, MotionNoise, PositionFilter
+from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure, measure
+from peopleboy.tracker.panoramic.paper.panorama_view import check_view
+from peopleboy.tracker.panoramic.paper.panoramic_explanation import PanoramicExplanation
+from peopleboy.tracker.panoramic.paper.position_filter import (
+    PRINTED,
+    STEP_S,
+    Estimate,
+    MotionNoise,
+    PositionFilter,
+)
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 

@@ -11,9 +11,9 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.panoramic.distance_network import CUES, DistanceNetwork
-from peopleboy.tracker.panoramic.panorama_view import PanoramaView
-from peopleboy.tracker.panoramic.position_filter import MotionNoise
+from peopleboy.tracker.panoramic.paper.distance_network import CUES, DistanceNetwork
+from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.paper.position_filter import MotionNoise
 
 SHIPPED = Path(__file__).parent / "networks" / "panoramic-paper.json"
 """The network that comes with the tracker."""

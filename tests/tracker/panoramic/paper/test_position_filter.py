@@ -6,7 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.panoramic.position_filter import PRINTED, MotionNoise, PositionFilter, estimate_noise
+from peopleboy.tracker.panoramic.paper.position_filter import (
+    PRINTED,
+    MotionNoise,
+    PositionFilter,
+    estimate_noise,
+)
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 
 Q, R = PRINTED.step_m2, PRINTED.measurement_m2

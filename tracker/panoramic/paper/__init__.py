@@ -1,0 +1,1 @@
+"""One person, as the OMNIVIS 2003 paper tracks one."""
