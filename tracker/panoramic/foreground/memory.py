@@ -1,0 +1,138 @@
+"""What a pixel has looked like without people: a background that goes along with the robot."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.panoramic.foreground.floor_rows import STEP_M, FloorRows
+
+Linear = NDArray[np.float32]
+
+CHANNELS: Final = 6
+VARIANCE, AGE, DOUBT = 3, 4, 5
+"""Channels of a memory after red, green and blue [grey levels]: their variance [grey levels squared], for how
+long it has been seen [s], and by how many columns it may lie wrong if it is no floor [px]."""
+
+FIRST_VARIANCE: Final = 16.0
+LEAST_VARIANCE: Final = 2.0
+_TAU_S: Final = 4.0  # a background that is seen adapts within this time,
+_VARIANCE_TAU_S: Final = 8.0
+_ABSORB_TAU_S: Final = 40.0  # and one that people seem to hide within this.
+
+
+def first_memory(image: NDArray[np.uint8]) -> Linear:
+    """Begin with an RGB image (H, W, 3), which may show people: (H, W, 6) memory of age 0."""
+    memory = np.zeros((*image.shape[:2], CHANNELS), np.float32)
+    memory[..., :VARIANCE] = image
+    memory[..., VARIANCE] = FIRST_VARIANCE
+    return memory
+
+
+def move_along(memory: Linear, odometry: Odometry, floor: FloorRows) -> Linear:
+    """Bring a memory (H, W, 6) to where the robot is now, as if all it shows were floor.
+
+    What was not in the image before has age 0. Turning shifts columns, whatever they show.
+    """
+    if odometry == Odometry():
+        return memory
+    return _moved(
+        memory, odometry.advance_m, odometry.aside_m, odometry.turn_rad, floor.distance_m, floor.row_at
+    )
+
+
+@njit(cache=True, fastmath=True)
+def _moved(
+    memory: Linear, advance: float, aside: float, turn: float, distance: Linear, row_at: Linear
+) -> Linear:
+    height, width, channels = memory.shape
+    moved = np.empty_like(memory)
+    way = math.hypot(advance, aside)
+    per_rad = width / (2.0 * math.pi)
+    shift = -turn * per_rad
+    for u in range(width):
+        angle = math.pi - (u + 0.5) / per_rad + turn
+        along = advance * math.cos(angle) + aside * math.sin(angle)
+        across = aside * math.cos(angle) - advance * math.sin(angle)
+        for v in range(height):
+            off = np.float32(shift)
+            row = np.float32(v)
+            if way > 0.0:
+                out = distance[v] + along
+                slope = across / max(out, 0.1)
+                off = np.float32(shift - per_rad * (slope - slope**3 / 3.0))
+                at = min(math.sqrt(out * out + across * across) / STEP_M, len(row_at) - 1.001)
+                k = int(at)
+                row = row_at[k] + np.float32(at - k) * (row_at[k + 1] - row_at[k])
+            is_seen = -0.5 <= row <= height - 0.5
+            row = min(max(row, np.float32(0.0)), np.float32(height - 1))
+            left, top = math.floor(off), int(row)
+            right_share, low_share = off - np.float32(left), row - np.float32(top)
+            low = min(top + 1, height - 1)
+            a = (u + left) % width
+            b = (a + 1) % width
+            for c in range(channels):
+                upper = memory[top, a, c] + right_share * (memory[top, b, c] - memory[top, a, c])
+                lower = memory[low, a, c] + right_share * (memory[low, b, c] - memory[low, a, c])
+                moved[v, u, c] = upper + low_share * (lower - upper)
+            moved[v, u, 5] += way / distance[v] * per_rad
+            if not is_seen:
+                moved[v, u, 4] = 0.0
+    return moved
+
+
+@njit(cache=True, fastmath=True)
+def unlikeness(image: NDArray[np.uint8], memory: Linear) -> Linear:
+    """Tell how much an image (H, W, 3) differs from a memory: (H, W) in standard deviations.
+
+    To a pixel's own variance is added what its background's slope makes of half a pixel, and of its doubt.
+    """
+    height, width, _ = image.shape
+    told = np.empty((height, width), np.float32)
+    for v in range(height):
+        above, below = max(v - 1, 0), min(v + 1, height - 1)
+        for u in range(width):
+            left, right = u - 1 if u > 0 else width - 1, u + 1 if u < width - 1 else 0
+            square, steep = np.float32(0.0), np.float32(0.0)
+            for c in range(3):
+                off = np.float32(image[v, u, c]) - memory[v, u, c]
+                square += off * off
+                across = memory[v, right, c] - memory[v, left, c]
+                along = memory[below, u, c] - memory[above, u, c]
+                steep += across * across + along * along
+            astray = np.float32(0.1) + memory[v, u, 5] * memory[v, u, 5]
+            told[v, u] = math.sqrt(square / (3.0 * memory[v, u, 3] + 0.25 * steep * astray))
+    return told
+
+
+@njit(cache=True, fastmath=True)
+def learn(memory: Linear, image: NDArray[np.uint8], foreground: Linear, passed_s: float) -> None:
+    """Let a memory take in an image, the less the likelier a pixel is a person (H, W).
+
+    Time is in seconds, so that the rate of images does not matter. What is new is taken over at once, and
+    a mean over all that was seen as long as it is younger than the time in which it adapts.
+    """
+    height, width, _ = image.shape
+    absorbed = 1.0 - math.exp(-passed_s / _ABSORB_TAU_S)
+    for v in range(height):
+        for u in range(width):
+            clear = (1.0 - foreground[v, u]) ** 2
+            age = memory[v, u, 4]
+            rate = max(passed_s / (age + passed_s), 1.0 - math.exp(-passed_s / _TAU_S))
+            if age > 0.0:
+                rate = clear * rate + (1.0 - clear) * absorbed
+            square = 0.0
+            for c in range(3):
+                off = image[v, u, c] - memory[v, u, c]
+                square += off * off
+                memory[v, u, c] += np.float32(rate * off)
+            slowly = clear * min(rate, max(passed_s / (age + 1.0), passed_s / _VARIANCE_TAU_S))
+            variance = memory[v, u, 3] + slowly * (square / 3.0 - memory[v, u, 3])
+            memory[v, u, 3] = max(variance, np.float32(LEAST_VARIANCE))
+            memory[v, u, 4] = min(age + clear * passed_s, np.float32(60.0))
+            memory[v, u, 5] *= np.float32(1.0 - rate)
