@@ -12,6 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.browse import list_command, schema, show
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.export import export
+from peopleboy.scenarios.commands.learn_foreground import train_foreground
 from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
 from peopleboy.scenarios.commands.report import report
@@ -39,6 +40,7 @@ COMMANDS = (
     datasets,
     train_occlusion,
     train_distance,
+    train_foreground,
     reproduce,
 )
 

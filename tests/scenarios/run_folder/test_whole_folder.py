@@ -17,6 +17,10 @@ from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.frame_cache import film
 from peopleboy.scenarios.studies.distance_learning.distance_lesson import give_distance_lesson
+from peopleboy.scenarios.studies.foreground_learning.foreground_lesson import (
+    ForegroundLessons,
+    give_foreground_lesson,
+)
 from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store
 from peopleboy.tracker.panoramic.paper.distance_network import Lessons
@@ -131,6 +135,7 @@ OTHERS = {
     "train-distance": lambda path: give_distance_lesson(
         path, "pass_behind", 1, Workers(), lessons=Lessons(), trials=False, ship=False
     ),
+    "train-foreground": lambda path: give_foreground_lesson(path, Workers(), ForegroundLessons(), ship=False),
     "datasets": lambda path: film(load_scenario("pass_behind"), 0, path),
 }
 

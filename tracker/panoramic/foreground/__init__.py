@@ -1,1 +1,1 @@
-"""Which pixels of the panorama are people, on a robot that may drive: a background that moves along, and more."""
+"""Which pixels of the panorama are people, on a robot that may drive: a background, and what judges by it."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -30,7 +29,6 @@ class FloorRows:
     row_at: Linear
 
 
-@lru_cache(maxsize=8)
 def floor_rows(calibration: Calibration, height: int) -> FloorRows:
     """Tell how the floor lies in the rows of a panorama with this calibration."""
     ahead = np.arange(0.0, FARTHEST_M + STEP_M, STEP_M)

@@ -2,32 +2,49 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Calibration, Odometry
-from peopleboy.tracker.panoramic.foreground.floor_rows import floor_rows
-from peopleboy.tracker.panoramic.foreground.memory import first_memory, learn, move_along, unlikeness
+from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows, floor_rows
+from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
+from peopleboy.tracker.panoramic.foreground.memory import compare, first_memory, learn, move_along
+from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
+from peopleboy.tracker.panoramic.paper.panorama_view import view_of
 
 Linear = NDArray[np.float32]
+
+_SHORTEST_S = 0.01
 
 
 class Foreground:
     """Tells people from background, on a robot that stands or drives.
 
-    It works from the first image on, whoever is in it.
+    It works from the first image on, whoever is in it. A background that goes along with the robot tells what
+    is new, and a network judges that by what it looks like; what it takes for people the background leaves
+    out.
+
+    Attributes:
+        network: that judges.
+        squares: (INPUTS, H / BLOCK, W / BLOCK) what it was told about the last image.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, model: ForegroundModel | None = None) -> None:
+        """Begin, with the network that comes with the tracker if no other is given."""
+        model = shipped_model() if model is None else model
+        self.network = model.network
+        self.squares: Linear = np.zeros((0, 0, 0), np.float32)
+        self._view = model.view
+        self._calibration: Calibration | None = None
+        self._rows: FloorRows | None = None
         self._memory: Linear | None = None
         self._time_s = 0.0
 
     def update(
-        self,
-        image: NDArray[np.uint8],
-        time_s: float,
-        odometry: Odometry | None,
-        calibration: Calibration,
+        self, image: NDArray[np.uint8], time_s: float, odometry: Odometry | None, calibration: Calibration
     ) -> Linear:
         """Take in an image, and tell people from background.
 
@@ -39,15 +56,34 @@ class Foreground:
 
         Returns:
             (H, W) for each pixel the probability that it is a person.
+
+        Raises:
+            BadInput: the network was taught with another mirror, or on images of another size.
         """
-        floor = floor_rows(calibration, image.shape[0])
-        passed_s = max(time_s - self._time_s, 0.01)
-        if self._memory is None or odometry is None or self._memory.shape[:2] != image.shape[:2]:
+        floor = self._floor(calibration, image)
+        if self._memory is None or odometry is None:
             self._memory = first_memory(image)
         else:
             self._memory = move_along(self._memory, odometry, floor)
-        memory, self._time_s = self._memory, time_s
-        unlike, known_s = unlikeness(image, memory), memory[..., 4]
-        told = np.asarray(known_s / (known_s + 0.3) / (1.0 + np.exp(4.0 - unlike)), np.float32)
-        learn(memory, image, told, passed_s)
+        self.squares = compare(image, self._memory, BLOCK)
+        told = self.network.probability(self.squares)
+        learn(self._memory, image, told, max(time_s - self._time_s, _SHORTEST_S))
+        self._time_s = time_s
         return told
+
+    def _floor(self, calibration: Calibration, image: NDArray[np.uint8]) -> FloorRows:
+        """Tell how the floor lies; a camera that the network does not know is refused."""
+        (height, width), known = image.shape[:2], self._view
+        is_same = calibration is self._calibration and (width, height) == (known.width_px, known.height_px)
+        if self._rows is None or not is_same:
+            why = known.refusal(view_of(calibration, width, height))
+            if why:
+                raise BadInput(f"{why}; train another with `peopleboy train-foreground`")
+            self._calibration, self._rows = calibration, floor_rows(calibration, height)
+        return self._rows
+
+
+@cache
+def shipped_model() -> ForegroundModel:
+    """Read the model that comes with the tracker, once."""
+    return ForegroundModel.load(SHIPPED)

@@ -87,27 +87,40 @@ def _moved(
 
 
 @njit(cache=True, fastmath=True)
-def unlikeness(image: NDArray[np.uint8], memory: Linear) -> Linear:
-    """Tell how much an image (H, W, 3) differs from a memory: (H, W) in standard deviations.
+def compare(image: NDArray[np.uint8], memory: Linear, block: int) -> Linear:
+    """Tell of each pixel of an image (H, W, 3) what it looks like, and how its memory does.
 
-    To a pixel's own variance is added what its background's slope makes of half a pixel, and of its doubt.
+    These are its colour, by how many standard deviations it differs from the memory (their logarithm), and
+    the memory's age and doubt. To a pixel's own variance is added what its background's slope makes of a
+    third of a pixel, and of its doubt.
+
+    Returns:
+        (block * block * 6, H / block, W / block) the features by squares of pixels, a square's row by row.
     """
     height, width, _ = image.shape
-    told = np.empty((height, width), np.float32)
+    told = np.empty((block, block, 6, height // block, width // block), np.float32)
     for v in range(height):
         above, below = max(v - 1, 0), min(v + 1, height - 1)
         for u in range(width):
             left, right = u - 1 if u > 0 else width - 1, u + 1 if u < width - 1 else 0
             square, steep = np.float32(0.0), np.float32(0.0)
+            pixel = told[v % block, u % block, :, v // block, u // block]
             for c in range(3):
-                off = np.float32(image[v, u, c]) - memory[v, u, c]
+                seen = np.float32(image[v, u, c])
+                pixel[c] = (seen - np.float32(128.0)) / np.float32(64.0)
+                off = seen - memory[v, u, c]
                 square += off * off
                 across = memory[v, right, c] - memory[v, left, c]
                 along = memory[below, u, c] - memory[above, u, c]
                 steep += across * across + along * along
-            astray = np.float32(0.1) + memory[v, u, 5] * memory[v, u, 5]
-            told[v, u] = math.sqrt(square / (3.0 * memory[v, u, 3] + 0.25 * steep * astray))
-    return told
+            age, doubt = memory[v, u, 4], memory[v, u, 5]
+            spread = np.float32(3.0) * memory[v, u, 3] + np.float32(0.25) * steep * (
+                np.float32(0.1) + doubt * doubt
+            )
+            pixel[3] = np.float32(0.5) * np.log(np.float32(1.0) + square / spread)
+            pixel[4] = age / (np.float32(1.0) + age)
+            pixel[5] = doubt / (np.float32(1.0) + doubt)
+    return told.reshape(block * block * 6, height // block, width // block)
 
 
 @njit(cache=True, fastmath=True)

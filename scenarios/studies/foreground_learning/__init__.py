@@ -1,0 +1,1 @@
+"""Learning from rendered scenes which pixels of the panorama are people."""

@@ -1,0 +1,102 @@
+from dataclasses import asdict, replace
+
+import numpy as np
+import pytest
+
+from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
+from peopleboy.tracker.panoramic.foreground.network_file import ForegroundModel
+from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView
+from tests.helpers.calls.refused import refused
+
+ROWS, COLUMNS, UNITS = 10, 24, 12
+VIEW = PanoramaView(
+    width_px=COLUMNS * BLOCK, height_px=ROWS * BLOCK, centre_m=1.7, depression_deg=(8.0, 30.0, 55.0)
+)
+
+
+def drawn(*shape):
+    return np.random.default_rng(len(shape)).normal(0, 0.2, shape).astype(np.float32)
+
+
+@pytest.fixture(scope="module")
+def network():
+    return MaskNetwork(
+        first=drawn(INPUTS, UNITS),
+        rows=drawn(ROWS, UNITS),
+        between=drawn(len(DILATIONS), 9, UNITS, UNITS),
+        biases=drawn(len(DILATIONS), UNITS),
+        last=drawn(UNITS + INPUTS, OUTPUTS),
+        bias=drawn(OUTPUTS),
+    )
+
+
+def by_definition(network, squares):
+    """The same with double precision and an index for every neighbour."""
+    x = squares.transpose(1, 2, 0).astype(float)
+    units = np.maximum(x @ network.first + network.rows[:, None], 0)
+    for weights, bias, d in zip(network.between, network.biases, DILATIONS, strict=True):
+        found = np.zeros_like(units)
+        for row in range(ROWS):
+            for k in range(9):
+                source = row + (k // 3 - 1) * d
+                if 0 <= source < ROWS:
+                    found[row] += np.roll(units[source], -(k % 3 - 1) * d, axis=0) @ weights[k]
+        units = units + np.maximum(found + bias, 0)
+    told = 1 / (1 + np.exp(-(np.concatenate([units, x], axis=2) @ network.last + network.bias)))
+    return told.reshape(ROWS, COLUMNS, BLOCK, BLOCK).transpose(0, 2, 1, 3).reshape(ROWS * BLOCK, -1)
+
+
+def test_it_is_what_its_definition_says(network):
+    squares = drawn(INPUTS, ROWS, COLUMNS)
+    told = network.probability(squares)
+    assert told.dtype == np.float32
+    np.testing.assert_allclose(told, by_definition(network, squares), atol=1e-5)
+
+
+@pytest.mark.parametrize("columns", [1, 5, 23])
+def test_an_image_rolled_by_whole_squares_gives_the_same_answer_rolled_to_the_bit(network, columns):
+    squares = drawn(INPUTS, ROWS, COLUMNS)
+    rolled = network.probability(np.ascontiguousarray(np.roll(squares, columns, axis=2)))
+    assert np.array_equal(rolled, np.roll(network.probability(squares), columns * BLOCK, axis=1))
+
+
+def test_a_file_gives_back_what_was_written_and_the_same_bytes_each_time(network, tmp_path):
+    model = ForegroundModel(network=network, view=VIEW, about={"trained on": "numbers drawn at random"})
+    model.save(tmp_path / "a.npz")
+    model.save(tmp_path / "b.npz")
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+    read = ForegroundModel.load(tmp_path / "a.npz")
+    assert (read.view, read.about) == (VIEW, model.about)
+    for name, array in asdict(network).items():
+        assert np.array_equal(getattr(read.network, name), array)
+
+
+def test_a_file_that_is_no_network_is_refused(tmp_path):
+    path = tmp_path / "model.npz"
+    with refused("model.npz"):
+        ForegroundModel.load(path)
+    path.write_text("no arrays")
+    with refused("model.npz", "no network for panoramas"):
+        ForegroundModel.load(path)
+    np.savez(path, first=np.zeros(3, np.float32))
+    with refused("model.npz", "words"):
+        ForegroundModel.load(path)
+    np.savez(path, words=np.array(["x"], dtype=object))
+    with refused("model.npz", "pickle"):
+        ForegroundModel.load(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"bias": np.full(OUTPUTS, np.nan, np.float32)}, "bias must be (16,) float32 and finite"),
+        ({"first": np.zeros((INPUTS, UNITS))}, "got (96, 12) float64"),
+        ({"rows": np.zeros((ROWS - 1, UNITS), np.float32)}, "rows must be (10, 12)"),
+        ({"rows": np.zeros((ROWS, 5), np.float32)}, "5 units"),
+    ],
+)
+def test_weights_that_do_not_fit_are_refused(network, tmp_path, change, words):
+    path = tmp_path / "model.npz"
+    ForegroundModel(network=replace(network, **change), view=VIEW).save(path)
+    with refused("model.npz", words):
+        ForegroundModel.load(path)

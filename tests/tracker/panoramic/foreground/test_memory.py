@@ -1,0 +1,98 @@
+import math
+
+import numpy as np
+import pytest
+
+from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.tracker.panoramic.foreground.floor_rows import floor_rows
+from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
+from peopleboy.tracker.panoramic.foreground.memory import AGE, compare, first_memory, learn, move_along
+
+CAMERA = PanoramaCalibration(
+    width=480,
+    height=120,
+    focal_px=111.9,
+    axis_rad=math.radians(55),
+    ring_radius_m=-0.023,
+    ring_height_m=1.713,
+)
+FLOOR = floor_rows(CAMERA, 120)
+
+
+def floor_image(x, y, heading, period_m=1.5):
+    """What a robot at a pose sees of a floor whose brightness is a smooth function of the place."""
+    bearing = CAMERA.bearing(np.arange(480.0)) + heading
+    east = x + FLOOR.distance_m[:, None] * np.cos(bearing)
+    north = y + FLOOR.distance_m[:, None] * np.sin(bearing)
+    grey = 120 + 50 * np.sin(2 * np.pi * east / period_m) * np.cos(2 * np.pi * north / period_m)
+    return np.repeat(np.rint(grey).astype(np.uint8)[..., None], 3, axis=2)
+
+
+def test_rows_of_the_floor_are_those_that_the_calibration_projects_it_to():
+    distances = np.array([1.5, 2.0, 3.7, 6.0])
+    rows = CAMERA.project(np.stack([distances, 0 * distances, 0 * distances], axis=1))[:, 1]
+    assert np.interp(rows, np.arange(120), FLOOR.distance_m) == pytest.approx(distances, abs=0.02)
+
+
+def test_a_robot_that_stands_keeps_its_memory_to_the_bit():
+    memory = first_memory(floor_image(0, 0, 0))
+    assert move_along(memory, Odometry(), FLOOR) is memory
+
+
+@pytest.mark.parametrize("columns", [1, 7, -30])
+def test_turning_by_whole_columns_shifts_the_memory_by_them(columns):
+    memory = first_memory(floor_image(0, 0, 0))
+    turned = move_along(memory, Odometry(turn_rad=columns * math.tau / 480), FLOOR)
+    np.testing.assert_allclose(turned, np.roll(memory, columns, axis=1), atol=0.05)
+
+
+@pytest.mark.parametrize("pose", [(0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.08, -0.05, 0.2), (0.3, 0.0, -0.1)])
+def test_floor_lies_where_it_is_seen_after_a_movement(pose):
+    memory = first_memory(floor_image(0, 0, 0))
+    moved = move_along(memory, Odometry(advance_m=pose[0], aside_m=pose[1], turn_rad=pose[2]), FLOOR)
+    off = np.abs(moved[..., 0] - floor_image(*pose)[..., 0])[20:110]  # rows from 1.3 to 7 m
+    assert off.mean() < 1.5
+    assert np.abs(memory[..., 0].astype(float) - floor_image(*pose)[..., 0])[20:110].mean() > 5 * off.mean()
+
+
+def test_what_was_below_the_image_before_is_new():
+    memory = first_memory(floor_image(0, 0, 0))
+    memory[..., AGE] = 5.0
+    moved = move_along(memory, Odometry(advance_m=-0.3), FLOOR)  # uncovers floor in front
+    assert moved[119, 240, AGE] == 0.0
+    assert moved[60, 240, AGE] == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize("rate_hz", [3, 15])
+def test_an_empty_scene_is_known_within_seconds_whatever_the_rate_of_images(rate_hz):
+    rng, scene = np.random.default_rng(0), floor_image(0, 0, 0).astype(float)
+    memory, nobody = first_memory(np.full((120, 480, 3), 90, np.uint8)), np.zeros((120, 480), np.float32)
+    for _ in range(12 * rate_hz):
+        noisy = np.clip(np.rint(scene + rng.normal(0, 3, scene.shape)), 0, 255).astype(np.uint8)
+        learn(memory, noisy, nobody, 1 / rate_hz)
+    assert np.abs(memory[..., :3] - scene).mean() < 5
+    assert memory[..., AGE] == pytest.approx(12, rel=0.01)
+
+
+def test_what_people_hide_stays_and_is_absorbed_only_within_a_minute():
+    memory, someone = first_memory(np.full((120, 480, 3), 90, np.uint8)), np.ones((120, 480), np.float32)
+    memory[..., AGE] = 10.0
+    red = np.zeros((120, 480, 3), np.uint8)
+    red[..., 0] = 200
+    for _ in range(15):
+        learn(memory, red, someone, 0.2)
+    assert memory[0, 0, 0] < 110
+    for _ in range(600):
+        learn(memory, red, someone, 0.2)
+    assert memory[0, 0, 0] > 190
+
+
+def test_unlikeness_is_in_standard_deviations():
+    image = np.full((120, 480, 3), 100, np.uint8)
+    memory = first_memory(image)
+    memory[..., 3] = 25.0
+    image[50, 100] = 100 + 15  # three of them
+    unlike = compare(image, memory, BLOCK).reshape(BLOCK, BLOCK, 6, 30, 120)[:, :, 3]
+    assert unlike[50 % 4, 0, 50 // 4, 25] == pytest.approx(math.log(1 + 9) / 2, rel=1e-4)
+    assert np.count_nonzero(unlike) == 1
