@@ -254,13 +254,7 @@ def _before(table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], r
             if face >= 0 and not _may_face(pose, table.size[shape], face, radius):
                 continue
             number[count], faces[count], poses[count] = shape, face, pose
-            if table.kind[shape] in (_SPHERE, _CAPSULE):
-                half = table.size[shape, 0] / 2.0 if table.kind[shape] == _CAPSULE else 0.0
-                spans[count] = _round_span(pose, half, high[0], width)
-            else:
-                spans[count] = _span(
-                    pose, _flattened(low, face, high), _flattened(high, face - 3, low), width
-                )
+            spans[count] = _span(table, shape, face, pose, width)
             if spans[count, 1] > 0:
                 count += 1
     return Pieces(number, faces, poses, *_by_column(spans[:count], width))
@@ -332,8 +326,20 @@ def _flattened(corner: Array, axis: int, other: Array) -> Array:
 
 
 @njit(cache=True, error_model="numpy")
-def _span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, int]:
-    """First column, and number of columns, in which the box between two corners may be seen."""
+def _span(table: ShapeTable, shape: int, face: int, pose: Array, width: int) -> tuple[int, int]:
+    """First column, and number of columns, in which a shape, or a face of a box, may be seen."""
+    kind, size = table.kind[shape], table.size[shape]
+    if kind == _SPHERE:
+        return _round_span(pose, 0.0, size[0], width)
+    if kind == _CAPSULE:
+        return _round_span(pose, size[0] / 2.0, size[1], width)
+    low, high = _corners(table, shape)
+    return _box_span(pose, _flattened(low, face, high), _flattened(high, face - 3, low), width)
+
+
+@njit(cache=True, error_model="numpy")
+def _box_span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, int]:
+    """The columns in which the box between two corners may be seen."""
     x, _, z = map_point(pose, (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0)
     middle, least, most = math.atan2(x, z), 0.0, 0.0
     for corner in range(8):
@@ -351,7 +357,7 @@ def _span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, int]:
 
 @njit(cache=True, error_model="numpy")
 def _round_span(pose: Array, half: float, radius: float, width: int) -> tuple[int, int]:
-    """The same of a ball, or a capsule of half a length: from one end's outline to the other's."""
+    """The columns in which a capsule of half a length, or a ball, is seen: from one end to the other."""
     x, _, z = map_point(pose, 0.0, 0.0, -half)
     middle, reach = math.atan2(x, z), math.asin(min(radius / math.hypot(x, z), 1.0))
     x, _, z = map_point(pose, 0.0, 0.0, half)
