@@ -3,6 +3,7 @@
 A box is left, top, width, height in pixels; pixel (0, 0) spans -0.5..0.5.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -49,20 +50,37 @@ def area(box: Floats) -> Floats:
     return np.asarray(box[..., 2] * box[..., 3])
 
 
-def intersection(a: Floats, b: Floats) -> Floats:
-    """Give the areas (...) [px^2] that boxes a (..., 4) and b (..., 4) share; leading axes broadcast."""
+def intersection(a: Floats, b: Floats, around_px: float = math.inf) -> Floats:
+    """Give the areas (...) [px^2] that boxes a (..., 4) and b (..., 4) share; leading axes broadcast.
+
+    Args:
+        a: some boxes.
+        b: others, of the same image.
+        around_px: how many columns go all round, if the image's right border is joined to its left one; a
+            box may then go on over either, and is the same if it is moved by so much.
+    """
+    if math.isinf(around_px):
+        return _flat_intersection(a, b)
+    turns = np.rint((a[..., 0] - b[..., 0]) / around_px)[..., None] + np.arange(-1.0, 2.0)
+    moved = np.repeat(b[..., None, :], 3, axis=-2) + np.zeros((*turns.shape, 4))
+    moved[..., 0] += turns * around_px
+    return np.asarray(_flat_intersection(a[..., None, :], moved).sum(axis=-1))
+
+
+def _flat_intersection(a: Floats, b: Floats) -> Floats:
     near = np.maximum(a[..., :2], b[..., :2])
     far = np.minimum(a[..., :2] + a[..., 2:], b[..., :2] + b[..., 2:])
     side = np.maximum(far - near, 0.0)
     return np.asarray(side[..., 0] * side[..., 1])
 
 
-def iou(a: Floats, b: Floats) -> Floats:
+def iou(a: Floats, b: Floats, around_px: float = math.inf) -> Floats:
     """Give intersection over union (...) of boxes a (..., 4) and b (..., 4); leading axes broadcast.
 
-    Symmetric, in 0..1; 1 for a box with itself, 0 where either box has no area.
+    Symmetric, in 0..1; 1 for a box with itself, 0 where either box has no area. Arguments as of
+    `intersection`.
     """
-    shared = intersection(a, b)
+    shared = intersection(a, b, around_px)
     return cover(shared, area(a) + area(b) - shared)
 
 

@@ -21,7 +21,7 @@ from peopleboy.scenarios.drawing.key_moments import KeyMoments, Moment, Shot
 from peopleboy.scenarios.drawing.overlay import (
     Picture,
     Plate,
-    draw_tracks,
+    draw_tracks_of,
     draw_truth,
     enlarge,
     people_parts,
@@ -43,10 +43,9 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.sim.cameras.kinds import kind_of
-from peopleboy.sim.cameras.overlap import colour_from_thermal
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.tracker.track import Track
 from peopleboy.wording import counted
 
 WIDTH_PX: Final = 1600
@@ -57,6 +56,7 @@ _GAP, _CAPTION, _SEAM = 14, 46, 3
 _TILE: Final = (WIDTH_PX - 2 * MARGIN_PX - (COLUMNS - 1) * _GAP) // COLUMNS
 _WIDE: Final = 2.5  # times as wide as high
 _AXIS_PX: Final = 18
+_NAME_PX: Final = 19
 _TICKS_DEG: Final = (180, 90, 0, -90, -180)
 _NOTE: Final = "Moments"  # of the PNG: where each tile is, and what it shows
 _CHIP: Final[Rgb] = (58, 64, 74)
@@ -153,23 +153,37 @@ class ContactSheet:
         scale = _fitting_scale(moment.thermal, _TILE)
         picture = enlarge(show_thermal(moment.thermal), scale)
         plates: list[Plate] = []
-        picture = draw_tracks(picture, moment.tracks, scale, moment.explanation, plates=plates)
+        picture = self._with_tracks("thermal", picture, moment.tracks, scale, moment.explanation, plates)
         return draw_truth(picture, moment.people, scale, plates=plates)
 
     def _colour_picture(self, moment: Moment) -> Picture:
         scale = _fitting_scale(moment.colour, _TILE)
-        affine = colour_from_thermal(self._robot.cameras)
-        return draw_tracks(enlarge(moment.colour, scale), moment.tracks, scale, moment.explanation, affine)
+        picture = enlarge(moment.colour, scale)
+        return self._with_tracks("colour", picture, moment.tracks, scale, moment.explanation, [])
 
     def _further_picture(self, shot: Shot, beside: int, moment: Moment) -> Picture:
-        """Draw what a further camera saw, with truth where that has boxes, its name and how old it is."""
+        """Draw what a further camera saw, with tracks, truth where it has boxes, name and how old it is."""
         scale = _fitting_scale(shot.image, _share(beside))
         picture, camera = enlarge(show_image(shot.image), scale), self._robot.cameras[shot.camera].camera
         if kind_of(self._robot.cameras[shot.camera]).has_boxes:
-            picture = draw_truth(picture, people_parts(shot.people, camera), scale)
-        picture = _with_bearings(picture, camera)
+            plates: list[Plate] = []
+            picture = self._with_tracks(shot.camera, picture, shot.tracks, scale, None, plates)
+            picture = draw_truth(picture, people_parts(shot.people, camera), scale, plates=plates)
         age_s = moment.time_s - shot.time_s
-        return _named(picture, f"{shot.camera}, {age_s:.1f} s old" if age_s > 1e-6 else shot.camera)
+        name = f"{shot.camera}, {age_s:.1f} s old" if age_s > 1e-6 else shot.camera
+        return _framed(picture, name) if isinstance(camera, Panorama) else _named(picture, name)
+
+    def _with_tracks(
+        self,
+        camera: str,
+        picture: Picture,
+        tracks: Sequence[Track],
+        scale: float,
+        explanation: object,
+        plates: list[Plate],
+    ) -> Picture:
+        cameras = self._robot.cameras
+        return draw_tracks_of(camera, picture, tracks, cameras, scale, explanation, plates)
 
 
 def _rows_of(shots: Sequence[Shot]) -> list[Sequence[Shot]]:
@@ -190,20 +204,23 @@ def _share(pictures: int) -> int:
     return (_TILE - _SEAM * (pictures - 1)) // pictures
 
 
+def _framed(picture: Picture, name: str) -> Picture:
+    """Put a panorama, whose picture is low, between its name and an axis of bearings."""
+    above = np.full((_NAME_PX, *picture.shape[1:]), PAGE, np.uint8)
+    return _named(np.concatenate([above, picture, _bearings(picture.shape[1])]), name)
+
+
 def _named(picture: Picture, name: str) -> Picture:
     """Write a name into the upper left corner of a picture."""
     page = Image.fromarray(picture)
     draw = ImageDraw.Draw(page)
-    draw.rectangle((0, 0, draw.textlength(name, font(12)) + 10, 18), PAGE)
+    draw.rectangle((0, 0, draw.textlength(name, font(12)) + 10, _NAME_PX - 1), PAGE)
     draw.text((5, 9), name, STRONG, font(12), anchor="lm")
     return np.asarray(page, np.uint8)
 
 
-def _with_bearings(picture: Picture, camera: CameraGeometry) -> Picture:
-    """Put an axis of bearings below the picture of a panorama; others stay as they are."""
-    if not isinstance(camera, Panorama):
-        return picture
-    width = picture.shape[1]
+def _bearings(width: int) -> Picture:
+    """Draw the axis of bearings of a panorama that is so wide."""
     axis = Image.new("RGB", (width, _AXIS_PX), PAGE)
     draw, letters = ImageDraw.Draw(axis), font(11)
     for bearing in _TICKS_DEG:
@@ -212,7 +229,7 @@ def _with_bearings(picture: Picture, camera: CameraGeometry) -> Picture:
         half = draw.textlength(words, letters) / 2.0
         draw.line((x, 0, x, 4), WEAK)
         draw.text((min(max(x, half), width - half), 11), words, WEAK, letters, anchor="mm")
-    return np.concatenate([picture, np.asarray(axis, np.uint8)])
+    return np.asarray(axis, np.uint8)
 
 
 def read_tiles(path: Path) -> list[Tile]:

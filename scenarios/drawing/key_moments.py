@@ -45,12 +45,14 @@ class Shot:
         time_s: [s] when it was taken.
         image: (H, W) or (H, W, 3).
         people: what was true in it.
+        tracks: what the tracker made of it.
     """
 
     camera: str
     time_s: float
     image: NDArray[np.uint8]
     people: tuple[PersonTruth, ...]
+    tracks: tuple[Track, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -196,7 +198,7 @@ def _further(tick: Tick) -> Iterator[Shot]:
     """Give what cameras took beside the two whose images everybody has."""
     for name in (name for name in tick.truths if name not in ("thermal", "colour")):
         senses, truth = tick.observation, tick.truths[name]
-        yield Shot(name, senses.time_s, senses.images[name], truth.people)
+        yield Shot(name, senses.time_s, senses.images[name], truth.people, tick.tracks)
 
 
 def _moment(tick: Tick, further: tuple[Shot, ...]) -> Moment:

@@ -6,7 +6,8 @@ against people.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Protocol
@@ -17,8 +18,10 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.drawing.contour_lines import lines_of
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.boxes import Box, corners
@@ -139,6 +142,27 @@ def draw_tracks(
     return canvas
 
 
+def draw_tracks_of(
+    camera: str,
+    picture: Picture,
+    tracks: Sequence[Track],
+    cameras: Mapping[str, CameraConfig],
+    scale: float = SCALE,
+    explanation: object = None,
+    plates: list[Plate] | None = None,
+) -> Picture:
+    """Draw tracks by their boxes in the image of any camera; other arguments as in `draw_tracks`.
+
+    On the colour image, boxes of the thermal one stand in for its own where there are none. Explanations are
+    of thermal images.
+    """
+    if camera == "colour" and not any(camera in track.boxes for track in tracks):
+        return draw_tracks(picture, tracks, scale, explanation, colour_from_thermal(cameras), plates)
+    parts = track_parts(tracks, camera, cameras[camera].camera)
+    explained = explanation if camera == THERMAL else None
+    return draw_tracks(picture, parts, scale, explained, plates=plates, camera=camera)
+
+
 def draw_truth(
     picture: Picture,
     people: Iterable[TrueBox],
@@ -171,11 +195,14 @@ def map_box(box: Box, affine: Matrix) -> Box:
 
 def box_parts(box: Box, camera: CameraGeometry) -> tuple[Box, ...]:
     """Cut a box that goes on over a panorama's seam into its parts at the right border and at the left."""
-    left, top, width, height = box
-    over = left + width - (camera.width - 0.5)
-    if not isinstance(camera, Panorama) or over <= 0.0:
+    around = around_px(camera)
+    if math.isinf(around):
         return (box,)
-    return (left, top, width - over, height), (-0.5, top, over, height)
+    left, top, width, height = box
+    left -= math.floor((left + 0.5) / around) * around
+    over = left + width - (around - 0.5)
+    whole = (left, top, width, height)
+    return (whole,) if over <= 0.0 else ((left, top, width - over, height), (-0.5, top, over, height))
 
 
 def people_parts(people: Iterable[PersonTruth], camera: CameraGeometry) -> list[PersonTruth]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.sim.cameras.kinds import kind_of
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +37,14 @@ class OneCamera:
         return self.run.rate_hz // self.every
 
     @property
+    def camera(self) -> CameraGeometry:
+        """Its geometry."""
+        return self.run.robot.cameras[self.name].camera
+
+    @property
     def size(self) -> tuple[int, int]:
         """Width and height [px]."""
-        geometry = self.run.robot.cameras[self.name].camera
-        return geometry.width, geometry.height
+        return self.camera.width, self.camera.height
 
     @property
     def truth_file(self) -> Path:

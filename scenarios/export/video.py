@@ -12,7 +12,7 @@ import numpy as np
 from peopleboy.scenarios.drawing.overlay import (
     Picture,
     Plate,
-    draw_tracks,
+    draw_tracks_of,
     draw_truth,
     enlarge,
     people_parts,
@@ -25,7 +25,6 @@ from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.sim.cameras.kinds import kind_of
-from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 HEIGHT_PX: Final = 480
@@ -98,9 +97,7 @@ def _picture(tick: Tick, camera: str, robot: RobotConfig) -> Picture:
     image = tick.observation.images[camera]
     scale = min(HEIGHT_PX / image.shape[0], _WIDEST_PX / image.shape[1])
     picture, plates = enlarge(show_image(image), scale), list[Plate]()
-    if camera in ("thermal", "colour"):
-        affine = None if camera == "thermal" else colour_from_thermal(robot.cameras)
-        picture = draw_tracks(picture, tick.tracks, scale, tick.explanation, affine, plates)
+    picture = draw_tracks_of(camera, picture, tick.tracks, robot.cameras, scale, tick.explanation, plates)
     if kind_of(robot.cameras[camera]).has_boxes:
         people = people_parts(tick.truths[camera].people, robot.cameras[camera].camera)
         picture = draw_truth(picture, people, scale, plates=plates)

@@ -4,11 +4,13 @@ They speak of the thermal images unless another camera is asked for, whose image
 there is a file of results if the tracker gave boxes in them.
 
 People and tracks are objects whose attributes change from frame to frame. ViPER's schema allows whole pixels
-inside the image only in a `bbox`; the four decimal attributes beside it hold the box as it is.
+inside the image only in a `bbox`; the four decimal attributes beside it hold the box as it is. Of one across
+a panorama's seam one `bbox` holds the part at the right border, and another the part at the left.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,9 +18,11 @@ from xml.etree import ElementTree
 
 import pyarrow as pa
 
+from peopleboy.scenarios.drawing.overlay import box_parts
 from peopleboy.scenarios.export.one_camera import OneCamera, with_people
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.truth.truth import Box
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
@@ -35,6 +39,7 @@ _FILE = {
 }
 _SOURCE_TYPES = ("SEQUENCE", "FRAMES")
 OBJECT = {"NAME": "svalue", "LOCATION": "bbox", **dict.fromkeys(_EDGES, "fvalue")}
+ALL_ROUND = {"BEYOND_SEAM": "bbox"}
 TRUTH = {"COUNTED": "bvalue", "VISIBLE": "fvalue"}
 TRACK = {"CONFIDENCE": "fvalue"}
 
@@ -112,11 +117,13 @@ def _write(path: Path, shots: OneCamera, people: Mapping[int, _Person], others: 
     root = ElementTree.Element(f"{{{VIPER}}}viper")
     config = _child(root, "config")
     _descriptor(config, "Information", "FILE", _FILE, dynamic=())
-    _descriptor(config, "PERSON", "OBJECT", {**OBJECT, **others}, dynamic=("LOCATION", *_EDGES, *others))
+    places = {} if math.isinf(around_px(shots.camera)) else ALL_ROUND
+    changing = ("LOCATION", *_EDGES, *places, *others)
+    _descriptor(config, "PERSON", "OBJECT", {**OBJECT, **places, **others}, dynamic=changing)
     source = _child(_child(root, "data"), "sourcefile", filename=shots.run.name)
     _file(source, shots)
     for number, person in sorted(people.items()):
-        _object(source, number, person, shots, others)
+        _object(source, number, person, shots, places, others)
     ElementTree.indent(root)
     ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
@@ -142,12 +149,18 @@ def _file(source: ElementTree.Element, shots: OneCamera) -> None:
 
 
 def _object(
-    source: ElementTree.Element, number: int, person: _Person, shots: OneCamera, others: Mapping[str, str]
+    source: ElementTree.Element,
+    number: int,
+    person: _Person,
+    shots: OneCamera,
+    places: Iterable[str],
+    others: Mapping[str, str],
 ) -> None:
     spans = _framespan(person.boxes)
     thing = _child(source, "object", framespan=spans, id=str(number), name="PERSON")
     _value(_child(thing, "attribute", name="NAME"), "svalue", value=person.name)
-    _location(_child(thing, "attribute", name="LOCATION"), person, shots)
+    for part, place in enumerate(("LOCATION", *places)):
+        _location(_child(thing, "attribute", name=place), part, person, shots)
     for k, edge in enumerate(_EDGES):
         attribute = _child(thing, "attribute", name=edge)
         for frame, box in person.boxes.items():
@@ -158,8 +171,10 @@ def _object(
             _value(attribute, kind, framespan=f"{frame}:{frame}", value=value)
 
 
-def _location(attribute: ElementTree.Element, person: _Person, shots: OneCamera) -> None:
-    for frame, box in person.boxes.items():
+def _location(attribute: ElementTree.Element, part: int, person: _Person, shots: OneCamera) -> None:
+    """Tell where in the image one part of each box is, if there is such a part."""
+    parts = {frame: box_parts(box, shots.camera) for frame, box in person.boxes.items()}
+    for frame, box in ((frame, own[part]) for frame, own in parts.items() if part < len(own)):
         pixels = whole_pixels(box, *shots.size)
         if pixels is not None:
             edges = dict(zip(("x", "y", "width", "height"), map(str, pixels), strict=True))

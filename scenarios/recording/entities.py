@@ -5,6 +5,7 @@ world/robot                 its pose; below it body and cameras, with what is dr
 world/robot/thermal/...     image, tracks with evidence, particles, truth
 world/robot/colour/...      image, tracks, truth
 world/robot/CAMERA/...      image, truth, and tracks if they have boxes there, of any further camera
+world/robot/CAMERA/explained  what the tracker explains of that image: the empty scene, and lines
 world/robot/places          where on the floor the tracker takes people to be, with 95 % ellipses
 world/people/NAME/body      capsules, and the name
 world/occlusions            arrows from who hides to who is hidden
@@ -33,11 +34,13 @@ LAYERS: Final[dict[str, tuple[Any, float]]] = {
     "tracks/boxes": (rr.Boxes2D, 1.0),
     "tracks/contours": (rr.LineStrips2D, 1.8),
     "tracks/occlusions": (rr.Arrows2D, 1.2),
+    "explained/lines": (rr.LineStrips2D, 0.8),
     "particles/people": (rr.Points2D, 1.5),
     "particles/detector": (rr.Points2D, 1.5),
 }
 ON_COLOUR: Final = ("truth/boxes", "truth/names", "tracks/boxes")
-ON_FURTHER: Final = ("truth/boxes", "truth/names", "tracks/boxes")
+ON_FURTHER: Final = ("truth/boxes", "truth/names", "tracks/boxes", "explained/lines")
+BACKGROUND: Final = "explained/background"
 
 
 def camera_path(name: str) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Sequence
 
 import rerun as rr
 import rerun.blueprint as rrb
 
 from peopleboy.scenarios.recording.entities import (
+    BACKGROUND,
     COLOUR,
     EVENTS,
     LAYERS,
@@ -17,18 +19,21 @@ from peopleboy.scenarios.recording.entities import (
 )
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 
 
-def lay_out(config: WorldConfig) -> rrb.Blueprint:
-    """Lay out: thermal on the left, colour, events, further cameras and the world beside it, curves below."""
+def lay_out(config: WorldConfig, watched: Collection[str] = ()) -> rrb.Blueprint:
+    """Lay out: thermal on the left, colour, events, further cameras and the world beside it, curves below.
+
+    Args:
+        config: of the world.
+        watched: cameras that the tracker asks for.
+    """
     cameras = {name: camera.camera for name, camera in config.robot.cameras.items()}
     thermal = _image_view(THERMAL, "Thermal: tracks with evidence, particles, truth", cameras.pop("thermal"))
     colour = _image_view(COLOUR, "Colour: tracks, truth", cameras.pop("colour"))
-    further = [
-        _image_view(camera_path(name), f"{name.capitalize()}: truth", camera)
-        for name, camera in cameras.items()
-    ]
+    further = [_further_view(name, camera, name in watched) for name, camera in cameras.items()]
     events = rrb.TextLogView(
         origin=EVENTS, name="Events", columns=rrb.TextLogColumns(text_log_columns=["LogLevel", "Body"])
     )
@@ -49,9 +54,26 @@ def lay_out(config: WorldConfig) -> rrb.Blueprint:
     )
 
 
-def _image_view(path: str, name: str, camera: CameraGeometry) -> rrb.Spatial2DView:
+def _further_view(name: str, camera: CameraGeometry, is_watched: bool) -> rrb.Spatial2DView | rrb.Tabs:
+    """Show a further camera; of a panorama that is watched, behind a tab, what it is compared with."""
+    path, words = camera_path(name), name.capitalize()
+    contents = ("$origin/**", f"- $origin/{BACKGROUND}")
+    if not is_watched:
+        return _image_view(path, f"{words}: truth", camera, contents)
+    if not isinstance(camera, Panorama):
+        return _image_view(path, f"{words}: tracks, truth", camera, contents)
+    return rrb.Tabs(
+        _image_view(path, f"{words}: tracks with evidence, truth", camera, contents),
+        _image_view(path, f"{words}: background, evidence", camera, ("$origin/explained/**",)),
+        active_tab=0,
+    )
+
+
+def _image_view(
+    path: str, name: str, camera: CameraGeometry, contents: Sequence[str] = ("$origin/**",)
+) -> rrb.Spatial2DView:
     bounds = rrb.VisualBounds2D(x_range=(0.0, camera.width), y_range=(0.0, camera.height))
-    return rrb.Spatial2DView(origin=path, name=name, visual_bounds=bounds)
+    return rrb.Spatial2DView(origin=path, contents=list(contents), name=name, visual_bounds=bounds)
 
 
 def _world_view(config: WorldConfig) -> rrb.Spatial3DView:
@@ -66,7 +88,8 @@ def _world_view(config: WorldConfig) -> rrb.Spatial3DView:
     )
     # Boxes of people who are near reach far out of the image, and would cross the whole world.
     cameras = config.robot.cameras
-    overlays = [f"- {path}/{layer}" for path in map(camera_path, cameras) for layer in LAYERS]
+    layers = (*LAYERS, BACKGROUND)
+    overlays = [f"- {path}/{layer}" for path in map(camera_path, cameras) for layer in layers]
     # Where a picture that is not flat would hang, nobody can say.
     overlays += [
         f"- {camera_path(name)}/image"

@@ -91,8 +91,11 @@ class Ellipses:
     label: list[str]
 
 
-def places(tracks: Iterable[Track]) -> Ellipses:
-    """Give where tracks stand on the floor, as ellipses that hold 95 % of what their covariance allows."""
+def places(tracks: Iterable[Track], sightings: Mapping[int, Sequence[str]]) -> Ellipses:
+    """Give where tracks stand on the floor, as ellipses that hold 95 % of what their covariance allows.
+
+    Their labels tell in which cameras they are seen, as `Sightings` found.
+    """
     placed = [(track, track.place) for track in tracks if track.place is not None]
     centre = [(*place.position_m, FLAT_M) for _, place in placed]
     shapes = [_ellipse(*place.covariance_m2) for _, place in placed]
@@ -101,7 +104,7 @@ def places(tracks: Iterable[Track]) -> Ellipses:
         np.reshape(np.array([half for half, _ in shapes], np.float32), (-1, 3)),
         np.reshape(np.array([turn for _, turn in shapes], np.float32), (-1, 4)),
         colours_of(track_colour(track.id) for track, _ in placed),
-        [track_label(track) for track, _ in placed],
+        [" · ".join(filter(None, (track_label(t), "+".join(sightings.get(t.id, ()))))) for t, _ in placed],
     )
 
 
@@ -163,6 +166,20 @@ def _sample(cloud: Particles, number: int, count: int) -> Points:
     strength = 0.25 + 0.75 * cloud.weight[rows] / max(float(cloud.weight.max()), 1e-12)
     colour = np.array(track_colour(number) if number > 0 else (255, 255, 255))
     return Points(cloud.state[rows, :2], np.rint(strength[:, None] * colour).astype(np.uint8))
+
+
+class Sightings:
+    """Keeps in which cameras' newest images the tracker has whom."""
+
+    def __init__(self, cameras: Sequence[str]) -> None:
+        self._cameras = cameras
+        self._seen: dict[int, set[str]] = {}
+
+    def update(self, tick: Tick) -> Mapping[int, Sequence[str]]:
+        """Give the cameras by track; of one that takes no image at this tick its last image tells."""
+        older = {*self._cameras} - {*tick.observation.images}
+        self._seen = {t.id: {*t.boxes} | (older & self._seen.get(t.id, set())) for t in tick.tracks}
+        return {number: [c for c in self._cameras if c in seen] for number, seen in self._seen.items()}
 
 
 class Trails:

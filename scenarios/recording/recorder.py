@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -19,6 +19,7 @@ from peopleboy.scenarios.recording import marks
 from peopleboy.scenarios.recording.arrows import Arrows, believed_arrows, true_arrows, world_arrows
 from peopleboy.scenarios.recording.capsule_people import NOBODY, body_capsules
 from peopleboy.scenarios.recording.entities import (
+    BACKGROUND,
     EVENTS,
     OCCLUSIONS,
     PLACES,
@@ -32,6 +33,7 @@ from peopleboy.scenarios.recording.layout import lay_out
 from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
 from peopleboy.scenarios.recording.rows import RowBuffer
+from peopleboy.scenarios.recording.sketches import explained_sketches
 from peopleboy.scenarios.recording.still import Still
 from peopleboy.sim.cameras.kinds import kind_of, with_boxes
 from peopleboy.sim.cameras.overlap import colour_from_thermal
@@ -58,6 +60,7 @@ class Recorder:
         config: the world that is recorded.
         title: name of the recording; the same title gives the same recording id.
         viewer: address of a viewer that is to show it at once; None for none.
+        watched: cameras that the tracker asks for.
     """
 
     def __init__(
@@ -67,14 +70,18 @@ class Recorder:
         *,
         title: str,
         viewer: str | None = None,
+        watched: Collection[str] = (),
     ) -> None:
         self._cameras = config.robot.cameras
         self._boxed = with_boxes(self._cameras)
+        self._tells_cameras = bool({*self._boxed} - {"thermal", "colour"})
         self._width = self._cameras["thermal"].camera.width
         self._colour_from_thermal = colour_from_thermal(self._cameras)
+        self._backgrounds: dict[str, NDArray[np.uint8]] = {}
         self._names = [person.name for person in config.people]
         self._path = path
         self._trails = marks.Trails()
+        self._sightings = marks.Sightings(self._boxed)
         self._tracks_named: set[int] = set()
         self._tracked = {"thermal"}
         self._has_places = False
@@ -83,7 +90,7 @@ class Recorder:
             APPLICATION, recording_id=title.replace(", ", "-").replace(" ", "-")
         )
         sinks = [rr.FileSink(path)] if viewer is None else [rr.FileSink(path), rr.GrpcSink(viewer)]
-        self._stream.set_sinks(*sinks, default_blueprint=lay_out(config))
+        self._stream.set_sinks(*sinks, default_blueprint=lay_out(config, watched))
         self._stream.send_recording_name(title)
         self._still = Still(self._stream)
         self._still.log_world(config)
@@ -102,6 +109,7 @@ class Recorder:
         self._log_images(tick)
         self._log_tracks(tick)
         self._log_points(tick)
+        self._log_sketches(tick)
         self._log_truth(tick)
         self._log_world(tick)
         self._log_curves(tick)
@@ -150,7 +158,8 @@ class Recorder:
     def _log_places(self, tick: Tick) -> None:
         self._has_places |= any(track.place is not None for track in tick.tracks)
         if self._has_places:
-            places = marks.places(tick.tracks)
+            seen = self._sightings.update(tick) if self._tells_cameras else {}
+            places = marks.places(tick.tracks, seen)
             self._rows.add(
                 PLACES, rr.Ellipsoids3D, centers=rounded(places.centre, METRE_STEP),
                 half_sizes=rounded(places.half_size, METRE_STEP), quaternions=places.quaternion,
@@ -168,6 +177,20 @@ class Recorder:
             place, colour = _from_corner(points.place), points.colour
             self._rows.add(f"{THERMAL}/{layer}", rr.Points2D, positions=place, colors=colour)
 
+    def _log_sketches(self, tick: Tick) -> None:
+        """Log what the tracker explains of further cameras' new images, and the empty scenes that are new."""
+        sketches = explained_sketches(tick.explanation, tick.tracks, self._cameras)
+        for camera, sketch in ((c, s) for c, s in sketches.items() if c in tick.observation.images):
+            path = camera_path(camera)
+            if not np.array_equal(self._backgrounds.get(camera, ()), sketch.background):
+                self._backgrounds[camera] = sketch.background
+                blob = encode_jpeg(sketch.background, _JPEG_QUALITY[3], has_own_codes=False)
+                self._rows.add(
+                    f"{path}/{BACKGROUND}", rr.EncodedImage, blob=[blob], media_type=["image/jpeg"]
+                )
+            strips = [_from_corner(line) for line in sketch.lines]
+            self._rows.add(f"{path}/explained/lines", rr.LineStrips2D, strips=strips, colors=sketch.colour)
+
     def _log_truth(self, tick: Tick) -> None:
         for name in (name for name in self._boxed if name in tick.truths):
             self._log_named_boxes(
@@ -179,6 +202,8 @@ class Recorder:
         path, lift_px = camera_path(camera), _NAME_HEIGHT * self._cameras[camera].camera.height
         self._log_boxes(f"{path}/truth/boxes", boxes)
         above = _from_corner(boxes.box[:, :2]) + boxes.box[:, 2:] * (0.5, 0.0) - (0.0, lift_px)
+        # A panorama shows few heads.
+        above[:, 1] = np.maximum(above[:, 1], 0.0)
         self._rows.add(
             f"{path}/truth/names", rr.Points2D, positions=above, colors=boxes.colour, labels=boxes.label
         )
@@ -227,7 +252,7 @@ class Recorder:
             self._rows.add(path, rr.Scalars, scalars=np.array(values, np.float64))
 
 
-def _from_corner(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
+def _from_corner(pixels: NDArray[np.floating]) -> NDArray[np.float32]:
     """Count pixels from the corner of the image, as rerun does, not from the middle of the first one."""
     return rounded(pixels, PIXEL_STEP) + np.float32(0.5)
 

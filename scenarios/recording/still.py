@@ -48,7 +48,8 @@ class Still:
             self._log_solids(f"world/place/{group}", [s for f in fixtures for s in fixture_solids(f)], fill)
         self._log_solids("world/robot/body", urdf_solids(URDF), FillMode.Solid)
         # The colour camera's picture hangs nearer: it covers the middle of the thermal one.
-        own = {"thermal": (tuple(LAYERS), 1.4), "colour": (ON_COLOUR, 0.8)}
+        on_thermal = tuple(layer for layer in LAYERS if not layer.startswith("explained"))
+        own = {"thermal": (on_thermal, 1.4), "colour": (ON_COLOUR, 0.8)}
         for name, camera in config.robot.cameras.items():
             layers, reach_m = own.get(name, (ON_FURTHER, 0.8))
             self._log_camera(camera_path(name), camera.camera, layers, reach_m)

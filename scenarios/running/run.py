@@ -102,6 +102,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
                     config,
                     title=title,
                     viewer=options.viewer,
+                    watched=tracker.cameras,
                 )
             )
         watchers = Watchers(config, title, recorder)

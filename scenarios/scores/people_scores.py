@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.run_folder.on_floor import (
     BELIEFS,
     PEOPLE,
@@ -16,6 +18,7 @@ from peopleboy.scenarios.run_folder.on_floor import (
 )
 from peopleboy.scenarios.run_folder.run_files import read_table
 from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
+from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
@@ -55,11 +58,15 @@ def score_people(
 def score_camera(folder: Path, camera: str, frames: int, min_visible: float = MIN_VISIBLE) -> Scores:
     """Score the boxes that the tracker of a run gave in the image of a further camera.
 
+    In a panorama, boxes go on over the seam.
+
     Raises:
         BadInput: there are none.
     """
-    truth, tracks = folder / "truth" / f"{camera}.gt.txt", folder / "tracks" / f"{camera}.txt"
-    for path in (truth, tracks):
+    paths = folder / "truth" / f"{camera}.gt.txt", folder / "tracks" / f"{camera}.txt"
+    for path in paths:
         if not path.is_file():
             raise BadInput(f"{path}: there is no such file; no boxes were given in camera {camera!r}")
-    return evaluate(read_truth(truth), read_tracks(tracks), frames=frames, min_visible=min_visible)
+    around = around_px(cameras_of(folder)[camera].camera)
+    truth, tracks = replace(read_truth(paths[0]), around_px=around), read_tracks(paths[1])
+    return evaluate(truth, tracks, frames=frames, min_visible=min_visible)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.mirror import Mirror
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 
@@ -64,3 +65,8 @@ class Panorama:
         above = self.mirror.axis_rad - np.arctan2(y, np.hypot(x, z) - self.mirror.ring_radius_m)
         radius = self.focal_px * np.tan(np.where(np.abs(above) < math.pi / 2.0, above, np.nan))
         return np.stack([u, self.height - 0.5 - radius], axis=-1)
+
+
+def around_px(camera: CameraGeometry) -> float:
+    """[px] how many columns go all round; inf for an image that has borders at its sides."""
+    return float(camera.width) if isinstance(camera, Panorama) else math.inf

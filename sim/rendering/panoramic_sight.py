@@ -15,6 +15,8 @@ from peopleboy.sim.rendering.ring import Outline, draw_ring, make_drawing, outli
 from peopleboy.sim.rendering.sight import Edges, Mask, Scene, Sight
 from peopleboy.sim.rendering.view import NOBODY, View, person_bits
 
+_Key = tuple[Panorama, bytes, bytes]
+
 
 class PanoramicSight(Sight):
     """How a panoramic camera sees, whatever the scene's renderer: there is one for it alone.
@@ -26,13 +28,13 @@ class PanoramicSight(Sight):
     """
 
     def __init__(self) -> None:
-        self._outlines: WeakKeyDictionary[Scene, dict[tuple[Panorama, bytes, bytes], Outline]]
+        self._outlines: WeakKeyDictionary[Scene, dict[_Key, tuple[Outline, NDArray[np.uint64]]]]
         self._outlines = WeakKeyDictionary()
 
     def view(self, scene: Scene, camera: Panorama, world_from_camera: Matrix) -> View:
         """Draw what a camera sees of a scene."""
         drawing, table = make_drawing(camera), scene.table
-        shape = (camera.width, camera.height)
+        shape = (camera.height, camera.width)
         part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)
         normal, shading = np.empty((*shape, 3), np.float32), np.empty((len(table.surface_part), 7))
         draw_ring(
@@ -40,10 +42,9 @@ class PanoramicSight(Sight):
             person_bits(scene.person_of_part), ring_of(camera), shading, drawing,
             np.ascontiguousarray(world_from_camera[:3, :3]), part, depth, normal,
         )  # fmt: skip
-        depth *= _horizontal(camera)
+        depth *= _horizontal(camera)[:, None]
         depth += np.float32(camera.mirror.ring_radius_m)
-        turned = (part.T, depth.T, normal.transpose(1, 0, 2), drawing.cover.T)
-        return View(*map(np.ascontiguousarray, turned))
+        return View(part, depth, normal, np.ascontiguousarray(drawing.cover.T))
 
     def bounds(self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask) -> Edges:
         """Find the rectangle around all pixels that some parts (P,) would fill if nothing hid them."""
@@ -73,15 +74,18 @@ class PanoramicSight(Sight):
         self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask
     ) -> tuple[Outline, np.uint64]:
         """Give the outline of whoever some parts (P,) belong to, drawn once a scene, and their own bits."""
-        people = np.unique(scene.person_of_part[parts])
-        of_one = parts if len(people) != 1 or people[0] == NOBODY else scene.person_of_part == people[0]
+        person = scene.person_of_part[parts.argmax()]
+        of_one = scene.person_of_part == person
+        if person == NOBODY or (parts & ~of_one).any():
+            of_one = parts
         key = camera, world_from_camera.tobytes(), of_one.tobytes()
         known = self._outlines.setdefault(scene, {})
-        bits = np.where(of_one, np.uint64(1) << (np.cumsum(of_one) % 64).astype(np.uint64), np.uint64(0))
         if key not in known:
+            bits = np.where(of_one, np.uint64(1) << (np.cumsum(of_one) % 64).astype(np.uint64), np.uint64(0))
             ring_from_part = invert_pose(world_from_camera) @ scene.world_from_part
-            known[key] = outline(scene.table, ring_from_part, bits, camera)
-        return known[key], np.bitwise_or.reduce(bits[parts], initial=np.uint64(0))
+            known[key] = outline(scene.table, ring_from_part, bits, camera), bits
+        filled, bits = known[key]
+        return filled, np.bitwise_or.reduce(bits[parts], initial=np.uint64(0))
 
 
 def first_and_last(columns: Mask) -> tuple[int, int]:

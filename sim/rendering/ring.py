@@ -24,7 +24,10 @@ from peopleboy.sim.shapes.shapes import ShapeKind
 Array = NDArray[np.float64]
 
 _PLANE, _MESH = int(ShapeKind.PLANE), int(ShapeKind.MESH)
-_SPHERE, _BOX = int(ShapeKind.SPHERE), int(ShapeKind.BOX)
+_SPHERE, _CAPSULE, _BOX = int(ShapeKind.SPHERE), int(ShapeKind.CAPSULE), int(ShapeKind.BOX)
+
+# Widens every span of columns, so that rounding loses none.
+_SLACK = 1e-9
 
 
 class Ring(NamedTuple):
@@ -46,13 +49,15 @@ class Pieces(NamedTuple):
         shape: (N,) number of the shape.
         face: (N,) number of the face, -1 for the whole shape.
         pose: (N, 3, 4) ring from shape.
-        span: (N, 2) first column, and number of columns.
+        first: (W + 1,) where the pieces of each column start in `among`, and where the last one's end.
+        among: pieces of one column after the other, in the order of the shapes.
     """
 
     shape: NDArray[np.int64]
     face: NDArray[np.int64]
     pose: Array
-    span: NDArray[np.int64]
+    first: NDArray[np.int64]
+    among: NDArray[np.int64]
 
 
 class Drawing(NamedTuple):
@@ -136,9 +141,8 @@ def _outline(
     canvas, cover = _canvas(drawing, 0, shading), drawing.cover[0]
     rows, columns = np.zeros(height, np.uint64), np.zeros(width, np.uint64)
     found, count = np.empty(1024, np.uint64), 0
-    is_near = _any_span(pieces.span, width)
     for u in range(width):
-        if not is_near[u]:
+        if pieces.first[u] == pieces.first[u + 1]:
             continue
         _draw_column(table, bits, ring, u, pieces, canvas)
         if count + height > len(found):
@@ -151,16 +155,6 @@ def _outline(
                 count += 1
         cover[:] = 0
     return found[:count], rows, columns
-
-
-@njit(cache=True)
-def _any_span(spans: NDArray[np.int64], width: int) -> NDArray[np.bool_]:
-    """(W,) the columns that are in any of the spans (N, 2)."""
-    columns = np.zeros(width, np.bool_)
-    for i in range(len(spans)):
-        for k in range(spans[i, 1]):
-            columns[(spans[i, 0] + k) % width] = True
-    return columns
 
 
 @njit(cache=True, error_model="numpy")
@@ -188,9 +182,9 @@ def draw_ring(
         shading: (M, 7) space, as in `Canvas`.
         drawing: what to draw on.
         rotation: (3, 3) world from the panorama's optical frame.
-        part: (W, H) gets the part numbers, -1 where nothing is.
-        depth: (W, H) gets the depths [m] along the axis of the column's camera, inf where nothing is.
-        normal: (W, H, 3) gets the unit normals, world frame, 0 where nothing is.
+        part: (H, W) gets the part numbers, -1 where nothing is.
+        depth: (H, W) gets the depths [m] along the axis of the column's camera, inf where nothing is.
+        normal: (H, W, 3) gets the unit normals, world frame, 0 where nothing is.
     """
     pieces = _before(table, ring_from_part, skip, ring)
     for u in range(len(drawing.nearness)):
@@ -202,8 +196,8 @@ def draw_ring(
                 turned[i, j] = 0.0
                 for k in range(3):
                     turned[i, j] += rotation[i, k] * ring.column_from_ring[u, j, k]
-        row = slice(u, u + 1)
-        shade(table.surface_part, ring.lens, canvas, turned, part[row], depth[row], normal[row])
+        row, upright = slice(u, u + 1), normal.transpose(1, 0, 2)
+        shade(table.surface_part, ring.lens, canvas, turned, part.T[row], depth.T[row], upright[row])
 
 
 @njit(cache=True, error_model="numpy")
@@ -225,10 +219,7 @@ def _draw_column(
     table: ShapeTable, bits: NDArray[np.uint64], ring: Ring, u: int, pieces: Pieces, canvas: Canvas
 ) -> None:
     """Draw the pieces that may be seen in one column."""
-    width = len(ring.column_from_ring)
-    for i in range(len(pieces.shape)):
-        if (u - pieces.span[i, 0]) % width >= pieces.span[i, 1]:
-            continue
+    for i in pieces.among[pieces.first[u] : pieces.first[u + 1]]:
         shape, face = pieces.shape[i], pieces.face[i]
         bit = bits[table.part[shape]]
         compose(ring.column_from_ring[u], pieces.pose[i], canvas.pose)
@@ -246,32 +237,44 @@ def _draw_column(
 def _before(table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], ring: Ring) -> Pieces:
     """Find what may be seen of the shapes not to skip."""
     most, width = 6 * len(table.kind), len(ring.column_from_ring)
-    pieces = Pieces(
-        np.empty(most, np.int64),
-        np.empty(most, np.int64),
-        np.empty((most, 3, 4)),
-        np.empty((most, 2), np.int64),
-    )
+    number, faces = np.empty(most, np.int64), np.empty(most, np.int64)
+    poses, spans = np.empty((most, 3, 4)), np.empty((most, 2), np.int64)
     offset = ring.column_from_ring[0, :, 3]
     radius, count = math.sqrt((offset * offset).sum()), 0
     for shape in range(len(table.kind)):
         if skip[table.part[shape]]:
             continue
-        pose = pieces.pose[count]
+        pose = poses[count]
         compose(ring_from_part[table.part[shape]], table.part_from_shape[shape], pose)
         first, end = (0, 6) if table.kind[shape] == _BOX else (-1, 0)
         low, high = _corners(table, shape)
+        if _is_out_of_sight(pose, low, high, ring, radius):
+            continue
         for face in range(first, end):
             if face >= 0 and not _may_face(pose, table.size[shape], face, radius):
                 continue
-            pieces.shape[count], pieces.face[count], pieces.pose[count] = shape, face, pose
-            pieces.span[count] = _span(
-                pose, _flattened(low, face, high), _flattened(high, face - 3, low), width
-            )
-            if pieces.span[count, 1] == width and _is_out_of_sight(pose, low, high, ring, radius):
-                continue
-            count += 1
-    return Pieces(pieces.shape[:count], pieces.face[:count], pieces.pose[:count], pieces.span[:count])
+            number[count], faces[count], poses[count] = shape, face, pose
+            spans[count] = _span(table, shape, face, pose, width)
+            if spans[count, 1] > 0:
+                count += 1
+    return Pieces(number, faces, poses, *_by_column(spans[:count], width))
+
+
+@njit(cache=True)
+def _by_column(spans: NDArray[np.int64], width: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Sort the spans (N, 2) by the columns that they take in; see `Pieces`."""
+    first = np.zeros(width + 1, np.int64)
+    for i in range(len(spans)):
+        for k in range(spans[i, 1]):
+            first[(spans[i, 0] + k) % width + 1] += 1
+    first = np.cumsum(first)
+    among, free = np.empty(first[width], np.int64), first.copy()
+    for i in range(len(spans)):
+        for k in range(spans[i, 1]):
+            column = (spans[i, 0] + k) % width
+            among[free[column]] = i
+            free[column] += 1
+    return first, among
 
 
 @njit(cache=True, error_model="numpy")
@@ -298,6 +301,8 @@ def _is_out_of_sight(pose: Array, low: Array, high: Array, ring: Ring, radius: f
     lens, axis = ring.lens, math.atan2(ring.column_from_ring[0, 2, 1], ring.column_from_ring[0, 0, 1])
     highest = axis + math.atan((-0.5 - lens.centre_u) / lens.focal)
     slope = math.tan(axis + math.atan((lens.width - 0.5 - lens.centre_u) / lens.focal))
+    x, _, z = map_point(pose, (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0)
+    nearest = max(math.hypot(x, z) - math.sqrt(((high - low) ** 2).sum()) / 2.0, 0.0)
     is_above, is_below = highest > 0.0, slope > 0.0
     for corner in range(8):
         x, y, z = map_point(
@@ -306,7 +311,7 @@ def _is_out_of_sight(pose: Array, low: Array, high: Array, ring: Ring, radius: f
             high[1] if corner & 2 else low[1],
             high[2] if corner & 4 else low[2],
         )
-        is_above &= y < 0.0
+        is_above &= y < math.tan(highest) * nearest
         is_below &= y > slope * (math.hypot(x, z) + radius)
     return bool(is_above or is_below)
 
@@ -321,11 +326,20 @@ def _flattened(corner: Array, axis: int, other: Array) -> Array:
 
 
 @njit(cache=True, error_model="numpy")
-def _span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, int]:
-    """First column, and number of columns, in which the box between two corners may be seen.
+def _span(table: ShapeTable, shape: int, face: int, pose: Array, width: int) -> tuple[int, int]:
+    """First column, and number of columns, in which a shape, or a face of a box, may be seen."""
+    kind, size = table.kind[shape], table.size[shape]
+    if kind == _SPHERE:
+        return _round_span(pose, 0.0, size[0], width)
+    if kind == _CAPSULE:
+        return _round_span(pose, size[0] / 2.0, size[1], width)
+    low, high = _corners(table, shape)
+    return _box_span(pose, _flattened(low, face, high), _flattened(high, face - 3, low), width)
 
-    Seen from the middle, a box that does not stand round it spans less than half the horizon.
-    """
+
+@njit(cache=True, error_model="numpy")
+def _box_span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, int]:
+    """The columns in which the box between two corners may be seen."""
     x, _, z = map_point(pose, (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0)
     middle, least, most = math.atan2(x, z), 0.0, 0.0
     for corner in range(8):
@@ -338,11 +352,31 @@ def _span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, int]:
         away = math.atan2(x, z) - middle
         away -= math.tau * math.floor(away / math.tau + 0.5)
         least, most = min(least, away), max(most, away)
+    return _columns(middle + least, middle + most, width)
+
+
+@njit(cache=True, error_model="numpy")
+def _round_span(pose: Array, half: float, radius: float, width: int) -> tuple[int, int]:
+    """The columns in which a capsule of half a length, or a ball, is seen: from one end to the other."""
+    x, _, z = map_point(pose, 0.0, 0.0, -half)
+    middle, reach = math.atan2(x, z), math.asin(min(radius / math.hypot(x, z), 1.0))
+    x, _, z = map_point(pose, 0.0, 0.0, half)
+    away, other = math.atan2(x, z) - middle, math.asin(min(radius / math.hypot(x, z), 1.0))
+    away -= math.tau * math.floor(away / math.tau + 0.5)
+    return _columns(middle + min(-reach, away - other), middle + max(reach, away + other), width)
+
+
+@njit(cache=True, error_model="numpy")
+def _columns(least: float, most: float, width: int) -> tuple[int, int]:
+    """First column, and number of columns, whose middles look between two angles to the right [rad].
+
+    Who spans half the horizon stands round the middle, and is seen all round.
+    """
     if not most - least < math.pi:
         return 0, width
-    first = math.floor(((middle + least) / math.tau + 0.5) * width - 0.5)
-    last = math.ceil(((middle + most) / math.tau + 0.5) * width - 0.5)
-    return first, min(last - first + 1, width)
+    first = math.ceil((least / math.tau + 0.5) * width - 0.5 - _SLACK)
+    last = math.floor((most / math.tau + 0.5) * width - 0.5 + _SLACK)
+    return first, last - first + 1
 
 
 @njit(cache=True, error_model="numpy")

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import math
+import shutil
 from pathlib import Path
+from xml.etree import ElementTree
 
+import av
 import cv2
+import numpy as np
 import pyarrow.parquet as pq
 import pytest
 import yaml
+from pycocotools.coco import COCO
+from rerun.chunk import RrdReader
 
 from peopleboy.scenarios.drawing.overlay import box_parts
+from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.mirror import MIRRORS
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import assert_names
-from tests.helpers.runs.exported import SCENE, run_cli
+from tests.helpers.runs.exported import SCENE, export, run_cli
 
 
 def scene(**camera: object) -> dict[str, object]:
@@ -96,7 +105,125 @@ def test_what_makes_no_sense_is_refused_before_anything_is_run(
 
 
 def test_a_box_across_the_seam_is_drawn_in_two_parts() -> None:
-    box = (470.5, 10.0, 20.0, 30.0)
-    assert box_parts(box, Panorama()) == ((470.5, 10.0, 9.0, 30.0), (-0.5, 10.0, 11.0, 30.0))
+    box, parts = (470.5, 10.0, 20.0, 30.0), ((470.5, 10.0, 9.0, 30.0), (-0.5, 10.0, 11.0, 30.0))
+    assert box_parts(box, Panorama()) == parts
+    assert box_parts((-9.5, 10.0, 20.0, 30.0), Panorama()) == parts
     assert box_parts(box, Pinhole(width=480, height=120)) == (box,)
     assert box_parts((459.5, 10.0, 20.0, 30.0), Panorama()) == ((459.5, 10.0, 20.0, 30.0),)
+
+
+@pytest.fixture(scope="module")
+def tracked(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Carl comes when the background is learned, and walks over the seam."""
+    carl = {"name": "carl", "enter_s": 1.8, "path": [{"at_m": [0.5, -0.9]}, {"at_m": [0.7, 1.6]}]}
+    robot = {"at_m": [4.0, 0.0], "cameras": {"panorama": {"kind": "panorama", "rate_hz": 3}}}
+    folder = tmp_path_factory.mktemp("tracked")
+    path, run = folder / "scene.yaml", folder / "run"
+    path.write_text(
+        yaml.safe_dump(scene() | {"duration_s": 4.0, "people": [carl], "robot": robot}), encoding="utf-8"
+    )
+    assert run_cli("run", path, "--tracker", "panoramic-paper", "--out", run) == 0
+    return run
+
+
+def boxes_in(path: Path) -> dict[int, list[float]]:
+    """The one person's or track's box by frame."""
+    return {int(row[0]): row[2:6].tolist() for row in np.loadtxt(path, delimiter=",", ndmin=2)}
+
+
+def test_tracks_on_the_other_side_of_the_seam_match_all_the_same(tracked: Path, tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    shutil.copytree(tracked, run)
+    truth = (run / "truth" / "panorama.gt.txt").read_text(encoding="utf-8").splitlines()
+    lines = [line.split(",") for line in truth]
+    text = [f"{frame},7,{float(left) - 480.0},{','.join(box)},1,-1,-1,-1" for frame, _, left, *box in
+            (line[:6] for line in lines)]  # fmt: skip
+    (run / "tracks" / "panorama.txt").write_text("".join(f"{line}\n" for line in text), encoding="utf-8")
+    (scores,) = evaluate_runs([run], camera="panorama")
+    assert scores.counts.targets > 3
+    assert scores.thesis.ca == scores.thesis.aa == pytest.approx(100.0)
+    assert scores.mot.hota.hota == pytest.approx(100.0)
+
+
+@pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")
+def test_exports_say_the_truth_of_who_stands_across_the_seam(tracked: Path, tmp_path: Path) -> None:
+    across = [
+        (row["frame"], row)
+        for row in pq.read_table(tracked / "truth" / "panorama.parquet").to_pylist()
+        if row["visible_left_px"] is not None and row["visible_left_px"] + row["visible_width_px"] > 479.5
+    ]
+    assert across
+    coco = COCO(export(tracked, "coco", tmp_path / "coco") / "annotations/panorama/person_keypoints.json")
+    for frame, row in across:
+        (image,) = (image for image in coco.imgs.values() if image["frame_id"] == frame)
+        (label,) = (one for one in coco.anns.values() if one["image_id"] == image["id"])
+        mask, (left, top, width, height) = coco.annToMask(label), label["bbox"]
+        assert mask.sum() == label["area"] == row["visible_px"]
+        assert (left, width) == (row["visible_left_px"] + 0.5, row["visible_width_px"])
+        # Its first columns are seen again beyond the right border.
+        wide = np.concatenate([mask, mask], axis=1)[:, int(left) : int(left + width)]
+        assert wide.sum() == label["area"]
+        assert wide.any(axis=0)[[0, -1]].all()
+        assert int(top + height) <= mask.shape[0]
+
+    out = ("--camera", "panorama", "--out")
+    for form in ("mot", "viper"):
+        assert run_cli("export", tracked, "--format", form, *out, tmp_path / form) == 0
+    (told,), (given,) = (list((tmp_path / "mot").rglob(name)) for name in ("gt.txt", "data/*.txt"))
+    for theirs, ours in ((told, "truth/panorama.gt.txt"), (given, "tracks/panorama.txt")):
+        assert boxes_in(theirs) == {(k - 1) // 5 + 1: box for k, box in boxes_in(tracked / ours).items()}
+
+    for name, ours in (("truth", "truth/panorama.gt.txt"), ("tracks", "tracks/panorama.txt")):
+        places = locations(tmp_path / "viper" / "run" / f"{name}.xgtf")
+        for frame, (left, _, width, _) in boxes_in(tracked / ours).items():
+            over = left + width - 479.5
+            number = (frame - 1) // 5 + 1
+            x, wide = places["LOCATION"][number]
+            assert x == int(left + 0.5)
+            assert (number in places["BEYOND_SEAM"]) == (over > 0.0)
+            if over > 0.0:
+                assert x + wide == 480
+                assert places["BEYOND_SEAM"][number] == (0, math.ceil(over))
+
+
+def locations(path: Path) -> dict[str, dict[int, tuple[int, int]]]:
+    """Left column and width of the one object's boxes, by attribute and image."""
+    found: dict[str, dict[int, tuple[int, int]]] = {}
+    for thing in ElementTree.parse(path).getroot().iterfind(".//{*}object/{*}attribute"):
+        found[thing.attrib["name"]] = {
+            int(box.attrib["framespan"].split(":")[0]): (int(box.attrib["x"]), int(box.attrib["width"]))
+            for box in thing
+            if "x" in box.attrib
+        }
+    return found
+
+
+def test_pictures_show_the_tracks_that_its_tracker_gives(tracked: Path, tmp_path: Path) -> None:
+    assert (
+        run_cli("export", tracked, "--format", "mp4", "--camera", "panorama", "--out", tmp_path / "film") == 0
+    )
+    across = [k for k, (left, _, width, _) in boxes_in(tracked / "tracks/panorama.txt").items() if
+              left + width > 479.5]  # fmt: skip
+    with av.open(str(tmp_path / "film" / "run.mp4")) as film:
+        frames = [frame.to_ndarray(format="rgb24").astype(int) for frame in film.decode(video=0)]
+    orange = np.array(track_colour(1))
+    for number in ((k - 1) // 5 for k in across):
+        picture = frames[number]
+        is_orange = np.abs(picture - orange).max(axis=2) < 60
+        columns = np.flatnonzero(is_orange[picture.shape[0] // 5 :].any(axis=0)) / picture.shape[1]
+        assert columns.min() < 0.05
+        assert columns.max() > 0.95
+
+
+def test_its_recording_draws_what_the_tracker_sees_by(tracked: Path) -> None:
+    told: dict[str, int] = {}
+    labels = set()
+    for chunk in RrdReader(tracked / "recording.rrd").stream():
+        told[chunk.entity_path] = told.get(chunk.entity_path, 0) + (not chunk.is_static and chunk.num_rows)
+        if chunk.entity_path == "/world/robot/places" and not chunk.is_static:
+            labels |= {one for row in chunk.to_record_batch().column("Ellipsoids3D:labels").to_pylist()
+                       for one in row or ()}  # fmt: skip
+    explained = "/world/robot/panorama/explained"
+    # Five images of the twelve are needed to know the empty scene.
+    assert (told[f"{explained}/background"], told[f"{explained}/lines"]) == (1, 7)
+    assert labels == {"1 · panorama"}

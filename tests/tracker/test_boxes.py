@@ -62,6 +62,25 @@ def test_the_shared_area_of_whole_pixel_boxes_is_the_number_of_shared_pixels(see
     assert intersection(a, b) == len(pixels(a) & pixels(b))
 
 
+def test_boxes_of_an_image_all_round_are_the_same_on_either_side_of_its_seam():
+    one, other = np.array([470.0, 5.0, 20.0, 40.0]), np.array([-10.0, 5.0, 20.0, 40.0])
+    assert iou(one, other) == 0.0
+    assert iou(one, other, around_px=480.0) == 1.0
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(60, 90))
+def test_the_shared_area_all_round_is_the_number_of_shared_pixels(seed, around):
+    many = np.floor(random_boxes(seed, 8))
+    a, b = many[:4, None], many[None, 4:]
+
+    def pixels(box):
+        left, top, width, height = box.astype(int)
+        return {(u % around, v) for u in range(left, left + width) for v in range(top, top + height)}
+
+    shared = [[len(pixels(one) & pixels(other)) for other in b[0]] for one in a[:, 0]]
+    assert_allclose(intersection(a, b, around), shared)
+
+
 def test_corners_and_shares_of_the_image_are_those_of_the_box():
     box = (-0.5, 59.5, 320.0, 120.0)
     assert corners(box) == (-0.5, 59.5, 319.5, 179.5)

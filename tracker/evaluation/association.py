@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from peopleboy.tracker.boxes import Floats, iou
+from peopleboy.tracker.boxes import Floats, intersection, iou
 from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 
 GATE = 0.5  # a pair must overlap by more than this (thesis, section 3.4)
@@ -21,6 +21,7 @@ class Pairs:
     Attributes:
         target: (P,) row of the truth.
         candidate: (P,) row of the tracks.
+        shared: (P,) area that both cover [px^2].
         iou: (P,) their intersection over union.
         start: (F + 1,) first pair of each of the F frames that have both targets and candidates, and P.
         width: (F,) how many candidates each of these frames has.
@@ -28,6 +29,7 @@ class Pairs:
 
     target: Ints
     candidate: Ints
+    shared: Floats
     iou: Floats
     start: Ints
     width: Ints
@@ -48,8 +50,9 @@ def pair_up(truth: TrueBoxes, tracks: TrackBoxes) -> Pairs:
     frame = np.repeat(np.arange(len(frames)), targets * candidates)  # (P,)
     row, column = np.divmod(np.arange(start[-1]) - start[frame], candidates[frame])
     target, candidate = first_target[frame] + row, first_candidate[frame] + column
-    overlap = iou(truth.box[target], tracks.box[candidate])
-    return Pairs(target, candidate, overlap, start, candidates)
+    boxes = truth.box[target], tracks.box[candidate]
+    shared, overlap = (measure(*boxes, truth.around_px) for measure in (intersection, iou))
+    return Pairs(target, candidate, shared, overlap, start, candidates)
 
 
 def associate(pairs: Pairs, gate: float = GATE) -> Ints:

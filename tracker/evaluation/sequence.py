@@ -1,7 +1,8 @@
 """One sequence of boxes: who was there (`TrueBoxes`), and what a tracker claims (`TrackBoxes`)."""
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import MISSING, dataclass, fields, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -40,7 +41,7 @@ class Rows:
     box: Floats
 
     def __post_init__(self) -> None:
-        columns = as_columns({column.name: getattr(self, column.name) for column in fields(self)})
+        columns = as_columns({name: getattr(self, name) for name in self._columns()})
         fault = find_fault(columns)
         if fault is not None:
             raise BadInput(f"{self.source}: row {fault[0]}: {fault[1]}")
@@ -55,8 +56,12 @@ class Rows:
 
     def take(self, rows: Ints | Bools) -> Self:
         """Keep only these rows: indices (M,), or a mask (N,)."""
-        taken: dict[str, Any] = {column.name: getattr(self, column.name)[rows] for column in fields(self)}
+        taken: dict[str, Any] = {name: getattr(self, name)[rows] for name in self._columns()}
         return replace(self, **taken)
+
+    def _columns(self) -> list[str]:
+        """Name what each row has a value of."""
+        return [each.name for each in fields(self) if each.default is MISSING]
 
     def number_ids(self) -> tuple[Ints, Ints]:
         """Number the K ids from 0: the number of each row's id (N,), and how many rows each id has (K,)."""
@@ -76,12 +81,15 @@ class TrueBoxes(Rows):
     Attributes:
         counted: (N,) False for people that a tracker need not find (nearer than 3 m, farther than 10 m).
         visible: (N,) in 0..1, the fraction of the person that nothing hides.
+        around_px: columns after which the image begins anew, if it is one all round; boxes, the candidates'
+            too, may then go on over its seam.
     """
 
     source: ClassVar[str] = "truth"
 
     counted: Bools
     visible: Floats
+    around_px: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -12,7 +12,7 @@ never misses. A tracker may find them all the same, and there are two rules for 
 Either rule is applied once, before any metric, so that all metrics see the same data.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -67,7 +67,7 @@ def settle_uncounted(
     if not 0.0 <= min_visible <= 1.0:
         raise BadInput(f"min_visible must be 0 to 1, got {min_visible}")
     counted = counts(truth.counted, truth.visible, min_visible)
-    truth = TrueBoxes(frame=truth.frame, id=truth.id, box=truth.box, counted=counted, visible=truth.visible)
+    truth = replace(truth, counted=counted)
     if rule == "ignore":
         return ignore_uncounted(truth, tracks)
     return Judged(truth.take(counted), tracks, tracks.take(np.zeros(len(tracks), dtype=np.bool_)))

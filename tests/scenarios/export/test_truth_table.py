@@ -57,7 +57,7 @@ def test_every_field_of_the_coco_export_is_in_the_table(coco_folder: Path) -> No
 
 
 def test_every_attribute_of_the_viper_export_is_in_the_table() -> None:
-    assert set(told("viper")) == {*viper.OBJECT, *viper.TRUTH, *viper.TRACK}
+    assert set(told("viper")) == {*viper.OBJECT, *viper.ALL_ROUND, *viper.TRUTH, *viper.TRACK}
 
 
 @pytest.mark.parametrize("file", ["thermal/", "thermal16/", "colour/", "mot", "mcap", "mp4"])

@@ -9,13 +9,15 @@ from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.recording.marks import (
     PARTICLES_A_FILTER,
     PARTICLES_AT_MOST,
+    Sightings,
     Trails,
     box_offset,
     particle_points,
+    places,
     track_boxes,
     truth_boxes,
 )
-from peopleboy.tracker.track import Status
+from peopleboy.tracker.track import FloorPlace, Status
 from tests.helpers.runs import synthetic_ticks as made
 
 
@@ -67,3 +69,24 @@ def test_a_trail_joins_places_and_breaks_where_somebody_was_away() -> None:
     counts = [len(trails.update(made.make_tick(frame)).line) for frame in (1, 2, 60, 3, 4)]
     # Robot, anna and ben; ben is away at frame 60.
     assert counts == [0, 3, 2, 2, 3]
+
+
+def test_places_tell_in_whose_newest_images_a_person_is() -> None:
+    sightings = Sightings(("thermal", "colour", "rear"))
+    place = FloorPlace(position_m=(3.0, 0.0), covariance_m2=(0.1, 0.0, 0.1))
+    labels = []
+    for cameras, images in (
+        (("thermal",), ("thermal", "rear")),
+        (("thermal", "rear"), ("thermal", "rear")),
+        ((), ("thermal",)),
+        (("thermal",), ("thermal", "rear")),
+        ((), ("thermal", "rear")),
+    ):
+        box = made.TRACK.boxes["thermal"]
+        track = replace(made.TRACK, boxes=dict.fromkeys(cameras, box), place=place)
+        tick = made.make_tick(1)
+        seen = replace(tick.observation, images=dict.fromkeys(images, tick.observation.images["thermal"]))
+        found = sightings.update(replace(tick, observation=seen, tracks=(track,)))
+        labels += places([track], found).label
+    # The rear camera's last image still counts while it takes no other.
+    assert labels == ["1 · thermal", "1 · thermal+rear", "1 · rear", "1 · thermal", "1"]

@@ -2,7 +2,7 @@ import json
 import math
 import subprocess
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -166,6 +166,30 @@ def test_what_one_person_cannot_tell_is_null_and_stays_unknown_among_other_seque
 @given(sequences())
 def test_the_same_input_gives_the_same_scores(sequence):
     assert to_json(evaluate(*sequence)) == to_json(evaluate(*sequence))
+
+
+@given(sequences(), st.floats(-300.0, 300.0))
+def test_rolling_an_image_all_round_changes_no_figure(sequence, columns):
+    around = 200.0
+    truth, tracks = sequence
+    truth = replace(truth, around_px=around)
+
+    def rolled(rows):
+        box = rows.box.copy()
+        box[:, 0] = (box[:, 0] + columns) % around
+        return replace(rows, box=box)
+
+    before, after = evaluate(truth, tracks), evaluate(rolled(truth), rolled(tracks))
+    assert after.counts == before.counts
+    assert_same_figures(after, before)
+    # Nothing here is near the seam, so that it might as well not be there.
+    assert_same_figures(before, evaluate(replace(truth, around_px=math.inf), tracks))
+
+
+def assert_same_figures(one, other):
+    for group, figures in to_json(one).items():
+        for name, value in figures.items():
+            assert value == pytest.approx(to_json(other)[group][name], abs=1e-6), f"{group}.{name}"
 
 
 def test_scores_hold_plain_numbers():

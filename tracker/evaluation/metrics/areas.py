@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from peopleboy.tracker.boxes import Floats, area, cover, intersection
+from peopleboy.tracker.boxes import Floats, area, cover
 from peopleboy.tracker.evaluation.association import Pairs
 from peopleboy.tracker.evaluation.metrics.sums import Sums, percent, sum_by
 from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
@@ -34,7 +34,7 @@ class AreaSums(Sums):
     def over(cls, truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs, matched: Ints) -> Self:
         """Sum up the sequence whose matched pairs are the rows (M,) of `pairs`."""
         target, candidate = pairs.target[matched], pairs.candidate[matched]
-        shared = intersection(truth.box[target], tracks.box[candidate])  # (M,)
+        shared = pairs.shared[matched]  # (M,)
         return cls(
             targets=len(truth),
             candidates=len(tracks),

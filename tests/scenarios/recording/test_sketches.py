@@ -1,0 +1,70 @@
+"""What explains a panorama's tracks lies where the pixels and the places are, on both sides of the seam."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from peopleboy.scenarios.recording.sketches import (
+    column_bars,
+    explained_sketches,
+    floor_ellipse,
+    outlines_of,
+    row_bars,
+)
+from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.tracker.panoramic.paper.depth_cues import measure
+from peopleboy.tracker.track import FloorPlace
+
+
+def across() -> np.ndarray:
+    mask = np.zeros((120, 480), np.bool_)
+    mask[20:60, 474:] = True
+    mask[30:70, :9] = True
+    return mask
+
+
+def test_outlines_pass_through_the_outermost_pixels_of_each_patch() -> None:
+    mask = across()
+    mask[100, 200] = True
+    corners = [(*line.min(axis=0), *line.max(axis=0)) for line in outlines_of(mask)]
+    spans = sorted(tuple(map(round, corner)) for corner in corners)
+    assert spans == [(0, 30, 8, 69), (200, 100, 200, 100), (474, 20, 479, 59)]
+    assert all((line[0] == line[-1]).all() for line in outlines_of(mask))
+
+
+def test_histograms_stand_where_the_person_is() -> None:
+    figure = measure(across())
+    assert figure is not None
+    right, left = column_bars(figure)
+    assert (right[:, 0].min(), right[:, 0].max()) == (473.5, 479.5)
+    assert (left[:, 0].min(), left[:, 0].max()) == (-0.5, 8.5)
+    assert {round(119.5 - y, 6) for y in right[:, 1]} == {0.0, 12.0}
+    rows = row_bars(figure)
+    assert (rows[:, 1].min(), rows[:, 1].max()) == (19.5, 69.5)
+    # There is no room to the right of the person.
+    assert rows[:, 0].max() == 473.5
+    assert rows[:, 0].min() == 473.5 - 15.0
+
+
+@given(st.floats(1.5, 8.0), st.floats(-math.pi, math.pi), st.floats(0.01, 0.2))
+def test_a_round_place_is_seen_at_its_bearing_and_as_wide_as_it_is(
+    distance: float, bearing: float, deviation: float
+) -> None:
+    camera = Panorama()
+    at, variance = (distance * math.cos(bearing), distance * math.sin(bearing)), deviation**2
+    parts = floor_ellipse(FloorPlace(position_m=at, covariance_m2=(variance, 0.0, variance)), camera)
+    columns = np.concatenate([part[:, 0] for part in parts])
+    away = np.angle(np.exp(1j * (camera.bearing(columns) - bearing)))
+    half = math.asin(2.4477 * deviation / distance)
+    assert away.max() == pytest.approx(half, rel=0.01)
+    assert away.min() == pytest.approx(-half, rel=0.01)
+    assert all(np.abs(np.diff(part[:, 0])).max() < 240.0 for part in parts)
+
+
+def test_of_other_explanations_nothing_is_drawn() -> None:
+    assert explained_sketches(object(), (), {}) == {}
