@@ -13,8 +13,11 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.handover.handover_tracker import HandoverTracker
 from peopleboy.tracker.panoramic.paper.appearance_file import shipped_model
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
+from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
+from peopleboy.tracker.panoramic.people.place_file import load_places
 from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import LEARNED, VARIANTS
@@ -58,6 +61,10 @@ Factory = Callable[[np.random.Generator], Tracker]
 """Makes a tracker that draws all that is random from the generator."""
 
 
+DEFAULT_TRACKER: Final = "peopleboy"
+FOOTAGE_TRACKER: Final = "footage"
+
+
 def explanation_of(tracker: Tracker) -> object:
     """Ask a tracker what it believes beyond its tracks; None where it tells nothing."""
     return tracker.explanation if isinstance(tracker, Explains) else None
@@ -67,18 +74,25 @@ def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
     return PeopleTracker(VARIANTS[name], rng, shipped_order() if name == LEARNED else None)
 
 
-def _panoramic_tracker(rng: np.random.Generator) -> PanoramicPaperTracker:  # noqa: ARG001
+def _panoramic_paper_tracker(rng: np.random.Generator) -> PanoramicPaperTracker:  # noqa: ARG001
     return PanoramicPaperTracker(shipped_model())
+
+
+def _panoramic_tracker(rng: np.random.Generator) -> PanoramicTracker:  # noqa: ARG001
+    return PanoramicTracker(*load_places())
+
+
+def _handover_tracker(rng: np.random.Generator) -> HandoverTracker:
+    return HandoverTracker(_contour_tracker(DEFAULT_TRACKER, rng), _panoramic_tracker(rng))
 
 
 TRACKERS: Final[dict[str, Factory]] = {
     **{name: partial(_contour_tracker, name) for name in VARIANTS},
-    "panoramic-paper": _panoramic_tracker,
+    "panoramic-paper": _panoramic_paper_tracker,
+    "panoramic": _panoramic_tracker,
+    "handover": _handover_tracker,
 }
 """Each tracker's factory by name; the first is the default. Whoever has a further one adds it here."""
-
-DEFAULT_TRACKER: Final = "peopleboy"
-FOOTAGE_TRACKER: Final = "footage"
 
 
 def make_tracker(name: str, rng: np.random.Generator) -> Tracker:

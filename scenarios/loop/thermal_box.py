@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from typing import Final
-
-import numpy as np
-
 from peopleboy.tracker.frame import THERMAL, Calibration
-from peopleboy.tracker.thermal.whereabouts import PERSON_M
-from peopleboy.tracker.track import Box, FloorPlace, Track
-
-WIDTH_M: Final = 0.5  # of who has no box
-WIDEST_RAD: Final = math.radians(75.0)  # who is farther to the side, or behind, is put here
-NEAREST_M: Final = 0.3
+from peopleboy.tracker.thermal.whereabouts import standing_box
+from peopleboy.tracker.track import Box, Track
 
 
 def thermal_box(track: Track, calibration: Calibration) -> Box | None:
@@ -28,15 +19,4 @@ def thermal_box(track: Track, calibration: Calibration) -> Box | None:
     """
     if THERMAL in track.boxes:
         return track.boxes[THERMAL]
-    return None if track.place is None else _standing(track.place, calibration)
-
-
-def _standing(place: FloorPlace, calibration: Calibration) -> Box:
-    camera_x, camera_y, _ = calibration.position_m
-    forward, aside = place.position_m[0] - camera_x, place.position_m[1] - camera_y
-    away = max(math.hypot(forward, aside), NEAREST_M)
-    bearing = max(-WIDEST_RAD, min(math.atan2(aside, forward), WIDEST_RAD))
-    x, y = camera_x + away * math.cos(bearing), camera_y + away * math.sin(bearing)
-    (u, top), (_, bottom) = calibration.project(np.array([[x, y, PERSON_M], [x, y, 0.0]])).tolist()
-    width = (bottom - top) * WIDTH_M / PERSON_M
-    return u - width / 2.0, top, width, bottom - top
+    return None if track.place is None else standing_box(track.place, calibration)

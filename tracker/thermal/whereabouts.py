@@ -38,6 +38,10 @@ HEAD_SD: Final = 0.02  # error of the row of the head
 CORRELATION: Final = 0.5  # of the two: a box that is too high at one end is at the other
 FARTHEST_M: Final = 30.0
 
+WIDTH_M: Final = 0.5  # of who has no box
+WIDEST_RAD: Final = math.radians(75.0)
+NEAREST_M: Final = 0.3
+
 ERRORS: Final = {
     Status.TRACKED: (0.1, 0.0105),
     Status.PARTLY_OCCLUDED: (0.13, 0.021),
@@ -124,6 +128,21 @@ def places_on_floor(
         _place(head, foot, *ERRORS[status], calibration.position_m)
         for head, foot, status in zip(rays[::2], rays[1::2], statuses, strict=True)
     ]
+
+
+def standing_box(place: FloorPlace, calibration: Calibration) -> Box:
+    """Give left, top, width, height [px] of somebody upright at a place, which may lie outside the image.
+
+    Who is far to the side, or behind the camera, is put at `WIDEST_RAD` of that side.
+    """
+    camera_x, camera_y, _ = calibration.position_m
+    forward, aside = place.position_m[0] - camera_x, place.position_m[1] - camera_y
+    away = max(math.hypot(forward, aside), NEAREST_M)
+    bearing = max(-WIDEST_RAD, min(math.atan2(aside, forward), WIDEST_RAD))
+    x, y = camera_x + away * math.cos(bearing), camera_y + away * math.sin(bearing)
+    (u, top), (_, bottom) = calibration.project(np.array([[x, y, PERSON_M], [x, y, 0.0]])).tolist()
+    width = (bottom - top) * WIDTH_M / PERSON_M
+    return u - width / 2.0, top, width, bottom - top
 
 
 def _ends(top: float, height: float) -> tuple[float, float]:

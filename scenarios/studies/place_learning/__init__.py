@@ -1,0 +1,1 @@
+"""Teaching the panoramic tracker to read where people stand."""

@@ -1,0 +1,1 @@
+"""One identity from the thermal image through the panorama and back."""

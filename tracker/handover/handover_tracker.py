@@ -1,0 +1,164 @@
+"""A person keeps one number from the thermal image through the panorama and back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from peopleboy.tracker.frame import THERMAL, Calibration, Frame
+from peopleboy.tracker.handover.identities import Identities, Key
+from peopleboy.tracker.handover.links import Votes, apartness, pairs
+from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA, PanoramicTracker
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.thermal.whereabouts import standing_box
+from peopleboy.tracker.track import Status, Track
+
+NEEDED_VOTES: Final = 3
+MOST_VOTES: Final = 15
+FARTHEST_INTRODUCED_M: Final = 7.0
+PAUSE_S: Final = 0.5  # between two introductions of one person
+BORDER: Final = 0.06  # share of the image's width at either side where nobody is introduced
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BothExplanations:
+    """What the two trackers believe beyond their tracks."""
+
+    thermal: object
+    panoramic: object
+
+
+class HandoverTracker:
+    """Two trackers that know each other's people: one for what is warm ahead, one for all round the robot.
+
+    Tracks that stand at the same place for several frames are one person. Whoever comes into the thermal
+    image is pointed out to its tracker by the other one, so that its number is there from the first frame on.
+
+    Args:
+        thermal: tracks people in the thermal image.
+        panoramic: tracks them in the panorama.
+
+    Source: thesis, section 8.2, which proposes it: people are learned in the thermal image, and tracked in the
+    omnidirectional one.
+    """
+
+    def __init__(self, thermal: PeopleTracker, panoramic: PanoramicTracker) -> None:
+        self._thermal, self._panoramic = thermal, panoramic
+        self._votes = Votes(NEEDED_VOTES, MOST_VOTES)
+        self._identities = Identities()
+        self._introduced_s: dict[int, float] = {}
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """Those of both trackers."""
+        return (*self._thermal.cameras, *self._panoramic.cameras)
+
+    @property
+    def explanation(self) -> BothExplanations:
+        """Those of both trackers; the thermal one's goes by its own numbers."""
+        return BothExplanations(self._thermal.explanation, self._panoramic.explanation)
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame and tell who is where.
+
+        Raises:
+            BadInput: as both trackers say.
+        """
+        around = self._panoramic.update(frame)
+        warm = [track for track in self._thermal.update(frame) if track.status is not Status.TENTATIVE]
+        agreed = pairs(
+            [track for track in warm if _is_seen(track)], [track for track in around if _is_seen(track)]
+        )
+        by_heat, by_place = {track.id: track for track in warm}, {track.id: track for track in around}
+        self._votes.count([(one.id, other.id) for one, other in agreed], by_heat, by_place)
+        self._number(warm, around, agreed)
+        self._introduce(around, warm, frame)
+        return self._joined(warm, around)
+
+    def _number(
+        self, warm: Sequence[Track], around: Sequence[Track], agreed: Sequence[tuple[Track, Track]]
+    ) -> None:
+        numbers, linked = self._identities, self._votes.linked
+        mates: dict[int, Key] = {one.id: (PANORAMA, other.id) for one, other in agreed}
+        mates |= {one: (PANORAMA, other) for one, other in linked.items()}
+        back: dict[int, Key] = {other: (THERMAL, one) for one, (_, other) in mates.items()}
+        numbers.name(PANORAMA, around, back)
+        numbers.name(THERMAL, warm, mates)
+        by_heat, by_place = {track.id: track for track in warm}, {track.id: track for track in around}
+        present = [*((THERMAL, one) for one in by_heat), *((PANORAMA, other) for other in by_place)]
+        for one, other in linked.items():
+            if one in by_heat and other in by_place:
+                numbers.agree(((THERMAL, one), by_heat[one]), ((PANORAMA, other), by_place[other]), present)
+
+    def _introduce(self, around: Sequence[Track], warm: Sequence[Track], frame: Frame) -> None:
+        """Point out to the thermal tracker whom it does not see, though that one is before its camera."""
+        calibration = frame.calibrations.get(THERMAL)
+        if calibration is None or THERMAL not in frame.images:
+            return
+        width = frame.images[THERMAL].shape[1]
+        for track in around:
+            if self._is_to_be_introduced(track, warm, calibration, width, frame.time_s):
+                assert track.place is not None
+                self._introduced_s[track.id] = frame.time_s
+                self._thermal.introduce(standing_box(track.place, calibration))
+                return
+
+    def _is_to_be_introduced(
+        self, track: Track, warm: Sequence[Track], calibration: Calibration, width: int, time_s: float
+    ) -> bool:
+        if not _is_seen(track) or track.place is None or track.id in self._votes.linked.values():
+            return False
+        if time_s - self._introduced_s.get(track.id, -PAUSE_S) < PAUSE_S:
+            return False
+        x, y = track.place.position_m
+        if x <= 0.5 or (x * x + y * y) ** 0.5 > FARTHEST_INTRODUCED_M:
+            return False
+        left, _, wide, _ = standing_box(track.place, calibration)
+        if left < BORDER * width or left + wide > (1.0 - BORDER) * width:
+            return False
+        return not any(_covers(other, left + wide / 2.0) for other in warm)
+
+    def _joined(self, warm: Sequence[Track], around: Sequence[Track]) -> tuple[Track, ...]:
+        """Make one track of those that are one person."""
+        number = self._identities.number
+        joined = {
+            number[PANORAMA, track.id]: replace(track, id=number[PANORAMA, track.id]) for track in around
+        }
+        hiders = {track.id: number[PANORAMA, track.id] for track in around}
+        joined = {k: replace(t, occluder=hiders.get(t.occluder or 0)) for k, t in joined.items()}
+        fronts = {track.id: number[THERMAL, track.id] for track in warm}
+        for track in warm:
+            one = fronts[track.id]
+            own = replace(track, id=one, occluder=fronts.get(track.occluder or 0))
+            joined[one] = _merged(own, joined[one]) if one in joined else own
+        return tuple(joined[one] for one in sorted(joined))
+
+
+def _renamed(tracks: Sequence[Track], number: Mapping[int, int]) -> dict[int, Track]:
+    """Give tracks, and those who hide them, other numbers, and list them by these."""
+    renamed = (replace(one, id=number[one.id], occluder=number.get(one.occluder or 0)) for one in tracks)
+    return {track.id: track for track in renamed}
+
+
+def _merged(warm: Track, around: Track) -> Track:
+    """Join two tracks of one person; its place is the panorama's as long as it is seen there."""
+    better = around if _is_seen(around) or not _is_seen(warm) else warm
+    is_near = apartness(warm, around) < 2 * 9.21 or not _is_seen(warm)
+    return replace(
+        better,
+        boxes={**around.boxes, **(warm.boxes if is_near else {})},
+        confidence=max(warm.confidence, around.confidence),
+        status=warm.status if _is_seen(warm) else around.status,
+        age_s=max(warm.age_s, around.age_s),
+        occluder=warm.occluder if _is_seen(warm) else around.occluder,
+    )
+
+
+def _covers(track: Track, column: float) -> bool:
+    left, _, width, _ = track.boxes[THERMAL]
+    return left - 0.25 * width <= column <= left + 1.25 * width
+
+
+def _is_seen(track: Track) -> bool:
+    return track.status is not Status.TOTALLY_OCCLUDED

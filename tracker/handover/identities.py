@@ -1,0 +1,63 @@
+"""Whose track is whose: one number for each person, whatever camera sees it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from peopleboy.tracker.track import Track
+
+Key = tuple[str, int]
+"""A camera, and the id of a track in it."""
+
+YOUNG_S = 1.0
+"""A number that is younger than this gives way to the one that the person had before."""
+
+
+@dataclass(slots=True)
+class Identities:
+    """The numbers of the tracks of two cameras.
+
+    Attributes:
+        number: of each track.
+    """
+
+    number: dict[Key, int] = field(default_factory=dict)
+    _newest: int = 0
+
+    def name(self, camera: str, tracks: Iterable[Track], known: Mapping[int, Key]) -> None:
+        """Number the tracks of a camera that have none yet.
+
+        Args:
+            camera: its name.
+            tracks: all of them.
+            known: for ids of tracks that agree with one of the other camera, that one.
+        """
+        for track in tracks:
+            if (camera, track.id) not in self.number:
+                other = known.get(track.id)
+                number = None if other is None else self.number.get(other)
+                if number is None or any(
+                    self.number.get((camera, mate.id)) == number for mate in tracks if mate is not track
+                ):
+                    self._newest += 1
+                    number = self._newest
+                self.number[camera, track.id] = number
+
+    def agree(self, follower: tuple[Key, Track], leader: tuple[Key, Track], present: Iterable[Key]) -> None:
+        """Give two tracks that are one person the same number.
+
+        A number that is young gives way; otherwise the leader's stays. Whoever else has the number in the
+        camera of the one that gives way gets a new one.
+        """
+        (yields, one), (stays, other) = follower, leader
+        if self.number[yields] == self.number[stays]:
+            return
+        if other.age_s < YOUNG_S <= one.age_s:
+            yields, stays = stays, yields
+        kept = self.number[stays]
+        for key in present:
+            if key[0] == yields[0] and key != yields and self.number.get(key) == kept:
+                self._newest += 1
+                self.number[key] = self._newest
+        self.number[yields] = kept

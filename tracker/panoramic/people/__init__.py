@@ -1,0 +1,1 @@
+"""Several people at a time, from a standing or a moving robot."""

@@ -1,0 +1,74 @@
+"""How people move on the floor: a Kalman filter over place and velocity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+FIRST_SPEED_SD_M_S: Final = 0.7
+FASTEST_M_S: Final = 2.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """What is believed of a person's motion at one instant.
+
+    Attributes:
+        state: (4,) x, y [m], and their velocities [m/s] in room coordinates.
+        covariance: (4, 4) of its error.
+    """
+
+    state: Floats
+    covariance: Floats
+
+    @property
+    def place_m(self) -> Floats:
+        """(2,) [m]."""
+        return self.state[:2]
+
+    @property
+    def place_m2(self) -> Floats:
+        """(2, 2) covariance of the place [m2]."""
+        return self.covariance[:2, :2]
+
+    @classmethod
+    def begin(cls, place_m: Floats, error_m2: Floats) -> Motion:
+        """Start at a measured place (2,) with an error (2, 2), as somebody who may walk anywhere."""
+        covariance = np.zeros((4, 4))
+        covariance[:2, :2] = error_m2
+        covariance[2, 2] = covariance[3, 3] = FIRST_SPEED_SD_M_S**2
+        return cls(np.concatenate([place_m, np.zeros(2)]), covariance)
+
+    def later(self, dt_s: float, restlessness: float) -> Motion:
+        """Predict: velocities wander as white accelerations of this density [m2/s3] make them.
+
+        Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 6.2.2.
+        """
+        step = np.eye(4)
+        step[0, 2] = step[1, 3] = dt_s
+        noise = np.zeros((4, 4))
+        noise[0, 0] = noise[1, 1] = dt_s**3 / 3.0
+        noise[0, 2] = noise[2, 0] = noise[1, 3] = noise[3, 1] = dt_s**2 / 2.0
+        noise[2, 2] = noise[3, 3] = dt_s
+        return Motion(step @ self.state, step @ self.covariance @ step.T + restlessness * noise)
+
+    def corrected(self, place_m: Floats, error_m2: Floats) -> Motion:
+        """Take in a measured place (2,) [m] with an error of this covariance (2, 2) [m2]."""
+        gain = self.covariance[:, :2] @ np.linalg.inv(self.place_m2 + error_m2)
+        state = self.state + gain @ (place_m - self.place_m)
+        speed = float(np.hypot(state[2], state[3]))
+        if speed > FASTEST_M_S:
+            state[2:] *= FASTEST_M_S / speed
+        covariance = self.covariance - gain @ self.covariance[:2]
+        return Motion(state, (covariance + covariance.T) / 2.0)
+
+    def slowed(self, dt_s: float, tau_s: float) -> Motion:
+        """Let the velocity fade, as nobody unseen walks straight on for long."""
+        state = self.state.copy()
+        state[2:] *= np.exp(-dt_s / tau_s)
+        return Motion(state, self.covariance)

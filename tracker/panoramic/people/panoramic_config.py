@@ -1,0 +1,94 @@
+"""Settings of the panoramic tracker."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SightingConfig:
+    """When somebody is taken to be seen.
+
+    Attributes:
+        least_evidence: log odds from which a patch shows the person.
+        gate: squared Mahalanobis distance from which a sighting is of somebody else.
+        wide_m: standard deviation of a predicted place from which its neighbourhood is looked at, too [m].
+        reach_m: how far to either side that is [m].
+        partly_share: share of the body behind others from which somebody is hidden in part.
+        blind_share: likewise from which nothing is to be seen.
+    """
+
+    least_evidence: float = 0.0
+    gate: float = 16.0
+    wide_m: float = 0.15
+    reach_m: float = 0.3
+    partly_share: float = 0.25
+    blind_share: float = 0.7
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LifeConfig:
+    """When tracks begin and end.
+
+    Attributes:
+        birth_sightings, birth_s: in so many images somebody must be seen to be believed, or in two that are so
+            long [s] apart.
+        newcomers: how many places are looked at in an image for people who are not known.
+        farthest_m: farther away nobody is found [m].
+        newcomer_s: who is not believed yet and not seen for longer is forgotten [s].
+        unseen_s: who is not seen for longer, and hidden by nobody, is gone [s].
+        hidden_s: who is hidden for longer is gone [s].
+        apart_m: nobody is found nearer to somebody else than this [m].
+        double_m: two who are nearer to each other than this are one [m].
+    """
+
+    birth_sightings: int = 3
+    birth_s: float = 0.3
+    newcomers: int = 3
+    farthest_m: float = 8.0
+    newcomer_s: float = 0.35
+    unseen_s: float = 0.7
+    hidden_s: float = 5.0
+    apart_m: float = 0.4
+    double_m: float = 0.2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IdentityConfig:
+    """Who is taken for whom.
+
+    Attributes:
+        alike: unlikeness of looks up to which who comes is one who went.
+        strange: unlikeness from which somebody looks like somebody else.
+        strange_images: in how many images on end somebody must, to be somebody else.
+        reach_m, fastest_m_s: how far from where it was lost somebody may be found: at once [m], and with time.
+        forget_s: who has been gone for longer is not recognised [s].
+    """
+
+    alike: float = 2.5
+    strange: float = 3.5
+    strange_images: int = 3
+    reach_m: float = 0.8
+    fastest_m_s: float = 1.4
+    forget_s: float = 20.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PeopleConfig:
+    """All settings.
+
+    Attributes:
+        sighting, life, identity: as they say.
+        restlessness: density of the white accelerations with which people move [m2/s3].
+        fading_s: within this time, who is not seen is taken to stop [s].
+        along_share, across_m: standard deviations of the error that all images of a person have in common: of
+            the distance, as a share of it, and to the side [m].
+    """
+
+    sighting: SightingConfig = field(default_factory=SightingConfig)
+    life: LifeConfig = field(default_factory=LifeConfig)
+    identity: IdentityConfig = field(default_factory=IdentityConfig)
+    restlessness: float = 1.0
+    fading_s: float = 1.0
+    along_share: float = 0.005
+    across_m: float = 0.01

@@ -1,0 +1,46 @@
+"""One tracked person."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
+from peopleboy.tracker.panoramic.people.looks import NO_LOOKS, Looks
+from peopleboy.tracker.track import Status
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PanoramicPerson:
+    """What is believed of one person.
+
+    Attributes:
+        id: of the track; 0 before it has one.
+        motion: place and velocity in room coordinates.
+        lasting_m2: (2, 2) covariance of the place that further images do not lessen, in room coordinates.
+        born_s, seen_s: when it was seen first, and last [s].
+        sightings: in how many images.
+        confidence: 0..1, how surely somebody is there.
+        status: how well it is seen; a newcomer is tentative until it is believed.
+        looks: its colours, over time.
+        newest: its colours in the last image in which it was seen whole.
+        strange: in how many images on end it looked like somebody else.
+        occluder: id of who hides it.
+    """
+
+    id: int
+    motion: Motion
+    lasting_m2: Floats
+    born_s: float
+    seen_s: float
+    sightings: int
+    confidence: float
+    status: Status
+    looks: Looks = NO_LOOKS
+    newest: Looks = NO_LOOKS
+    strange: int = 0
+    occluder: int | None = None
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether it was seen in the newest image."""
+        return self.status is not Status.TOTALLY_OCCLUDED

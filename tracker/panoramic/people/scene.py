@@ -1,0 +1,115 @@
+"""One panorama, as the tracker of people looks at it from the nearest person to the farthest."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.tracker.panoramic.people.figure_patch import MARGIN_PX, FigureMap, Floats, Map, between
+from peopleboy.tracker.panoramic.people.looks import Looks, look_at
+from peopleboy.tracker.track import Box
+
+_OUTLINE_M: Final = ((0.42, -0.2), (0.4, 0.3), (0.28, 0.7), (0.28, 2.0))
+"""Half widths of what a person can cover, by height [m]: legs reach out, the rest does not."""
+
+_TRUNK: Final = 2
+"""From this one of them up a person is in one piece, and a gap is the end of it."""
+
+BODY_M: Final = (0.5, 1.72)
+"""Width and height of the upright rectangle that a person's box stands for [m]."""
+
+
+@dataclass(slots=True, eq=False)
+class Scene:
+    """An image, and who has been found in it so far.
+
+    Attributes:
+        image: (H, W, 3) uint8 RGB.
+        foreground: (H, W) how surely each pixel is on a person.
+        covered: (H, W) 1 where somebody who has been found is, 0 elsewhere.
+        calibration: of the camera.
+        figures: both, ready to be asked; renewed by `cover`.
+    """
+
+    image: NDArray[np.uint8]
+    foreground: Map
+    covered: Map
+    calibration: PanoramaCalibration
+    figures: FigureMap
+
+    @classmethod
+    def of(cls, image: NDArray[np.uint8], foreground: Map, calibration: PanoramaCalibration) -> Scene:
+        """Begin with nobody found."""
+        covered = np.zeros_like(foreground)
+        return cls(image, foreground, covered, calibration, FigureMap.build(foreground, covered, calibration))
+
+    def cover(self, bearing_rad: float, distance_m: float) -> None:
+        """Take the pixels of a person who has been found out of what is left for those behind."""
+        rows, halves = _outline(distance_m, self.calibration)
+        middle = (0.5 - bearing_rad / math.tau) * self.calibration.width - 0.5
+        _cover(self.covered, self.foreground, middle, rows, halves)
+        self.figures = FigureMap.build(self.foreground, self.covered, self.calibration)
+
+    def hidden_share(self, bearing_rad: float, distance_m: float) -> float:
+        """Tell which share of a body at a place, as far as it is in the image, is covered by others."""
+        left, top, width, height = self.box(bearing_rad, distance_m)
+        top, bottom = max(top + 0.5, 0.0), min(top + height + 0.5, float(self.calibration.height))
+        if bottom - top < 1.0:
+            return 0.0
+        left = left + 0.5 + 0.25 * width + MARGIN_PX
+        known = between(self.figures.known, left, left + 0.5 * width, top, bottom)
+        return 1.0 - known / (0.5 * width * (bottom - top))
+
+    def looks(self, bearing_rad: float, distance_m: float) -> Looks:
+        """Tell what who stands there looks like, as far as nobody nearer covers it."""
+        return look_at(self.image, self.foreground, self.covered, bearing_rad, distance_m, self.calibration)
+
+    def box(self, bearing_rad: float, distance_m: float) -> Box:
+        """Give the box [px] of somebody upright, which may reach beyond the image and over the seam."""
+        return person_box(bearing_rad, distance_m, self.calibration)
+
+
+def person_box(bearing_rad: float, distance_m: float, calibration: PanoramaCalibration) -> Box:
+    """Give the box [px] of somebody upright; one across the seam reaches beyond the right border."""
+    width_m, height_m = BODY_M
+    feet_and_head = np.array([[distance_m, 0.0, 0.0], [distance_m, 0.0, height_m]])
+    (_, bottom), (_, top) = calibration.project(feet_and_head).tolist()
+    width = 2.0 * math.atan2(width_m / 2.0, distance_m) / math.tau * calibration.width
+    middle = (0.5 - bearing_rad / math.tau) * calibration.width - 0.5
+    left = (middle - width / 2.0 + 0.5) % calibration.width - 0.5
+    return left, top, width, bottom - top
+
+
+def _outline(distance_m: float, calibration: PanoramaCalibration) -> tuple[Floats, Floats]:
+    """Give rows and half widths [px] of the outline, from its lower end up."""
+    halves, heights = np.array(_OUTLINE_M).T
+    away = np.full(len(heights), distance_m)
+    rows = calibration.project(np.stack([away, np.zeros_like(away), heights], axis=1))[:, 1]
+    lowest = calibration.height + 1.0
+    return np.nan_to_num(rows, nan=lowest), np.arctan2(halves, away) / math.tau * calibration.width
+
+
+@njit(cache=True, nogil=True)
+def _cover(covered: Map, foreground: Map, middle: float, rows: Floats, halves: Floats) -> None:
+    height, width = covered.shape
+    for part in range(len(rows) - 1):
+        low, high = rows[part], rows[part + 1]
+        for v in range(max(math.floor(high), 0), min(math.ceil(low), height - 1) + 1):
+            share = min(max((low - v) / max(low - high, 1e-6), 0.0), 1.0)
+            half = halves[part] + share * (halves[part + 1] - halves[part])
+            for side in (-1, 1):
+                has_begun = False
+                for step in range(math.ceil(half) + 1):
+                    u = (round(middle) + side * step) % width
+                    is_person = foreground[v, u] > 0.3
+                    if is_person:
+                        covered[v, u] = 1.0
+                        has_begun = True
+                    elif has_begun and part >= _TRUNK:
+                        break

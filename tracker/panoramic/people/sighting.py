@@ -1,0 +1,101 @@
+"""Looking for one person in a panorama: near where it is expected, or where nobody is known."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
+from peopleboy.tracker.panoramic.people.panoramic_config import SightingConfig
+from peopleboy.tracker.panoramic.people.place_model import PlaceModel
+from peopleboy.tracker.panoramic.people.scene import Scene
+from peopleboy.tracker.panoramic.robot_pose import RobotPose
+
+NEAREST_M = 0.5
+_AROUND = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)], np.float64)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Sighting:
+    """Somebody seen.
+
+    Attributes:
+        evidence: log odds that it is a person.
+        bearing_rad, distance_m: from the robot.
+        place_m: (2,) in room coordinates.
+        error_m2: (2, 2) covariance of its error.
+        axes: (2, 2) unit vectors away from the robot and to the left, as columns, in room coordinates.
+    """
+
+    evidence: float
+    bearing_rad: float
+    distance_m: float
+    place_m: Floats
+    error_m2: Floats
+    axes: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Onlooker:
+    """Who looks, and from where.
+
+    Attributes:
+        model: reads patches.
+        pose: of the robot.
+        config: settings.
+    """
+
+    model: PlaceModel
+    pose: RobotPose
+    config: SightingConfig
+
+    def expected(self, motion: Motion, scene: Scene) -> Sighting | None:
+        """Look where somebody is expected; None if nobody is there."""
+        places = motion.place_m[None]
+        spread = math.sqrt(float(np.trace(motion.place_m2)) / 2.0)
+        if spread > self.config.wide_m:
+            places = places + min(spread, self.config.reach_m) * _AROUND
+        seen = self.at(scene, np.array([self.polar(place) for place in places]))
+        if seen is None:
+            return None
+        away = seen.place_m - motion.place_m
+        is_near = away @ np.linalg.solve(motion.place_m2 + seen.error_m2, away) < self.config.gate
+        return seen if is_near else None
+
+    def at(self, scene: Scene, polar: Floats) -> Sighting | None:
+        """Look at places (N, 2), bearing and distance, and closer at the best; None if nobody is there."""
+        first = self._best(scene, polar)
+        if first is None:
+            return None
+        seen = self._best(scene, np.array([[first.bearing_rad, first.distance_m]]))
+        return None if seen is None or seen.evidence < self.config.least_evidence else seen
+
+    def polar(self, place_m: Floats) -> tuple[float, float]:
+        """Give bearing [rad] and distance [m] of a place (2,) of the room."""
+        x, y = self.pose.locate(place_m).tolist()
+        return math.atan2(y, x), max(math.hypot(x, y), NEAREST_M)
+
+    def _best(self, scene: Scene, polar: Floats) -> Sighting | None:
+        told = self.model.look(scene.figures.patches(polar[:, 0], polar[:, 1]), polar[:, 1])
+        best = int(np.argmax(told.evidence))
+        along, across = told.offset_m[best].tolist()
+        bearing, distance = polar[best].tolist()
+        if distance + along < NEAREST_M:
+            return None
+        bearing, distance = bearing + across / distance, distance + along
+        axes = _axes(self.pose.heading + bearing)
+        return Sighting(
+            evidence=float(told.evidence[best]),
+            bearing_rad=bearing,
+            distance_m=distance,
+            place_m=self.pose.place(distance, bearing),
+            error_m2=axes @ np.diag(told.deviation_m[best].astype(np.float64) ** 2) @ axes.T,
+            axes=axes,
+        )
+
+
+def _axes(angle: float) -> Floats:
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
