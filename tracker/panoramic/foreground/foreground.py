@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import numpy as np
@@ -14,10 +15,12 @@ from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
 from peopleboy.tracker.panoramic.foreground.memory import compare, first_memory, learn, move_along
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
 from peopleboy.tracker.panoramic.paper.panorama_view import view_of
+from peopleboy.tracker.panoramic.robot_pose import RobotPose
 
 Linear = NDArray[np.float32]
 
 _SHORTEST_S = 0.01
+_LEAST_WAY_M, _LEAST_TURN_RAD = 1e-3, 5e-4  # less is the noise of wheels that stand
 
 
 class Foreground:
@@ -41,6 +44,7 @@ class Foreground:
         self._calibration: Calibration | None = None
         self._rows: FloorRows | None = None
         self._memory: Linear | None = None
+        self._moved = RobotPose()  # since the memory was brought along
         self._time_s = 0.0
 
     def update(
@@ -61,15 +65,24 @@ class Foreground:
             BadInput: the network was taught with another mirror, or on images of another size.
         """
         floor = self._floor(calibration, image)
-        if self._memory is None or odometry is None:
-            self._memory = first_memory(image)
-        else:
-            self._memory = move_along(self._memory, odometry, floor)
-        self.squares = compare(image, self._memory, BLOCK)
+        memory = self._brought_along(image, odometry, floor)
+        self.squares = compare(image, memory, BLOCK)
         told = self.network.probability(self.squares)
-        learn(self._memory, image, told, max(time_s - self._time_s, _SHORTEST_S))
-        self._time_s = time_s
+        learn(memory, image, told, max(time_s - self._time_s, _SHORTEST_S))
+        self._memory, self._time_s = memory, time_s
         return told
+
+    def _brought_along(self, image: NDArray[np.uint8], odometry: Odometry | None, floor: FloorRows) -> Linear:
+        """Bring the background to where the robot is now, as soon as it makes a difference."""
+        if self._memory is None or odometry is None:
+            self._moved = RobotPose()
+            return first_memory(image)
+        self._moved = moved = self._moved.moved(odometry)
+        if math.hypot(moved.x, moved.y) < _LEAST_WAY_M and abs(moved.heading) < _LEAST_TURN_RAD:
+            return self._memory
+        self._moved = RobotPose()
+        way = Odometry(advance_m=moved.x, aside_m=moved.y, turn_rad=moved.heading)
+        return move_along(self._memory, way, floor)
 
     def _floor(self, calibration: Calibration, image: NDArray[np.uint8]) -> FloorRows:
         """Tell how the floor lies; a camera that the network does not know is refused."""

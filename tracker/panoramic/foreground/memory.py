@@ -39,8 +39,6 @@ def move_along(memory: Linear, odometry: Odometry, floor: FloorRows) -> Linear:
 
     What was not in the image before has age 0. Turning shifts columns, whatever they show.
     """
-    if odometry == Odometry():
-        return memory
     return _moved(
         memory, odometry.advance_m, odometry.aside_m, odometry.turn_rad, floor.distance_m, floor.row_at
     )
@@ -50,23 +48,22 @@ def move_along(memory: Linear, odometry: Odometry, floor: FloorRows) -> Linear:
 def _moved(
     memory: Linear, advance: float, aside: float, turn: float, distance: Linear, row_at: Linear
 ) -> Linear:
-    height, width, channels = memory.shape
+    height, width, _ = memory.shape
     moved = np.empty_like(memory)
     way = math.hypot(advance, aside)
     per_rad = width / (2.0 * math.pi)
     shift = -turn * per_rad
-    for u in range(width):
-        angle = math.pi - (u + 0.5) / per_rad + turn
-        along = advance * math.cos(angle) + aside * math.sin(angle)
-        across = aside * math.cos(angle) - advance * math.sin(angle)
-        for v in range(height):
-            off = np.float32(shift)
-            row = np.float32(v)
+    angle = math.pi - (np.arange(width) + 0.5) / per_rad + turn
+    along = advance * np.cos(angle) + aside * np.sin(angle)
+    across = aside * np.cos(angle) - advance * np.sin(angle)
+    for v in range(height):
+        for u in range(width):
+            off, row = np.float32(shift), np.float32(v)
             if way > 0.0:
-                out = distance[v] + along
-                slope = across / max(out, 0.1)
-                off = np.float32(shift - per_rad * (slope - slope**3 / 3.0))
-                at = min(math.sqrt(out * out + across * across) / STEP_M, len(row_at) - 1.001)
+                out = distance[v] + along[u]
+                slope = across[u] / max(out, 0.1)
+                off = np.float32(shift - per_rad * (slope - slope * slope * slope / 3.0))  # of the arctangent
+                at = min(math.sqrt(out * out + across[u] * across[u]) / STEP_M, len(row_at) - 1.001)
                 k = int(at)
                 row = row_at[k] + np.float32(at - k) * (row_at[k + 1] - row_at[k])
             is_seen = -0.5 <= row <= height - 0.5
@@ -74,15 +71,15 @@ def _moved(
             left, top = math.floor(off), int(row)
             right_share, low_share = off - np.float32(left), row - np.float32(top)
             low = min(top + 1, height - 1)
-            a = (u + left) % width
-            b = (a + 1) % width
-            for c in range(channels):
+            a = (u + int(left)) % width
+            b = a + 1 if a + 1 < width else 0
+            for c in range(CHANNELS):
                 upper = memory[top, a, c] + right_share * (memory[top, b, c] - memory[top, a, c])
                 lower = memory[low, a, c] + right_share * (memory[low, b, c] - memory[low, a, c])
                 moved[v, u, c] = upper + low_share * (lower - upper)
-            moved[v, u, 5] += way / distance[v] * per_rad
+            moved[v, u, DOUBT] += way / distance[v] * per_rad
             if not is_seen:
-                moved[v, u, 4] = 0.0
+                moved[v, u, AGE] = 0.0
     return moved
 
 
@@ -113,8 +110,8 @@ def compare(image: NDArray[np.uint8], memory: Linear, block: int) -> Linear:
                 across = memory[v, right, c] - memory[v, left, c]
                 along = memory[below, u, c] - memory[above, u, c]
                 steep += across * across + along * along
-            age, doubt = memory[v, u, 4], memory[v, u, 5]
-            spread = np.float32(3.0) * memory[v, u, 3] + np.float32(0.25) * steep * (
+            age, doubt = memory[v, u, AGE], memory[v, u, DOUBT]
+            spread = np.float32(3.0) * memory[v, u, VARIANCE] + np.float32(0.25) * steep * (
                 np.float32(0.1) + doubt * doubt
             )
             pixel[3] = np.float32(0.5) * np.log(np.float32(1.0) + square / spread)
@@ -135,7 +132,7 @@ def learn(memory: Linear, image: NDArray[np.uint8], foreground: Linear, passed_s
     for v in range(height):
         for u in range(width):
             clear = (1.0 - foreground[v, u]) ** 2
-            age = memory[v, u, 4]
+            age = memory[v, u, AGE]
             rate = max(passed_s / (age + passed_s), 1.0 - math.exp(-passed_s / _TAU_S))
             if age > 0.0:
                 rate = clear * rate + (1.0 - clear) * absorbed
@@ -145,7 +142,7 @@ def learn(memory: Linear, image: NDArray[np.uint8], foreground: Linear, passed_s
                 square += off * off
                 memory[v, u, c] += np.float32(rate * off)
             slowly = clear * min(rate, max(passed_s / (age + 1.0), passed_s / _VARIANCE_TAU_S))
-            variance = memory[v, u, 3] + slowly * (square / 3.0 - memory[v, u, 3])
-            memory[v, u, 3] = max(variance, np.float32(LEAST_VARIANCE))
-            memory[v, u, 4] = min(age + clear * passed_s, np.float32(60.0))
-            memory[v, u, 5] *= np.float32(1.0 - rate)
+            variance = memory[v, u, VARIANCE] + slowly * (square / 3.0 - memory[v, u, VARIANCE])
+            memory[v, u, VARIANCE] = max(variance, np.float32(LEAST_VARIANCE))
+            memory[v, u, AGE] = min(age + clear * passed_s, np.float32(60.0))
+            memory[v, u, DOUBT] *= np.float32(1.0 - rate)

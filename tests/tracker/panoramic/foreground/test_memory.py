@@ -35,11 +35,6 @@ def test_rows_of_the_floor_are_those_that_the_calibration_projects_it_to():
     assert np.interp(rows, np.arange(120), FLOOR.distance_m) == pytest.approx(distances, abs=0.02)
 
 
-def test_a_robot_that_stands_keeps_its_memory_to_the_bit():
-    memory = first_memory(floor_image(0, 0, 0))
-    assert move_along(memory, Odometry(), FLOOR) is memory
-
-
 @pytest.mark.parametrize("columns", [1, 7, -30])
 def test_turning_by_whole_columns_shifts_the_memory_by_them(columns):
     memory = first_memory(floor_image(0, 0, 0))
