@@ -8,6 +8,7 @@ from functools import singledispatch
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 
@@ -26,3 +27,8 @@ def lines_of(explanation: object, points: int = 48) -> Mapping[int, tuple[Line, 
 @lines_of.register
 def _(explanation: ContourExplanation, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
     return {number: outline(ellipse, points) for number, ellipse in explanation.ellipses.items()}
+
+
+@lines_of.register
+def _(explanation: BothExplanations, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
+    return lines_of(explanation.thermal, points)

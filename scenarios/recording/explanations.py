@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import singledispatch
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.palette import Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.recording.marks import Lines, Points, colours_of, lines_of, particle_points
+from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS
 from peopleboy.tracker.thermal.contour.outline import section_lines
 from peopleboy.tracker.thermal.contour.section_evidence import Evidence, evidence_of
@@ -39,6 +41,12 @@ def _(explanation: ContourExplanation, tick: Tick) -> Lines:
     return section_marks(tick.tracks, evidence, explanation)
 
 
+@explained_lines.register
+def _(explanation: BothExplanations, tick: Tick) -> Lines:
+    warm = tuple(track for track in tick.tracks if track.id in explanation.thermal.ellipses)
+    return explained_lines(explanation.thermal, replace(tick, tracks=warm))
+
+
 @singledispatch
 def explained_points(explanation: object) -> Mapping[str, Points]:  # noqa: ARG001
     """Give the points on the thermal image that explain a tick's tracks, by the layer that they lie in."""
@@ -51,6 +59,11 @@ def _(explanation: ContourExplanation) -> Mapping[str, Points]:
     people = {number: cloud for number, cloud in clouds.items() if number != DETECTOR_KEY}
     detector = {number: cloud for number, cloud in clouds.items() if number == DETECTOR_KEY}
     return {"particles/people": particle_points(people), "particles/detector": particle_points(detector)}
+
+
+@explained_points.register
+def _(explanation: BothExplanations) -> Mapping[str, Points]:
+    return explained_points(explanation.thermal)
 
 
 def section_marks(

@@ -16,9 +16,11 @@ from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import invert_pose, transform
+from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
 from peopleboy.tracker.panoramic.paper.panoramic_explanation import PanoramicExplanation
 from peopleboy.tracker.panoramic.paper.paper_tracker import PANORAMA
+from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.track import FloorPlace, Track
 
 Line = NDArray[np.float64]
@@ -77,6 +79,29 @@ def _(
         colours_of(colour for _, colour in coloured),
     )
     return {PANORAMA: sketch}
+
+
+@explained_sketches.register
+def _(
+    explanation: PeopleExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    camera = cameras[PANORAMA].camera
+    coloured = [(line, NOBODYS) for line in outlines_of(explanation.foreground > 0.5)]
+    for track in tracks:
+        if track.place is not None:
+            own = track_colour(track.id)
+            coloured += [(line, own) for line in floor_ellipse(track.place, camera)]
+    sketch = Sketch(
+        explanation.background, [line for line, _ in coloured], colours_of(colour for _, colour in coloured)
+    )
+    return {PANORAMA: sketch}
+
+
+@explained_sketches.register
+def _(
+    explanation: BothExplanations, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    return explained_sketches(explanation.panoramic, tracks, cameras)
 
 
 def outlines_of(mask: NDArray[np.bool_]) -> list[Line]:

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from functools import singledispatch
 from typing import Any
 
+from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.variants import VARIANTS
@@ -28,6 +29,11 @@ def explained(explanation: object, track: int) -> Mapping[str, Any]:  # noqa: AR
 @explained.register
 def _(explanation: ContourExplanation, track: int) -> Mapping[str, Any]:
     return {SPREAD: explanation.spread_px2[track], **asdict(explanation.ellipses[track])}
+
+
+@explained.register
+def _(explanation: BothExplanations, track: int) -> Mapping[str, Any]:
+    return explained(explanation.thermal, track) if track in explanation.thermal.ellipses else _NOTHING
 
 
 def read_explanation(tracker: str, rows: Iterable[Mapping[str, Any]]) -> ContourExplanation | None:

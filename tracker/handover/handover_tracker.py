@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 from peopleboy.tracker.frame import THERMAL, Calibration, Frame
+from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.handover.identities import Identities, Key
 from peopleboy.tracker.handover.links import Votes, apartness, pairs
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA, PanoramicTracker
@@ -21,14 +22,6 @@ PAUSE_S: Final = 0.5  # between two introductions of one person
 BORDER: Final = 0.06  # share of the image's width at either side where nobody is introduced
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class BothExplanations:
-    """What the two trackers believe beyond their tracks."""
-
-    thermal: object
-    panoramic: object
-
-
 class HandoverTracker:
     """Two trackers that know each other's people: one for what is warm ahead, one for all round the robot.
 
@@ -39,8 +32,8 @@ class HandoverTracker:
         thermal: tracks people in the thermal image.
         panoramic: tracks them in the panorama.
 
-    Source: thesis, section 8.2, which proposes it: people are learned in the thermal image, and tracked in the
-    omnidirectional one.
+    Source: thesis, section 8.2, which proposes it: people are learned in the thermal image, and tracked by
+    that in the omnidirectional one.
     """
 
     def __init__(self, thermal: PeopleTracker, panoramic: PanoramicTracker) -> None:
@@ -48,6 +41,7 @@ class HandoverTracker:
         self._votes = Votes(NEEDED_VOTES, MOST_VOTES)
         self._identities = Identities()
         self._introduced_s: dict[int, float] = {}
+        self._warm: tuple[int, ...] = ()
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -56,8 +50,11 @@ class HandoverTracker:
 
     @property
     def explanation(self) -> BothExplanations:
-        """Those of both trackers; the thermal one's goes by its own numbers."""
-        return BothExplanations(self._thermal.explanation, self._panoramic.explanation)
+        """Those of both trackers."""
+        numbers = self._identities.number
+        number = {one: shared for (camera, one), shared in numbers.items() if camera == THERMAL}
+        shown = {one: number[one] for one in self._warm if one in number}
+        return BothExplanations.of(self._thermal.explanation, self._panoramic.explanation, shown)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Take in the next frame and tell who is where.
@@ -67,6 +64,7 @@ class HandoverTracker:
         """
         around = self._panoramic.update(frame)
         warm = [track for track in self._thermal.update(frame) if track.status is not Status.TENTATIVE]
+        self._warm = tuple(track.id for track in warm)
         agreed = pairs(
             [track for track in warm if _is_seen(track)], [track for track in around if _is_seen(track)]
         )

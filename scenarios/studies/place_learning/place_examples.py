@@ -22,8 +22,8 @@ from peopleboy.tracker.panoramic.people.search import promising_places
 
 Floats = NDArray[np.float64]
 
-EVERY: Final = 4
-"""Which images of a film are learned from; all are played."""
+IMAGES: Final = 150
+"""From how many images of a film is learned at most, and from half of them; all are played."""
 
 NEAREST_M: Final = 0.8
 FARTHEST_M: Final = 8.0
@@ -109,11 +109,13 @@ def examples_of(film: MaskedFilm, calibration: PanoramaCalibration, seed: int) -
     """Play a film to the tracker's eyes, and keep what is seen at and beside people."""
     rng, eyes = np.random.default_rng((seed, 2003)), Foreground()
     parts: list[PlaceExamples] = []
+    every = max(2, math.ceil(len(film.images) / IMAGES))
     for k, image in enumerate(film.images):
         foreground = eyes.update(image, float(film.time_s[k]), film.odometry(k), calibration)
-        if k % EVERY == seed % EVERY and film.time_s[k] >= _WARM_UP_S:
+        if k % every == seed % every and film.time_s[k] >= _WARM_UP_S:
             people = _people(film, k)
-            parts.extend(_seen(Scene.of(image, foreground, calibration), people, rng))
+            scene = Scene.of(image, foreground, eyes.novelty, calibration)
+            parts.extend(_seen(scene, people, rng))
     return PlaceExamples.joined(parts)
 
 

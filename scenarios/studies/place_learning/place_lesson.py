@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Final
@@ -10,19 +11,22 @@ from typing import Final
 import numpy as np
 from rich.console import Console
 
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.scenarios.studies.foreground_learning.film_task import FilmTask
 from peopleboy.scenarios.studies.foreground_learning.foreground_lesson import FIRST_SEED
 from peopleboy.scenarios.studies.place_learning import place_examples
 from peopleboy.scenarios.studies.place_learning.place_examples import PlaceExamples
-from peopleboy.scenarios.studies.place_learning.place_task import PlaceTask, calibration_of_film
+from peopleboy.scenarios.studies.place_learning.place_task import PlaceTask, panorama_of
 from peopleboy.scenarios.studies.place_learning.teach_places import teach_places
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED as EYES
 from peopleboy.tracker.panoramic.paper.panorama_view import view_of
 from peopleboy.tracker.panoramic.people.place_file import SHIPPED, save_places
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
+
+LIBRARY: Final = {"room_long": 8, "panoramic_crossing": 6, "panoramic_moving": 6}
+"""How many runs of scenarios of the library are learned from, too."""
 
 TESTS: Final = 20
 """How many scenes, the first ones, are for judging."""
@@ -53,23 +57,25 @@ def give_place_lesson(out: Path, films: Path, workers: Workers, *, scenes: int, 
         examples.mkdir(parents=True, exist_ok=True)
     with writing_to(films):
         films.mkdir(parents=True, exist_ok=True)
-    tests, tasks = (
-        [PlaceTask(str(films), str(examples), seed) for seed in seeds]
-        for seeds in (range(TESTS), range(FIRST_SEED, FIRST_SEED + scenes))
-    )
+    task = partial(PlaceTask, films=str(films), examples=str(examples))
+    tests = [task(seed=seed) for seed in range(TESTS)]
+    tasks = [task(seed=seed) for seed in range(FIRST_SEED, FIRST_SEED + scenes)]
+    tasks += [
+        task(scenario=name, seed=FIRST_SEED + k) for name, count in LIBRARY.items() for k in range(count)
+    ]
     work_through([task for task in (*tests, *tasks) if not task.path.is_file()], workers, "examples")
     learned = _load(tasks)
     model = teach_places(learned)
     words = _judgement(model, _load(tests))
     Console(stderr=True).print(f"on other scenes: {words}", highlight=False)
-    calibration = calibration_of_film(FilmTask(str(films), FIRST_SEED))
+    calibration = panorama_of(load_scenario(next(iter(LIBRARY))), FIRST_SEED)
     path = SHIPPED if ship else out / SHIPPED.name
     with writing_to(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)
     people = int(learned.is_person.sum())
     about = {
         "trained on": f"{people} looks at people and {len(learned.distance_m) - people} at none, "
-        f"in {scenes} scenes drawn at random, seeds from {FIRST_SEED}",
+        f"in {scenes} scenes drawn at random, and {', '.join(LIBRARY)}, seeds from {FIRST_SEED}",
         "on other scenes": words,
     }
     save_places(path, model, view_of(calibration, calibration.width, calibration.height), about)

@@ -12,7 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Calibration, Odometry
 from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows, floor_rows
 from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
-from peopleboy.tracker.panoramic.foreground.memory import compare, first_memory, learn, move_along
+from peopleboy.tracker.panoramic.foreground.memory import compare, first_memory, learn, move_along, novelty
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
 from peopleboy.tracker.panoramic.paper.panorama_view import view_of
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
@@ -71,6 +71,19 @@ class Foreground:
         learn(memory, image, told, max(time_s - self._time_s, _SHORTEST_S))
         self._memory, self._time_s = memory, time_s
         return told
+
+    @property
+    def background(self) -> NDArray[np.uint8]:
+        """What it takes for the scene without people, (H, W, 3) RGB; all black before the first image."""
+        shape = (self._view.height_px, self._view.width_px, 3)
+        if self._memory is None:
+            return np.zeros(shape, np.uint8)
+        return np.clip(np.rint(self._memory[..., :3]), 0, 255).astype(np.uint8)
+
+    @property
+    def novelty(self) -> Linear:
+        """How unlike the background each pixel (H, W) of the last image is, 0..1; less if that is young."""
+        return novelty(self.squares)
 
     def _brought_along(self, image: NDArray[np.uint8], odometry: Odometry | None, floor: FloorRows) -> Linear:
         """Bring the background to where the robot is now, as soon as it makes a difference."""

@@ -120,6 +120,26 @@ def compare(image: NDArray[np.uint8], memory: Linear, block: int) -> Linear:
     return told.reshape(block * block * 6, height // block, width // block)
 
 
+@njit(cache=True)
+def novelty(squares: Linear) -> Linear:
+    """Tell by the features that `compare` gives how unlike its background each pixel (H, W) is, 0..1.
+
+    It is 0 within two standard deviations, and 1 from eight on, or less where the background is young or may
+    lie wrong.
+    """
+    block = round(math.sqrt(squares.shape[0] // 6))
+    _, rows, columns = squares.shape
+    told = np.empty((rows * block, columns * block), np.float32)
+    low, high = np.float32(0.8), np.float32(2.1)
+    for v in range(rows * block):
+        for u in range(columns * block):
+            first = ((v % block) * block + u % block) * 6
+            unlike, age, doubt = squares[first + 3 : first + 6, v // block, u // block]
+            share = min(max((unlike - low) / (high - low), np.float32(0.0)), np.float32(1.0))
+            told[v, u] = share * age * (np.float32(1.0) - doubt)
+    return told
+
+
 @njit(cache=True, fastmath=True)
 def learn(memory: Linear, image: NDArray[np.uint8], foreground: Linear, passed_s: float) -> None:
     """Let a memory take in an image, the less the likelier a pixel is a person (H, W).

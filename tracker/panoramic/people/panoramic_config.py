@@ -31,8 +31,8 @@ class LifeConfig:
     """When tracks begin and end.
 
     Attributes:
-        birth_sightings, birth_s: in so many images somebody must be seen to be believed, or in two that are so
-            long [s] apart.
+        birth_sightings, birth_s: in so many images somebody must be seen to be believed, or in two that are
+            so long [s] apart.
         newcomers: how many places are looked at in an image for people who are not known.
         farthest_m: farther away nobody is found [m].
         newcomer_s: who is not believed yet and not seen for longer is forgotten [s].
@@ -61,7 +61,7 @@ class IdentityConfig:
         alike: unlikeness of looks up to which who comes is one who went.
         strange: unlikeness from which somebody looks like somebody else.
         strange_images: in how many images on end somebody must, to be somebody else.
-        reach_m, fastest_m_s: how far from where it was lost somebody may be found: at once [m], and with time.
+        reach_m, fastest_m_s: how far from where it was lost somebody may be found, at once [m] and with time.
         forget_s: who has been gone for longer is not recognised [s].
     """
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,11 +13,11 @@ from peopleboy.tracker.frame import Frame, Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView, check_view
-from peopleboy.tracker.panoramic.people.figure_patch import Map
 from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
 from peopleboy.tracker.panoramic.people.identity import Register
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_person import PanoramicPerson
+from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 from peopleboy.tracker.panoramic.people.scene import Scene, person_box
 from peopleboy.tracker.panoramic.people.search import promising_places
@@ -27,19 +27,6 @@ from peopleboy.tracker.track import FloorPlace, Status, Track
 
 PANORAMA = "panorama"
 LONGEST_STEP_S = 2.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PeopleExplanation:
-    """What the tracker sees in an image.
-
-    Attributes:
-        foreground: (H, W) how surely each pixel is on a person.
-        covered: (H, W) 1 where it is on a person who is tracked.
-    """
-
-    foreground: Map
-    covered: Map
 
 
 class PanoramicTracker:
@@ -73,7 +60,9 @@ class PanoramicTracker:
     @property
     def explanation(self) -> PeopleExplanation | None:
         """What it took for people in the newest image; None before the first."""
-        return None if self._scene is None else PeopleExplanation(self._scene.foreground, self._scene.covered)
+        if self._scene is None:
+            return None
+        return PeopleExplanation(self._foreground.background, self._scene.foreground, self._scene.covered)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Take in the next frame and tell who is where.
@@ -97,7 +86,7 @@ class PanoramicTracker:
         foreground = self._foreground.update(image, frame.time_s, moved, calibration)
         dt_s = min(frame.time_s - self._time_s, LONGEST_STEP_S)
         self._seen_from, self._time_s = self._pose, frame.time_s
-        self._scene = scene = Scene.of(image, foreground, calibration)
+        self._scene = scene = Scene.of(image, foreground, self._foreground.novelty, calibration)
         looker = Onlooker(self._model, self._pose, self.config.sighting)
         known = self._followed(scene, looker, dt_s)
         known = self._with_newcomers(known, scene, looker)

@@ -11,7 +11,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
-from peopleboy.tracker.panoramic.people.figure_patch import MARGIN_PX, FigureMap, Floats, Map, between
+from peopleboy.tracker.panoramic.people.figure_patch import (
+    KNOWN,
+    MARGIN_PX,
+    FigureMap,
+    Floats,
+    Map,
+    between,
+)
 from peopleboy.tracker.panoramic.people.looks import Looks, look_at
 from peopleboy.tracker.track import Box
 
@@ -32,6 +39,7 @@ class Scene:
     Attributes:
         image: (H, W, 3) uint8 RGB.
         foreground: (H, W) how surely each pixel is on a person.
+        new: (H, W) how unlike the background it is, 0..1.
         covered: (H, W) 1 where somebody who has been found is, 0 elsewhere.
         calibration: of the camera.
         figures: both, ready to be asked; renewed by `cover`.
@@ -39,22 +47,26 @@ class Scene:
 
     image: NDArray[np.uint8]
     foreground: Map
+    new: Map
     covered: Map
     calibration: PanoramaCalibration
     figures: FigureMap
 
     @classmethod
-    def of(cls, image: NDArray[np.uint8], foreground: Map, calibration: PanoramaCalibration) -> Scene:
+    def of(
+        cls, image: NDArray[np.uint8], foreground: Map, new: Map, calibration: PanoramaCalibration
+    ) -> Scene:
         """Begin with nobody found."""
         covered = np.zeros_like(foreground)
-        return cls(image, foreground, covered, calibration, FigureMap.build(foreground, covered, calibration))
+        figures = FigureMap.build(foreground, new, covered, calibration)
+        return cls(image, foreground, new, covered, calibration, figures)
 
     def cover(self, bearing_rad: float, distance_m: float) -> None:
         """Take the pixels of a person who has been found out of what is left for those behind."""
         rows, halves = _outline(distance_m, self.calibration)
         middle = (0.5 - bearing_rad / math.tau) * self.calibration.width - 0.5
         _cover(self.covered, self.foreground, middle, rows, halves)
-        self.figures = FigureMap.build(self.foreground, self.covered, self.calibration)
+        self.figures = FigureMap.build(self.foreground, self.new, self.covered, self.calibration)
 
     def hidden_share(self, bearing_rad: float, distance_m: float) -> float:
         """Tell which share of a body at a place, as far as it is in the image, is covered by others."""
@@ -63,7 +75,7 @@ class Scene:
         if bottom - top < 1.0:
             return 0.0
         left = left + 0.5 + 0.25 * width + MARGIN_PX
-        known = between(self.figures.known, left, left + 0.5 * width, top, bottom)
+        known = float(between(self.figures.sums, left, left + 0.5 * width, top, bottom)[KNOWN])
         return 1.0 - known / (0.5 * width * (bottom - top))
 
     def looks(self, bearing_rad: float, distance_m: float) -> Looks:

@@ -10,7 +10,15 @@ import numpy as np
 from numba import njit
 
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
-from peopleboy.tracker.panoramic.people.figure_patch import MARGIN_PX, FigureMap, Floats, between
+from peopleboy.tracker.panoramic.people.figure_patch import (
+    KNOWN,
+    MARGIN_PX,
+    PEOPLE,
+    FigureMap,
+    Floats,
+    Map,
+    between,
+)
 
 NEAREST_M: Final = 1.1
 FARTHEST_M: Final = 7.5
@@ -28,9 +36,9 @@ _LEAST_KNOWN: Final = 0.3
 
 
 def promising_places(figures: FigureMap, most: int) -> Floats:
-    """Find up to so many bearings [rad] and distances [m], (N, 2), at which a body stands on an empty floor."""
+    """Find up to so many bearings [rad] and distances [m], (N, 2), at which a body stands alone."""
     bearings, distances, parts = _grid(figures.calibration)
-    worth = _worth(figures.people, figures.known, parts)
+    worth = _worth(figures.sums, parts)
     found: list[int] = []
     while len(found) < most:
         best = int(np.argmax(worth))
@@ -63,18 +71,18 @@ def _row(distance_m: Floats, height_m: float, calibration: PanoramaCalibration) 
 
 
 @njit(cache=True, nogil=True)
-def _worth(people: Floats, known: Floats, parts: Floats) -> Floats:
+def _worth(sums: Map, parts: Floats) -> Floats:
     """Rate places: a body counts for, what lies before its feet and beside it against."""
     worth = np.empty(len(parts))
+    shares = np.empty(4)
     for n in range(len(parts)):
-        shares = np.zeros(4)
+        shares[:] = 0.0
         for part in range(4):
             left, right, top, bottom = parts[n, part]
             if bottom - top < 0.5:  # outside the image
                 continue
-            told = between(known, left, right, top, bottom) / ((right - left) * (bottom - top))
-            if part > 0 or told > _LEAST_KNOWN:
-                seen = between(people, left, right, top, bottom) / ((right - left) * (bottom - top))
-                shares[part] = seen / max(told, 0.1)
+            seen = between(sums, left, right, top, bottom) / ((right - left) * (bottom - top))
+            if part > 0 or seen[KNOWN] > _LEAST_KNOWN:
+                shares[part] = seen[PEOPLE] / max(seen[KNOWN], 0.1)
         worth[n] = shares[0] - shares[1] - 0.25 * (shares[2] + shares[3])
     return worth

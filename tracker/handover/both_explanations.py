@@ -1,0 +1,39 @@
+"""What two trackers believe beyond the tracks that they share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BothExplanations:
+    """What the two trackers believe, by the numbers that they share.
+
+    Attributes:
+        thermal: contours and samples in the thermal image.
+        panoramic: what is taken for people in the panorama; None before the first.
+    """
+
+    thermal: ContourExplanation
+    panoramic: PeopleExplanation | None
+
+    @classmethod
+    def of(
+        cls, thermal: ContourExplanation, panoramic: PeopleExplanation | None, number: Mapping[int, int]
+    ) -> BothExplanations:
+        """Join them; `number` gives the shared numbers of the thermal tracks. Who has none is left out."""
+        shared = replace(
+            thermal,
+            ellipses={number[one]: found for one, found in thermal.ellipses.items() if one in number},
+            spread_px2={number[one]: found for one, found in thermal.spread_px2.items() if one in number},
+            particles={
+                number.get(one, DETECTOR_KEY): found
+                for one, found in thermal.particles.items()
+                if one in number or one == DETECTOR_KEY
+            },
+        )
+        return cls(shared, panoramic)
