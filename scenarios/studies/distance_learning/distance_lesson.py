@@ -20,7 +20,11 @@ from peopleboy.scenarios.running.frame_cache import film_key
 from peopleboy.scenarios.studies.distance_learning import distance_examples
 from peopleboy.scenarios.studies.distance_learning.distance_examples import Examples, see_floor
 from peopleboy.scenarios.studies.distance_learning.distance_task import DistanceTask
-from peopleboy.scenarios.studies.distance_learning.distance_trials import Trial, general_trials
+from peopleboy.scenarios.studies.distance_learning.distance_trials import (
+    Trial,
+    general_networks,
+    general_trials,
+)
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
 from peopleboy.scenarios.studies.distance_learning.walks import walks
 from peopleboy.tracker.panoramic.paper.appearance_file import FILE_NAME, AppearanceModel, ship
@@ -97,7 +101,7 @@ def _not_left_empty(folder: Path) -> Iterator[None]:
 
 def _summary(model: AppearanceModel, runs: Sequence[Examples], lessons: Lessons) -> str:
     trial = Trial(split="blocks", repeats=1, lessons=lessons)
-    unseen = ImageErrors.joined(general_trials(run, trial) for run in runs).all
+    unseen = ImageErrors.joined(general_trials(run, general_networks(run, trial)) for run in runs).all
     return (
         f"distance off by {model.about['error on those']} on what was learned, by {unseen.mean:.3f} ± "
         f"{unseen.deviation:.3f} m where 30 % of each run were learned and the rest tested, by blocks"

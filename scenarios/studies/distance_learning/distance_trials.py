@@ -59,16 +59,26 @@ class Trial:
         return *SPLITS[self.split](count, rng), rng
 
 
-def general_trials(run: Examples, trial: Trial) -> ImageErrors:
-    """Teach one network on 30 % of a film's images, and test it on the rest.
+def general_networks(run: Examples, trial: Trial) -> list[tuple[Rows, Floats]]:
+    """Teach one network for everybody in each split.
+
+    Returns:
+        Of each split, the images (N,) that were not learned from, and the distances [m] that the network
+        tells in all images of the film.
+    """
+    found = []
+    for repeat in range(trial.repeats):
+        training, rest, rng = trial.parts(len(run.cues), repeat)
+        found.append((rest, _told(run, training, trial.lessons, rng)))
+    return found
+
+
+def general_trials(run: Examples, taught: Sequence[tuple[Rows, Floats]]) -> ImageErrors:
+    """Test the networks of `general_networks` on the images that they did not learn from.
 
     Source: OMNIVIS 2003, section 6.1.
     """
-    tested: Tested = []
-    for repeat in range(trial.repeats):
-        training, rest, rng = trial.parts(len(run.cues), repeat)
-        told = _told(run, training, trial.lessons, rng)
-        tested.append((rest, np.abs(told[rest] - run.distance_m[rest])))
+    tested = [(rest, np.abs(told[rest] - run.distance_m[rest])) for rest, told in taught]
     return ImageErrors.of(tested, len(run.cues))
 
 
@@ -107,22 +117,23 @@ The paper says that "the estimated velocity" predicts: `KALMAN` takes the printe
 """
 
 
-def position_trials(run: Examples, trial: Trial, *, is_noisy: bool = False) -> dict[str, ImageErrors]:
+def position_trials(
+    run: Examples, taught: Sequence[tuple[Rows, Floats]], *, is_noisy: bool = False
+) -> dict[str, ImageErrors]:
     """Tell positions with and without the filter, which sees all images in their order; 70 % of them count.
 
     Own Q and R are those of the whole film, so that they are as good as they can be.
 
     Args:
         run: the film's examples.
-        trial: how they are split.
+        taught: networks, of `general_networks`.
         is_noisy: whether measurements are made as noisy as the paper's (`as_noisy_as_printed`).
 
     Source: OMNIVIS 2003, section 6.2.
     """
     tested: dict[str, Tested] = {name: [] for name in FILTERS}
-    for repeat in range(trial.repeats):
-        training, rest, rng = trial.parts(len(run.cues), repeat)
-        measured = run.seen_at(_told(run, training, trial.lessons, rng))
+    for repeat, (rest, told) in enumerate(taught):
+        measured = run.seen_at(told)
         if is_noisy:
             measured = as_noisy_as_printed(run, measured, np.random.default_rng((1, repeat)))
         for name, parts in tested.items():
@@ -145,15 +156,14 @@ def new_people_trials(
     ]
 
 
-def correlations(run: Examples, trial: Trial) -> Floats:
+def correlations(run: Examples, taught: Sequence[tuple[Rows, Floats]]) -> Floats:
     """Give the linear correlation (4,) with the true distance: of each cue, and of what a network tells.
 
-    The network is tested on images that it was not taught on, the cues on all.
+    The first network is tested on images that it was not taught on, the cues on all.
 
     Source: OMNIVIS 2003, figure 5.
     """
-    training, rest, rng = trial.parts(len(run.cues), 0)
-    told = _told(run, training, trial.lessons, rng)
+    rest, told = taught[0]
     cues = [np.corrcoef(cue, run.distance_m)[0, 1] for cue in run.cues.T]
     return np.array([*cues, np.corrcoef(told[rest], run.distance_m[rest])[0, 1]])
 

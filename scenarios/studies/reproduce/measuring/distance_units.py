@@ -9,6 +9,7 @@ from peopleboy.scenarios.studies.distance_learning.distance_examples import Exam
 from peopleboy.scenarios.studies.distance_learning.distance_trials import (
     Trial,
     correlations,
+    general_networks,
     general_trials,
     new_people_trials,
     personal_trials,
@@ -56,14 +57,15 @@ class DistanceUnit:
 
     def run(self) -> Result:
         """Learn and test."""
-        found = {"general": general_trials(self.examples, self.trial)}
-        for (tested, taught), errors in personal_trials(self.examples, self.trial).items():
-            found[f"person {tested}, model {taught}"] = errors
+        run, taught = self.examples, general_networks(self.examples, self.trial)
+        found = {"general": general_trials(run, taught)}
+        for (tested, whose), errors in personal_trials(run, self.trial).items():
+            found[f"person {tested}, model {whose}"] = errors
         for kind, is_noisy in (("position", False), ("noisy", True)):
-            for way, errors in position_trials(self.examples, self.trial, is_noisy=is_noisy).items():
+            for way, errors in position_trials(run, taught, is_noisy=is_noisy).items():
                 found[f"{kind}, {way}"] = errors
-        errors_of = {name: errors.plain() for name, errors in found.items()}
-        return {"errors": errors_of, "r": correlations(self.examples, self.trial).tolist()}
+        plain = {name: errors.plain() for name, errors in found.items()}
+        return {"errors": plain, "r": correlations(run, taught).tolist()}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

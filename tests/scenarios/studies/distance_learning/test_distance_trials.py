@@ -12,6 +12,7 @@ from peopleboy.scenarios.studies.distance_learning.distance_trials import (
     Trial,
     block_split,
     correlations,
+    general_networks,
     general_trials,
     new_people_trials,
     personal_trials,
@@ -110,7 +111,7 @@ def test_films_are_put_one_after_the_other_and_people_of_one_film_together():
 
 def test_the_general_model_is_tested_in_every_split_and_always_the_same():
     trial = Trial(split="random", repeats=10, lessons=QUICK)
-    found, again = (general_trials(film(), trial) for _ in range(2))
+    found, again = (general_trials(film(), general_networks(film(), trial)) for _ in range(2))
     assert found == again
     assert [one.count for one in found.splits] == [280] * 10
 
@@ -139,7 +140,12 @@ def test_every_image_is_told_by_a_network_that_did_not_learn_from_it():
 @pytest.mark.parametrize("split", ["random", "blocks"])
 def test_the_filter_gains_a_lot_where_measurements_are_as_noisy_as_the_papers(split):
     trial = Trial(split=split, repeats=3, lessons=Lessons(epochs=400))
-    found = {way: errors.all.mean for way, errors in position_trials(walking(), trial, is_noisy=True).items()}
+    found = {
+        way: errors.all.mean
+        for way, errors in position_trials(
+            walking(), general_networks(walking(), trial), is_noisy=True
+        ).items()
+    }
     assert list(found) == list(FILTERS)
     assert found[MODEL_ALONE] == pytest.approx(0.154, abs=0.015)
     for way in (KALMAN, "own Q and R, u = last step"):
@@ -177,7 +183,8 @@ def test_what_is_seen_at_the_true_distance_is_where_the_person_is_but_for_the_an
 
 
 def test_the_lower_limit_grows_with_the_distance_the_others_shrink_and_the_network_is_best():
-    width, gap, area, told = correlations(film(), Trial(split="random", lessons=Lessons(epochs=400)))
+    trial = Trial(split="random", repeats=1, lessons=Lessons(epochs=400))
+    width, gap, area, told = correlations(film(), general_networks(film(), trial))
     assert gap > 0.9
     assert width < 0
     assert area < 0
