@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.reproduce.experiments.contents import Contents
 from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
-from peopleboy.scenarios.studies.reproduce.experiments.distances import DISTANCES, Correlations, Path
+from peopleboy.scenarios.studies.reproduce.experiments.distances import DISTANCES, Correlations, FloorPath
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
 from peopleboy.scenarios.studies.reproduce.experiments.pictures import DEPICTIONS
@@ -242,7 +242,7 @@ _ALL: tuple[Experiment, ...] = (
     Angles(),
     Correlations(),
     *DISTANCES,
-    Path(),
+    FloorPath(),
 )
 
 EXPERIMENTS: dict[str, Experiment] = {experiment.id: experiment for experiment in _ALL}

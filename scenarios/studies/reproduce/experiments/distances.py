@@ -131,7 +131,7 @@ class Correlations:
 
 
 @dataclass(frozen=True, slots=True)
-class Path:
+class FloorPath:
     """A piece of a path on the floor: figure 6."""
 
     id: str = "panoramic-figure-6"
