@@ -21,7 +21,7 @@ from peopleboy.scenarios.studies.distance_learning import distance_examples
 from peopleboy.scenarios.studies.distance_learning.distance_examples import Examples, see_floor
 from peopleboy.scenarios.studies.distance_learning.distance_task import DistanceTask
 from peopleboy.scenarios.studies.distance_learning.distance_trials import (
-    Trial,
+    SplitTrial,
     general_networks,
     general_trials,
 )
@@ -100,7 +100,7 @@ def _not_left_empty(folder: Path) -> Iterator[None]:
 
 
 def _summary(model: AppearanceModel, runs: Sequence[Examples], lessons: Lessons) -> str:
-    trial = Trial(split="blocks", repeats=1, lessons=lessons)
+    trial = SplitTrial(split="blocks", repeats=1, lessons=lessons)
     unseen = ImageErrors.joined(general_trials(run, general_networks(run, trial)) for run in runs).all
     return (
         f"distance off by {model.about['error on those']} on what was learned, by {unseen.mean:.3f} ± "

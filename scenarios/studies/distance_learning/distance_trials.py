@@ -40,7 +40,7 @@ SPLITS = {"random": random_split, "blocks": block_split}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trial:
+class SplitTrial:
     """How a film's images are learned from and tested with.
 
     Attributes:
@@ -59,7 +59,7 @@ class Trial:
         return *SPLITS[self.split](count, rng), rng
 
 
-def general_networks(run: Examples, trial: Trial) -> list[tuple[Rows, Floats]]:
+def general_networks(run: Examples, trial: SplitTrial) -> list[tuple[Rows, Floats]]:
     """Teach one network for everybody in each split.
 
     Returns:
@@ -82,7 +82,7 @@ def general_trials(run: Examples, taught: Sequence[tuple[Rows, Floats]]) -> Imag
     return ImageErrors.of(tested, len(run.cues))
 
 
-def personal_trials(run: Examples, trial: Trial) -> dict[tuple[int, int], ImageErrors]:
+def personal_trials(run: Examples, trial: SplitTrial) -> dict[tuple[int, int], ImageErrors]:
     """Teach each person's own network, and test it on everybody, by person tested and person taught.
 
     Each person's images are split, and the same 70 % of them test all networks.
@@ -168,7 +168,7 @@ def correlations(run: Examples, taught: Sequence[tuple[Rows, Floats]]) -> Floats
     return np.array([*cues, np.corrcoef(told[rest], run.distance_m[rest])[0, 1]])
 
 
-def told_in_turn(run: Examples, trial: Trial) -> Floats:
+def told_in_turn(run: Examples, trial: SplitTrial) -> Floats:
     """Tell the distances (N,) [m] of all images of a film, each by a network that did not learn from it."""
     told, repeat = np.full(len(run.cues), np.nan), 0
     while np.isnan(told).any():

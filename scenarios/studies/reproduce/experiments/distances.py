@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.scenarios.studies.distance_learning.distance_examples import Examples
-from peopleboy.scenarios.studies.distance_learning.distance_trials import FILTERS, Trial
+from peopleboy.scenarios.studies.distance_learning.distance_trials import FILTERS, SplitTrial
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.scenarios.studies.reproduce.measuring.distance_units import (
@@ -163,7 +163,7 @@ def examples_of(plan: Plan, done: Done, room: str) -> list[Examples]:
 
 
 def _trials(plan: Plan, done: Done, room: str, split: str) -> list[DistanceUnit]:
-    trial = Trial(split=split, repeats=plan.splits)
+    trial = SplitTrial(split=split, repeats=plan.splits)
     films = zip(walks(plan, room), examples_of(plan, done, room), strict=True)
     return [DistanceUnit(walk, trial, examples) for walk, examples in films]
 
@@ -176,7 +176,7 @@ def _films(plan: Plan, done: Done, room: str, split: str) -> Iterator[Film]:
 def _folds(plan: Plan, done: Done, room: str) -> list[NewPeopleUnit]:
     """Learn from the even seeds and test on the odd ones, and the other way round."""
     films = tuple(examples_of(plan, done, room))
-    trial = Trial(split="random", repeats=1)
+    trial = SplitTrial(split="random", repeats=1)
     return [NewPeopleUnit(room, tuple(range(first, plan.walks, 2)), trial, films) for first in range(2)]
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.studies.distance_learning.distance_examples import Examples, collect
 from peopleboy.scenarios.studies.distance_learning.distance_trials import (
-    Trial,
+    SplitTrial,
     correlations,
     general_networks,
     general_trials,
@@ -46,7 +46,7 @@ class DistanceUnit:
     """
 
     walk: WalkUnit
-    trial: Trial
+    trial: SplitTrial
     examples: Examples
     is_timing: bool = False
 
@@ -81,7 +81,7 @@ class NewPeopleUnit:
 
     scenario: str
     seeds: tuple[int, ...]
-    trial: Trial
+    trial: SplitTrial
     films: tuple[Examples, ...]
     is_timing: bool = False
 
@@ -98,5 +98,5 @@ class NewPeopleUnit:
         return {"films": [errors.plain() for errors in new_people_trials(taught, others, self.trial.lessons)]}
 
 
-def _trial_key(trial: Trial) -> str:
+def _trial_key(trial: SplitTrial) -> str:
     return f"{trial.split}, {trial.repeats} splits, {trial.lessons.epochs} epochs"

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.distance_learning.distance_examples import Examples
-from peopleboy.scenarios.studies.distance_learning.distance_trials import Trial, told_in_turn
+from peopleboy.scenarios.studies.distance_learning.distance_trials import SplitTrial, told_in_turn
 from peopleboy.scenarios.studies.distance_learning.walks import filtered
 from peopleboy.scenarios.studies.reproduce.pictures.png import canvas, label
 from peopleboy.tracker.panoramic.paper.position_filter import PRINTED, PositionFilter
@@ -26,7 +26,7 @@ _RANGE_M, _LEAST = 0.5, 30  # width of a class of distances, and images that it 
 
 def draw_correlations(run: Examples, names: Sequence[str]) -> Figure:
     """Draw each cue of a film, and what the network tells, over the true distance."""
-    told = told_in_turn(run, Trial(split="random"))
+    told = told_in_turn(run, SplitTrial(split="random"))
     figure = canvas(5.6)
     for axes, name, values in zip(figure.subplots(2, 2).flat, names, (*run.cues.T, told), strict=True):
         for person, colour in zip(np.unique(run.person).tolist(), _PEOPLE, strict=False):
@@ -47,7 +47,7 @@ def draw_correlations(run: Examples, names: Sequence[str]) -> Figure:
 
 def draw_path(run: Examples) -> Figure:
     """Draw a piece of a path on the floor: true, by the model alone, and with the filter."""
-    measured = run.seen_at(told_in_turn(run, Trial(split="blocks")))
+    measured = run.seen_at(told_in_turn(run, SplitTrial(split="blocks")))
     smooth = filtered(run, measured, PositionFilter(PRINTED, uses_velocity=True))
     figure = canvas(4.6)
     axes = figure.subplots()
@@ -73,7 +73,7 @@ def draw_ranges(films: Mapping[str, Sequence[Examples]]) -> Figure:
     for (room, runs), colour in zip(films.items(), _ROOMS, strict=False):
         distance = np.concatenate([run.distance_m for run in runs])
         errors = np.concatenate(
-            [np.abs(told_in_turn(run, Trial(split="blocks")) - run.distance_m) for run in runs]
+            [np.abs(told_in_turn(run, SplitTrial(split="blocks")) - run.distance_m) for run in runs]
         )
         middles, means, spreads = error_by_range(distance, errors)
         axes.plot(middles, means, "o-", color=colour, markersize=4, label=room)

@@ -9,7 +9,7 @@ from peopleboy.scenarios.studies.distance_learning.distance_trials import (
     FILTERS,
     KALMAN,
     MODEL_ALONE,
-    Trial,
+    SplitTrial,
     block_split,
     correlations,
     general_networks,
@@ -110,14 +110,14 @@ def test_films_are_put_one_after_the_other_and_people_of_one_film_together():
 
 
 def test_the_general_model_is_tested_in_every_split_and_always_the_same():
-    trial = Trial(split="random", repeats=10, lessons=QUICK)
+    trial = SplitTrial(split="random", repeats=10, lessons=QUICK)
     found, again = (general_trials(film(), general_networks(film(), trial)) for _ in range(2))
     assert found == again
     assert [one.count for one in found.splits] == [280] * 10
 
 
 def test_ones_own_model_is_better_where_people_differ():
-    found = personal_trials(film(), Trial(split="random", repeats=3, lessons=Lessons(epochs=400)))
+    found = personal_trials(film(), SplitTrial(split="random", repeats=3, lessons=Lessons(epochs=400)))
     mean = {pair: errors.all.mean for pair, errors in found.items()}
     assert set(mean) == {(1, 1), (1, 2), (2, 1), (2, 2)}
     assert mean[1, 1] < mean[1, 2]
@@ -132,14 +132,14 @@ def test_new_people_are_told_by_a_network_that_saw_others():
 
 def test_every_image_is_told_by_a_network_that_did_not_learn_from_it():
     run = film()
-    told = told_in_turn(run, Trial(split="blocks", lessons=Lessons(epochs=400)))
+    told = told_in_turn(run, SplitTrial(split="blocks", lessons=Lessons(epochs=400)))
     assert told.shape == run.distance_m.shape
     assert np.abs(told - run.distance_m).mean() < 0.3
 
 
 @pytest.mark.parametrize("split", ["random", "blocks"])
 def test_the_filter_gains_a_lot_where_measurements_are_as_noisy_as_the_papers(split):
-    trial = Trial(split=split, repeats=3, lessons=Lessons(epochs=400))
+    trial = SplitTrial(split=split, repeats=3, lessons=Lessons(epochs=400))
     found = {
         way: errors.all.mean
         for way, errors in position_trials(
@@ -183,7 +183,7 @@ def test_what_is_seen_at_the_true_distance_is_where_the_person_is_but_for_the_an
 
 
 def test_the_lower_limit_grows_with_the_distance_the_others_shrink_and_the_network_is_best():
-    trial = Trial(split="random", repeats=1, lessons=Lessons(epochs=400))
+    trial = SplitTrial(split="random", repeats=1, lessons=Lessons(epochs=400))
     width, gap, area, told = correlations(film(), general_networks(film(), trial))
     assert gap > 0.9
     assert width < 0
