@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -12,9 +12,9 @@ from typing import Final, Protocol, runtime_checkable
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import Calibration, Frame
 from peopleboy.tracker.handover.handover_tracker import HandoverTracker
-from peopleboy.tracker.panoramic.paper.appearance_file import shipped_model
+from peopleboy.tracker.panoramic.paper.appearance_file import shipped_models
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.panoramic.people.place_file import load_places
@@ -57,6 +57,19 @@ class Introducible(Protocol):
         ...
 
 
+@runtime_checkable
+class ChecksCameras(Protocol):
+    """A tracker that cannot see by every camera of the right name."""
+
+    def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
+        """Refuse cameras, by name, before the first frame.
+
+        Raises:
+            BadInput: one of them will not do.
+        """
+        ...
+
+
 Factory = Callable[[np.random.Generator], Tracker]
 """Makes a tracker that draws all that is random from the generator."""
 
@@ -75,7 +88,7 @@ def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
 
 
 def _panoramic_paper_tracker(rng: np.random.Generator) -> PanoramicPaperTracker:  # noqa: ARG001
-    return PanoramicPaperTracker(shipped_model())
+    return PanoramicPaperTracker(shipped_models())
 
 
 def _panoramic_tracker(rng: np.random.Generator) -> PanoramicTracker:  # noqa: ARG001

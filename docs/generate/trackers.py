@@ -34,6 +34,16 @@ ABOUT: Mapping[str, tuple[str, str]] = {
         "One person all round a standing robot, by the panoramic camera alone: background subtraction, a "
         "network for the distance, which `peopleboy train-distance` trains, a Kalman filter on the floor.",
     ),
+    "panoramic": (
+        "the 2003 paper, and beyond",
+        "Several people all round a robot that stands or drives, by the panoramic camera alone: a learned "
+        "foreground, a learned reading of where people stand and how sure that is, colours by height.",
+    ),
+    "handover": (
+        "thesis, section 8.2",
+        "`peopleboy` for what is warm ahead and `panoramic` for all round it, which point people out to each "
+        "other: a person keeps one number from the thermal image through the panorama and back.",
+    ),
 }
 
 

@@ -90,20 +90,22 @@ def train_occlusion(
     show_default=True,
     help="How often the network goes through its examples.",
 )
-@click.option("--trials/--no-trials", default=True, help="Repeat the paper's experiments (minutes).")
-@click.option("--ship", is_flag=True, help="Put the network in the place of the tracker's own.")
+@click.option(
+    "--ship",
+    is_flag=True,
+    help="Put the network among the tracker's own, in place of that for the same mirror.",
+)
 @workers_options
 def train_distance(
     scenario: str,
     seeds: int,
     out: Path | None,
     epochs: int,
-    trials: bool,
     ship: bool,
     workers: int | None,
     scheduler: str | None,
 ) -> None:
-    """Learn from a scenario how far away a person in the panorama is, and compare with the 2003 paper.
+    """Learn from a scenario how far away a person in the panorama is, for the tracker of the 2003 paper.
 
     SCENARIO is a name or a path, room_long if left out. It begins with five empty panoramas, and one person
     at a time is there later. A killed call goes on where it was.
@@ -115,11 +117,18 @@ def train_distance(
     who = chosen_workers(workers, scheduler)
     folder = out if out is not None else Path("runs") / f"distance-{Path(scenario).stem}"
     lessons = Lessons(epochs=epochs)
-    click.echo(give_distance_lesson(folder, scenario, seeds, who, lessons=lessons, trials=trials, ship=ship))
+    learned = give_distance_lesson(folder, scenario, seeds, who, lessons=lessons, ships=ship)
+    click.echo(learned.summary)
+    click.echo("`peopleboy reproduce --paper panoramic` measures it beside the paper")
+    click.echo(learned.path)
 
 
 @click.command()
 @click.argument("names", metavar="[ID]...", nargs=-1)
+@click.option(
+    "--paper",
+    help="Only what is of one source: thesis, of 2007; 2005, its evaluation; panoramic, of 2003.",
+)
 @click.option("--quick", is_flag=True, help="A little of everything, in minutes.")
 @click.option(
     "--out",
@@ -137,6 +146,7 @@ def train_distance(
 @click.option("--list", "lists", is_flag=True, help="List tables and figures, and do nothing.")
 def reproduce(
     names: Sequence[str],
+    paper: str | None,
     quick: bool,
     out: Path | None,
     films: Path,
@@ -144,7 +154,7 @@ def reproduce(
     scheduler: str | None,
     lists: bool,
 ) -> None:
-    """Measure every table and figure of the sources again, and write one page about it.
+    """Measure every table and figure of the sources again, print them, and write one page about it.
 
     ID is one of `--list`, or its number: 4.9 stands for figures 4.9a and 4.9b. A killed call goes on where it
     was when it is given again.
@@ -153,8 +163,8 @@ def reproduce(
     from peopleboy.scenarios.studies.reproduce.show import list_experiments, reproduce_named
 
     if lists:
-        list_experiments(names)
+        list_experiments(names, paper)
     else:
         folder = out if out is not None else Path("runs") / ("reproduce-quick" if quick else "reproduce")
         who = chosen_workers(workers, scheduler)
-        click.echo(reproduce_named(names, folder, films, who, quick=quick))
+        click.echo(reproduce_named(names, paper, folder, films, who, quick=quick))

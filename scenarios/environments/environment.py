@@ -31,7 +31,7 @@ from peopleboy.scenarios.environments.situation import Episode
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
-from peopleboy.scenarios.loop.tracker_by_name import camera_names, make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import camera_names, check_cameras, make_eyes
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.planar import Planar
@@ -137,6 +137,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._frame = 0
         self._action = (0.0, 0.0)
         self._tracker: Tracker = make_eyes(self._tracker_name, self._seed, self._world.truth)
+        check_cameras(self._tracker, config.robot.cameras)
         plan, follow = self._scenario.plan, self._scenario.follow_config()
         following = following_task(config, follow.keep_height)
         self._keep_m = following.keep_m

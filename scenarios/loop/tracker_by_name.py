@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.schema.robot import ORACLE
+from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
+from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.tracker.trackers import TRACKERS, Tracker, make_tracker
+from peopleboy.tracker.trackers import TRACKERS, ChecksCameras, Tracker, make_tracker
 
 
 def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
@@ -19,6 +21,16 @@ def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
         BadInput: an unknown name, or a tracker of your own that cannot be made.
     """
     return OracleTracker(truth) if name == ORACLE else _make(name, seed)
+
+
+def check_cameras(tracker: Tracker, cameras: Mapping[str, CameraConfig]) -> None:
+    """Let a tracker refuse the robot's cameras before anything is begun.
+
+    Raises:
+        BadInput: it does.
+    """
+    if isinstance(tracker, ChecksCameras):
+        tracker.check_cameras(calibrations_of(cameras))
 
 
 def camera_names(name: str) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from peopleboy.scenarios.files.own_files import keep_own_files
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.scenarios.loop.tracker_by_name import make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import check_cameras, make_eyes
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.running.watchers import Watchers
@@ -72,6 +72,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
     scenario = scenario.mounting(tracker.cameras)
     mounted = [camera for camera in scenario.robot.cameras if camera not in given]
     config = scenario.world(options.seed, options.renderer)
+    check_cameras(tracker, config.robot.cameras)
     about = {
         "scenario": scenario.name,
         "seed": options.seed,

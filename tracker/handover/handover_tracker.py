@@ -48,6 +48,14 @@ class HandoverTracker:
         """Those of both trackers."""
         return (*self._thermal.cameras, *self._panoramic.cameras)
 
+    def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
+        """Refuse a panoramic camera that its tracker was not trained on, before there are images.
+
+        Raises:
+            BadInput: it is another, or none that sees all round.
+        """
+        self._panoramic.check_cameras(calibrations)
+
     @property
     def explanation(self) -> BothExplanations:
         """Those of both trackers."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 
 VIEW: Final = "camera"
 ABOUT: Final = "about"

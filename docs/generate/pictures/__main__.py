@@ -11,6 +11,7 @@ from PIL.Image import Image
 
 from docs.generate.pictures import occlusion, panorama, rays, runs, thermal, tracker
 from docs.generate.pictures.paper import save
+from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
 FOLDER = Path(__file__).parents[2] / "pictures"
 
@@ -23,6 +24,8 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,
+    "panoramic_features": draw_features,
+    "panoramic_errors": panorama.errors_over_distance,
     "detector": tracker.detector,
     "contour": tracker.contour,
     "explained_away": occlusion.explained_away,

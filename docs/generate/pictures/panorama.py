@@ -1,11 +1,20 @@
-"""What a panoramic camera sees: the lens's round image, and the panorama that it is unrolled to."""
+"""What a panoramic camera sees: the lens's round image, the panorama, and how far off distances in it are."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
+from matplotlib.figure import Figure
 from PIL import Image
 
 from peopleboy.scenarios.drawing.overlay import draw_truth, enlarge, people_parts
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.studies.reproduce.experiments.distances import ROOMS, examples_of, walks
+from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
+from peopleboy.scenarios.studies.reproduce.pictures.curves import draw_ranges
+from peopleboy.scenarios.studies.reproduce.reproduce import RESULTS
 from peopleboy.sim.cameras.camera_config import PanoramaConfig, ThermalConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig
@@ -33,3 +42,11 @@ def raw_and_unrolled() -> Image.Image:
     page[: raw.shape[0], left : left + raw.shape[1]] = raw
     page[-panorama.shape[0] :] = panorama
     return Image.fromarray(page).quantize(128)  # noise would make the file large
+
+
+def errors_over_distance() -> Figure:
+    """The paper's network in every room; films that `peopleboy reproduce` left are taken from there."""
+    plan, folder = Plan(cache=Path("runs/films")), Path("runs/reproduce")
+    store = open_store(folder / RESULTS)
+    run_units([walk for room in ROOMS for walk in walks(plan, room)], store, Workers())
+    return draw_ranges({room: examples_of(plan, store, room) for room in ROOMS})

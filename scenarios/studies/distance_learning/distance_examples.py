@@ -16,9 +16,9 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, learn_background
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure, measure
-from peopleboy.tracker.panoramic.paper.panorama_view import view_of
 from peopleboy.tracker.panoramic.paper.paper_tracker import PANORAMA, PanoramicConfig
 
 Floats = NDArray[np.float64]
@@ -81,21 +81,40 @@ def collect(scenario: str, seed: int) -> dict[str, Any]:
         Plain data: the camera's `view`, `rows` of examples, and how many images `missed` the person.
 
     Raises:
-        BadInput: an unknown scenario, somebody in the first images, or a camera that nobody can calibrate.
+        BadInput: an unknown scenario, somebody in the first images, or a camera that nobody can calibrate or
+            that sees no floor where people walk.
     """
     loaded = load_scenario(scenario).mounting((PANORAMA,))
     config = loaded.world(seed)
-    camera = config.robot.cameras[PANORAMA]
-    calibrations = calibrations_of(config.robot.cameras)
-    if PANORAMA not in calibrations:
-        raise BadInput(f"{scenario}: camera {PANORAMA!r} of kind {camera.kind!r} cannot be calibrated")
-    rows, missed = _measured(_instants(config, loaded.duration_s), scenario)
-    view = view_of(calibrations[PANORAMA], camera.camera.width, camera.camera.height)
+    view = see_floor(config, scenario)
+    rows, missed = _measured(panoramas(config, loaded.duration_s), scenario)
     return {"view": asdict(view), "rows": rows, "missed": missed}
 
 
-def _instants(config: WorldConfig, duration_s: float) -> Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]]:
-    """Yield every image of the panoramic camera, and who was there; other cameras' images are never made."""
+def see_floor(config: WorldConfig, scenario: str) -> PanoramaView:
+    """Describe the panoramic camera, before it has seen anything.
+
+    Raises:
+        BadInput: it cannot be calibrated, or nobody ever walks where it sees the floor.
+    """
+    camera, calibrations = config.robot.cameras[PANORAMA], calibrations_of(config.robot.cameras)
+    if PANORAMA not in calibrations:
+        raise BadInput(f"{scenario}: camera {PANORAMA!r} of kind {camera.kind!r} cannot be calibrated")
+    ways = [point.at_m for person in config.people for point in person.path]
+    if not ways:
+        raise BadInput(f"{scenario}: nobody walks there")
+    away = np.subtract(ways, config.robot.at_m)
+    farthest = np.array([[float(np.hypot(*away.T).max()), 0.0, 0.0]])
+    row = float(calibrations[PANORAMA].project(farthest)[0, 1])
+    if not row < camera.camera.height:  # as below: steeper than any row looks; NaN: no lens sees it
+        raise BadInput(
+            f"{scenario}: camera {PANORAMA!r} sees no floor where people walk; take another mirror"
+        )
+    return view_of(calibrations[PANORAMA], camera.camera.width, camera.camera.height)
+
+
+def panoramas(config: WorldConfig, duration_s: float) -> Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]]:
+    """Yield every image (H, W, 3) of the panoramic camera, and who was there; no other images are made."""
     from peopleboy.sim.world import World  # here, as examples that are there can be read without PyBullet
 
     with World(config) as world:

@@ -1,8 +1,10 @@
-"""The whole lesson: watch people walk, repeat the paper's experiments, teach a network and write its file."""
+"""The whole lesson: watch people walk, teach a network and write its file."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,20 +18,38 @@ from peopleboy.scenarios.running.engine.store import Store, code_digest
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.frame_cache import film_key
 from peopleboy.scenarios.studies.distance_learning import distance_examples
-from peopleboy.scenarios.studies.distance_learning.distance_examples import Examples
+from peopleboy.scenarios.studies.distance_learning.distance_examples import Examples, see_floor
 from peopleboy.scenarios.studies.distance_learning.distance_task import DistanceTask
-from peopleboy.scenarios.studies.distance_learning.distance_trials import walks
-from peopleboy.scenarios.studies.distance_learning.show_distances import print_trials
-from peopleboy.tracker.panoramic.paper.appearance_file import SHIPPED, AppearanceModel
+from peopleboy.scenarios.studies.distance_learning.distance_trials import (
+    SplitTrial,
+    general_networks,
+    general_trials,
+)
+from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
+from peopleboy.scenarios.studies.distance_learning.walks import walks
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.paper.appearance_file import FILE_NAME, AppearanceModel, ship
 from peopleboy.tracker.panoramic.paper.distance_network import Lessons, teach
-from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView
 from peopleboy.tracker.panoramic.paper.paper_tracker import PANORAMA
 from peopleboy.tracker.panoramic.paper.position_filter import estimate_noise
 
 
+@dataclass(frozen=True, slots=True)
+class Learned:
+    """What a lesson came to.
+
+    Attributes:
+        path: the network's file.
+        summary: how far off it is, in a line.
+    """
+
+    path: Path
+    summary: str
+
+
 def give_distance_lesson(
-    out: Path, scenario: str, seeds: int, workers: Workers, *, lessons: Lessons, trials: bool, ship: bool
-) -> Path:
+    out: Path, scenario: str, seeds: int, workers: Workers, *, lessons: Lessons, ships: bool
+) -> Learned:
     """Learn distances from a scenario, and leave the examples and the network in a folder.
 
     Examples that an earlier lesson left there are used, as long as neither code nor scenario has changed.
@@ -40,34 +60,52 @@ def give_distance_lesson(
         seeds: runs of it.
         workers: who runs them.
         lessons: how the network is taught.
-        trials: whether to repeat the paper's experiments first.
-        ship: whether to put the network in the place of the tracker's own.
-
-    Returns:
-        The network's file.
+        ships: whether to put the network among the tracker's own instead.
 
     Raises:
-        BadInput: an unknown scenario, one that does not begin empty, or a path that cannot be used.
+        BadInput: an unknown scenario, one that does not begin empty, a camera that sees no floor there, or a
+            path that cannot be used; a new folder is not left behind then.
         TasksFailed: some runs failed, after all others were done.
     """
     loaded = load_scenario(scenario)
+    seeing = loaded.mounting((PANORAMA,))
     with writing_to(out):
         out.mkdir(parents=True, exist_ok=True)
-    store = Store(out / "examples.jsonl", code_digest(Path(distance_examples.__file__)))
-    seeing = loaded.mounting((PANORAMA,))
-    tasks = [DistanceTask(scenario, seed, film_key(seeing, seed)[:12]) for seed in range(seeds)]
-    missing = [task for task in tasks if task.name not in store]
-    work_through(missing, workers, "examples", lambda task, result: store.add(task.name, result))
+    with _not_left_empty(out):
+        see_floor(seeing.world(0), scenario)
+        store = Store(out / "examples.jsonl", code_digest(Path(distance_examples.__file__)))
+        tasks = [DistanceTask(scenario, seed, film_key(seeing, seed)[:12]) for seed in range(seeds)]
+        missing = [task for task in tasks if task.name not in store]
+        work_through(missing, workers, "examples", lambda task, result: store.add(task.name, result))
     results = [store[task.name] for task in tasks]
     runs = [Examples.of_rows(result["rows"]) for result in results]
     _check_runs(runs, scenario)
-    if trials:
-        print_trials(runs, lessons)
     model = _learn(loaded.name, runs, results, lessons)
-    path = SHIPPED if ship else out / SHIPPED.name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    model.save(path)
-    return path
+    path = out / FILE_NAME
+    if ships:
+        path = ship(model, loaded.name)
+    else:
+        model.save(path)
+    return Learned(path, _summary(model, runs, lessons))
+
+
+@contextmanager
+def _not_left_empty(folder: Path) -> Iterator[None]:
+    """Remove a folder in which nothing was left because of an error."""
+    try:
+        yield
+    finally:
+        if not any(folder.iterdir()):
+            folder.rmdir()
+
+
+def _summary(model: AppearanceModel, runs: Sequence[Examples], lessons: Lessons) -> str:
+    trial = SplitTrial(split="blocks", repeats=1, lessons=lessons)
+    unseen = ImageErrors.joined(general_trials(run, general_networks(run, trial)) for run in runs).all
+    return (
+        f"distance off by {model.about['error on those']} on what was learned, by {unseen.mean:.3f} ± "
+        f"{unseen.deviation:.3f} m where 30 % of each run were learned and the rest tested, by blocks"
+    )
 
 
 def _check_runs(runs: Sequence[Examples], scenario: str) -> None:

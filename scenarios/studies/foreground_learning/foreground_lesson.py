@@ -25,7 +25,7 @@ from peopleboy.scenarios.studies.foreground_learning.teach_network import Adam, 
 from peopleboy.tracker.frame import Calibration
 from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
-from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView, view_of
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 
 FIRST_SEED: Final = 100
 """Scenes to learn from have seeds from here on; those to judge by have the first ones."""

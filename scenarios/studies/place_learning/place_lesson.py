@@ -21,7 +21,7 @@ from peopleboy.scenarios.studies.place_learning.place_examples import PlaceExamp
 from peopleboy.scenarios.studies.place_learning.place_task import PlaceTask, panorama_of
 from peopleboy.scenarios.studies.place_learning.teach_places import teach_places
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED as EYES
-from peopleboy.tracker.panoramic.paper.panorama_view import view_of
+from peopleboy.tracker.panoramic.panorama_view import view_of
 from peopleboy.tracker.panoramic.people.place_file import SHIPPED, save_places
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 

@@ -12,11 +12,11 @@ from pathlib import Path
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Outcome
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan
-from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, write_page
+from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, Section, section, write_page
 
 PAGE = "index.html"
 RESULTS = "units.jsonl"
@@ -37,13 +37,13 @@ class Means:
     command: str = "peopleboy reproduce"
 
 
-def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> Path:
+def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tuple[Path, list[Section]]:
     """Do what is missing, and write the page.
 
     Whoever is killed begins again with the same folder: results that are there are taken from there.
 
     Returns:
-        The page.
+        The page, and what is on it.
 
     Raises:
         BadInput: the folder or the cluster cannot be used.
@@ -53,10 +53,10 @@ def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> Pa
     store = open_store(means.out / RESULTS)
     while wanted := unique_units(experiments, plan, store):
         run_units(wanted, store, means.workers)
-    results: list[tuple[Experiment, Samples]] = [(one, one.samples(plan, store)) for one in experiments]
+    sections = [section(Outcome.of(one, plan, store)) for one in experiments]
     page = means.out / PAGE
-    write_page(page, results, _about(plan, means, store, time.monotonic() - start))
-    return page
+    write_page(page, sections, _about(plan, means, store, time.monotonic() - start))
+    return page, sections
 
 
 def unique_units(experiments: Sequence[Experiment], plan: Plan, store: Store) -> list[Unit]:
@@ -70,7 +70,8 @@ def _about(plan: Plan, means: Means, store: Store, seconds: float) -> PageHead:
     facts: Mapping[str, str] = {
         "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
         "Python": platform.python_version(),
-        "Seeds": f"random streams of the trackers 0 to {plan.repeats - 1}; data sets as in their files",
+        "Seeds": f"random streams of the trackers, and webcams, 0 to {plan.repeats - 1}; people before a "
+        f"panoramic camera 0 to {plan.walks - 1}; data sets as in their files",
         "Machine": f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}",
         "Time": f"{seconds / 60:.1f} min for this call; {spent / 60:.1f} min of processor time in trackers",
         "Results": f"{len(store)} units of work in {RESULTS}, beside this page",
@@ -84,7 +85,7 @@ def _amount(plan: Plan) -> str:
         return (
             f"One run per data set and of it {QUICK_S:g} s at most, {plan.repeats} repeats instead of 10, "
             "fewer values of each parameter, figure 6.6 with 200 samples instead of 1000, pairs of people "
-            "from one run per scenario, no weighted triplets."
+            f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room."
         )
     total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
     return f"{plan.repeats} repeats of everything with other random numbers in the trackers. {total}."

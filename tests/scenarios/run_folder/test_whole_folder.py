@@ -133,7 +133,7 @@ OTHERS = {
         path, "peopleboy", 1, Workers(), triplets=False, again=False, ship=False
     ),
     "train-distance": lambda path: give_distance_lesson(
-        path, "pass_behind", 1, Workers(), lessons=Lessons(), trials=False, ship=False
+        path, "pass_behind", 1, Workers(), lessons=Lessons(), ships=False
     ),
     "train-foreground": lambda path: give_foreground_lesson(path, Workers(), ForegroundLessons(), ship=False),
     "datasets": lambda path: film(load_scenario("pass_behind"), 0, path),

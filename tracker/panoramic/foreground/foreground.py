@@ -14,7 +14,7 @@ from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows, floor_r
 from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
 from peopleboy.tracker.panoramic.foreground.memory import compare, first_memory, learn, move_along, novelty
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
-from peopleboy.tracker.panoramic.paper.panorama_view import view_of
+from peopleboy.tracker.panoramic.panorama_view import view_of
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 
 Linear = NDArray[np.float32]

@@ -20,7 +20,7 @@ from peopleboy.tracker.panoramic.foreground.mask_network import (
     TOGETHER,
     MaskNetwork,
 )
-from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 
 SHIPPED: Final = Path(__file__).parent / "networks" / "foreground.npz"
 """The network that comes with the tracker."""

@@ -11,12 +11,15 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 from peopleboy.tracker.panoramic.paper.distance_network import CUES, DistanceNetwork
-from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView
 from peopleboy.tracker.panoramic.paper.position_filter import MotionNoise
 
-SHIPPED = Path(__file__).parent / "networks" / "panoramic-paper.json"
-"""The network that comes with the tracker."""
+NETWORKS = Path(__file__).parent / "networks"
+"""Where the networks are that come with the tracker, one a mirror, each named after its scenario."""
+
+FILE_NAME = "panoramic-paper.json"
+"""What a network is called elsewhere."""
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -126,15 +129,27 @@ class AppearanceModel:
         )
 
 
-def shipped_model() -> AppearanceModel:
-    """Give the model that comes with the tracker.
+def shipped_models() -> tuple[AppearanceModel, ...]:
+    """Give the models that come with the tracker, one a mirror.
 
     Raises:
         BadInput: none has been trained yet.
     """
-    if not SHIPPED.is_file():
+    found = tuple(AppearanceModel.load(path) for path in sorted(NETWORKS.glob("*.json")))
+    if not found:
         raise BadInput(
-            f"tracker panoramic-paper: there is no network file {SHIPPED.name} yet; "
+            f"tracker panoramic-paper: there is no network in {NETWORKS.name} yet; "
             "`peopleboy train-distance --ship` makes one"
         )
-    return AppearanceModel.load(SHIPPED)
+    return found
+
+
+def ship(model: AppearanceModel, scenario: str) -> Path:
+    """Put a model among those that come with the tracker, in place of the one for the same mirror."""
+    NETWORKS.mkdir(exist_ok=True)
+    for path in NETWORKS.glob("*.json"):
+        if not AppearanceModel.load(path).view.refusal(model.view):
+            path.unlink()
+    path = NETWORKS / f"{scenario}.json"
+    model.save(path)
+    return path

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import Frame
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import Calibration, Frame
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.tracker.panoramic.panorama_view import choose_view
 from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel
 from peopleboy.tracker.panoramic.paper.background import (
     CLEAN,
@@ -17,7 +21,6 @@ from peopleboy.tracker.panoramic.paper.background import (
     learn_background,
 )
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure, measure
-from peopleboy.tracker.panoramic.paper.panorama_view import check_view
 from peopleboy.tracker.panoramic.paper.panoramic_explanation import PanoramicExplanation
 from peopleboy.tracker.panoramic.paper.position_filter import (
     PRINTED,
@@ -83,20 +86,20 @@ class PanoramicPaperTracker:
 
     Between two images, and for a while when nobody is seen, the filter only predicts, and the track has no
     box. A person who was gone has a new id; one who takes another's place between two images has not. Room
-    coordinates are those of the robot's frame at the start.
+    coordinates are those of the robot's frame at the start. There are no networks of single persons (section
+    6.1), as nothing here tells who it is.
 
     Args:
-        model: the appearance model; it holds for one mirror.
+        models: one or more appearance models, each for one mirror; that of the camera is taken.
         config: settings.
 
     Source: OMNIVIS 2003, sections 4 and 5.
     """
 
-    def __init__(self, model: AppearanceModel, config: PanoramicConfig | None = None) -> None:
+    def __init__(self, models: Sequence[AppearanceModel], config: PanoramicConfig | None = None) -> None:
         self.config = PanoramicConfig() if config is None else config
-        self._model = model
-        noise = model.noise if self.config.noise is None else self.config.noise
-        self._filter = PositionFilter(noise, self.config.uses_velocity)
+        self._models = tuple(models)
+        self._model = self._models[0]
         self._pose = RobotPose()
         self._empty: list[NDArray[np.uint8]] = []
         self._background: Background | None = None
@@ -109,22 +112,43 @@ class PanoramicPaperTracker:
         """The panoramic camera."""
         return (PANORAMA,)
 
+    def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
+        """Refuse another camera than the networks were trained on, before there are images.
+
+        Raises:
+            BadInput: it is another, or none that sees all round.
+        """
+        camera = calibrations.get(PANORAMA)
+        if isinstance(camera, PanoramaCalibration):
+            self._choose((camera.height, camera.width), camera)
+        elif camera is not None:
+            raise BadInput(f"camera {PANORAMA!r}: the tracker wants one that sees all round")
+
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Take in the next frame and tell where the person is, if somebody is there.
 
         Raises:
-            BadInput: an image that is none, or of another camera than the network was trained on.
+            BadInput: an image that is none, or of another camera than the networks were trained on.
         """
         if frame.odometry is not None:
             self._pose = self._pose.moved(frame.odometry)
         if PANORAMA in frame.images:
             image = frame.rgb(PANORAMA)
-            check_view(self._model.view, image.shape[:2], frame.calibrations.get(PANORAMA))
+            self._choose(image.shape[:2], frame.calibrations.get(PANORAMA))
             self._look(image, frame.time_s)
         if self._person is None or frame.time_s - self._person.seen_s > self.config.forget_s:
             self._person = None
             return ()
         return (self._track(self._person, frame.time_s),)
+
+    def _choose(self, size: tuple[int, int], calibration: Calibration | None) -> None:
+        """Take the network for a camera with images of this size (height, width)."""
+        self._model = self._models[choose_view([model.view for model in self._models], size, calibration)]
+
+    @property
+    def _filter(self) -> PositionFilter:
+        noise = self._model.noise if self.config.noise is None else self.config.noise
+        return PositionFilter(noise, self.config.uses_velocity)
 
     def _look(self, image: NDArray[np.uint8], time_s: float) -> None:
         """See who is in a new image; the first ones become the background."""

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import Frame, Odometry
+from peopleboy.tracker.frame import Calibration, Frame, Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
-from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView, check_view
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
 from peopleboy.tracker.panoramic.people.identity import Register
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_person import PanoramicPerson
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.panoramic.people.place_file import COMMAND
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 from peopleboy.tracker.panoramic.people.scene import Scene, person_box
 from peopleboy.tracker.panoramic.people.search import promising_places
@@ -47,6 +48,7 @@ class PanoramicTracker:
         self._foreground = Foreground()
         self._register = Register(self.config.identity)
         self._pose = RobotPose()
+        self._camera: PanoramaCalibration | None = None
         self._seen_from: RobotPose | None = None
         self._time_s = -math.inf
         self._persons: tuple[PanoramicPerson, ...] = ()
@@ -64,6 +66,14 @@ class PanoramicTracker:
             return None
         return PeopleExplanation(self._foreground.background, self._scene.foreground, self._scene.covered)
 
+    def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
+        """Refuse another camera than the model was trained on, before there are images.
+
+        Raises:
+            BadInput: it is another, or none that sees all round.
+        """
+        self._checked(calibrations)
+
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Take in the next frame and tell who is where.
 
@@ -78,10 +88,7 @@ class PanoramicTracker:
 
     def _look(self, frame: Frame) -> None:
         """Take in a new panorama."""
-        image, calibration = frame.rgb(PANORAMA), frame.calibrations.get(PANORAMA)
-        if not isinstance(calibration, PanoramaCalibration):
-            raise BadInput("tracker panoramic: needs the calibration of the camera panorama")
-        check_view(self._view, image.shape[:2], calibration)
+        image, calibration = frame.rgb(PANORAMA), self._checked(frame.calibrations)
         moved = None if self._seen_from is None else _between(self._seen_from, self._pose)
         foreground = self._foreground.update(image, frame.time_s, moved, calibration)
         dt_s = min(frame.time_s - self._time_s, LONGEST_STEP_S)
@@ -91,6 +98,18 @@ class PanoramicTracker:
         known = self._followed(scene, looker, dt_s)
         known = self._with_newcomers(known, scene, looker)
         self._persons = self._named(self._kept(known))
+
+    def _checked(self, calibrations: Mapping[str, Calibration]) -> PanoramaCalibration:
+        """Give the camera's calibration, if it is one that the model was trained on."""
+        camera = calibrations.get(PANORAMA)
+        if camera is self._camera and self._camera is not None:
+            return self._camera
+        if not isinstance(camera, PanoramaCalibration):
+            raise BadInput(f"camera {PANORAMA!r}: the tracker wants a calibrated one that sees all round")
+        if why := self._view.refusal(view_of(camera, camera.width, camera.height)):
+            raise BadInput(f"{why}; `{COMMAND}` and `peopleboy train-foreground` learn for another")
+        self._camera = camera
+        return camera
 
     def _followed(self, scene: Scene, looker: Onlooker, dt_s: float) -> list[PanoramicPerson]:
         """Look for everybody who is known, the nearest first."""

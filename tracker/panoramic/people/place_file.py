@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 from peopleboy.tracker.panoramic.people.place_model import INPUTS, Network, PlaceModel
 from peopleboy.tracker.panoramic.weights_file import Weights
 

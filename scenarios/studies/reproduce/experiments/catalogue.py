@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.reproduce.experiments.contents import Contents
 from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
+from peopleboy.scenarios.studies.reproduce.experiments.distances import DISTANCES, Correlations, FloorPath
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
+from peopleboy.scenarios.studies.reproduce.experiments.pictures import DEPICTIONS
 from peopleboy.scenarios.studies.reproduce.experiments.timing import TIMINGS
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, TrackerTrial, Tracking
-from peopleboy.scenarios.studies.reproduce.experiments.webcams import Webcams
+from peopleboy.scenarios.studies.reproduce.experiments.webcams import Angles, Webcams
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting, Value
 from peopleboy.tracker.evaluation.uncounted import Rule
 from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
@@ -234,34 +236,66 @@ _ALL: tuple[Experiment, ...] = (
     _chapters("figure-7.3", _STEPS),
     *_SWEEPS[5:],
     _paper_figure_5(),
+    *DEPICTIONS[:2],
     Webcams(),
+    *DEPICTIONS[2:],
+    Angles(),
+    Correlations(),
+    *DISTANCES,
+    FloorPath(),
 )
 
 EXPERIMENTS: dict[str, Experiment] = {experiment.id: experiment for experiment in _ALL}
 """By id, in the order of the page."""
 
 
-def choose(names: Sequence[str]) -> list[Experiment]:
-    """Find experiments by id or by number: "4.9" is figures 4.9a and 4.9b, "paper" all of the paper.
+PAPERS: Mapping[str, str] = {"thesis": "", "2005": "paper-", "panoramic": "panoramic-"}
+"""The sources by name, and how the ids of each begin; those of the thesis are plain."""
+
+
+def of_paper(paper: str) -> dict[str, Experiment]:
+    """Give one source's experiments by id.
+
+    Raises:
+        BadInput: there is no such source.
+    """
+    if paper not in PAPERS:
+        raise BadInput(f"unknown paper {paper!r}; there are: {', '.join(PAPERS)}")
+    return {number: one for number, one in EXPERIMENTS.items() if _paper_of(number) == paper}
+
+
+def choose(names: Sequence[str], paper: str | None = None) -> list[Experiment]:
+    """Find experiments by id or by number: "4.9" is figures 4.9a and 4.9b, "paper" all of 2005.
+
+    Args:
+        names: ids or numbers; all there are if left out.
+        paper: one of `PAPERS`, to which they are limited.
 
     Raises:
         BadInput: nothing has this name.
     """
+    among = EXPERIMENTS if paper is None else of_paper(paper)
     if not names:
-        return list(EXPERIMENTS.values())
-    chosen = {number for name in names for number in _matching(name)}
-    return [experiment for number, experiment in EXPERIMENTS.items() if number in chosen]
+        return list(among.values())
+    chosen = {number for name in names for number in _matching(name, among)}
+    return [experiment for number, experiment in among.items() if number in chosen]
 
 
-def _matching(name: str) -> list[str]:
-    found = [number for number in EXPERIMENTS if _is_called(number, name.lower())]
+def _matching(name: str, among: Mapping[str, Experiment]) -> list[str]:
+    found = [number for number in among if _is_called(number, name.lower())]
     if not found:
-        raise BadInput(f"nothing is called {name!r}; choose from {', '.join(EXPERIMENTS)}")
+        raise BadInput(f"nothing is called {name!r}; choose from {', '.join(among)}")
     return found
 
 
 def _is_called(number: str, name: str) -> bool:
     last = number.rsplit("-", 1)[-1]
-    plain = number.startswith("paper") or name in (last, last.rstrip("ab"))
-    names = (number, number.rstrip("ab"), number.split("-")[0])
-    return name in names or (plain and not number.startswith("paper"))
+    names = [number, number.rstrip("ab"), number.split("-")[0]]
+    if _paper_of(number) == "thesis":
+        names += [last, last.rstrip("ab")]
+    return name in names
+
+
+def _paper_of(number: str) -> str:
+    begins = (paper for paper, start in PAPERS.items() if start and number.startswith(start))
+    return next(begins, "thesis")

@@ -1,18 +1,28 @@
-"""How exact the external measurement of the 2003 paper is, which the paper knew only where it was fitted."""
+"""How exact the external measurement of the 2003 paper is, and the angles that were held against it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
 import numpy as np
 
 from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.scenarios.studies.distance_learning.image_errors import ErrorSummary, ImageErrors
+from peopleboy.scenarios.studies.reproduce.experiments.distances import ROOMS, examples_of, walks
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 
 CM, DEGREES = "cm", "deg"
 
+ANGLE = "angle of the person"
+_ANGLES = {
+    "against the truth": "panorama_truth",
+    "against webcams, all at once": "panorama_at_once",
+    "against webcams up to 0.2 s apart": "panorama_skewed",
+    "against webcams all 0.2 s late": "panorama_late",
+}
 _LINES = {
     "known places": ("in_sample_m", None),
     "other places": ("new_m", None),
@@ -50,11 +60,11 @@ class Webcams:
 
     def wants(self, plan: Plan, done: Done) -> list[Unit]:
         """Each seed is one piece of work."""
-        return missing([WebcamUnit(seed) for seed in range(plan.repeats)], done)
+        return missing(_units(plan), done)
 
     def samples(self, plan: Plan, done: Done) -> Samples:
         """Give the errors, line by line."""
-        found = [done[WebcamUnit(seed).key] for seed in range(plan.repeats)]
+        found = [done[unit.key] for unit in _units(plan)]
         return {
             Line(group, "default"): {
                 CM: np.array([100.0 * one[place] for one in found]),
@@ -62,3 +72,36 @@ class Webcams:
             }
             for group, (place, angle) in _LINES.items()
         }
+
+
+@dataclass(frozen=True, slots=True)
+class Angles:
+    """Errors of the angle that the panorama tells [deg], by what they are held against."""
+
+    id: str = "panoramic-angle"
+    chart: Chart = "none"
+    plotted: tuple[str, ...] = ()
+
+    def wants(self, plan: Plan, done: Done) -> list[Unit]:
+        """The films of the rooms, and those with webcams."""
+        films = [walk for room in ROOMS for walk in walks(plan, room)]
+        return [*missing(films, done), *missing(_units(plan), done)]
+
+    def samples(self, plan: Plan, done: Done) -> Samples:
+        """Give the errors, the rooms first."""
+        found = {}
+        for room in ROOMS:
+            degrees = (np.degrees(run.angle_error_rad) for run in examples_of(plan, done, room))
+            found[Line(ANGLE, f"{room}, against the truth")] = _films(map(ErrorSummary.of, degrees))
+        for name, key in _ANGLES.items():
+            kept = (ErrorSummary(**done[unit.key][key]) for unit in _units(plan))
+            found[Line(ANGLE, f"corner_webcams, {name}")] = _films(kept)
+        return {line: {DEGREES: errors} for line, errors in found.items()}
+
+
+def _units(plan: Plan) -> list[WebcamUnit]:
+    return [WebcamUnit(seed) for seed in range(plan.repeats)]
+
+
+def _films(films: Iterable[ErrorSummary]) -> ImageErrors:
+    return ImageErrors.joined(ImageErrors(splits=(film,)) for film in films)

@@ -14,10 +14,15 @@ from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 
 STUDIES = Path(__file__).parents[2]
+LIBRARY = STUDIES.with_name("library")
 MEASURES = (
-    *(Path(__file__).with_name(name) for name in ("delay_units.py", "learn_units.py", "units.py")),
-    *sorted((STUDIES / "webcams").glob("*.py")),
-    STUDIES.with_name("library") / "corner_webcams.yaml",
+    *(
+        Path(__file__).with_name(f"{kind}units.py")
+        for kind in ("", "delay_", "distance_", "learn_", "picture_")
+    ),
+    *sorted(Path(__file__).parents[1].glob("pictures/*.py")),
+    *(path for study in ("webcams", "distance_learning") for path in sorted((STUDIES / study).glob("*.py"))),
+    *(LIBRARY / f"{name}.yaml" for name in ("corner_webcams", "room_long", "room_narrow", "room_short")),
 )
 """The files that say how results are measured, beside trackers and simulator."""
 

@@ -21,10 +21,11 @@ class Plan:
         repeats: random streams per tracker.
         is_quick: whether sweeps take fewer values, too.
         pair_seeds: seeds per scenario from which examples of overlapping people are taken.
-        splits: of the examples into those to learn from and those to test with.
+        splits: of examples into those to learn from and those to test with.
         triplets: whether weighted triplets are tried, which take minutes.
         rounds: of boosting.
         timing_steps: how often each step is timed.
+        walks: seeds of each room in which people walk before a panoramic camera.
     """
 
     cache: Path
@@ -36,6 +37,7 @@ class Plan:
     triplets: bool = True
     rounds: int = 40
     timing_steps: int = 200
+    walks: int = 10
 
 
 QUICK_S = 20.0
@@ -59,6 +61,7 @@ def quick_plan(cache: Path) -> Plan:
         triplets=False,
         rounds=20,
         timing_steps=60,
+        walks=2,
     )
 
 

@@ -1,4 +1,4 @@
-"""What the two sources say: their figures and claims, from the data file."""
+"""What the sources say: their figures and claims, from the data file."""
 
 from __future__ import annotations
 
@@ -62,13 +62,15 @@ class SourceTable(Strict):
     title: str
     source: str
     note: str = ""
+    picture: str = ""
+    """what the source's figure shows, where it is a picture"""
     values: Annotated[tuple[Value, ...], Field(strict=False)] = ()
     claims: Annotated[tuple[Claim, ...], Field(strict=False)] = ()
 
     @model_validator(mode="after")
     def _says_something(self) -> SourceTable:
-        if not (self.values or self.claims):
-            raise ValueError("give values or claims")
+        if not (self.values or self.claims or self.picture):
+            raise ValueError("give values, claims or what a picture shows")
         return self
 
 

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import jinja2
 
 from peopleboy.scenarios.files.read_yaml import read_yaml
-from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Samples
+from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Outcome, Samples
 from peopleboy.scenarios.studies.reproduce.showing.against_source import (
     SIGNIFICANT,
     ClaimStatus,
     Verdict,
+    chance,
+    effect_to_source,
     judge,
     mean_and_spread,
 )
@@ -24,7 +27,9 @@ from peopleboy.scenarios.studies.reproduce.showing.source import Claim, SourceTa
 
 HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"
-MAIN = {"literal": ("literal",), "default": ("default", "held out")}
+MAIN = {"literal": ("literal", "room_long, random split"), "default": ("default", "held out")}
+FINE = ("m", "|r|")  # columns that need three decimals
+EFFECT = "d to the source (95 %)"
 
 Figures = Mapping[str, tuple[float, float | None]]
 
@@ -84,7 +89,7 @@ class PageHead:
     facts: Mapping[str, str]
 
 
-def write_page(path: Path, results: Sequence[tuple[Experiment, Samples]], about: PageHead) -> None:
+def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None:
     """Write the page."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE),
@@ -93,9 +98,8 @@ def write_page(path: Path, results: Sequence[tuple[Experiment, Samples]], about:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["points"] = lambda value: "-" if math.isnan(value) else f"{value:+.2f}"
+    environment.filters["points"] = points
     environment.filters["chance"] = chance
-    sections = [section(experiment, samples) for experiment, samples in results]
     notes = _notes()
     text = environment.get_template("page.html.jinja").render(
         sections=sections, about=about, general=notes["general"], significant=SIGNIFICANT
@@ -104,34 +108,57 @@ def write_page(path: Path, results: Sequence[tuple[Experiment, Samples]], about:
     path.write_text(text, encoding="utf-8")
 
 
-def section(experiment: Experiment, samples: Samples) -> Section:
+def section(outcome: Outcome) -> Section:
     """Lay out one table or figure."""
+    experiment, samples = outcome.experiment, outcome.samples
     table = source_tables()[experiment.id]
     columns = tuple(dict.fromkeys(name for figures in samples.values() for name in figures))
+    drawn = draw(experiment, samples, table) if outcome.picture is None else outcome.picture
+    effects = tuple(effects_to_source(samples, table))
     return Section(
         id=experiment.id,
         table=table,
-        columns=columns,
-        rows=tuple(rows(samples, table, columns)),
-        picture=draw(experiment, samples, table),
+        columns=(*columns, *((EFFECT,) if any(effects) else ())),
+        rows=tuple(rows(samples, table, columns, effects)),
+        picture=drawn,
         checked=tuple(Checked(claim, tuple(judge(claim, samples))) for claim in table.claims),
         why=_notes()["why"].get(experiment.id, ""),
     )
 
 
-def rows(samples: Samples, table: SourceTable, columns: Sequence[str]) -> list[PageRow]:
-    """Put the source's lines before ours, group by group."""
-    lines: dict[str, list[tuple[str, Figures, bool]]] = {}
-    for value in table.values:
-        lines.setdefault(value.group, []).append((value.who, value.figures, True))
+def effects_to_source(samples: Samples, table: SourceTable) -> Iterator[str]:
+    """Say for each of our lines how far it is from the source's of its group; empty where that is unknown."""
+    theirs = {value.group: value.figures for value in table.values}
     for line, figures in samples.items():
+        of_group = theirs.get(line.group, {})
+        yield "".join(
+            effect_to_source(values, of_group[name])
+            for name, values in figures.items()
+            if isinstance(values, ImageErrors) and name in of_group
+        )
+
+
+def rows(
+    samples: Samples, table: SourceTable, columns: Sequence[str], effects: Sequence[str] = ()
+) -> list[PageRow]:
+    """Put the source's lines before ours, group by group; effects, if any is known, are the last cells."""
+    lines: dict[str, list[tuple[str, Figures, bool, str]]] = {}
+    for value in table.values:
+        lines.setdefault(value.group, []).append((value.who, value.figures, True, ""))
+    for (line, figures), effect in zip(samples.items(), effects or [""] * len(samples), strict=True):
         ours = {name: mean_and_spread(values) for name, values in figures.items()}
-        lines.setdefault(line.group, []).append((line.who, ours, False))
-    write = _writer([figures for parts in lines.values() for _, figures, _ in parts])
+        lines.setdefault(line.group, []).append((line.who, ours, False, effect))
+    write = _writer([figures for parts in lines.values() for _, figures, _, _ in parts])
     return [
-        PageRow(group, who, tuple(write(figures.get(name)) for name in columns), is_source, number == 0)
+        PageRow(
+            group,
+            who,
+            (*(write(name, figures.get(name)) for name in columns), *((effect,) if any(effects) else ())),
+            is_source,
+            number == 0,
+        )
         for group in in_order(lines)
-        for number, (who, figures, is_source) in enumerate(lines[group])
+        for number, (who, figures, is_source, effect) in enumerate(lines[group])
     ]
 
 
@@ -144,27 +171,30 @@ def in_order(groups: Iterable[str]) -> list[str]:
         return listed
 
 
-def chance(p: float) -> str:
-    """Write a p-value."""
-    if math.isnan(p):
-        return "no test"
-    return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
+def points(value: float, column: str) -> str:
+    """Write a difference: millimetres of metres, two decimals of all else."""
+    return "-" if math.isnan(value) else f"{value:+.{_digits(column)}f}"
 
 
-def _writer(lines: Sequence[Figures]) -> Callable[[tuple[float, float | None] | None], str]:
-    """Choose how a table's figures are written: counts, times of less than 1 ms, or two decimals."""
+def _digits(column: str) -> int:
+    return 3 if column in FINE else 2
+
+
+def _writer(lines: Sequence[Figures]) -> Callable[[str, tuple[float, float | None] | None], str]:
+    """Choose how a table's figures are written: counts, times of less than 1 ms, or two or three decimals."""
     known = [mean for figures in lines for mean, _ in figures.values() if not math.isnan(mean)]
     are_counts = all(mean == round(mean) for mean in known)
     are_times = any("ms" in figures for figures in lines)
 
-    def write(figure: tuple[float, float | None] | None) -> str:
+    def write(column: str, figure: tuple[float, float | None] | None) -> str:
         if figure is None or math.isnan(figure[0]):
             return "-"
         mean, spread = figure
         if are_counts:
             return f"{mean:.0f}"
-        text = f"{mean:#.2g}" if are_times and mean < 1 else f"{mean:.2f}"
-        return text if spread is None else f"{text} ± {spread:.2f}"
+        digits = _digits(column)
+        text = f"{mean:#.2g}" if are_times and mean < 1 else f"{mean:.{digits}f}"
+        return text if spread is None else f"{text} ± {spread:.{digits}f}"
 
     return write
 

@@ -7,10 +7,11 @@ import pytest
 import yaml
 
 from peopleboy.scenarios.loop.calibrations import calibration_of
-from peopleboy.sim.cameras.camera_config import PanoramaConfig
+from peopleboy.sim.geometry.mirror import MIRRORS
+from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.tracker.panoramic.panorama_view import choose_view
 from peopleboy.tracker.panoramic.paper import appearance_file
-from peopleboy.tracker.panoramic.paper.appearance_file import SHIPPED, AppearanceModel
-from peopleboy.tracker.panoramic.paper.panorama_view import check_view
+from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel, ship, shipped_models
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
 from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.calls.command_line import refusal, run_cli
@@ -43,9 +44,7 @@ def write(folder: Path, **changes: object) -> Path:
 
 
 def train(scenario: Path, out: Path) -> int:
-    return run_cli(
-        "train-distance", scenario, "--seeds", 1, "--epochs", 500, "--no-trials", "--workers", 1, "--out", out
-    )
+    return run_cli("train-distance", scenario, "--seeds", 1, "--epochs", 500, "--workers", 1, "--out", out)
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +72,7 @@ def test_a_second_lesson_takes_the_examples_that_are_there_and_gives_the_same_fi
 def test_a_run_is_tracked_with_the_network_near_the_truth(
     lesson: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(appearance_file, "SHIPPED", lesson / "panoramic-paper.json")
+    monkeypatch.setattr(appearance_file, "NETWORKS", lesson)
     out = tmp_path / "run"
     assert run_cli("run", write(tmp_path), "--tracker", "panoramic-paper", "--out", out, "--no-rrd") == 0
     tracks = pq.read_table(out / "tracks.parquet").to_pylist()
@@ -84,28 +83,93 @@ def test_a_run_is_tracked_with_the_network_near_the_truth(
     assert json.loads((out / "metrics.json").read_text(encoding="utf-8"))["floor"]["mean error"] < 0.15
 
 
-def test_the_network_that_comes_with_the_tracker_is_of_the_usual_camera() -> None:
-    camera = PanoramaConfig().camera
+@pytest.mark.parametrize("mirror", MIRRORS)
+def test_a_network_for_every_mirror_that_has_a_name_comes_with_the_tracker(mirror: str) -> None:
+    camera = Panorama(mirror=MIRRORS[mirror])
     calibration = calibration_of(camera)
-    check_view(AppearanceModel.load(SHIPPED).view, (camera.height, camera.width), calibration)
-    assert isinstance(make_tracker("panoramic-paper", np.random.default_rng(0)), PanoramicPaperTracker)
+    assert calibration is not None
+    views = [model.view for model in shipped_models()]
+    assert (
+        views[choose_view(views, (camera.height, camera.width), calibration)].mirror
+        in {
+            "default": "at 1.71 m that looks 8.1 to 54.7 deg down",
+            "narrow": "at 1.71 m that looks 8.1 to 34.9 deg down",
+        }.values()
+    )
+    tracker = make_tracker("panoramic-paper", np.random.default_rng(0))
+    assert isinstance(tracker, PanoramicPaperTracker)
+    tracker.check_cameras({"panorama": calibration})
 
 
-def test_another_mirror_is_refused_in_a_line(
-    lesson: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_a_shipped_network_takes_the_place_of_the_one_for_its_mirror_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(appearance_file, "SHIPPED", lesson / "panoramic-paper.json")
-    narrow = {"panorama": {"kind": "panorama", "mirror": "narrow"}}
-    scene = write(tmp_path, robot={"at_m": [0.5, 0.0], "cameras": narrow})
-    told = refusal(capsys, "run", scene, "--tracker", "panoramic-paper", "--out", tmp_path / "run")
-    assert "peopleboy train-distance" in told
+    models = shipped_models()
+    monkeypatch.setattr(appearance_file, "NETWORKS", tmp_path)
+    for number, model in enumerate(models):
+        ship(model, f"scene{number}")
+    assert ship(models[0], "newer").read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["newer.json", "scene1.json"]
 
 
-def test_a_scenario_that_does_not_begin_empty_is_refused(
+def own_mirror(folder: Path, **values: float) -> Path:
+    camera = {"kind": "panorama", "mirror": values}
+    return write(folder, robot={"at_m": [0.5, 0.0], "cameras": {"panorama": camera}})
+
+
+OTHER = {"half_apex_deg": 65.0, "lens_half_angle_deg": 30.0}
+FLAT = {"half_apex_deg": 46.0, "lens_half_angle_deg": 30.0}
+
+
+def test_another_mirror_is_refused_in_a_line_before_anything_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    people = [{"name": "anna", "path": [{"at_m": [2.0, 1.0]}]}]
+    scene = own_mirror(tmp_path, **OTHER)
+    told = refusal(capsys, "run", scene, "--tracker", "panoramic-paper", "--out", tmp_path / "run")
+    assert "peopleboy train-distance" in told
     told = refusal(
-        capsys, "train-distance", write(tmp_path, people=people), "--out", tmp_path / "out", "--seeds", 1
+        capsys, "sweep", scene, "--tracker", "panoramic-paper", "--out", tmp_path / "sweep", lines=1
     )
-    assert "must be empty" in told
+    assert "peopleboy train-distance" in told
+    assert not list(tmp_path.glob("run*"))
+    assert not list(tmp_path.glob("sweep/*"))
+
+
+def test_a_camera_that_does_not_see_all_round_is_refused_before_anything_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    flat = {"panorama": {"kind": "colour"}}
+    scene = write(tmp_path, robot={"at_m": [0.5, 0.0], "cameras": flat})
+    told = refusal(capsys, "run", scene, "--tracker", "panoramic-paper", "--out", tmp_path / "run")
+    assert "sees all round" in told
+    assert not (tmp_path / "run").exists()
+
+
+REFUSED = {
+    "not empty": (
+        lambda folder: write(folder, people=[{"name": "anna", "path": [{"at_m": [2, 1]}]}]),
+        "must be empty",
+    ),
+    "nobody": (lambda folder: write(folder, people=[]), "nobody walks"),
+    "no floor": (lambda folder: own_mirror(folder, **FLAT), "sees no floor"),
+}
+
+
+@pytest.mark.parametrize("why", REFUSED)
+def test_a_scenario_from_which_nothing_can_be_learned_is_refused_and_leaves_nothing(
+    why: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    make, words = REFUSED[why]
+    told = refusal(capsys, "train-distance", make(tmp_path), "--out", tmp_path / "out", "--seeds", 1)
+    assert words in told
+    assert not (tmp_path / "out").exists()
+
+
+def test_it_tells_its_errors_and_the_command_that_compares_them(
+    lesson: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert train(lesson.parent / "stroll.yaml", lesson) == 0
+    off, command, path = capsys.readouterr().out.splitlines()
+    assert "by blocks" in off
+    assert "peopleboy reproduce --paper panoramic" in command
+    assert Path(path) == lesson / "panoramic-paper.json"

@@ -12,41 +12,58 @@ from scipy.stats import t as student
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
-from peopleboy.scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS, choose
-from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line, Samples
+from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
+from peopleboy.scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS, PAPERS, choose
+from peopleboy.scenarios.studies.reproduce.experiments.distances import CUES, Correlations, Distances
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line, Outcome, Samples
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import Tracking
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import BASES, Setting, changed
 from peopleboy.scenarios.studies.reproduce.measuring.units import RECORDS, TrackUnit, restored
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan, full_plan
 from peopleboy.scenarios.studies.reproduce.reproduce import RESULTS, Means, reproduce
 from peopleboy.scenarios.studies.reproduce.showing.against_source import ClaimStatus, judge, paired_t_test
+from peopleboy.scenarios.studies.reproduce.showing.print_sections import print_sections
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim, source_tables
-from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, write_page
+from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, section, write_page
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
-from tests.helpers.calls.command_line import run_cli
+from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import refused
 from tests.helpers.visible_text import assert_reads_as
 
 FIGURES = ("4.8", "4.9a", "4.9b", "5.4", "5.5a", "5.5b", "5.6", "6.4", "6.5", "6.6", "7.3")
 TABLES = ("3.1", "4.1", "5.1", "6.1", "6.2", "7.1", "7.2", "7.3", "7.4")
 PAPER = ("table-1", "table-2", "table-3", "figure-5")
+PANORAMIC = (
+    *(f"figure-{number}" for number in range(1, 7)),
+    *("webcams", "angle", "general", "personal", "position", "noise"),
+)
 ALL = {
     *(f"figure-{number}" for number in FIGURES),
     *(f"table-{number}" for number in TABLES),
     *(f"paper-{number}" for number in PAPER),
+    *(f"panoramic-{name}" for name in PANORAMIC),
     "section-5.3",
-    "panoramic-webcams",
 }
 
 
 def made_up(experiment: Experiment) -> Samples:
     """Invent figures for every line that an experiment has in the source or in its trials."""
     rng = np.random.default_rng(0)
+    if isinstance(experiment, Distances):
+        return {Line(group, "room_long, random split"): {"m": errors(rng)} for group in experiment.picks}
+    if isinstance(experiment, Correlations):
+        return {Line(cue, "room_long"): {"|r|": rng.uniform(0.5, 0.9, 3)} for cue in CUES}
     if isinstance(experiment, Tracking):
         return {t.line: {m: rng.uniform(50, 90, 3) for m in experiment.metrics} for t in experiment.trials}
     values = source_tables()[experiment.id].values
     return {Line(v.group, "default"): {name: rng.uniform(50, 90, 3) for name in v.figures} for v in values}
+
+
+def errors(rng: np.random.Generator) -> ImageErrors:
+    """Invent two splits of a film of 400 images."""
+    rows = [np.sort(rng.permutation(400)[:280]) for _ in range(2)]
+    return ImageErrors.of([(part, rng.exponential(0.1, 280)) for part in rows], 400)
 
 
 def test_every_table_and_figure_with_numbers_is_there_and_has_its_source() -> None:
@@ -63,6 +80,21 @@ def test_numbers_stand_for_all_that_have_them() -> None:
     assert [one.id for one in choose(["paper"])] == [f"paper-{number}" for number in PAPER]
     assert [one.id for one in choose(["paper-table-2", "figure-4.9b"])] == ["figure-4.9b", "paper-table-2"]
     assert [one.id for one in choose([])] == list(EXPERIMENTS)
+
+
+def test_papers_share_all_experiments_among_themselves() -> None:
+    papers = {paper: [one.id for one in choose([], paper)] for paper in PAPERS}
+    assert sorted(number for ids in papers.values() for number in ids) == sorted(ALL)
+    assert papers["2005"] == [one.id for one in choose(["paper"])]
+    assert papers["panoramic"] == [one.id for one in choose(["panoramic"])]
+    assert [one.id for one in choose(["panoramic-figure-5"], "panoramic")] == ["panoramic-figure-5"]
+
+
+def test_a_paper_that_there_is_not_and_an_id_of_another_one_are_refused() -> None:
+    with refused("'2006'", "thesis, 2005, panoramic"):
+        choose([], "2006")
+    with refused("'figure-4.8'", "panoramic-general"):
+        choose(["figure-4.8"], "panoramic")
 
 
 def test_an_unknown_number_is_refused_with_all_that_there_are() -> None:
@@ -148,6 +180,9 @@ def test_claims_are_judged_by_difference_and_significance(
     assert [verdict.outcome for verdict in judge(claim, samples)] == [outcome]
 
 
+PICTURE = {f"panoramic-figure-{number}": "data:image/png;base64,AAAA" for number in range(1, 7)}
+
+
 class Addresses(HTMLParser):
     """Collects what a page would fetch, and the names that it can be jumped to."""
 
@@ -171,23 +206,26 @@ def read(page: Path) -> tuple[str, Addresses]:
 
 
 def test_the_page_holds_everything_and_fetches_nothing(tmp_path: Path) -> None:
-    results = [(experiment, made_up(experiment)) for experiment in EXPERIMENTS.values()]
+    results = [section(Outcome(one, made_up(one), PICTURE.get(one.id))) for one in EXPERIMENTS.values()]
     about = PageHead(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
     write_page(tmp_path / "index.html", results, about)
     text, addresses = read(tmp_path / "index.html")
     assert addresses.ids >= ALL
-    assert len(addresses.fetched) == sum(one.chart != "none" for one in EXPERIMENTS.values())
-    assert all(address.startswith("data:image/svg+xml;base64,") for address in addresses.fetched)
+    charts = [one for one in EXPERIMENTS.values() if one.chart != "none"]
+    assert len(addresses.fetched) == len(charts) + len(PICTURE)
+    kinds = ("data:image/svg+xml;base64,", "data:image/png;base64,")
+    assert all(address.startswith(kinds) for address in addresses.fetched)
     assert not re.search(r"https?://|@import|url\(|<script", text)
     for number in ("94.61", "89.38 ± 2.48", "2709", "72.20", "Athlon XP 2 GHz"):
         assert number in text
 
 
-def test_a_page_of_two_sections_reads_as_it_did(tmp_path: Path) -> None:
-    results = [(one, made_up(one)) for one in choose(["figure-4.9b", "paper-table-3"])]
+def test_a_page_of_four_sections_reads_as_it_did(tmp_path: Path) -> None:
+    chosen = choose(["figure-4.9b", "paper-table-3", "panoramic-position", "panoramic-figure-1"])
+    results = [section(Outcome(one, made_up(one), PICTURE.get(one.id))) for one in chosen]
     about = PageHead(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
     write_page(tmp_path / "page.html", results, about)
-    assert_reads_as(tmp_path / "page.html", Path(__file__).with_name("page_of_two_sections.txt"))
+    assert_reads_as(tmp_path / "page.html", Path(__file__).with_name("page_of_four_sections.txt"))
 
 
 def toy_runs() -> Iterator[tuple[str, tuple[SuiteRun, ...]]]:
@@ -200,11 +238,11 @@ def toy_runs() -> Iterator[tuple[str, tuple[SuiteRun, ...]]]:
 def test_a_little_of_everything_becomes_a_page_and_is_done_once(tmp_path: Path) -> None:
     plan = Plan(cache=tmp_path / "films", suites=dict(toy_runs()), repeats=2, is_quick=True, timing_steps=2)
     chosen = choose(["3.1", "4.1", "4.8", "5.5", "figure-7.3", "paper-table-3"])
-    page = reproduce(chosen, plan, Means(out=tmp_path))
+    page, _ = reproduce(chosen, plan, Means(out=tmp_path))
     assert read(page)[1].ids >= {one.id for one in chosen}
     done = [json.loads(line)["key"] for line in (tmp_path / RESULTS).read_text().splitlines()]
     assert len(done) == len(set(done)) > 30
-    assert reproduce(chosen, plan, Means(out=tmp_path)) == page
+    assert reproduce(chosen, plan, Means(out=tmp_path))[0] == page
     assert len((tmp_path / RESULTS).read_text().splitlines()) == len(done)
 
 
@@ -232,3 +270,25 @@ def test_the_command_lists_what_there_is(capsys: pytest.CaptureFixture[str]) -> 
     shown = capsys.readouterr().out
     assert "figure-4.9a" in shown
     assert "figure-4.8" not in shown
+
+
+def test_the_command_lists_one_paper(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_cli("reproduce", "--list", "--paper", "panoramic") == 0
+    shown = capsys.readouterr().out
+    assert "panoramic-figure-6" in shown
+    assert "paper-table-1" not in shown
+    assert "thesis, 2005, panoramic" in refusal(capsys, "reproduce", "--paper", "2006")
+
+
+def test_sections_are_printed_with_both_figures_and_both_tests(capsys: pytest.CaptureFixture[str]) -> None:
+    (position,) = choose(["panoramic-position"])
+    print_sections([section(Outcome(position, made_up(position)))])
+    told = capsys.readouterr().out
+    for words in (
+        "0.154 ± 0.094",
+        "0.145 ± 0.092",
+        "paired by stretches of time: t =",
+        "unpaired: t =",
+        "d_z =",
+    ):
+        assert words in told

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.scenarios.studies.webcams.hat import hat_column
-from peopleboy.scenarios.studies.webcams.measure import measure_webcams
+from peopleboy.scenarios.studies.webcams.measure import check_views, measure_webcams
 from peopleboy.scenarios.studies.webcams.triangulate import bearings, calibrate, triangulate
 from tests.helpers.calls.refused import refused
 
@@ -59,6 +59,14 @@ def test_a_webcam_that_sees_nobody_is_refused():
         calibrate(columns, known, WEBCAMS, WIDTH)
 
 
+def test_webcams_that_look_past_the_known_places_are_refused_before_the_film():
+    places = np.array([[4.0, 0.0], [5.0, 1.0], [6.0, -1.0], [5.0, 0.5]])
+    check_views(WEBCAMS, places)
+    turned = WEBCAMS + np.array([0.0, 0.0, math.pi, 0.0]) * (np.arange(4) == 1)[:, None]
+    with refused("webcam 2", "0 of the known places", "4 are needed"):
+        check_views(turned, places)
+
+
 def test_the_hat_is_found_by_its_colour_and_only_whole():
     image = np.full((240, 320, 3), 170, np.uint8)
     image[100:140, 60:90] = (90, 140, 210)  # a light blue shirt
@@ -76,3 +84,7 @@ def test_the_measurement_is_as_exact_as_the_paper_says_and_a_skew_spoils_it():
     assert errors.walking_m < 0.02
     assert errors.skewed_m > 3.0 * errors.walking_m
     assert errors.skewed_bearing_deg > 3.0 * errors.bearing_deg
+    assert errors.panorama_truth.mean < 0.5
+    assert errors.panorama_at_once.mean < 0.5
+    assert errors.panorama_skewed.mean > 2.0 * errors.panorama_truth.mean
+    assert errors.panorama_late.mean == pytest.approx(2.01, abs=0.4)

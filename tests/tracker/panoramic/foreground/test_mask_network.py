@@ -5,7 +5,7 @@ import pytest
 
 from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
 from peopleboy.tracker.panoramic.foreground.network_file import ForegroundModel
-from peopleboy.tracker.panoramic.paper.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 from tests.helpers.calls.refused import refused
 
 ROWS, COLUMNS, UNITS = 10, 24, 12

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from peopleboy.tracker.panoramic.panorama_view import view_of
 from peopleboy.tracker.panoramic.paper import appearance_file
 from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
 from peopleboy.tracker.panoramic.paper.distance_network import Lessons, teach
-from peopleboy.tracker.panoramic.paper.panorama_view import view_of
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig, PanoramicPaperTracker
 from peopleboy.tracker.panoramic.paper.position_filter import PRINTED
 from peopleboy.tracker.track import Status
@@ -44,7 +44,7 @@ class Walker:
 
     def __init__(self, model, **config):
         self.rng, self.tick = np.random.default_rng(5), 0
-        self.tracker = PanoramicPaperTracker(model, PanoramicConfig(**config))
+        self.tracker = PanoramicPaperTracker([model], PanoramicConfig(**config))
 
     def see(self, distance=None, angle=0.0, **further):
         image = empty_hall(self.rng)
@@ -168,23 +168,23 @@ def test_what_is_no_model_is_refused(tmp_path, content):
 def test_a_missing_file_and_a_tracker_without_one_name_the_command_that_makes_one(tmp_path, monkeypatch):
     with refused(tmp_path / "none.json", "peopleboy train-distance"):
         AppearanceModel.load(tmp_path / "none.json")
-    monkeypatch.setattr(appearance_file, "SHIPPED", tmp_path / "none.json")
-    with refused("panoramic-paper", "none.json", "peopleboy train-distance --ship"):
+    monkeypatch.setattr(appearance_file, "NETWORKS", tmp_path / "none")
+    with refused("panoramic-paper", "none", "peopleboy train-distance --ship"):
         make_tracker("panoramic-paper", np.random.default_rng(0))
 
 
 def test_images_of_another_size_are_refused(model):
     with refused("240x60", "480x120"):
-        PanoramicPaperTracker(model).update(frame(0.0, np.zeros((60, 240, 3), np.uint8)))
+        PanoramicPaperTracker([model]).update(frame(0.0, np.zeros((60, 240, 3), np.uint8)))
 
 
 def test_images_of_another_mirror_are_refused(model):
     image = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
     other = {"panorama": DrawnMirror(lowest_deg=35.0)}
     with refused("8.0 to 35.0 deg", "8.0 to 55.0 deg", "peopleboy train-distance"):
-        PanoramicPaperTracker(model).update(replace(frame(0.0, image), calibrations=other))
+        PanoramicPaperTracker([model]).update(replace(frame(0.0, image), calibrations=other))
 
 
 def test_footage_of_an_unknown_camera_is_taken_if_its_size_is_right(model):
     image = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
-    assert PanoramicPaperTracker(model).update(replace(frame(0.0, image), calibrations={})) == ()
+    assert PanoramicPaperTracker([model]).update(replace(frame(0.0, image), calibrations={})) == ()

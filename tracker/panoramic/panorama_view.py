@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -69,17 +69,26 @@ def view_of(calibration: Calibration, width_px: int, height_px: int) -> Panorama
     )
 
 
-def check_view(trained: PanoramaView, size: tuple[int, int], calibration: Calibration | None) -> None:
-    """Refuse images (height, width) of another size, or of another mirror where the calibration is known.
+def choose_view(
+    trained: Sequence[PanoramaView], size: tuple[int, int], calibration: Calibration | None
+) -> int:
+    """Tell which of one or more views a camera has, by its images' (height, width) and its calibration.
+
+    Where that is unknown, the first one of that size will do.
 
     Raises:
-        BadInput: the network was trained on another camera.
+        BadInput: none of them; no network was trained on this camera.
     """
     height, width = size
-    if calibration is None:
-        seen = replace(trained, width_px=width, height_px=height)
-    else:
-        seen = view_of(calibration, width, height)
-    why = trained.refusal(seen)
-    if why:
-        raise BadInput(f"{why}; train another with `peopleboy train-distance`")
+    whys = []
+    for number, view in enumerate(trained):
+        if calibration is None:
+            seen = replace(view, width_px=width, height_px=height)
+        else:
+            seen = view_of(calibration, width, height)
+        why = view.refusal(seen)
+        if not why:
+            return number
+        whys.append(why)
+    others = f" (and so for {len(whys) - 1} more)" if len(whys) > 1 else ""
+    raise BadInput(f"{whys[0]}{others}; train another with `peopleboy train-distance`")

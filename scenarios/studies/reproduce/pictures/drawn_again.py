@@ -1,0 +1,22 @@
+"""The figures of the 2003 paper that need films of their own; drawing them needs PyBullet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from matplotlib.figure import Figure
+
+from peopleboy.scenarios.studies.reproduce.pictures.set_up import draw_set_up
+from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
+from peopleboy.scenarios.studies.reproduce.pictures.webcam_views import (
+    draw_fields_of_view,
+    draw_webcam_images,
+)
+
+DRAWN: Mapping[str, Callable[[], Figure]] = {
+    "panoramic-figure-1": draw_set_up,
+    "panoramic-figure-2": draw_webcam_images,
+    "panoramic-figure-3": draw_fields_of_view,
+    "panoramic-figure-4": draw_features,
+}
+"""By id of the experiment."""
