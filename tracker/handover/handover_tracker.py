@@ -19,7 +19,7 @@ NEEDED_VOTES: Final = 3
 MOST_VOTES: Final = 15
 FARTHEST_INTRODUCED_M: Final = 7.0
 PAUSE_S: Final = 0.5  # between two introductions of one person
-BORDER: Final = 0.06  # share of the image's width at either side where nobody is introduced
+BORDER: Final = 0.02  # share of the image's width at either side in which nobody's middle is introduced
 
 
 class HandoverTracker:
@@ -121,9 +121,9 @@ class HandoverTracker:
         if x <= 0.5 or (x * x + y * y) ** 0.5 > FARTHEST_INTRODUCED_M:
             return False
         left, _, wide, _ = standing_box(track.place, calibration)
-        if left < BORDER * width or left + wide > (1.0 - BORDER) * width:
-            return False
-        return not any(_covers(other, left + wide / 2.0) for other in warm)
+        middle = left + wide / 2.0
+        is_inside = BORDER * width <= middle <= (1.0 - BORDER) * width
+        return is_inside and not any(_covers(other, middle) for other in warm)
 
     def _joined(self, warm: Sequence[Track], around: Sequence[Track]) -> tuple[Track, ...]:
         """Make one track of those that are one person."""

@@ -33,15 +33,15 @@ class Register:
         known = self._known(person, time_s)
         if known is None:
             self._newest += 1
-            return replace(person, id=self._newest, strange=0)
+            return replace(person, id=self._newest, strange_s=0.0)
         self._gone = tuple(one for one in self._gone if one is not known)
         return replace(
-            person, id=known.id, born_s=min(known.born_s, person.born_s), strange=0, looks=known.looks
+            person, id=known.id, born_s=min(known.born_s, person.born_s), strange_s=0.0, looks=known.looks
         )
 
     def put_right(self, persons: Sequence[PanoramicPerson], time_s: float) -> tuple[PanoramicPerson, ...]:
         """Give people who have looked like somebody else for long the number of that one, or a new one."""
-        strangers = [one for one in persons if one.id and one.strange >= self._config.strange_images]
+        strangers = [one for one in persons if one.id and one.strange_s >= self._config.strange_s]
         if not strangers:
             return tuple(persons)
         # Their memory stays with the number; what they look like now is all that is known of themselves.

@@ -60,14 +60,14 @@ class IdentityConfig:
     Attributes:
         alike: unlikeness of looks up to which who comes is one who went.
         strange: unlikeness from which somebody looks like somebody else.
-        strange_images: in how many images on end somebody must, to be somebody else.
+        strange_s: for how long somebody must, to be somebody else [s].
         reach_m, fastest_m_s: how far from where it was lost somebody may be found, at once [m] and with time.
         forget_s: who has been gone for longer is not recognised [s].
     """
 
     alike: float = 2.5
     strange: float = 3.5
-    strange_images: int = 3
+    strange_s: float = 0.8
     reach_m: float = 0.8
     fastest_m_s: float = 1.4
     forget_s: float = 20.0

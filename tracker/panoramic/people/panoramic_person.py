@@ -23,7 +23,7 @@ class PanoramicPerson:
         status: how well it is seen; a newcomer is tentative until it is believed.
         looks: its colours, over time.
         newest: its colours in the last image in which it was seen whole.
-        strange: in how many images on end it looked like somebody else.
+        strange_s: for how long it has looked like somebody else [s].
         occluder: id of who hides it.
     """
 
@@ -37,7 +37,7 @@ class PanoramicPerson:
     status: Status
     looks: Looks = NO_LOOKS
     newest: Looks = NO_LOOKS
-    strange: int = 0
+    strange_s: float = 0.0
     occluder: int | None = None
 
     @property

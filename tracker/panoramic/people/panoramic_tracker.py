@@ -126,7 +126,7 @@ class PanoramicTracker:
             if seen is None:
                 motion = person.motion.slowed(dt_s, config.fading_s)
                 status = Status.TOTALLY_OCCLUDED
-                found.append(replace(person, motion=motion, status=status, occluder=hider, strange=0))
+                found.append(replace(person, motion=motion, status=status, occluder=hider, strange_s=0.0))
             else:
                 found.append(self._seen(person, seen, scene, hider))
         return found
@@ -136,6 +136,7 @@ class PanoramicTracker:
     ) -> PanoramicPerson:
         """Take in that a person is seen."""
         looks, is_whole = scene.looks(seen.bearing_rad, seen.distance_m), hider is None
+        passed_s = self._time_s - person.seen_s
         scene.cover(seen.bearing_rad, seen.distance_m)
         is_strange = is_whole and person.looks.unlikeness(looks) > self.config.identity.strange
         return replace(
@@ -148,7 +149,7 @@ class PanoramicTracker:
             status=Status.TRACKED if is_whole else Status.PARTLY_OCCLUDED,
             looks=person.looks if is_strange or not is_whole else person.looks.joined(looks),
             newest=looks,
-            strange=person.strange + 1 if is_strange else 0,
+            strange_s=person.strange_s + passed_s if is_strange else 0.0,
             occluder=hider,
         )
 
