@@ -22,7 +22,7 @@ from peopleboy.tracker.panoramic.people.search import promising_places
 
 Floats = NDArray[np.float64]
 
-IMAGES: Final = 150
+IMAGES: Final = 300
 """From how many images of a film is learned at most, and from half of them; all are played."""
 
 NEAREST_M: Final = 0.8

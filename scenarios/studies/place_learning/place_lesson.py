@@ -25,7 +25,7 @@ from peopleboy.tracker.panoramic.panorama_view import view_of
 from peopleboy.tracker.panoramic.people.place_file import SHIPPED, save_places
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 
-LIBRARY: Final = {"room_long": 8, "panoramic_crossing": 6, "panoramic_moving": 6}
+LIBRARY: Final = {"room_long": 12, "panoramic_crossing": 10, "panoramic_moving": 14}
 """How many runs of scenarios of the library are learned from, too."""
 
 TESTS: Final = 20

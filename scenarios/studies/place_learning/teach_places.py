@@ -16,10 +16,10 @@ from peopleboy.tracker.panoramic.people.place_model import Network, PlaceModel
 if TYPE_CHECKING:
     from sklearn.neural_network import MLPClassifier, MLPRegressor
 
-PLACE_UNITS: Final = (64, 24)
+PLACE_UNITS: Final = (96, 32)
 PRESENCE_UNITS: Final = (24,)
 DOUBT_UNITS: Final = (24,)
-EPOCHS: Final = {"place": 16, "presence": 8, "doubt": 8}
+EPOCHS: Final = {"place": 24, "presence": 10, "doubt": 8}
 _LEAST_ERROR_M: Final = 1e-3
 _LOG_OF_NORMAL: Final = 0.6352
 """Minus the mean of log |e| for a normal e of deviation 1."""

@@ -15,6 +15,7 @@ class SightingConfig:
         wide_m: standard deviation of a predicted place from which its neighbourhood is looked at, too [m].
         reach_m: how far to either side that is [m].
         partly_share: share of the body behind others from which somebody is hidden in part.
+        hidden_share: likewise from which who is not seen is hidden.
         blind_share: likewise from which nothing is to be seen.
     """
 
@@ -23,6 +24,7 @@ class SightingConfig:
     wide_m: float = 0.15
     reach_m: float = 0.3
     partly_share: float = 0.25
+    hidden_share: float = 0.5
     blind_share: float = 0.7
 
 
@@ -33,6 +35,10 @@ class LifeConfig:
     Attributes:
         birth_sightings, birth_s: in so many images somebody must be seen to be believed, or in two that are
             so long [s] apart.
+        birth_trust: log odds from which somebody is believed.
+        death_trust: log odds below which nobody is there.
+        most_trust: log odds of an image count as no more than this, and as its negative if nobody is seen.
+        trust_s: images count for about so long [s].
         newcomers: how many places are looked at in an image for people who are not known.
         farthest_m: farther away nobody is found [m].
         newcomer_s: who is not believed yet and not seen for longer is forgotten [s].
@@ -44,8 +50,12 @@ class LifeConfig:
 
     birth_sightings: int = 3
     birth_s: float = 0.3
+    birth_trust: float = 2.5
+    death_trust: float = 0.0
+    most_trust: float = 8.0
+    trust_s: float = 0.4
     newcomers: int = 3
-    farthest_m: float = 8.0
+    farthest_m: float = 7.5
     newcomer_s: float = 0.35
     unseen_s: float = 0.7
     hidden_s: float = 5.0

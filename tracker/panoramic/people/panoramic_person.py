@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
@@ -19,7 +20,7 @@ class PanoramicPerson:
         lasting_m2: (2, 2) covariance of the place that further images do not lessen, in room coordinates.
         born_s, seen_s: when it was seen first, and last [s].
         sightings: in how many images.
-        confidence: 0..1, how surely somebody is there.
+        trust: log odds that somebody is there, over the newest images.
         status: how well it is seen; a newcomer is tentative until it is believed.
         looks: its colours, over time.
         newest: its colours in the last image in which it was seen whole.
@@ -33,12 +34,17 @@ class PanoramicPerson:
     born_s: float
     seen_s: float
     sightings: int
-    confidence: float
+    trust: float
     status: Status
     looks: Looks = NO_LOOKS
     newest: Looks = NO_LOOKS
     strange_s: float = 0.0
     occluder: int | None = None
+
+    @property
+    def confidence(self) -> float:
+        """0..1, how surely somebody is there."""
+        return 1.0 / (1.0 + math.exp(-self.trust))
 
     @property
     def is_seen(self) -> bool:

@@ -124,12 +124,28 @@ class PanoramicTracker:
             seen = looker.expected(person.motion, scene) if hidden < config.sighting.blind_share else None
             hider = _hider(bearing, found, looker) if hidden > config.sighting.partly_share else None
             if seen is None:
-                motion = person.motion.slowed(dt_s, config.fading_s)
-                status = Status.TOTALLY_OCCLUDED
-                found.append(replace(person, motion=motion, status=status, occluder=hider, strange_s=0.0))
+                is_hidden = hidden > config.sighting.hidden_share
+                found.append(self._unseen(person, dt_s, hider if is_hidden else None))
             else:
                 found.append(self._seen(person, seen, scene, hider))
         return found
+
+    def _unseen(self, person: PanoramicPerson, dt_s: float, hider: int | None) -> PanoramicPerson:
+        """Take in that a person is not seen; who is hidden is trusted as before."""
+        return replace(
+            person,
+            motion=person.motion.slowed(dt_s, self.config.fading_s),
+            trust=person.trust if hider is not None else self._trusted(person.trust, -math.inf, dt_s),
+            status=Status.TOTALLY_OCCLUDED,
+            occluder=hider,
+            strange_s=0.0,
+        )
+
+    def _trusted(self, trust: float, evidence: float, dt_s: float) -> float:
+        """Let the log odds of a new image join those before."""
+        life = self.config.life
+        bounded = max(-life.most_trust, min(evidence, life.most_trust))
+        return trust + (1.0 - math.exp(-dt_s / life.trust_s)) * (bounded - trust)
 
     def _seen(
         self, person: PanoramicPerson, seen: Sighting, scene: Scene, hider: int | None
@@ -145,7 +161,7 @@ class PanoramicTracker:
             lasting_m2=self._lasting(seen),
             seen_s=self._time_s,
             sightings=person.sightings + 1,
-            confidence=1.0 / (1.0 + math.exp(-min(seen.evidence, 30.0))),
+            trust=self._trusted(person.trust, seen.evidence, passed_s),
             status=Status.TRACKED if is_whole else Status.PARTLY_OCCLUDED,
             looks=person.looks if is_strange or not is_whole else person.looks.joined(looks),
             newest=looks,
@@ -197,7 +213,7 @@ class PanoramicTracker:
             born_s=self._time_s,
             seen_s=self._time_s,
             sightings=1,
-            confidence=0.5,
+            trust=min(seen.evidence, self.config.life.most_trust),
             status=Status.TENTATIVE,
             looks=looks,
             newest=looks,
@@ -209,7 +225,10 @@ class PanoramicTracker:
         gone: list[PanoramicPerson] = []
         for person in sorted(persons, key=lambda one: (-one.seen_s, one.id == 0, one.id)):
             is_double = any(_apart(person, other) < self.config.life.double_m for other in kept)
-            is_gone = self._time_s - person.seen_s > self._patience_s(person)
+            is_gone = (
+                self._time_s - person.seen_s > self._patience_s(person)
+                or person.trust < self.config.life.death_trust
+            )
             (gone if is_double or is_gone else kept).append(person)
         self._register.leave(gone, self._time_s)
         return kept
@@ -231,8 +250,10 @@ class PanoramicTracker:
     def _is_believed(self, person: PanoramicPerson) -> bool:
         life = self.config.life
         has_stayed = self._time_s - person.born_s >= life.birth_s - 1e-6
-        return person.is_seen and (
-            person.sightings >= life.birth_sightings or (person.sightings > 1 and has_stayed)
+        return (
+            person.is_seen
+            and person.trust >= life.birth_trust
+            and (person.sightings >= life.birth_sightings or (person.sightings > 1 and has_stayed))
         )
 
     def _lasting(self, seen: Sighting) -> Floats:
