@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 from peopleboy.tracker.frame import THERMAL, Calibration, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.handover.departures import Departures
 from peopleboy.tracker.handover.identities import Identities, Key
 from peopleboy.tracker.handover.links import Votes, apartness, pairs
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA, PanoramicTracker
@@ -40,6 +42,7 @@ class HandoverTracker:
         self._thermal, self._panoramic = thermal, panoramic
         self._votes = Votes(NEEDED_VOTES, MOST_VOTES)
         self._identities = Identities()
+        self._departures = Departures()
         self._introduced_s: dict[int, float] = {}
         self._warm: tuple[int, ...] = ()
 
@@ -72,6 +75,7 @@ class HandoverTracker:
         """
         around = self._panoramic.update(frame)
         warm = [track for track in self._thermal.update(frame) if track.status is not Status.TENTATIVE]
+        self._departures.go_on(frame)
         self._warm = tuple(track.id for track in warm)
         agreed = pairs(
             [track for track in warm if _is_seen(track)], [track for track in around if _is_seen(track)]
@@ -80,7 +84,9 @@ class HandoverTracker:
         self._votes.count([(one.id, other.id) for one, other in agreed], by_heat, by_place)
         self._number(warm, around, agreed)
         self._introduce(around, warm, frame)
-        return self._joined(warm, around)
+        joined = self._joined(warm, around)
+        self._departures.note([track for track in joined if _is_seen(track)])
+        return joined
 
     def _number(
         self, warm: Sequence[Track], around: Sequence[Track], agreed: Sequence[tuple[Track, Track]]
@@ -89,13 +95,16 @@ class HandoverTracker:
         mates: dict[int, Key] = {one.id: (PANORAMA, other.id) for one, other in agreed}
         mates |= {one: (PANORAMA, other) for one, other in linked.items()}
         back: dict[int, Key] = {other: (THERMAL, one) for one, (_, other) in mates.items()}
-        numbers.name(PANORAMA, around, back)
-        numbers.name(THERMAL, warm, mates)
+        tracks = [*((PANORAMA, track) for track in around), *((THERMAL, track) for track in warm)]
+        keys = [(camera, track.id) for camera, track in tracks]
+        present = {numbers.number[key] for key in keys if key in numbers.number}
+        guess = partial(self._departures.who, present=present)
+        numbers.name(PANORAMA, around, back, guess)
+        numbers.name(THERMAL, warm, mates, guess)
         by_heat, by_place = {track.id: track for track in warm}, {track.id: track for track in around}
-        present = [*((THERMAL, one) for one in by_heat), *((PANORAMA, other) for other in by_place)]
         for one, other in linked.items():
             if one in by_heat and other in by_place:
-                numbers.agree(((THERMAL, one), by_heat[one]), ((PANORAMA, other), by_place[other]), present)
+                numbers.agree(((THERMAL, one), by_heat[one]), ((PANORAMA, other), by_place[other]), keys)
 
     def _introduce(self, around: Sequence[Track], warm: Sequence[Track], frame: Frame) -> None:
         """Point out to the thermal tracker whom it does not see, though that one is before its camera."""

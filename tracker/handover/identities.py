@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from peopleboy.tracker.track import Track
@@ -25,18 +25,25 @@ class Identities:
     number: dict[Key, int] = field(default_factory=dict)
     _newest: int = 0
 
-    def name(self, camera: str, tracks: Iterable[Track], known: Mapping[int, Key]) -> None:
+    def name(
+        self,
+        camera: str,
+        tracks: Sequence[Track],
+        known: Mapping[int, Key],
+        guess: Callable[[Track], int | None],
+    ) -> None:
         """Number the tracks of a camera that have none yet.
 
         Args:
             camera: its name.
             tracks: all of them.
             known: for ids of tracks that agree with one of the other camera, that one.
+            guess: tells the number of a track that agrees with none; None for a new one.
         """
         for track in tracks:
             if (camera, track.id) not in self.number:
                 other = known.get(track.id)
-                number = None if other is None else self.number.get(other)
+                number = guess(track) if other is None else self.number.get(other)
                 if number is None or any(
                     self.number.get((camera, mate.id)) == number for mate in tracks if mate is not track
                 ):

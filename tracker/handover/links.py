@@ -68,11 +68,14 @@ class Votes:
     ) -> None:
         """Take in the pairs of one frame, and the tracks that there are, by id.
 
-        Links of tracks that are gone are kept as long as the other one lives.
+        Two that are there and do not agree come apart, and so does who agrees with another; what is known of
+        a track that is gone is kept as long as the other one lives.
         """
         fresh = set(agreed)
-        for pair in [*self._counts]:
-            if pair not in fresh and pair[0] in ones and pair[1] in others:
+        left, right = {one for one, _ in fresh}, {other for _, other in fresh}
+        for pair in self._counts.keys() - fresh:
+            is_apart = pair[0] in ones and pair[1] in others
+            if is_apart or pair[0] in left or pair[1] in right:
                 self._counts[pair] -= 1
         for pair in fresh:
             self._counts[pair] = min(self._counts.get(pair, 0) + 1, self._most)
@@ -85,7 +88,7 @@ class Votes:
 
     def _best(self) -> dict[int, int]:
         linked: dict[int, int] = {}
-        for one, other in sorted(self._counts, key=lambda pair: -self._counts[pair]):
+        for one, other in sorted(self._counts, key=lambda pair: (-self._counts[pair], pair)):
             if (
                 self._counts[one, other] >= self._needed
                 and one not in linked

@@ -30,7 +30,7 @@ class Register:
 
     def named(self, person: PanoramicPerson, time_s: float) -> PanoramicPerson:
         """Give somebody a number: the one that it had before, or a new one."""
-        known = self._known(person, time_s)
+        known = self.recognised(person, time_s)
         if known is None:
             self._newest += 1
             return replace(person, id=self._newest, strange_s=0.0)
@@ -51,7 +51,8 @@ class Register:
         }
         return tuple(right[one.id] if one in strangers else one for one in persons)
 
-    def _known(self, person: PanoramicPerson, time_s: float) -> PanoramicPerson | None:
+    def recognised(self, person: PanoramicPerson, time_s: float) -> PanoramicPerson | None:
+        """Find who of those who are gone this may be, by looks and by the way; None for nobody."""
         best, least = None, self._config.alike
         for one in self._gone:
             way = float(np.linalg.norm(one.motion.place_m - person.motion.place_m))

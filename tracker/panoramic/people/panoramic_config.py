@@ -33,11 +33,13 @@ class LifeConfig:
     """When tracks begin and end.
 
     Attributes:
-        birth_sightings, birth_s: in so many images somebody must be seen to be believed, or in two that are
-            so long [s] apart.
-        birth_trust: log odds from which somebody is believed.
+        birth_sightings, birth_s: in so many images somebody must be seen to be believed, or in two so long
+            [s] apart.
+        birth_trust: log odds from which somebody new is believed.
+        return_trust: log odds from which somebody is believed who looks like one who went.
         death_trust: log odds below which nobody is there.
-        most_trust: log odds of an image count as no more than this, and as its negative if nobody is seen.
+        most_trust: log odds of a single image count as no more than this.
+        miss: log odds of an image in which who should be there is not seen.
         trust_s: images count for about so long [s].
         newcomers: how many places are looked at in an image for people who are not known.
         farthest_m: farther away nobody is found [m].
@@ -50,9 +52,11 @@ class LifeConfig:
 
     birth_sightings: int = 3
     birth_s: float = 0.3
-    birth_trust: float = 2.5
-    death_trust: float = 0.0
+    birth_trust: float = 2.0
+    return_trust: float = 0.5
+    death_trust: float = -1.0
     most_trust: float = 8.0
+    miss: float = -3.0
     trust_s: float = 0.4
     newcomers: int = 3
     farthest_m: float = 7.5

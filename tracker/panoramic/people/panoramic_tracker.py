@@ -135,7 +135,9 @@ class PanoramicTracker:
         return replace(
             person,
             motion=person.motion.slowed(dt_s, self.config.fading_s),
-            trust=person.trust if hider is not None else self._trusted(person.trust, -math.inf, dt_s),
+            trust=person.trust
+            if hider is not None
+            else self._trusted(person.trust, self.config.life.miss, dt_s),
             status=Status.TOTALLY_OCCLUDED,
             occluder=hider,
             strange_s=0.0,
@@ -144,8 +146,8 @@ class PanoramicTracker:
     def _trusted(self, trust: float, evidence: float, dt_s: float) -> float:
         """Let the log odds of a new image join those before."""
         life = self.config.life
-        bounded = max(-life.most_trust, min(evidence, life.most_trust))
-        return trust + (1.0 - math.exp(-dt_s / life.trust_s)) * (bounded - trust)
+        newest = min(evidence, life.most_trust)
+        return trust + (1.0 - math.exp(-dt_s / life.trust_s)) * (newest - trust)
 
     def _seen(
         self, person: PanoramicPerson, seen: Sighting, scene: Scene, hider: int | None
@@ -249,12 +251,11 @@ class PanoramicTracker:
 
     def _is_believed(self, person: PanoramicPerson) -> bool:
         life = self.config.life
-        has_stayed = self._time_s - person.born_s >= life.birth_s - 1e-6
-        return (
-            person.is_seen
-            and person.trust >= life.birth_trust
-            and (person.sightings >= life.birth_sightings or (person.sightings > 1 and has_stayed))
-        )
+        has_stayed = person.sightings > 1 and self._time_s - person.born_s >= life.birth_s - 1e-6
+        if not person.is_seen or not (has_stayed or person.sightings >= life.birth_sightings):
+            return False
+        returns = person.trust >= life.return_trust and self._register.recognised(person, self._time_s)
+        return person.trust >= life.birth_trust or bool(returns)
 
     def _lasting(self, seen: Sighting) -> Floats:
         along, across = self.config.along_share * seen.distance_m, self.config.across_m
