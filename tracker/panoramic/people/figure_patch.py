@@ -69,20 +69,21 @@ class FigureMap:
 def _summed(people: Map, new: Map, covered: Map) -> Map:
     height, width = people.shape
     wide = width + 2 * MARGIN_PX
-    sums = np.zeros((height + 1, wide + 1, LAYERS), np.float32)
+    sums = np.empty((height + 1, wide + 1, LAYERS), np.float32)
+    sums[0] = 0.0
     for v in range(height):
-        so_far = np.zeros(LAYERS)
-        u = width - MARGIN_PX % width
-        for x in range(wide):
-            if u >= width:
-                u -= width
-            known = 1.0 - covered[v, u]
-            so_far[PEOPLE] += people[v, u] * known
-            so_far[NEW] += new[v, u] * known
-            so_far[KNOWN] += known
-            for layer in range(LAYERS):
-                sums[v + 1, x + 1, layer] = sums[v, x + 1, layer] + so_far[layer]
-            u += 1
+        of_people, of_new, of_known = np.float32(0.0), np.float32(0.0), np.float32(0.0)
+        sums[v + 1, 0] = 0.0
+        u = width - 1 - (MARGIN_PX - 1) % width
+        for x in range(1, wide + 1):
+            known = np.float32(1.0) - covered[v, u]
+            of_people += people[v, u] * known
+            of_new += new[v, u] * known
+            of_known += known
+            sums[v + 1, x, PEOPLE] = sums[v, x, PEOPLE] + of_people
+            sums[v + 1, x, NEW] = sums[v, x, NEW] + of_new
+            sums[v + 1, x, KNOWN] = sums[v, x, KNOWN] + of_known
+            u = u + 1 if u + 1 < width else 0
     return sums
 
 
@@ -123,16 +124,10 @@ def _patches(
 
 
 @njit(cache=True, nogil=True)
-def between(sums: Map, left: float, right: float, top: float, bottom: float) -> Floats:
-    """Add up (LAYERS,) what lies between corners, which may be inside pixels; the margin counts, too."""
-    one, other = np.empty(LAYERS), np.empty(LAYERS)
-    total = np.empty(LAYERS)
-    _at(sums, right, bottom, total)
-    _at(sums, left, bottom, one)
-    total -= one
-    _at(sums, right, top, one)
-    _at(sums, left, top, other)
-    return total - one + other
+def between(sums: Map, layer: int, left: float, right: float, top: float, bottom: float) -> float:
+    """Add up a layer between corners, which may be inside pixels; columns count from the margin's first."""
+    lower = _layer_at(sums, layer, right, bottom) - _layer_at(sums, layer, left, bottom)
+    return float(lower - _layer_at(sums, layer, right, top) + _layer_at(sums, layer, left, top))
 
 
 @njit(cache=True, nogil=True)
@@ -146,3 +141,14 @@ def _at(sums: Map, x: float, y: float, told: Floats) -> None:
         upper = (1.0 - a) * sums[j, i, layer] + a * sums[j, i + 1, layer]
         lower = (1.0 - a) * sums[j + 1, i, layer] + a * sums[j + 1, i + 1, layer]
         told[layer] = (1.0 - b) * upper + b * lower
+
+
+@njit(cache=True, nogil=True)
+def _layer_at(sums: Map, layer: int, x: float, y: float) -> float:
+    x = min(max(x, 0.0), sums.shape[1] - 1.0)
+    y = min(max(y, 0.0), sums.shape[0] - 1.0)
+    i, j = min(int(x), sums.shape[1] - 2), min(int(y), sums.shape[0] - 2)
+    a, b = x - i, y - j
+    upper = (1.0 - a) * sums[j, i, layer] + a * sums[j, i + 1, layer]
+    lower = (1.0 - a) * sums[j + 1, i, layer] + a * sums[j + 1, i + 1, layer]
+    return float((1.0 - b) * upper + b * lower)

@@ -75,7 +75,7 @@ class Scene:
         if bottom - top < 1.0:
             return 0.0
         left = left + 0.5 + 0.25 * width + MARGIN_PX
-        known = float(between(self.figures.sums, left, left + 0.5 * width, top, bottom)[KNOWN])
+        known = between(self.figures.sums, KNOWN, left, left + 0.5 * width, top, bottom)
         return 1.0 - known / (0.5 * width * (bottom - top))
 
     def looks(self, bearing_rad: float, distance_m: float) -> Looks:

@@ -81,8 +81,10 @@ def _worth(sums: Map, parts: Floats) -> Floats:
             left, right, top, bottom = parts[n, part]
             if bottom - top < 0.5:  # outside the image
                 continue
-            seen = between(sums, left, right, top, bottom) / ((right - left) * (bottom - top))
-            if part > 0 or seen[KNOWN] > _LEAST_KNOWN:
-                shares[part] = seen[PEOPLE] / max(seen[KNOWN], 0.1)
+            area = (right - left) * (bottom - top)
+            known = between(sums, KNOWN, left, right, top, bottom) / area
+            if part > 0 or known > _LEAST_KNOWN:
+                seen = between(sums, PEOPLE, left, right, top, bottom) / area
+                shares[part] = seen / max(known, 0.1)
         worth[n] = shares[0] - shares[1] - 0.25 * (shares[2] + shares[3])
     return worth
