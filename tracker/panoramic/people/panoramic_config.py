@@ -52,9 +52,9 @@ class LifeConfig:
 
     birth_sightings: int = 3
     birth_s: float = 0.3
-    birth_trust: float = 2.0
-    return_trust: float = 0.5
-    death_trust: float = -1.0
+    birth_trust: float = 4.0
+    return_trust: float = 2.0
+    death_trust: float = 0.0
     most_trust: float = 8.0
     miss: float = -3.0
     trust_s: float = 0.4
@@ -102,7 +102,7 @@ class PeopleConfig:
     sighting: SightingConfig = field(default_factory=SightingConfig)
     life: LifeConfig = field(default_factory=LifeConfig)
     identity: IdentityConfig = field(default_factory=IdentityConfig)
-    restlessness: float = 1.0
+    restlessness: float = 0.6
     fading_s: float = 1.0
     along_share: float = 0.005
     across_m: float = 0.01
