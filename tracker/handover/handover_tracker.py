@@ -150,12 +150,6 @@ class HandoverTracker:
         return tuple(joined[one] for one in sorted(joined))
 
 
-def _renamed(tracks: Sequence[Track], number: Mapping[int, int]) -> dict[int, Track]:
-    """Give tracks, and those who hide them, other numbers, and list them by these."""
-    renamed = (replace(one, id=number[one.id], occluder=number.get(one.occluder or 0)) for one in tracks)
-    return {track.id: track for track in renamed}
-
-
 def _merged(warm: Track, around: Track) -> Track:
     """Join two tracks of one person; its place is the panorama's as long as it is seen there."""
     better = around if _is_seen(around) or not _is_seen(warm) else warm

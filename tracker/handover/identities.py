@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
 from peopleboy.tracker.track import Track
@@ -28,7 +28,7 @@ class Identities:
     def name(
         self,
         camera: str,
-        tracks: Sequence[Track],
+        tracks: Collection[Track],
         known: Mapping[int, Key],
         guess: Callable[[Track], int | None],
     ) -> None:
@@ -44,14 +44,12 @@ class Identities:
             if (camera, track.id) not in self.number:
                 other = known.get(track.id)
                 number = guess(track) if other is None else self.number.get(other)
-                if number is None or any(
-                    self.number.get((camera, mate.id)) == number for mate in tracks if mate is not track
-                ):
-                    self._newest += 1
-                    number = self._newest
-                self.number[camera, track.id] = number
+                present = {self.number.get((camera, mate.id)) for mate in tracks}
+                if number is None or number in present:
+                    number = self._new()
+                self._take((camera, track.id), number)
 
-    def agree(self, follower: tuple[Key, Track], leader: tuple[Key, Track], present: Iterable[Key]) -> None:
+    def agree(self, follower: tuple[Key, Track], leader: tuple[Key, Track], present: Collection[Key]) -> None:
         """Give two tracks that are one person the same number.
 
         A number that is young gives way; otherwise the leader's stays. Whoever else has the number in the
@@ -62,9 +60,18 @@ class Identities:
             return
         if other.age_s < YOUNG_S <= one.age_s:
             yields, stays = stays, yields
-        kept = self.number[stays]
-        for key in present:
-            if key[0] == yields[0] and key != yields and self.number.get(key) == kept:
-                self._newest += 1
-                self.number[key] = self._newest
-        self.number[yields] = kept
+        for key in self._take(yields, self.number[stays]):
+            if key in present:
+                self.number[key] = self._new()
+
+    def _new(self) -> int:
+        self._newest += 1
+        return self._newest
+
+    def _take(self, taker: Key, number: int) -> list[Key]:
+        """Give a number to one track of a camera alone; who had it there is told, and has none any more."""
+        had = [key for key, one in self.number.items() if one == number and key[0] == taker[0]]
+        for key in had:
+            del self.number[key]
+        self.number[taker] = number
+        return had

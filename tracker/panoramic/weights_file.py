@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -17,6 +18,11 @@ from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 
 VIEW: Final = "camera"
 ABOUT: Final = "about"
+
+# An encrypted member, or one that is compressed in an unknown way, makes zipfile raise RuntimeError.
+_NO_ARCHIVE: Final = (
+    ValueError, KeyError, TypeError, EOFError, RuntimeError, SyntaxError, zipfile.BadZipFile, zlib.error
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,14 +55,14 @@ class Weights:
             BadInput: a file that is missing, or is none, or holds what is no finite float32.
         """
         try:
-            with np.load(path, allow_pickle=False) as archive:
+            with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
                 found = {name: archive[name] for name in archive.files}
             view = PanoramaView.of_plain(json.loads(str(found.pop(VIEW))))
             about = json.loads(str(found.pop(ABOUT)))
         except OSError as error:
             why = error.strerror or str(error)
             raise BadInput(f"cannot be read: {why}; `{command}` makes one", file=str(path)) from None
-        except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile):
+        except _NO_ARCHIVE:
             raise BadInput(f"is no file of weights; `{command}` makes one", file=str(path)) from None
         for name, array in found.items():
             if array.dtype != np.float32 or not np.isfinite(array).all():

@@ -44,8 +44,9 @@ class Register:
         strangers = [one for one in persons if one.id and one.strange_s >= self._config.strange_s]
         if not strangers:
             return tuple(persons)
-        # Their memory stays with the number; what they look like now is all that is known of themselves.
-        self.leave([replace(one, seen_s=time_s) for one in strangers], time_s)
+        # Their memory stays with the number, whose owner has walked on ever since they look strange.
+        # What they look like now is all that is known of themselves.
+        self.leave([replace(one, seen_s=time_s - one.strange_s) for one in strangers], time_s)
         right = {
             one.id: self.named(replace(one, looks=one.newest, born_s=time_s), time_s) for one in strangers
         }

@@ -1,0 +1,236 @@
+"""One number for one person, by trackers that say what a test wants them to."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.handover.handover_tracker import FARTHEST_INTRODUCED_M, NEEDED_VOTES, HandoverTracker
+from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA
+from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
+from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.thermal.whereabouts import standing_box
+from peopleboy.tracker.track import Status
+from tests.helpers.images.cardboard import CAMERA
+from tests.helpers.runs.hand_made_tracks import track
+from tests.helpers.runs.synthetic_ticks import ELLIPSE
+
+THERMAL_CAMERA = calibrations_of(RobotConfig().cameras)[THERMAL]
+BLANK = np.zeros((240, 320), np.uint8)
+HIDDEN = Status.TOTALLY_OCCLUDED
+SEEN_M, ASIDE_M, BEHIND_M = (4.0, 0.2), (4.0, -1.0), (-3.0, 1.0)
+
+
+class Saying:
+    """A tracker that says what it is told to."""
+
+    def __init__(self, camera):
+        self.cameras, self.tracks, self.introduced = (camera,), (), []
+        self.explanation = None
+
+    def update(self, frame):
+        del frame
+        return tuple(self.tracks)
+
+    def introduce(self, box):
+        self.introduced.append(box)
+
+    def check_cameras(self, calibrations):
+        if PANORAMA not in calibrations:
+            raise BadInput("no panorama")
+
+
+class Both:
+    def __init__(self, rate_hz=15):
+        self.thermal, self.panoramic = Saying(THERMAL), Saying(PANORAMA)
+        self.tracker = HandoverTracker(self.thermal, self.panoramic)
+        self.frames, self.rate_hz = 0, rate_hz
+
+    def see(self, thermal=(), panoramic=(), times=1):
+        """Let both say this for some frames; the tracks of the last, by number."""
+        for _ in range(times):
+            self.thermal.tracks, self.panoramic.tracks = thermal, panoramic
+            self.frames += 1
+            tracks = self.tracker.update(
+                Frame(
+                    images={THERMAL: BLANK},
+                    time_s=self.frames / self.rate_hz,
+                    calibrations={THERMAL: THERMAL_CAMERA, PANORAMA: CAMERA},
+                )
+            )
+            assert len({one.id for one in tracks}) == len(tracks)
+        return {one.id: one for one in tracks}
+
+
+def warm(number, at=SEEN_M, **further):
+    box = standing_box(track(1, at).place, THERMAL_CAMERA)
+    return track(number, at, boxes={THERMAL: box}, **further)
+
+
+def around(number, at=SEEN_M, **further):
+    return track(number, at, boxes={PANORAMA: (100.0, 10.0, 20.0, 60.0)}, **further)
+
+
+def test_it_wants_what_both_want_and_refuses_what_the_panoramic_one_refuses():
+    both = Both()
+    assert both.tracker.cameras == (THERMAL, PANORAMA)
+    with pytest.raises(BadInput):
+        both.tracker.check_cameras({})
+    both.tracker.check_cameras({PANORAMA: CAMERA})
+
+
+def test_who_is_seen_by_both_is_one_track_with_both_boxes():
+    both = Both()
+    (one,) = both.see([warm(4)], [around(9)], times=NEEDED_VOTES).values()
+    assert one.id == 1
+    assert one.boxes == {**warm(4).boxes, **around(9).boxes}
+    assert one.place == around(9).place
+
+
+def test_those_who_stand_apart_are_two():
+    assert len(Both().see([warm(1, SEEN_M)], [around(1, BEHIND_M)], times=9)) == 2
+
+
+@pytest.mark.parametrize("first", ["panoramic", "thermal"])
+def test_from_one_image_into_the_other_and_back_a_person_keeps_its_number(first):
+    both = Both()
+    other = around(7, BEHIND_M)
+    (number, _) = both.see([], [around(3), other], times=20)
+    if first == "thermal":
+        both = Both()
+        (number,) = both.see([warm(1)], [], times=20)
+    told = both.see([warm(2 if first == "panoramic" else 1)], [around(3), other], times=20)
+    assert number in told
+    assert THERMAL in told[number].boxes
+    # Both names change while the other one lasts.
+    for thermal, panoramic in (([warm(5)], [around(3)]), ([], [around(3)]), ([warm(6)], [around(3)])):
+        told = both.see(thermal, [*panoramic, other], times=20)
+        assert len(told) == 2
+        assert PANORAMA in told[number].boxes
+
+
+def test_a_moment_of_agreement_makes_nobody_one():
+    both = Both()
+    both.see([warm(1, ASIDE_M)], [around(1, SEEN_M)], times=20)
+    both.see([warm(1, SEEN_M)], [around(1, SEEN_M)])
+    assert len(both.see([warm(1, ASIDE_M)], [around(1, SEEN_M)], times=3)) == 2
+
+
+def test_two_who_cross_keep_their_numbers_though_their_places_are_taken_for_each_others_for_a_moment():
+    both = Both()
+    left, right = (4.0, 0.6), (4.0, -0.6)
+    first = both.see([warm(1, left), warm(2, right)], [around(1, left), around(2, right)], times=15)
+    assert len(first) == 2
+    near = (4.0, 0.05), (4.0, -0.05)
+    both.see([warm(1, near[1]), warm(2, near[0])], [around(1, near[0]), around(2, near[1])], times=2)
+    told = both.see([warm(1, right), warm(2, left)], [around(1, right), around(2, left)], times=5)
+    for number, at in ((1, right), (2, left)):
+        assert told[number].place.position_m == at
+        assert set(told[number].boxes) == {THERMAL, PANORAMA}
+
+
+def test_tentative_ones_of_the_thermal_image_are_left_out():
+    assert Both().see([warm(1, status=Status.TENTATIVE)]) == {}
+
+
+def test_whoever_is_hidden_is_hidden_by_a_number_that_there_is():
+    both = Both()
+    told = both.see([], [around(5, BEHIND_M), around(8, SEEN_M, status=HIDDEN, occluder=5)], times=2)
+    hider = next(number for number, one in told.items() if one.place.position_m == BEHIND_M)
+    hidden = next(one for one in told.values() if one.status is HIDDEN)
+    assert hidden.occluder == hider != hidden.id
+    told = both.see([warm(5, status=HIDDEN, occluder=77)], [])
+    assert [one.occluder for one in told.values()] == [None]
+
+
+def test_who_is_hidden_in_one_image_and_seen_in_the_other_is_seen():
+    both = Both()
+    both.see([warm(1)], [around(1)], times=9)
+    (one,) = both.see([warm(1, status=HIDDEN)], [around(1)]).values()
+    assert one.status is Status.TRACKED
+    (one,) = both.see([warm(1)], [around(1, ASIDE_M, status=HIDDEN)]).values()
+    assert one.status is Status.TRACKED
+    assert one.place.position_m == SEEN_M
+    (one,) = both.see([warm(1, status=HIDDEN)], [around(1, status=HIDDEN)]).values()
+    assert one.status is HIDDEN
+
+
+def test_who_comes_into_the_thermal_image_is_pointed_out_there():
+    both = Both()
+    both.see([], [around(1)])
+    assert both.thermal.introduced == [standing_box(around(1).place, THERMAL_CAMERA)]
+
+
+@pytest.mark.parametrize(
+    ("thermal", "panoramic"),
+    [
+        ([], [around(1, BEHIND_M)]),
+        ([], [around(1, (0.3, 0.0))]),
+        ([], [around(1, (3.0, 3.0))]),
+        ([], [around(1, (FARTHEST_INTRODUCED_M + 0.1, 0.0))]),
+        ([], [around(1, status=HIDDEN)]),
+        ([], [track(1, None)]),
+        ([warm(1)], [around(1)]),
+        ([warm(1, (2.0, 0.1))], [around(1)]),
+    ],
+    ids=["behind", "at the robot", "aside", "far", "hidden", "nowhere", "known", "behind a known one"],
+)
+def test_who_is_not_to_be_seen_in_the_thermal_image_or_is_known_there_is_not_pointed_out(thermal, panoramic):
+    both = Both()
+    both.see(thermal, panoramic, times=10)
+    assert both.thermal.introduced == []
+
+
+def test_nobody_is_pointed_out_all_the_time_nor_two_at_once():
+    both = Both(rate_hz=10)
+    both.see([], [around(1, SEEN_M), around(2, ASIDE_M)], times=10)
+    boxes = [standing_box(around(1, at).place, THERMAL_CAMERA) for at in (SEEN_M, ASIDE_M)]
+    assert both.thermal.introduced == [*boxes, *boxes]
+
+
+def test_without_a_thermal_image_nobody_is_pointed_out():
+    both = Both()
+    both.panoramic.tracks = [around(1)]
+    for calibrations in ({}, {THERMAL: THERMAL_CAMERA}):
+        both.tracker.update(Frame(images={}, time_s=0.0, calibrations=calibrations))
+    assert both.thermal.introduced == []
+
+
+def contours(*numbers):
+    return ContourExplanation(
+        config=PEOPLEBOY,
+        ellipses={number: replace(ELLIPSE, x=float(number)) for number in numbers},
+        spread_px2={number: float(number) for number in numbers},
+        particles={number: np.zeros(number) for number in (DETECTOR_KEY, *numbers)},
+    )
+
+
+EMPTY = np.zeros((120, 480), np.float32)
+PEOPLE = PeopleExplanation(background=np.zeros((120, 480, 3), np.uint8), foreground=EMPTY, covered=EMPTY)
+
+
+def test_explanations_have_the_numbers_of_the_tracks():
+    both = Both()
+    both.thermal.explanation, both.panoramic.explanation = contours(3, 5, 6), PEOPLE
+    told = both.see([warm(5), warm(3, ASIDE_M)], [around(8, BEHIND_M), around(9, SEEN_M)], times=5)
+    explained = both.tracker.explanation
+    assert explained.panoramic is PEOPLE
+    shown = {number for number, one in told.items() if THERMAL in one.boxes}
+    assert set(explained.thermal.ellipses) == set(explained.thermal.spread_px2) == shown
+    (seen,) = (number for number, one in told.items() if set(one.boxes) == {THERMAL, PANORAMA})
+    assert explained.thermal.ellipses[seen].x == 5.0
+    assert set(explained.thermal.particles) == shown | {DETECTOR_KEY}
+    assert len(explained.thermal.particles[seen]) == 5
+
+
+def test_who_has_no_number_is_left_out_of_the_explanation():
+    explained = BothExplanations.of(contours(1, 2), None, {2: 7})
+    assert set(explained.thermal.ellipses) == {7}
+    assert set(explained.thermal.particles) == {7, DETECTOR_KEY}
+    assert explained.panoramic is None

@@ -1,0 +1,287 @@
+"""The tracker's decisions, on cardboard people whom stand-ins for what is taught read exactly."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from peopleboy.tracker.frame import Frame, Odometry, PinholeCalibration
+from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
+from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
+from peopleboy.tracker.panoramic.people.scene import person_box
+from peopleboy.tracker.track import Status
+from tests.helpers.calls.refused import refused
+from tests.helpers.images.cardboard import (
+    BLUE,
+    CAMERA,
+    GREEN,
+    HALL,
+    RED,
+    VIEW,
+    WHITE,
+    WIDTH,
+    Cardboard,
+    CardboardModel,
+    frame_of,
+    is_cardboard,
+    panorama,
+)
+from tests.helpers.images.cardboard_stage import Stage, number_at
+
+RATES = pytest.mark.parametrize("rate_hz", [3, 15])
+
+
+def still(*people):
+    return lambda _: people
+
+
+ANNA, BERT = Cardboard(2.5, 0.5, shirt=RED), Cardboard(3.5, -2.0, shirt=BLUE)
+
+
+@RATES
+def test_who_stands_there_is_believed_within_a_second_and_placed(rate_hz):
+    stage = Stage(rate_hz)
+    stage.play(1.0, still(ANNA, BERT))
+    tracks = stage.play(1.0, still(ANNA, BERT))[-1]
+    assert [track.status for track in tracks] == [Status.TRACKED] * 2
+    for person in (ANNA, BERT):
+        assert number_at(tracks, person, within_m=0.15) is not None
+    for track in tracks:
+        x, y = track.place.position_m
+        assert track.boxes == {"panorama": person_box(math.atan2(y, x), math.hypot(x, y), CAMERA)}
+        assert 0 < track.confidence <= 1
+        assert 1.0 < track.age_s <= 2.0
+        xx, xy, yy = track.place.covariance_m2
+        assert xx > 0 < xx * yy - xy * xy
+
+
+def test_nobody_is_believed_at_first_sight_and_who_goes_is_let_go():
+    stage = Stage()
+    assert stage.show(ANNA) == ()
+    stage.play(1.0, still(ANNA))
+    assert stage.play(3.0, still())[-1] == ()
+
+
+@RATES
+def test_round_the_robot_and_over_the_seam_a_walker_is_one_track(rate_hz):
+    stage = Stage(rate_hz)
+    begin = math.pi - 1.0
+
+    def walker(time_s):
+        return [Cardboard(2.5, begin + 0.35 * time_s)]
+
+    told = stage.play(18.0, walker)
+    assert stage.ever == {1}
+    for k, tracks in enumerate(told):
+        time_s = k / rate_hz
+        if time_s > 1.0:
+            assert number_at(tracks, walker(time_s)[0], within_m=0.3) == 1
+    boxes = [tracks[0].boxes["panorama"] for tracks in told if tracks]
+    assert any(left + width > WIDTH - 0.5 for left, _, width, _ in boxes)
+
+
+@RATES
+def test_who_walks_behind_another_one_keeps_its_number(rate_hz):
+    stage = Stage(rate_hz)
+    front = Cardboard(1.8, 1.0, shirt=GREEN)
+
+    def scene(time_s):
+        return front, Cardboard(3.5, 0.4 + 0.2 * time_s, shirt=RED)
+
+    told = stage.play(6.0, scene)
+    early, late = round(1.2 * rate_hz), len(told) - 1
+    number = number_at(told[early], scene(early / rate_hz)[1])
+    assert number == number_at(told[late], scene(late / rate_hz)[1])
+    assert stage.ever == {1, 2}
+    assert all(1 in {track.id for track in tracks} for tracks in told[early:])
+
+
+@RATES
+def test_who_is_hidden_stays_in_mind_and_is_told_who_hides_it(rate_hz):
+    stage = Stage(rate_hz)
+    back = Cardboard(3.5, 2.0, shirt=RED)
+
+    def scene(time_s):
+        # It steps before the other one, waits there for two seconds, and goes on.
+        bearing = 1.5 + 0.25 * (min(time_s, 2.0) + max(time_s - 4.0, 0.0))
+        return back, Cardboard(1.8, bearing, shirt=GREEN)
+
+    told = stage.play(6.0, scene)
+    number = number_at(told[round(1.0 * rate_hz)], back)
+    hider = 3 - number
+    for tracks in told[round(2.4 * rate_hz) : round(4.0 * rate_hz)]:
+        hidden = next(track for track in tracks if track.id == number)
+        assert (hidden.status, hidden.occluder) == (Status.TOTALLY_OCCLUDED, hider)
+        assert number_at([hidden], back) == number
+    assert number_at(told[-1], back) == number
+    assert told[-1][number - 1].status is Status.TRACKED
+    assert stage.ever == {1, 2}
+
+
+@RATES
+def test_two_who_pass_each_other_keep_their_numbers(rate_hz):
+    stage = Stage(rate_hz)
+
+    def scene(time_s):
+        return (
+            Cardboard(2.2, -0.7 + 0.25 * time_s, shirt=RED),
+            Cardboard(3.4, 0.7 - 0.18 * time_s, shirt=BLUE),
+        )
+
+    told = stage.play(6.0, scene)
+    early, late = round(1.2 * rate_hz), len(told) - 1
+    for k in range(2):
+        first = number_at(told[early], scene(early / rate_hz)[k])
+        assert first == number_at(told[late], scene(late / rate_hz)[k])
+        assert first is not None
+    assert stage.ever == {1, 2}
+
+
+def test_who_goes_and_comes_back_elsewhere_has_its_old_number_and_another_one_a_new_one():
+    stage = Stage()
+    first = stage.play(1.5, still(ANNA, BERT))[-1]
+    number = number_at(first, ANNA)
+    assert len(stage.play(4.0, still(BERT))[-1]) == 1
+    back, other = replace(ANNA, bearing_rad=1.6), Cardboard(3.0, 2.6, shirt=WHITE)
+    tracks = stage.play(1.5, still(BERT, back, other))[-1]
+    assert number_at(tracks, back) == number
+    assert number_at(tracks, BERT) == number_at(first, BERT)
+    assert number_at(tracks, other) == 3
+
+
+def test_who_has_been_gone_for_too_long_is_somebody_new():
+    config = PeopleConfig(identity=replace(PeopleConfig().identity, forget_s=1.0))
+    stage = Stage(config=config)
+    stage.play(1.0, still(ANNA))
+    stage.play(4.0, still())
+    assert number_at(stage.play(1.0, still(ANNA))[-1], ANNA) == 2
+
+
+@RATES
+def test_numbers_that_two_people_took_from_each_other_are_put_right(rate_hz):
+    """Two come near each other and part again, each in the other's clothes: they walked on, in truth."""
+    stage = Stage(rate_hz)
+    meet_s = 2.0
+
+    def scene(time_s):
+        aside = 0.15 + 0.2 * abs(time_s - meet_s)
+        left, right = (RED, BLUE) if time_s < meet_s else (BLUE, RED)
+        return Cardboard(2.5, aside, shirt=left), Cardboard(2.5, -aside, shirt=right)
+
+    told = stage.play(5.0, scene)
+    early, late = round(1.8 * rate_hz), len(told) - 1
+    red, blue = (number_at(told[early], one) for one in scene(early / rate_hz))
+    assert {red, blue} == {1, 2}
+    assert [number_at(told[late], one) for one in scene(late / rate_hz)] == [blue, red]
+    assert stage.ever == {1, 2}
+
+
+def test_who_is_somebody_else_far_from_everybody_known_gets_a_new_number():
+    stage = Stage()
+    assert number_at(stage.play(2.0, still(ANNA))[-1], ANNA) == 1
+    other = replace(ANNA, shirt=BLUE)
+    assert number_at(stage.play(0.3, still(other))[-1], other) == 1
+    assert number_at(stage.play(2.5, still(other))[-1], other) == 2
+
+
+@RATES
+def test_a_robot_that_drives_and_turns_knows_who_stands(rate_hz):
+    """Nobody moves but the robot; places are told in its frame, numbers stay."""
+    stage = Stage(rate_hz)
+    people = {"anna": (2.6, 1.0, RED), "bert": (-1.5, 2.5, BLUE)}
+    x = y = heading = 0.0
+    step = Odometry(advance_m=0.2 / rate_hz, turn_rad=0.4 / rate_hz)
+    numbers = {name: set() for name in people}
+    for k in range(round(5.0 * rate_hz)):
+        if k:
+            x += step.advance_m * math.cos(heading)
+            y += step.advance_m * math.sin(heading)
+            heading += step.turn_rad
+        seen = {
+            name: Cardboard(math.hypot(a - x, b - y), math.atan2(b - y, a - x) - heading, shirt)
+            for name, (a, b, shirt) in people.items()
+        }
+        tracks = stage.show(*seen.values(), odometry=step if k else Odometry())
+        if k > 1.2 * rate_hz:
+            for name, one in seen.items():
+                numbers[name].add(number_at(tracks, one, within_m=0.3))
+    assert sorted(numbers.values(), key=min) == [{1}, {2}]
+
+
+def test_between_images_tracks_go_on_with_the_robot_and_grow_unsure():
+    stage = Stage()
+    (seen,) = stage.play(1.5, still(ANNA))[-1]
+    turn = Odometry(turn_rad=math.pi / 2)
+    (later,) = stage.tracker.update(frame_of(stage.time_s + 0.2, None, turn))
+    x, y = seen.place.position_m
+    assert later.place.position_m == pytest.approx((y, -x), abs=0.15)
+    assert later.id == seen.id
+    before, after = (one.place.covariance_m2 for one in (seen, later))
+    assert after[0] * after[2] - after[1] ** 2 > before[0] * before[2] - before[1] ** 2
+    assert later.age_s == pytest.approx(seen.age_s + 0.2 + 1 / 15)
+
+
+def test_two_tracks_at_one_place_become_one():
+    stage = Stage()
+    beside = replace(ANNA, bearing_rad=ANNA.bearing_rad + 0.45)
+    first = stage.play(1.5, still(ANNA, beside))[-1]
+    assert len(first) == 2
+    persons, number = stage.tracker._persons, number_at(first, ANNA)
+    anna = next(one for one in persons if one.id == number)
+    stage.tracker._persons = tuple(replace(one, motion=anna.motion, looks=anna.looks) for one in persons)
+    (track,) = stage.show(ANNA)
+    assert track.id in (1, 2)
+    assert [one.id for one in stage.play(1.0, still(ANNA))[-1]] == [track.id]
+
+
+def test_an_empty_hall_has_nobody_in_it_for_however_long():
+    stage = Stage(3)
+    assert not any(stage.play(5.0, still()))
+    assert stage.ever == set()
+
+
+def test_it_explains_who_was_taken_for_whom():
+    stage = Stage()
+    assert stage.tracker.explanation is None
+    stage.play(1.0, still(ANNA, BERT))
+    told = stage.tracker.explanation
+    assert np.array_equal(told.foreground, is_cardboard(panorama([ANNA, BERT])))
+    assert told.covered[told.foreground > 0].mean() > 0.95
+    assert not told.covered[told.foreground == 0].any()
+    assert np.array_equal(told.background, HALL)
+
+
+@pytest.mark.parametrize("other", [
+    replace(CAMERA, axis_rad=0.8), replace(CAMERA, ring_height_m=1.5), replace(CAMERA, width=360),
+])  # fmt: skip
+def test_another_camera_than_the_one_that_was_learned_is_refused(other):
+    tracker = PanoramicTracker(CardboardModel(), VIEW)
+    with refused("panorama", "trained", "train-places"):
+        tracker.check_cameras({"panorama": other})
+    with refused("panorama", "trained", "train-places"):
+        tracker.update(Frame(images={"panorama": HALL}, time_s=0.0, calibrations={"panorama": other}))
+    assert tracker.explanation is None
+
+
+def test_a_camera_that_is_flat_or_unknown_is_refused():
+    tracker = PanoramicTracker(CardboardModel(), VIEW)
+    flat = PinholeCalibration(intrinsics=np.eye(3), robot_from_camera=np.eye(4))
+    for calibrations in ({}, {"panorama": flat}, {"other": CAMERA}):
+        with refused("panorama", "sees all round"):
+            tracker.check_cameras(calibrations)
+        with refused("panorama", "sees all round"):
+            tracker.update(Frame(images={"panorama": HALL}, time_s=0.0, calibrations=calibrations))
+
+
+@pytest.mark.parametrize("image", [HALL[:, :, 0], HALL.astype(float), np.zeros((0, 0, 3), np.uint8)])
+def test_what_is_no_colour_image_is_refused(image):
+    tracker = PanoramicTracker(CardboardModel(), VIEW)
+    with refused("panorama image must be (H, W, 3) uint8"):
+        tracker.update(Frame(images={"panorama": image}, time_s=0.0, calibrations={"panorama": CAMERA}))
+
+
+def test_without_images_there_is_nobody():
+    tracker = PanoramicTracker(CardboardModel(), VIEW)
+    assert tracker.cameras == ("panorama",)
+    assert tracker.update(Frame(images={}, time_s=0.0)) == ()
