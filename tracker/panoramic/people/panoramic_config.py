@@ -11,6 +11,8 @@ class SightingConfig:
 
     Attributes:
         least_evidence: log odds from which a patch shows the person.
+        error_share: the part of the error that the model tells which counts: it was taught with more examples
+            than those by which its errors were learned.
         gate: squared Mahalanobis distance from which a sighting is of somebody else.
         wide_m: standard deviation of a predicted place from which its neighbourhood is looked at, too [m].
         reach_m: how far to either side that is [m].
@@ -20,6 +22,7 @@ class SightingConfig:
     """
 
     least_evidence: float = 0.0
+    error_share: float = 0.7
     gate: float = 16.0
     wide_m: float = 0.15
     reach_m: float = 0.3
@@ -95,8 +98,8 @@ class PeopleConfig:
         sighting, life, identity: as they say.
         restlessness: density of the white accelerations with which people move [m2/s3].
         fading_s: within this time, who is not seen is taken to stop [s].
-        along_share, across_m: standard deviations of the error that all images of a person have in common: of
-            the distance, as a share of it, and to the side [m].
+        lasting_share: how much of an image's error, as a standard deviation, the person's further images have,
+            too: gait and build make it.
     """
 
     sighting: SightingConfig = field(default_factory=SightingConfig)
@@ -104,5 +107,4 @@ class PeopleConfig:
     identity: IdentityConfig = field(default_factory=IdentityConfig)
     restlessness: float = 0.6
     fading_s: float = 1.0
-    along_share: float = 0.005
-    across_m: float = 0.01
+    lasting_share: float = 0.6

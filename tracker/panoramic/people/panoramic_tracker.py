@@ -13,7 +13,7 @@ from peopleboy.tracker.frame import Calibration, Frame, Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
-from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
+from peopleboy.tracker.panoramic.people.floor_motion import Motion
 from peopleboy.tracker.panoramic.people.identity import Register
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_person import PanoramicPerson
@@ -160,7 +160,7 @@ class PanoramicTracker:
         return replace(
             person,
             motion=person.motion.corrected(seen.place_m, seen.error_m2),
-            lasting_m2=self._lasting(seen),
+            lasting_m2=self.config.lasting_share**2 * seen.error_m2,
             seen_s=self._time_s,
             sightings=person.sightings + 1,
             trust=self._trusted(person.trust, seen.evidence, passed_s),
@@ -211,7 +211,7 @@ class PanoramicTracker:
         return PanoramicPerson(
             id=0,
             motion=Motion.begin(seen.place_m, seen.error_m2),
-            lasting_m2=self._lasting(seen),
+            lasting_m2=self.config.lasting_share**2 * seen.error_m2,
             born_s=self._time_s,
             seen_s=self._time_s,
             sightings=1,
@@ -256,10 +256,6 @@ class PanoramicTracker:
             return False
         returns = person.trust >= life.return_trust and self._register.recognised(person, self._time_s)
         return person.trust >= life.birth_trust or bool(returns)
-
-    def _lasting(self, seen: Sighting) -> Floats:
-        along, across = self.config.along_share * seen.distance_m, self.config.across_m
-        return seen.axes @ np.diag([along**2, across**2]) @ seen.axes.T
 
     def _track(self, person: PanoramicPerson, frame: Frame) -> Track:
         later_s = frame.time_s - self._time_s

@@ -26,7 +26,6 @@ class Sighting:
         bearing_rad, distance_m: from the robot.
         place_m: (2,) in room coordinates.
         error_m2: (2, 2) covariance of its error.
-        axes: (2, 2) unit vectors away from the robot and to the left, as columns, in room coordinates.
     """
 
     evidence: float
@@ -34,7 +33,6 @@ class Sighting:
     distance_m: float
     place_m: Floats
     error_m2: Floats
-    axes: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,16 +84,17 @@ class Onlooker:
             return None
         bearing, distance = bearing + across / distance, distance + along
         axes = _axes(self.pose.heading + bearing)
+        deviation = self.config.error_share * told.deviation_m[best].astype(np.float64)
         return Sighting(
             evidence=float(told.evidence[best]),
             bearing_rad=bearing,
             distance_m=distance,
             place_m=self.pose.place(distance, bearing),
-            error_m2=axes @ np.diag(told.deviation_m[best].astype(np.float64) ** 2) @ axes.T,
-            axes=axes,
+            error_m2=axes @ np.diag(deviation**2) @ axes.T,
         )
 
 
 def _axes(angle: float) -> Floats:
+    """Give unit vectors away from the robot and to the left, as columns."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([[cosine, -sine], [sine, cosine]])
