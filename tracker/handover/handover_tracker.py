@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -11,17 +12,16 @@ from peopleboy.tracker.frame import THERMAL, Calibration, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.handover.departures import Departures
 from peopleboy.tracker.handover.identities import Identities, Key
+from peopleboy.tracker.handover.introductions import Introductions, thermal_view
 from peopleboy.tracker.handover.links import Votes, apartness, pairs
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA, PanoramicTracker
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.whereabouts import standing_box
 from peopleboy.tracker.track import Status, Track
 
 NEEDED_VOTES: Final = 3
 MOST_VOTES: Final = 15
-FARTHEST_INTRODUCED_M: Final = 7.0
-PAUSE_S: Final = 0.5  # between two introductions of one person
-BORDER: Final = 0.02  # share of the image's width at either side in which nobody's middle is introduced
+DOUBTFUL_S: Final = 0.7
+DOUBTFUL_RAD: Final = math.radians(6.0)
 
 
 class HandoverTracker:
@@ -43,7 +43,7 @@ class HandoverTracker:
         self._votes = Votes(NEEDED_VOTES, MOST_VOTES)
         self._identities = Identities()
         self._departures = Departures()
-        self._introduced_s: dict[int, float] = {}
+        self._introductions = Introductions()
         self._warm: tuple[int, ...] = ()
 
     @property
@@ -84,7 +84,7 @@ class HandoverTracker:
         self._votes.count([(one.id, other.id) for one, other in agreed], by_heat, by_place)
         self._number(warm, around, agreed)
         self._introduce(around, warm, frame)
-        joined = self._joined(warm, around)
+        joined = self._joined(warm, around, frame)
         self._departures.note([track for track in joined if _is_seen(track)])
         return joined
 
@@ -108,46 +108,48 @@ class HandoverTracker:
 
     def _introduce(self, around: Sequence[Track], warm: Sequence[Track], frame: Frame) -> None:
         """Point out to the thermal tracker whom it does not see, though that one is before its camera."""
-        calibration = frame.calibrations.get(THERMAL)
-        if calibration is None or THERMAL not in frame.images:
-            return
-        width = frame.images[THERMAL].shape[1]
-        for track in around:
-            if self._is_to_be_introduced(track, warm, calibration, width, frame.time_s):
-                assert track.place is not None
-                self._introduced_s[track.id] = frame.time_s
-                self._thermal.introduce(standing_box(track.place, calibration))
-                return
+        present = {track.id for track in warm}
+        linked = {other for one, other in self._votes.linked.items() if one in present}
+        box = self._introductions.next(around, warm, linked, frame)
+        if box is not None:
+            self._thermal.introduce(box)
 
-    def _is_to_be_introduced(
-        self, track: Track, warm: Sequence[Track], calibration: Calibration, width: int, time_s: float
-    ) -> bool:
-        if not _is_seen(track) or track.place is None or track.id in self._votes.linked.values():
-            return False
-        if time_s - self._introduced_s.get(track.id, -PAUSE_S) < PAUSE_S:
-            return False
-        x, y = track.place.position_m
-        if x <= 0.5 or (x * x + y * y) ** 0.5 > FARTHEST_INTRODUCED_M:
-            return False
-        left, _, wide, _ = standing_box(track.place, calibration)
-        middle = left + wide / 2.0
-        is_inside = BORDER * width <= middle <= (1.0 - BORDER) * width
-        return is_inside and not any(_covers(other, middle) for other in warm)
-
-    def _joined(self, warm: Sequence[Track], around: Sequence[Track]) -> tuple[Track, ...]:
+    def _joined(self, warm: Sequence[Track], around: Sequence[Track], frame: Frame) -> tuple[Track, ...]:
         """Make one track of those that are one person."""
         number = self._identities.number
-        joined = {
-            number[PANORAMA, track.id]: replace(track, id=number[PANORAMA, track.id]) for track in around
-        }
-        hiders = {track.id: number[PANORAMA, track.id] for track in around}
-        joined = {k: replace(t, occluder=hiders.get(t.occluder or 0)) for k, t in joined.items()}
-        fronts = {track.id: number[THERMAL, track.id] for track in warm}
-        for track in warm:
-            one = fronts[track.id]
-            own = replace(track, id=one, occluder=fronts.get(track.occluder or 0))
-            joined[one] = _merged(own, joined[one]) if one in joined else own
-        return tuple(joined[one] for one in sorted(joined))
+        by_heat = _renamed(warm, {track.id: number[THERMAL, track.id] for track in warm})
+        by_place = _renamed(around, {track.id: number[PANORAMA, track.id] for track in around})
+        calibration = frame.calibrations.get(THERMAL)
+        if calibration is not None and THERMAL in frame.images:
+            width = frame.images[THERMAL].shape[1]
+            by_place = {one: _shown(track, calibration, width) for one, track in by_place.items()}
+        both = {one: _merged(by_heat[one], by_place[one]) for one in by_heat.keys() & by_place.keys()}
+        joined = by_place | by_heat | both
+        return tuple(joined[one] for one in sorted(joined) if not _is_doubtful(joined[one], joined))
+
+
+def _renamed(tracks: Sequence[Track], number: Mapping[int, int]) -> dict[int, Track]:
+    """Give tracks, and those who hide them, other numbers, and list them by these."""
+    renamed = (replace(one, id=number[one.id], occluder=number.get(one.occluder or 0)) for one in tracks)
+    return {track.id: track for track in renamed}
+
+
+def _shown(track: Track, calibration: Calibration, width_px: int) -> Track:
+    """Put somebody who is seen in the panorama into the thermal image, too."""
+    box = thermal_view(track, calibration, width_px)
+    return track if box is None else replace(track, boxes={**track.boxes, THERMAL: box})
+
+
+def _is_doubtful(track: Track, joined: Mapping[int, Track]) -> bool:
+    """Tell whether a new track of the panorama is likely one of the thermal image, not linked to it yet."""
+    if track.age_s >= DOUBTFUL_S or PANORAMA not in track.boxes:
+        return False
+    return any(
+        other is not track
+        and PANORAMA not in other.boxes
+        and abs(_bearing(other) - _bearing(track)) < DOUBTFUL_RAD
+        for other in joined.values()
+    )
 
 
 def _merged(warm: Track, around: Track) -> Track:
@@ -164,10 +166,11 @@ def _merged(warm: Track, around: Track) -> Track:
     )
 
 
-def _covers(track: Track, column: float) -> bool:
-    left, _, width, _ = track.boxes[THERMAL]
-    return left - 0.25 * width <= column <= left + 1.25 * width
-
-
 def _is_seen(track: Track) -> bool:
     return track.status is not Status.TOTALLY_OCCLUDED
+
+
+def _bearing(track: Track) -> float:
+    return (
+        math.inf if track.place is None else math.atan2(track.place.position_m[1], track.place.position_m[0])
+    )

@@ -98,7 +98,7 @@ class PeopleConfig:
         sighting, life, identity: as they say.
         restlessness: density of the white accelerations with which people move [m2/s3].
         fading_s: within this time, who is not seen is taken to stop [s].
-        lasting_share: how much of an image's error, as a standard deviation, the person's further images have,
+        lasting_share: how much of an image's error, as a standard deviation, a person's further images have,
             too: gait and build make it.
     """
 
