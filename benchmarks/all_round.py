@@ -57,7 +57,7 @@ class _Rows:
             x, y = robot.locate(person.position_m)
             counts = NEAREST_M <= math.hypot(x, y) <= FARTHEST_M
             inside = person.inside_fraction
-            seen = person.visible_fraction / inside if inside > 0 else 0.0
+            seen = min(person.visible_fraction / inside, 1.0) if inside > 0 else 0.0
             self.truth.append((frame, person.id, x, y, counts, seen))
         for track in tick.tracks:
             if track.place is not None and track.status is not Status.TENTATIVE:
