@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -70,10 +71,14 @@ def all_round() -> Figure:
     """A panorama, its background, who is in it, the patch of one of them, and the floor."""
     moment = _moment()
     figure = Figure((WIDTH_IN, 5.9), layout="constrained")
-    left, right = figure.subfigures(1, 2, width_ratios=(1.75, 1.0))
+    left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.75, 1.0)).flat
     images = left.subplots(3, 1)
     titles = ("the panorama, with tracks", "its background", "how surely a pixel is a person")
-    pictures = (moment.scene.image, moment.explanation.background, moment.explanation.foreground)
+    pictures: tuple[NDArray[Any], ...] = (
+        moment.scene.image,
+        moment.explanation.background,
+        moment.explanation.foreground,
+    )
     for axes, title, picture in zip(images, titles, pictures, strict=True):
         show(axes, picture, cmap="gray")
         axes.set_title(title, fontsize=11)
@@ -82,7 +87,7 @@ def all_round() -> Figure:
     images[0].set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
     for track in moment.tracks:
         _boxed(images[0], track, width)
-    above, below = right.subfigures(2, 1, height_ratios=(1.75, 1.0))
+    above, below = right.subfigures(2, 1, squeeze=False, height_ratios=(1.75, 1.0)).flat
     _floor(above.subplots(), moment)
     _patches(below, moment)
     return figure
