@@ -9,7 +9,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL.Image import Image
 
-from docs.generate.pictures import occlusion, panorama, rays, runs, thermal, tracker
+from docs.generate.pictures import all_round, occlusion, panorama, rays, runs, thermal, tracker
 from docs.generate.pictures.paper import save
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
@@ -26,6 +26,8 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "panorama": panorama.raw_and_unrolled,
     "panoramic_features": draw_features,
     "panoramic_errors": panorama.errors_over_distance,
+    "all_round": all_round.all_round,
+    "handed_over": all_round.handed_over,
     "detector": tracker.detector,
     "contour": tracker.contour,
     "explained_away": occlusion.explained_away,

@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 import platform
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.studies.reproduce.experiments.catalogue import paper_of
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Outcome
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
@@ -55,7 +56,8 @@ def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tu
         run_units(wanted, store, means.workers)
     sections = [section(Outcome.of(one, plan, store)) for one in experiments]
     page = means.out / PAGE
-    write_page(page, sections, _about(plan, means, store, time.monotonic() - start))
+    papers = {paper_of(one.id) for one in experiments}
+    write_page(page, sections, _about(plan, papers, means, store, time.monotonic() - start))
     return page, sections
 
 
@@ -65,7 +67,7 @@ def unique_units(experiments: Sequence[Experiment], plan: Plan, store: Store) ->
     return list(units.values())
 
 
-def _about(plan: Plan, means: Means, store: Store, seconds: float) -> PageHead:
+def _about(plan: Plan, papers: Set[str], means: Means, store: Store, seconds: float) -> PageHead:
     spent = sum(result.get("cpu_s", 0.0) for result in store.values())
     facts: Mapping[str, str] = {
         "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
@@ -76,10 +78,10 @@ def _about(plan: Plan, means: Means, store: Store, seconds: float) -> PageHead:
         "Time": f"{seconds / 60:.1f} min for this call; {spent / 60:.1f} min of processor time in trackers",
         "Results": f"{len(store)} units of work in {RESULTS}, beside this page",
     }
-    return PageHead(command=means.command, is_quick=plan.is_quick, amount=_amount(plan), facts=facts)
+    return PageHead(command=means.command, is_quick=plan.is_quick, amount=_amount(plan, papers), facts=facts)
 
 
-def _amount(plan: Plan) -> str:
+def _amount(plan: Plan, papers: Set[str]) -> str:
     runs = {name: len(plays) for name, plays in plan.suites.items()}
     if plan.is_quick:
         return (
@@ -87,5 +89,7 @@ def _amount(plan: Plan) -> str:
             "fewer values of each parameter, figure 6.6 with 200 samples instead of 1000, pairs of people "
             f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room."
         )
+    if papers == {"panoramic"}:
+        return f"{plan.walks} films of each room, and {plan.repeats} by webcams."
     total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
     return f"{plan.repeats} repeats of everything with other random numbers in the trackers. {total}."

@@ -261,7 +261,7 @@ def of_paper(paper: str) -> dict[str, Experiment]:
     """
     if paper not in PAPERS:
         raise BadInput(f"unknown paper {paper!r}; there are: {', '.join(PAPERS)}")
-    return {number: one for number, one in EXPERIMENTS.items() if _paper_of(number) == paper}
+    return {number: one for number, one in EXPERIMENTS.items() if paper_of(number) == paper}
 
 
 def choose(names: Sequence[str], paper: str | None = None) -> list[Experiment]:
@@ -291,11 +291,12 @@ def _matching(name: str, among: Mapping[str, Experiment]) -> list[str]:
 def _is_called(number: str, name: str) -> bool:
     last = number.rsplit("-", 1)[-1]
     names = [number, number.rstrip("ab"), number.split("-")[0]]
-    if _paper_of(number) == "thesis":
+    if paper_of(number) == "thesis":
         names += [last, last.rstrip("ab")]
     return name in names
 
 
-def _paper_of(number: str) -> str:
+def paper_of(number: str) -> str:
+    """Name the source, one of `PAPERS`, that an experiment is from, by its id."""
     begins = (paper for paper, start in PAPERS.items() if start and number.startswith(start))
     return next(begins, "thesis")

@@ -12,6 +12,7 @@ import jinja2
 
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
+from peopleboy.scenarios.studies.reproduce.experiments.catalogue import paper_of
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Outcome, Samples
 from peopleboy.scenarios.studies.reproduce.showing.against_source import (
     SIGNIFICANT,
@@ -27,7 +28,7 @@ from peopleboy.scenarios.studies.reproduce.showing.source import Claim, SourceTa
 
 HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"
-MAIN = {"literal": ("literal", "room_long, random split"), "default": ("default", "held out")}
+MAIN = {"literal": ("literal", "room_long, random split", "room_long"), "default": ("default", "held out")}
 FINE = ("m", "|r|")  # columns that need three decimals
 EFFECT = "d to the source (95 %)"
 
@@ -102,7 +103,11 @@ def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None
     environment.filters["chance"] = chance
     notes = _notes()
     text = environment.get_template("page.html.jinja").render(
-        sections=sections, about=about, general=notes["general"], significant=SIGNIFICANT
+        sections=sections,
+        about=about,
+        general=notes["general"],
+        significant=SIGNIFICANT,
+        papers=sorted({paper_of(part.id) for part in sections}),
     )
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")

@@ -1,0 +1,215 @@
+"""How people are seen all round: what a panorama shows of them, and how they are handed over."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse, Rectangle
+from numpy.typing import NDArray
+
+from docs.generate.pictures.paper import WIDTH_IN, show
+from peopleboy.behaviours.scripted import Stand
+from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.scenarios.drawing.palette import track_colour
+from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_walls
+from peopleboy.scenarios.drawing.plan_robot import draw_robot
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.scenarios.studies.foreground_learning.masked_film import PANORAMA, film_people
+from peopleboy.scenarios.studies.place_learning.place_task import panorama_of
+from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.world import World
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.panoramic.foreground.foreground import Foreground
+from peopleboy.tracker.panoramic.people.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
+from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
+from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.panoramic.people.place_file import load_places
+from peopleboy.tracker.panoramic.people.scene import Scene
+from peopleboy.tracker.track import FloorPlace, Status, Track
+from peopleboy.tracker.trackers import make_tracker
+
+DRIVE = ("panoramic_moving", 0)
+"""Scenario and seed of what is seen: three people, and a robot that drives."""
+
+IMAGE = 304
+REACH_M = 5.0
+COLOURS = ("#0072b2", "#d55e00", "#cc79a7", "#009e73")
+ROUND = ("panoramic_round", 0)
+"""Likewise of who is handed over: anna walks round the robot, bert waits."""
+
+EVERY = 5  # frames
+SURE = 2.45  # half axes of a 95 % ellipse, in standard deviations
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Moment:
+    """One panorama, and what the tracker made of it.
+
+    Attributes:
+        explanation: what it took for background and for people.
+        scene: the same image with nobody found in it.
+        tracks: its people.
+        true_m: (P, 2) where people stood in the robot's frame; NaN for who was not there.
+    """
+
+    explanation: PeopleExplanation
+    scene: Scene
+    tracks: tuple[Track, ...]
+    true_m: NDArray[np.float64]
+
+
+def all_round() -> Figure:
+    """A panorama, its background, who is in it, the patch of one of them, and the floor."""
+    moment = _moment()
+    figure = Figure((WIDTH_IN, 5.9), layout="constrained")
+    left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.75, 1.0)).flat
+    images = left.subplots(3, 1)
+    titles = ("the panorama, with tracks", "its background", "how surely a pixel is a person")
+    pictures: tuple[NDArray[Any], ...] = (
+        moment.scene.image,
+        moment.explanation.background,
+        moment.explanation.foreground,
+    )
+    for axes, title, picture in zip(images, titles, pictures, strict=True):
+        show(axes, picture, cmap="gray")
+        axes.set_title(title, fontsize=11)
+        axes.set_axis_off()
+    height, width = moment.scene.foreground.shape
+    images[0].set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
+    for track in moment.tracks:
+        _boxed(images[0], track, width)
+    above, below = right.subfigures(2, 1, squeeze=False, height_ratios=(1.75, 1.0)).flat
+    _floor(above.subplots(), moment)
+    _patches(below, moment)
+    return figure
+
+
+def handed_over() -> Figure:
+    """Where a person who walks round the robot is tracked, under which number, by two trackers."""
+    figure = Figure((WIDTH_IN, 5.4), layout="constrained")
+    for axes, name in zip(figure.subplots(1, 2, sharey=True), ("handover", "peopleboy"), strict=True):
+        _way_round(axes, name)
+    return figure
+
+
+def _moment() -> Moment:
+    """Play a drive to the tracker, as far as one image."""
+    name, seed = DRIVE
+    scenario = load_scenario(name)
+    film, camera = film_people(scenario, seed), panorama_of(scenario, seed)
+    tracker, eyes = PanoramicTracker(*load_places()), Foreground()
+    for k, image in enumerate(film.images[: IMAGE + 1]):
+        time_s, moved = float(film.time_s[k]), film.odometry(k)
+        frame = Frame(
+            images={PANORAMA: image}, calibrations={PANORAMA: camera}, time_s=time_s, odometry=moved
+        )
+        tracks = tracker.update(frame)
+        foreground = eyes.update(image, time_s, moved, camera)
+    assert tracker.explanation is not None
+    scene = Scene.of(image, foreground, eyes.novelty, camera)
+    return Moment(tracker.explanation, scene, tracks, film.place_m[k])
+
+
+def _colour(track: Track) -> str:
+    return COLOURS[track.id % len(COLOURS)]
+
+
+def _boxed(axes: Axes, track: Track, width: int) -> None:
+    """Draw a box, on both sides if it goes over the seam."""
+    left, top, wide, high = track.boxes[PANORAMA]
+    for shift in (0.0, -width):
+        corner = (left + shift - 0.5, top - 0.5)
+        axes.add_patch(Rectangle(corner, wide, high, fill=False, edgecolor=_colour(track), linewidth=1.6))
+
+
+def _floor(axes: Axes, moment: Moment) -> None:
+    """Draw places with their 95 % ellipses, the robot in the middle, ahead up."""
+    axes.set_title("the floor, with 95 % ellipses", fontsize=11)
+    axes.plot(0.0, 0.0, marker="^", color="0.4", markersize=9)
+    axes.plot(-moment.true_m[:, 1], moment.true_m[:, 0], "k+", markersize=5, label="true", zorder=3)
+    for track in moment.tracks:
+        axes.add_patch(_ellipse(track))
+    axes.set(xlim=(-REACH_M, REACH_M), ylim=(-REACH_M, REACH_M), aspect="equal")
+    axes.set_xlabel("to the robot's right [m]", fontsize=9)
+    axes.set_ylabel("ahead [m]", fontsize=9)
+    axes.legend(loc="lower left", fontsize=9)
+
+
+def _ellipse(track: Track) -> Ellipse:
+    assert track.place is not None
+    (x, y), (xx, xy, yy) = track.place.position_m, track.place.covariance_m2
+    variances, axes = np.linalg.eigh(np.array([[yy, -xy], [-xy, xx]]))  # to the right, ahead
+    along, across = 2.0 * SURE * np.sqrt(variances[::-1])
+    angle = math.degrees(math.atan2(axes[1, 1], axes[0, 1]))
+    colour = _colour(track)
+    return Ellipse((-y, x), along, across, angle=angle, fill=False, edgecolor=colour, linewidth=2.0)
+
+
+def _patches(figure: Figure, moment: Moment) -> None:
+    """Draw the three layers of what is seen where the nearest person is said to stand."""
+    nearest = min(moment.tracks, key=_distance_m)
+    assert nearest.place is not None
+    x, y = nearest.place.position_m
+    polar = np.array([math.atan2(y, x)]), np.array([math.hypot(x, y)])
+    layers = moment.scene.figures.patches(*polar)[0].reshape(LAYERS, UP, ACROSS)
+    span = (-HALF_WIDTH_M, HALF_WIDTH_M, BOTTOM_M, TOP_M)
+    panels = figure.subplots(1, LAYERS, sharey=True)
+    for axes, layer, title in zip(panels, layers, ("person", "new", "not covered"), strict=True):
+        axes.imshow(layer, cmap="gray", vmin=0.0, vmax=1.0, extent=span, interpolation="nearest")
+        axes.axhline(0.0, color=_colour(nearest), linewidth=1.0)
+        axes.set_title(title, fontsize=11)
+        axes.set_xticks((-0.4, 0.0, 0.4))
+        axes.tick_params(labelsize=8)
+    panels[0].set_ylabel("height [m]", fontsize=9)
+    panels[1].set_xlabel("to the side [m]", fontsize=9)
+
+
+def _distance_m(track: Track) -> float:
+    assert track.place is not None
+    return math.hypot(*track.place.position_m)
+
+
+def _way_round(axes: Axes, name: str) -> None:
+    """Draw the room, and in it where tracks stand; full where they are in the thermal image, too."""
+    scenario, (_, seed) = load_scenario(ROUND[0]), ROUND
+    config = scenario.world(seed)
+    labels = Labels(axes)
+    draw_floor(axes, scenario.plan)
+    draw_walls(axes, labels, scenario.place)
+    draw_robot(axes, labels, scenario, config.robot)
+    numbers = set()
+    for track, place, is_warm in _spots(scenario, seed, name):
+        colour = "#{:02x}{:02x}{:02x}".format(*track_colour(track))
+        face = colour if is_warm else "white"
+        axes.plot(*place, "o", color=colour, markerfacecolor=face, markersize=5, zorder=7)
+        numbers.add(track)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.margins(0.02)
+    axes.set_title(f"--tracker {name}: numbers {', '.join(map(str, sorted(numbers)))}", fontsize=11)
+
+
+def _spots(scenario: Scenario, seed: int, name: str) -> Iterator[tuple[int, tuple[float, float], bool]]:
+    """Give, every third of a second, numbers and places of tracks, and if they are in the thermal image."""
+    config = scenario.world(seed)
+    frames = round(scenario.duration_s * config.control_hz)
+    with World(config) as world:
+        tracker = make_tracker(name, stream(seed, "tracker"))
+        for tick in closed_loop(world, tracker, Stand(), frames):
+            for track in tick.tracks if tick.frame % EVERY == 0 else ():
+                if track.status in (Status.TRACKED, Status.PARTLY_OCCLUDED) and track.place is not None:
+                    yield track.id, _in_room(track.place, tick.truth.robot), THERMAL in track.boxes
+
+
+def _in_room(place: FloorPlace, robot: Planar) -> tuple[float, float]:
+    (ahead, left), (c, s) = place.position_m, (math.cos(robot.heading), math.sin(robot.heading))
+    return robot.x + c * ahead - s * left, robot.y + s * ahead + c * left
