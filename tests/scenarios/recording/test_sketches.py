@@ -9,16 +9,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.recording.sketches import (
+    NOBODYS,
     column_bars,
     explained_sketches,
     floor_ellipse,
     outlines_of,
     row_bars,
 )
+from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
+from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.track import FloorPlace
+from tests.helpers.runs.hand_made_tracks import track
+from tests.helpers.runs.synthetic_ticks import explain
 
 
 def across() -> np.ndarray:
@@ -64,6 +71,36 @@ def test_a_round_place_is_seen_at_its_bearing_and_as_wide_as_it_is(
     assert away.max() == pytest.approx(half, rel=0.01)
     assert away.min() == pytest.approx(-half, rel=0.01)
     assert all(np.abs(np.diff(part[:, 0])).max() < 240.0 for part in parts)
+
+
+def people() -> PeopleExplanation:
+    background = np.random.default_rng(0).integers(0, 255, (120, 480, 3), np.uint8)
+    shown = np.where(across(), np.float32(0.8), np.float32(0.3))
+    return PeopleExplanation(background, shown, np.zeros((120, 480), np.float32))
+
+
+def test_people_all_round_are_drawn_as_outlines_and_where_each_stands() -> None:
+    cameras, tracks = (
+        {"panorama": PanoramaConfig()},
+        (track(3, (3.0, 1.0)), track(5, (-3.0, 0.0)), track(6, None)),
+    )
+    (sketch,) = explained_sketches(people(), tracks, cameras).values()
+    assert np.array_equal(sketch.background, people().background)
+    outlines = outlines_of(across())
+    assert all((one == other).all() for one, other in zip(sketch.lines, outlines, strict=False))
+    colours = [tuple(colour) for colour in sketch.colour.tolist()]
+    assert len(colours) == len(sketch.lines)
+    # Who stands behind the robot is drawn in parts on both sides of the seam.
+    assert colours == [NOBODYS] * len(outlines) + [track_colour(3)] + [track_colour(5)] * 2
+
+
+def test_of_the_handover_the_panoramas_part_is_drawn() -> None:
+    cameras, tracks = {"panorama": PanoramaConfig()}, (track(3),)
+    both = explained_sketches(BothExplanations.of(explain(), people(), {}), tracks, cameras)
+    alone = explained_sketches(people(), tracks, cameras)
+    assert both.keys() == alone.keys() == {"panorama"}
+    assert np.array_equal(both["panorama"].colour, alone["panorama"].colour)
+    assert explained_sketches(BothExplanations.of(explain(), None, {}), tracks, cameras) == {}
 
 
 def test_of_other_explanations_nothing_is_drawn() -> None:

@@ -9,30 +9,34 @@ from tests.helpers.runs.hand_made_tracks import track
 OLD, YOUNG = 5.0, YOUNG_S / 2
 
 
+def name(identities, camera, tracks, known):
+    identities.name(camera, tracks, known)
+
+
 def named(*cameras_and_ids):
     identities = Identities()
     for camera, number in cameras_and_ids:
-        identities.name(camera, [track(number)], {})
+        name(identities, camera, [track(number)], {})
     return identities
 
 
 def test_tracks_are_numbered_as_they_come_and_keep_their_numbers():
     identities = named((PANORAMA, 4), (THERMAL, 4), (PANORAMA, 2))
     assert identities.number == {(PANORAMA, 4): 1, (THERMAL, 4): 2, (PANORAMA, 2): 3}
-    identities.name(PANORAMA, [track(4), track(2)], {})
+    name(identities, PANORAMA, [track(4), track(2)], {})
     assert len(set(identities.number.values())) == 3
 
 
 def test_who_agrees_with_a_known_track_has_its_number_from_the_first_frame_on():
     identities = named((PANORAMA, 3))
-    identities.name(THERMAL, [track(8)], {8: (PANORAMA, 3)})
+    name(identities, THERMAL, [track(8)], {8: (PANORAMA, 3)})
     assert identities.number[THERMAL, 8] == identities.number[PANORAMA, 3] == 1
 
 
 def test_two_of_one_camera_never_get_the_same_number():
     identities = named((PANORAMA, 3))
     same = {8: (PANORAMA, 3), 9: (PANORAMA, 3)}
-    identities.name(THERMAL, [track(8), track(9)], same)
+    name(identities, THERMAL, [track(8), track(9)], same)
     assert identities.number[THERMAL, 8] == 1 != identities.number[THERMAL, 9]
 
 
@@ -55,8 +59,8 @@ def test_a_young_number_gives_way_and_of_two_old_ones_the_followers():
 
 def test_whoever_else_has_the_number_in_that_camera_gets_a_new_one():
     identities = named((PANORAMA, 2))
-    identities.name(THERMAL, [track(5)], {5: (PANORAMA, 2)})
-    identities.name(THERMAL, [track(5), track(6)], {})
+    name(identities, THERMAL, [track(5)], {5: (PANORAMA, 2)})
+    name(identities, THERMAL, [track(5), track(6)], {})
     follower, leader = ((THERMAL, 6), track(6)), ((PANORAMA, 2), track(2))
     identities.agree(follower, leader, [(THERMAL, 5), (THERMAL, 6), (PANORAMA, 2)])
     assert identities.number == {(PANORAMA, 2): 1, (THERMAL, 6): 1, (THERMAL, 5): 3}
@@ -72,8 +76,8 @@ def test_in_no_camera_two_tracks_ever_have_one_number(history, chance):
     identities = Identities()
     for warm, around, age, other_age in history:
         one, other = chance.choice(sorted(warm)), chance.choice(sorted(around))
-        identities.name(PANORAMA, [track(k) for k in around], {other: (THERMAL, one)})
-        identities.name(THERMAL, [track(k) for k in warm], {one: (PANORAMA, other)})
+        name(identities, PANORAMA, [track(k) for k in around], {other: (THERMAL, one)})
+        name(identities, THERMAL, [track(k) for k in warm], {one: (PANORAMA, other)})
         present = [*((THERMAL, k) for k in warm), *((PANORAMA, k) for k in around)]
         follower, leader = track(one, age_s=age), track(other, age_s=other_age)
         identities.agree(((THERMAL, one), follower), ((PANORAMA, other), leader), present)

@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -6,17 +7,29 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import PinholeCalibration
 from peopleboy.tracker.thermal.config import BoxConfig, InteractionConfig, TrackerConfig
 from peopleboy.tracker.thermal.variants import PAPER, THESIS
 from peopleboy.tracker.thermal.whereabouts import (
+    PERSON_M,
+    WIDEST_RAD,
+    WIDTH_M,
     box_of,
     detector_factor,
     overlap_shares,
     person_factor,
+    places_on_floor,
     regions_of,
+    standing_box,
 )
+from peopleboy.tracker.track import FloorPlace, Status
 
 CONFIG = TrackerConfig()
+FOCAL_PX, CAMERA_M = 400.0, (0.1, 0.0, 1.2)
+FORWARD = np.array([[0.0, 0, 1, 0.1], [-1, 0, 0, 0], [0, -1, 0, 1.2], [0, 0, 0, 1]])
+CAMERA = PinholeCalibration(
+    intrinsics=np.array([[FOCAL_PX, 0, 159.5], [0, FOCAL_PX, 119.5], [0, 0, 1.0]]), robot_from_camera=FORWARD
+)
 TALL = np.array([100.0, 120.0, 12.0, 44.0, 3.0, 0.0, 0.0, 0.0, 0.0])
 
 
@@ -95,3 +108,46 @@ def test_a_detectors_samples_are_penalised_once_however_many_they_overlap():
 def test_impossible_interactions_are_refused(wrong):
     with pytest.raises(BadInput, match=next(iter(wrong))):
         replace(InteractionConfig(), **wrong)
+
+
+def standing(x, y):
+    return standing_box(FloorPlace(position_m=(x, y), covariance_m2=(0.1, 0.0, 0.1)), CAMERA)
+
+
+def test_who_stands_ahead_has_the_box_of_similar_triangles():
+    left, top, width, height = standing(4.1, 0.0)
+    assert height == pytest.approx(FOCAL_PX * PERSON_M / 4.0)
+    assert width == pytest.approx(FOCAL_PX * WIDTH_M / 4.0)
+    assert left + width / 2 == pytest.approx(159.5)
+    assert top + height == pytest.approx(119.5 + FOCAL_PX * 1.2 / 4.0)
+
+
+@given(st.floats(1.0, 8.0), st.floats(-1.0, 1.0))
+def test_a_standing_box_has_its_middle_where_the_place_is(x, y):
+    left, _, width, height = standing(x + 0.1, y)
+    assert left + width / 2 == pytest.approx(159.5 - FOCAL_PX * y / x)
+    assert height == pytest.approx(FOCAL_PX * PERSON_M / x)
+
+
+@given(st.floats(1.5, 8.0), st.floats(-0.8, 0.8))
+def test_the_place_that_a_standing_box_tells_is_that_of_who_stands_there(x, y):
+    (place,) = places_on_floor([stretched(standing(x + 0.1, y))], [Status.TRACKED], CAMERA)
+    assert place.position_m == pytest.approx((x + 0.1, y), rel=1e-6, abs=1e-6)
+
+
+def stretched(box):
+    """Boxes of the tracker end a little below the feet."""
+    left, top, width, height = box
+    return left, top, width, height / 0.98
+
+
+@given(st.floats(-8.0, 8.0), st.floats(0.1, 8.0))
+def test_who_is_aside_or_behind_is_outside_the_image_on_that_side(x, y):
+    if abs(math.atan2(y, x - 0.1)) < math.radians(40):
+        return
+    left_side, right_side = standing(x, y), standing(x, -y)
+    assert np.isfinite([*left_side, *right_side]).all()
+    assert left_side[0] + left_side[2] / 2 < -0.5
+    assert right_side[0] + right_side[2] / 2 > 319.5
+    if abs(math.atan2(y, x - 0.1)) >= WIDEST_RAD:
+        assert left_side[0] + left_side[2] / 2 == pytest.approx(159.5 - FOCAL_PX * math.tan(WIDEST_RAD))

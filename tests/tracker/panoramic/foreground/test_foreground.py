@@ -89,6 +89,29 @@ def test_an_unknown_movement_makes_all_begin_anew(driving):
     )
 
 
+def test_the_background_begins_with_the_first_image_of_which_nothing_is_new(standing):
+    film, calibration = standing
+    eyes = Foreground()
+    assert eyes.background.shape == film.images[0].shape
+    assert not eyes.background.any()
+    eyes.update(film.images[0], 0.0, None, calibration)
+    assert np.array_equal(eyes.background, film.images[0])
+    assert not eyes.novelty.any()
+
+
+def test_people_are_new_and_the_background_lacks_them(standing):
+    film, calibration = standing
+    eyes = Foreground()
+    for k, image in enumerate(film.images):
+        eyes.update(image, float(film.time_s[k]), film.odometry(k), calibration)
+    people = film.who[-1] > 0
+    assert eyes.novelty[people].mean() > 5 * eyes.novelty[~people].mean()
+    # Where somebody is now, it shows what was seen there before anybody came.
+    came = people & (film.who[0] == 0)
+    empty = film.images[0][came].astype(float)
+    assert np.abs(eyes.background[came] - empty).mean() < 0.3 * np.abs(film.images[-1][came] - empty).mean()
+
+
 def test_another_mirror_or_size_is_refused(standing):
     film, calibration = standing
     with refused("480x100", "480x120", "peopleboy train-foreground"):

@@ -7,7 +7,15 @@ from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.floor_rows import floor_rows
 from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
-from peopleboy.tracker.panoramic.foreground.memory import AGE, compare, first_memory, learn, move_along
+from peopleboy.tracker.panoramic.foreground.memory import (
+    AGE,
+    DOUBT,
+    compare,
+    first_memory,
+    learn,
+    move_along,
+    novelty,
+)
 
 CAMERA = PanoramaCalibration(
     width=480,
@@ -91,3 +99,29 @@ def test_unlikeness_is_in_standard_deviations():
     unlike = compare(image, memory, BLOCK).reshape(BLOCK, BLOCK, 6, 30, 120)[:, :, 3]
     assert unlike[50 % 4, 0, 50 // 4, 25] == pytest.approx(math.log(1 + 9) / 2, rel=1e-4)
     assert np.count_nonzero(unlike) == 1
+
+
+def novelty_of(off_sd, age_s=1e9, doubt_px=0.0):
+    """How new one pixel is that differs by so many standard deviations in each colour."""
+    image = np.full((120, 480, 3), 100, np.uint8)
+    memory = first_memory(image)
+    memory[..., 3], memory[..., AGE], memory[..., DOUBT] = 25.0, age_s, doubt_px
+    image[50, 101] = 100 + round(5 * off_sd)
+    told = novelty(compare(image, memory, BLOCK))
+    assert told.shape == (120, 480)
+    assert np.count_nonzero(told) <= 1
+    return float(told[50, 101])
+
+
+def test_new_is_what_differs_by_more_than_two_standard_deviations_and_wholly_from_eight_on():
+    assert novelty_of(1.8) == 0.0
+    assert 0.0 < novelty_of(3.0) < novelty_of(5.0) < novelty_of(7.0) < 1.0
+    assert novelty_of(8.4) == pytest.approx(1.0)
+    assert novelty_of(20.0) == pytest.approx(1.0)
+
+
+def test_against_a_young_or_doubtful_background_less_is_new():
+    assert novelty_of(20.0, age_s=0.0) == 0.0
+    assert novelty_of(20.0, age_s=1.0) == pytest.approx(0.5)
+    assert novelty_of(20.0, doubt_px=1.0) == pytest.approx(0.5)
+    assert novelty_of(20.0, age_s=1.0, doubt_px=3.0) == pytest.approx(1 / 8)
