@@ -10,7 +10,8 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
-from peopleboy.tracker.handover.handover_tracker import FARTHEST_INTRODUCED_M, NEEDED_VOTES, HandoverTracker
+from peopleboy.tracker.handover.handover_tracker import NEEDED_VOTES, HandoverTracker
+from peopleboy.tracker.handover.introductions import FARTHEST_M, PAUSE_S
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
@@ -173,7 +174,7 @@ def test_who_comes_into_the_thermal_image_is_pointed_out_there():
         ([], [around(1, BEHIND_M)]),
         ([], [around(1, (0.3, 0.0))]),
         ([], [around(1, (3.0, 3.0))]),
-        ([], [around(1, (FARTHEST_INTRODUCED_M + 0.1, 0.0))]),
+        ([], [around(1, (FARTHEST_M + 0.1, 0.0))]),
         ([], [around(1, status=HIDDEN)]),
         ([], [track(1, None)]),
         ([warm(1)], [around(1)]),
@@ -188,10 +189,18 @@ def test_who_is_not_to_be_seen_in_the_thermal_image_or_is_known_there_is_not_poi
 
 
 def test_nobody_is_pointed_out_all_the_time_nor_two_at_once():
-    both = Both(rate_hz=10)
-    both.see([], [around(1, SEEN_M), around(2, ASIDE_M)], times=10)
+    both = Both(rate_hz=20)
     boxes = [standing_box(around(1, at).place, THERMAL_CAMERA) for at in (SEEN_M, ASIDE_M)]
-    assert both.thermal.introduced == [*boxes, *boxes]
+    told_s = {box: [] for box in boxes}
+    for frame in range(1, 21):
+        both.see([], [around(1, SEEN_M), around(2, ASIDE_M)])
+        assert len(both.thermal.introduced) <= 1
+        for box in both.thermal.introduced:
+            told_s[box].append(frame / 20)
+        both.thermal.introduced.clear()
+    for times in told_s.values():
+        assert len(times) >= 4
+        assert np.diff(times).min() >= PAUSE_S - 1e-9
 
 
 def test_without_a_thermal_image_nobody_is_pointed_out():

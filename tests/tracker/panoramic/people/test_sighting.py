@@ -34,10 +34,11 @@ def test_who_is_expected_nearby_is_seen_where_it_stands(bearing, distance, along
     # All ways of telling the place say the same.
     np.testing.assert_allclose(seen.place_m, POSE.place(seen.distance_m, seen.bearing_rad))
     away = seen.place_m - (POSE.x, POSE.y)
-    np.testing.assert_allclose(seen.axes[:, 0], away / np.linalg.norm(away))
-    np.testing.assert_allclose(seen.axes @ seen.axes.T, np.eye(2), atol=1e-12)
+    ahead = away / np.linalg.norm(away)
+    axes = np.stack([ahead, [-ahead[1], ahead[0]]], axis=1)
+    share = SightingConfig().error_share
     np.testing.assert_allclose(
-        seen.axes.T @ seen.error_m2 @ seen.axes, np.diag([0.08**2, 0.05**2]), atol=1e-6
+        axes.T @ seen.error_m2 @ axes, share**2 * np.diag([0.08**2, 0.05**2]), atol=1e-6
     )
 
 
