@@ -34,12 +34,10 @@ def test_who_is_expected_nearby_is_seen_where_it_stands(bearing, distance, along
     # All ways of telling the place say the same.
     np.testing.assert_allclose(seen.place_m, POSE.place(seen.distance_m, seen.bearing_rad))
     away = seen.place_m - (POSE.x, POSE.y)
-    ahead = away / np.linalg.norm(away)
-    axes = np.stack([ahead, [-ahead[1], ahead[0]]], axis=1)
-    share = SightingConfig().error_share
-    np.testing.assert_allclose(
-        axes.T @ seen.error_m2 @ axes, share**2 * np.diag([0.08**2, 0.05**2]), atol=1e-6
-    )
+    along, across = away / np.linalg.norm(away), np.array([-away[1], away[0]]) / np.linalg.norm(away)
+    assert along @ seen.error_m2 @ across == pytest.approx(0.0, abs=1e-6)
+    believed = along @ seen.error_m2 @ along, across @ seen.error_m2 @ across
+    assert believed[0] / believed[1] == pytest.approx((0.08 / 0.05) ** 2, rel=1e-4)
 
 
 @given(st.floats(-9.0, 9.0), st.floats(-9.0, 9.0))
