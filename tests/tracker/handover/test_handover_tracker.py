@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.loop.calibrations import calibrations_of
@@ -65,6 +67,8 @@ class Both:
                 )
             )
             assert len({one.id for one in tracks}) == len(tracks)
+            # One of each camera at most is one person.
+            assert len(tracks) >= max(len(thermal), len(panoramic))
         return {one.id: one for one in tracks}
 
 
@@ -135,8 +139,34 @@ def test_two_who_cross_keep_their_numbers_though_their_places_are_taken_for_each
         assert set(told[number].boxes) == {THERMAL, PANORAMA}
 
 
+STANDS = st.dictionaries(st.integers(1, 4), st.sampled_from([SEEN_M, ASIDE_M, BEHIND_M]), max_size=3)
+
+
+@settings(max_examples=150)
+@given(st.lists(st.tuples(STANDS, STANDS, st.integers(1, 6)), max_size=6), st.sampled_from([0.2, 5.0]))
+def test_two_of_one_camera_never_are_one_person_whoever_comes_and_goes(history, age_s):
+    both = Both()
+    for ahead, round_about, times in history:
+        both.see(
+            [warm(number, at, age_s=age_s) for number, at in ahead.items()],
+            [around(number, at) for number, at in round_about.items()],
+            times=times,
+        )
+
+
+def test_who_comes_back_into_the_thermal_image_is_not_one_with_who_took_its_number():
+    both = Both()
+    both.see([warm(1)], [around(9)], times=9)
+    both.see([warm(2)], [around(9)], times=20)
+    assert len(both.see([warm(1, ASIDE_M), warm(2)], [around(9)])) == 2
+
+
 def test_tentative_ones_of_the_thermal_image_are_left_out():
-    assert Both().see([warm(1, status=Status.TENTATIVE)]) == {}
+    both = Both()
+    both.see([], [around(1, BEHIND_M)], times=3)
+    both.thermal.tracks = [warm(1, status=Status.TENTATIVE)]
+    (only,) = both.tracker.update(Frame(images={}, time_s=9.0))
+    assert THERMAL not in only.boxes
 
 
 def test_whoever_is_hidden_is_hidden_by_a_number_that_there_is():
