@@ -32,7 +32,7 @@ class SightingConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LifeConfig:
+class LifespanConfig:
     """When tracks begin and end.
 
     Attributes:
@@ -103,7 +103,7 @@ class PeopleConfig:
     """
 
     sighting: SightingConfig = field(default_factory=SightingConfig)
-    life: LifeConfig = field(default_factory=LifeConfig)
+    life: LifespanConfig = field(default_factory=LifespanConfig)
     identity: IdentityConfig = field(default_factory=IdentityConfig)
     restlessness: float = 0.6
     fading_s: float = 1.0

@@ -15,6 +15,8 @@ from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.people.floor_motion import Motion
 from peopleboy.tracker.panoramic.people.identity import Register
+from peopleboy.tracker.panoramic.people.life import Life
+from peopleboy.tracker.panoramic.people.looks import Looks
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_person import PanoramicPerson
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
@@ -91,13 +93,13 @@ class PanoramicTracker:
         image, calibration = frame.rgb(PANORAMA), self._checked(frame.calibrations)
         moved = None if self._seen_from is None else _between(self._seen_from, self._pose)
         foreground = self._foreground.update(image, frame.time_s, moved, calibration)
-        dt_s = min(frame.time_s - self._time_s, LONGEST_STEP_S)
+        life = Life(self.config, frame.time_s, min(frame.time_s - self._time_s, LONGEST_STEP_S))
         self._seen_from, self._time_s = self._pose, frame.time_s
         self._scene = scene = Scene.of(image, foreground, self._foreground.novelty, calibration)
         looker = Onlooker(self._model, self._pose, self.config.sighting)
-        known = self._followed(scene, looker, dt_s)
-        known = self._with_newcomers(known, scene, looker)
-        self._persons = self._named(self._kept(known))
+        known = self._followed(scene, looker, life)
+        known = self._with_newcomers(known, scene, looker, life)
+        self._persons = self._named(self._kept(known, life), life)
 
     def _checked(self, calibrations: Mapping[str, Calibration]) -> PanoramaCalibration:
         """Give the camera's calibration, if it is one that the model was trained on."""
@@ -111,151 +113,70 @@ class PanoramicTracker:
         self._camera = camera
         return camera
 
-    def _followed(self, scene: Scene, looker: Onlooker, dt_s: float) -> list[PanoramicPerson]:
+    def _followed(self, scene: Scene, looker: Onlooker, life: Life) -> list[PanoramicPerson]:
         """Look for everybody who is known, the nearest first."""
-        config = self.config
-        expected = (
-            replace(person, motion=person.motion.later(dt_s, config.restlessness)) for person in self._persons
-        )
+        config, restlessness = self.config.sighting, self.config.restlessness
+        expected = (replace(one, motion=one.motion.later(life.dt_s, restlessness)) for one in self._persons)
         found: list[PanoramicPerson] = []
         for person in sorted(expected, key=lambda one: looker.polar(one.motion.place_m)[1]):
             bearing, distance = looker.polar(person.motion.place_m)
             hidden = scene.hidden_share(bearing, distance)
-            seen = looker.expected(person.motion, scene) if hidden < config.sighting.blind_share else None
-            hider = _hider(bearing, found, looker) if hidden > config.sighting.partly_share else None
+            seen = looker.expected(person.motion, scene) if hidden < config.blind_share else None
+            least = config.hidden_share if seen is None else config.partly_share
+            hider = _hider(bearing, found, looker) if hidden > least else None
             if seen is None:
-                is_hidden = hidden > config.sighting.hidden_share
-                found.append(self._unseen(person, dt_s, hider if is_hidden else None))
+                found.append(life.unseen(person, hider))
             else:
-                found.append(self._seen(person, seen, scene, hider))
+                found.append(life.seen(person, seen, _taken(seen, scene), hider))
         return found
 
-    def _unseen(self, person: PanoramicPerson, dt_s: float, hider: int | None) -> PanoramicPerson:
-        """Take in that a person is not seen; who is hidden is trusted as before."""
-        return replace(
-            person,
-            motion=person.motion.slowed(dt_s, self.config.fading_s),
-            trust=person.trust
-            if hider is not None
-            else self._trusted(person.trust, self.config.life.miss, dt_s),
-            status=Status.TOTALLY_OCCLUDED,
-            occluder=hider,
-            strange_s=0.0,
-        )
-
-    def _trusted(self, trust: float, evidence: float, dt_s: float) -> float:
-        """Let the log odds of a new image join those before."""
-        life = self.config.life
-        newest = min(evidence, life.most_trust)
-        return trust + (1.0 - math.exp(-dt_s / life.trust_s)) * (newest - trust)
-
-    def _seen(
-        self, person: PanoramicPerson, seen: Sighting, scene: Scene, hider: int | None
-    ) -> PanoramicPerson:
-        """Take in that a person is seen."""
-        looks, is_whole = scene.looks(seen.bearing_rad, seen.distance_m), hider is None
-        passed_s = self._time_s - person.seen_s
-        scene.cover(seen.bearing_rad, seen.distance_m)
-        is_strange = is_whole and person.looks.unlikeness(looks) > self.config.identity.strange
-        return replace(
-            person,
-            motion=person.motion.corrected(seen.place_m, seen.error_m2),
-            lasting_m2=self.config.lasting_share**2 * seen.error_m2,
-            seen_s=self._time_s,
-            sightings=person.sightings + 1,
-            trust=self._trusted(person.trust, seen.evidence, passed_s),
-            status=Status.TRACKED if is_whole else Status.PARTLY_OCCLUDED,
-            looks=person.looks if is_strange or not is_whole else person.looks.joined(looks),
-            newest=looks,
-            strange_s=person.strange_s + passed_s if is_strange else 0.0,
-            occluder=hider,
-        )
-
     def _with_newcomers(
-        self, known: list[PanoramicPerson], scene: Scene, looker: Onlooker
+        self, known: Sequence[PanoramicPerson], scene: Scene, looker: Onlooker, life: Life
     ) -> list[PanoramicPerson]:
         """Look where nobody is known; who is found is somebody who was out of sight, or new."""
-        life = self.config.life
-        everybody = list(known)
-        for polar in promising_places(scene.figures, life.newcomers):
+        config, everybody = self.config.life, list(known)
+        for polar in promising_places(scene.figures, config.newcomers):
             seen = looker.at(scene, polar[None])
-            if seen is None or seen.distance_m > life.farthest_m:
+            if seen is None or seen.distance_m > config.farthest_m:
                 continue
-            if any(one.is_seen and _way(one, seen) < life.apart_m for one in everybody):
+            if any(one.is_seen and _way(one, seen) < config.apart_m for one in everybody):
                 continue
-            lost = self._lost(everybody, seen, scene)
-            if lost is None:
-                everybody.append(self._newcomer(seen, scene))
-            else:
+            looks = _taken(seen, scene)
+            lost = [one for one in everybody if life.may_be(one, seen, looks)]
+            if lost:
+                back = min(lost, key=lambda one: _way(one, seen))
                 motion = Motion.begin(seen.place_m, seen.error_m2)
-                everybody[everybody.index(lost)] = self._seen(replace(lost, motion=motion), seen, scene, None)
+                everybody[everybody.index(back)] = life.seen(replace(back, motion=motion), seen, looks, None)
+            else:
+                everybody.append(life.newcomer(seen, looks))
         return everybody
 
-    def _lost(
-        self, persons: Sequence[PanoramicPerson], seen: Sighting, scene: Scene
-    ) -> PanoramicPerson | None:
-        """Find who is out of sight, may have come here, and looks like who is seen here."""
-        looks, identity = scene.looks(seen.bearing_rad, seen.distance_m), self.config.identity
-        near = [
-            one
-            for one in persons
-            if not one.is_seen
-            and _way(one, seen) < identity.reach_m + identity.fastest_m_s * (self._time_s - one.seen_s)
-            and one.looks.unlikeness(looks) < identity.alike
-        ]
-        return min(near, key=lambda one: _way(one, seen), default=None)
-
-    def _newcomer(self, seen: Sighting, scene: Scene) -> PanoramicPerson:
-        looks = scene.looks(seen.bearing_rad, seen.distance_m)
-        scene.cover(seen.bearing_rad, seen.distance_m)
-        return PanoramicPerson(
-            id=0,
-            motion=Motion.begin(seen.place_m, seen.error_m2),
-            lasting_m2=self.config.lasting_share**2 * seen.error_m2,
-            born_s=self._time_s,
-            seen_s=self._time_s,
-            sightings=1,
-            trust=min(seen.evidence, self.config.life.most_trust),
-            status=Status.TENTATIVE,
-            looks=looks,
-            newest=looks,
-        )
-
-    def _kept(self, persons: Sequence[PanoramicPerson]) -> list[PanoramicPerson]:
+    def _kept(self, persons: Sequence[PanoramicPerson], life: Life) -> list[PanoramicPerson]:
         """Let go of those who are gone, and of doubles: of two at one place, who was seen last stays."""
         kept: list[PanoramicPerson] = []
         gone: list[PanoramicPerson] = []
         for person in sorted(persons, key=lambda one: (-one.seen_s, one.id == 0, one.id)):
             is_double = any(_apart(person, other) < self.config.life.double_m for other in kept)
-            is_gone = (
-                self._time_s - person.seen_s > self._patience_s(person)
-                or person.trust < self.config.life.death_trust
-            )
-            (gone if is_double or is_gone else kept).append(person)
-        self._register.leave(gone, self._time_s)
+            (gone if is_double or life.is_gone(person) else kept).append(person)
+        self._register.leave(gone, life.time_s)
         return kept
 
-    def _patience_s(self, person: PanoramicPerson) -> float:
-        """Tell for how long somebody may stay unseen."""
-        life = self.config.life
-        if person.id == 0:
-            return life.newcomer_s
-        return life.unseen_s if person.occluder is None else life.hidden_s
-
-    def _named(self, persons: Sequence[PanoramicPerson]) -> tuple[PanoramicPerson, ...]:
+    def _named(self, persons: Sequence[PanoramicPerson], life: Life) -> tuple[PanoramicPerson, ...]:
+        """Give numbers to those who are believed in."""
         named = [
-            self._register.named(one, self._time_s) if one.id == 0 and self._is_believed(one) else one
-            for one in self._register.put_right(persons, self._time_s)
+            self._register.named(one, life.time_s) if one.id == 0 and self._is_believed(one, life) else one
+            for one in self._register.put_right(persons, life.time_s)
         ]
         return tuple(sorted(named, key=lambda one: (one.id == 0, one.id)))
 
-    def _is_believed(self, person: PanoramicPerson) -> bool:
-        life = self.config.life
-        has_stayed = person.sightings > 1 and self._time_s - person.born_s >= life.birth_s - 1e-6
-        if not person.is_seen or not (has_stayed or person.sightings >= life.birth_sightings):
+    def _is_believed(self, person: PanoramicPerson, life: Life) -> bool:
+        """Tell whether somebody has been seen for long and surely enough; less will do for who returns."""
+        config = self.config.life
+        if not life.is_settled(person) or person.trust < config.return_trust:
             return False
-        returns = person.trust >= life.return_trust and self._register.recognised(person, self._time_s)
-        return person.trust >= life.birth_trust or bool(returns)
+        if person.trust >= config.birth_trust:
+            return True
+        return self._register.recognised(person, life.time_s) is not None
 
     def _track(self, person: PanoramicPerson, frame: Frame) -> Track:
         later_s = frame.time_s - self._time_s
@@ -284,6 +205,13 @@ def _hider(bearing: float, nearer: Sequence[PanoramicPerson], looker: Onlooker) 
         one.id: abs(math.remainder(looker.polar(one.motion.place_m)[0] - bearing, math.tau)) for one in seen
     }
     return min(off, key=lambda number: off[number], default=None)
+
+
+def _taken(seen: Sighting, scene: Scene) -> Looks:
+    """Tell what somebody looks like, and take that one out of the picture."""
+    looks = scene.looks(seen.bearing_rad, seen.distance_m)
+    scene.cover(seen.bearing_rad, seen.distance_m)
+    return looks
 
 
 def _way(person: PanoramicPerson, seen: Sighting) -> float:
