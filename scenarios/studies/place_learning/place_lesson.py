@@ -53,10 +53,10 @@ def give_place_lesson(out: Path, films: Path, workers: Workers, *, scenes: int, 
         TasksFailed: some films failed, after all others were done.
     """
     examples = out / f"examples-{_eyes_digest()}"
+    with writing_to(films, "--films"):
+        films.mkdir(parents=True, exist_ok=True)
     with writing_to(out):
         examples.mkdir(parents=True, exist_ok=True)
-    with writing_to(films):
-        films.mkdir(parents=True, exist_ok=True)
     task = partial(PlaceTask, films=str(films), examples=str(examples))
     tests = [task(seed=seed) for seed in range(TESTS)]
     tasks = [task(seed=seed) for seed in range(FIRST_SEED, FIRST_SEED + scenes)]

@@ -20,7 +20,6 @@ from peopleboy.tracker.panoramic.people.looks import Looks
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_person import PanoramicPerson
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
-from peopleboy.tracker.panoramic.people.place_file import COMMAND
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 from peopleboy.tracker.panoramic.people.scene import Scene, person_box
 from peopleboy.tracker.panoramic.people.search import promising_places
@@ -109,7 +108,7 @@ class PanoramicTracker:
         if not isinstance(camera, PanoramaCalibration):
             raise BadInput(f"camera {PANORAMA!r}: the tracker wants a calibrated one that sees all round")
         if why := self._view.refusal(view_of(camera, camera.width, camera.height)):
-            raise BadInput(f"{why}; `{COMMAND}` and `peopleboy train-foreground` learn for another")
+            raise BadInput(f"{why}; there are none for another")
         self._camera = camera
         return camera
 
