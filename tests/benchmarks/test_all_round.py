@@ -1,6 +1,5 @@
 import math
 
-import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -58,9 +57,10 @@ def test_without_tracks_nobody_is_found():
     assert math.isnan(_distance_error(made)[0])
 
 
-def watched(text):
-    """Tenths of a second: out of the image, in it, in it with a box."""
-    return _Watch(seen=[(k / 10, one != "-", one == "X") for k, one in enumerate(text)])
+def times_of(text):
+    """Times of handover; each letter is a tenth of a second: out of the image, in it, in it with a box."""
+    watch = _Watch(seen=[(k / 10, one != "-") for k, one in enumerate(text)])
+    return list(watch.times_s([one == "X" for one in text]))
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def watched(text):
     ],
 )
 def test_a_handover_takes_from_coming_into_the_image_to_the_first_box(text, times):
-    assert list(watched(text).times_s()) == pytest.approx(times, nan_ok=True)
+    assert times_of(text) == pytest.approx(times, nan_ok=True)
 
 
 def test_all_that_it_plays_can_be_made_and_its_table_is_printed(monkeypatch):
@@ -85,14 +85,20 @@ def test_all_that_it_plays_can_be_made_and_its_table_is_printed(monkeypatch):
     def pretend(tasks, _workers):
         played.extend(tasks)
         return {
-            task: Played(rows().scores(20), (0.1, 5), 3.0, (0.2, math.nan), frozenset({1})) for task in tasks
+            task: Played(
+                rows().scores(20), (0.1, 5), 3.0, (0.2, math.nan), (0.4, 0.6), numbers=frozenset({1})
+            )
+            for task in tasks
         }
 
     monkeypatch.setattr(all_round, "_played", pretend)
     told = CliRunner().invoke(all_round.main, ["--seeds", "2", "--laps", "3", "--workers", "1"])
     assert told.exit_code == 0, told.output
     assert "one number in 3 of 3 runs" in told.output
+    assert "0.20 s on average" in told.output
     assert "never in 3 of 6" in told.output
+    assert "0.50 s on average" in told.output
+    assert "never in 0 of 6" in told.output
     assert len({task.name for task in played}) == len(played)
     for task in played:
         cameras = all_round._make(task.tracker, 0).cameras
@@ -103,4 +109,3 @@ def test_all_that_it_plays_can_be_made_and_its_table_is_printed(monkeypatch):
 
 def test_the_name_of_a_run_tells_which():
     assert Play("room_long", "panoramic", 3).name == "room_long panoramic 3"
-    assert np.isnan(list(watched("-i-").times_s())).all()
