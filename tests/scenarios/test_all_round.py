@@ -110,8 +110,8 @@ def test_the_same_run_in_a_fresh_process_gives_the_same_tracks(came: Path, tmp_p
 @pytest.mark.parametrize(
     ("camera", "named"),
     [
-        ({"kind": "panorama", "mirror": "narrow"}, ("panorama", "deg down", "train-places")),
-        ({"kind": "panorama", "width_px": 360}, ("360x", "480x120", "train-places")),
+        ({"kind": "panorama", "mirror": "narrow"}, ("panorama", "deg down", "none for another")),
+        ({"kind": "panorama", "width_px": 360}, ("360x", "480x120", "none for another")),
         ({"kind": "colour"}, ("'panorama'", "sees all round")),
     ],
     ids=["another mirror", "another size", "a flat one"],

@@ -257,9 +257,9 @@ def test_it_explains_who_was_taken_for_whom():
 ])  # fmt: skip
 def test_another_camera_than_the_one_that_was_learned_is_refused(other):
     tracker = PanoramicTracker(CardboardModel(), VIEW)
-    with refused("panorama", "trained", "train-places"):
+    with refused("panorama", "trained", "none for another"):
         tracker.check_cameras({"panorama": other})
-    with refused("panorama", "trained", "train-places"):
+    with refused("panorama", "trained", "none for another"):
         tracker.update(Frame(images={"panorama": HALL}, time_s=0.0, calibrations={"panorama": other}))
     assert tracker.explanation is None
 
