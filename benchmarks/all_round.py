@@ -193,13 +193,15 @@ class _Watch:
     has_box: list[bool] = field(default_factory=list)
     has_contour: list[bool] = field(default_factory=list)
     numbers: frozenset[int] = frozenset()
+    newest: int = 0
 
     def add(self, tick: Tick) -> None:
         person = next((one for one in tick.truth.people if one.name == FOLLOWED), None)
         if person is None:
             return
-        track = _nearest(tick, person)
+        track = _track_of(tick, person, self.newest)
         if track is not None:
+            self.newest = track.id
             self.numbers |= {track.id}
         told = tick.explanation
         contours = told.thermal.ellipses if isinstance(told, BothExplanations) else {}
@@ -221,13 +223,15 @@ class _Watch:
                 came_s = None
 
 
-def _nearest(tick: Tick, person: PersonTruth) -> Track | None:
-    """Find the track that stands nearest to a person, within half a metre."""
+def _track_of(tick: Tick, person: PersonTruth, before: int) -> Track | None:
+    """Find the track of a person: the one it had before, or the nearest, if it stands within half a metre."""
     place = tick.truth.robot.locate(person.position_m)
-    away = {
-        math.dist(track.place.position_m, place): track for track in tick.tracks if track.place is not None
+    near = {
+        (track.id != before, math.dist(track.place.position_m, place)): track
+        for track in tick.tracks
+        if track.place is not None and math.dist(track.place.position_m, place) < 0.5
     }
-    return away[min(away)] if away and min(away) < 0.5 else None
+    return near[min(near)] if near else None
 
 
 def _distance_error(rows: _Rows) -> tuple[float, int]:
@@ -244,12 +248,16 @@ def _distance_error(rows: _Rows) -> tuple[float, int]:
 
 
 @click.command()
+@click.argument("scenarios", nargs=-1)
 @click.option("--seeds", type=click.IntRange(min=1), default=10, show_default=True)
 @click.option("--laps", type=click.IntRange(min=1), default=50, show_default=True, help=f"Runs of {ROUND}.")
 @click.option("--first", type=click.IntRange(min=0), default=0, show_default=True, help="Seed to begin with.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes.")
-def main(seeds: int, laps: int, first: int, workers: int | None) -> None:
-    """Print how well people are tracked on the floor, and how they are handed over."""
+def main(scenarios: tuple[str, ...], seeds: int, laps: int, first: int, workers: int | None) -> None:
+    """Print how well people are tracked on the floor, and how they are handed over.
+
+    SCENARIOS are those to be played; without any, all.
+    """
     plan = [
         (scenario, tracker, range(first, first + count))
         for scenario, tracker, count in (
@@ -260,6 +268,7 @@ def main(seeds: int, laps: int, first: int, workers: int | None) -> None:
             ("panoramic_moving", "panoramic", seeds),
             (ROUND, "handover", laps),
         )
+        if not scenarios or scenario in scenarios
     ]
     tasks = [Play(scenario, tracker, seed) for scenario, tracker, chosen in plan for seed in chosen]
     found = _played(tasks, chosen_workers(workers, None))
@@ -270,7 +279,8 @@ def main(seeds: int, laps: int, first: int, workers: int | None) -> None:
     for scenario, tracker, chosen in plan:
         table.add_row(scenario, tracker, *_figures([found[Play(scenario, tracker, seed)] for seed in chosen]))
     Console(width=140).print(table)
-    _print_laps([found[task] for task in tasks if task.scenario == ROUND])
+    if runs := [found[task] for task in tasks if task.scenario == ROUND]:
+        _print_laps(runs)
 
 
 def _played(tasks: Sequence[Play], workers: Workers) -> Mapping[Play, Played]:

@@ -11,7 +11,7 @@ from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import Track
 
 FORGET_S: Final = 3.0
-REACH_M: Final = 0.8  # of errors of both places,
+REACH_M: Final = 1.2  # of errors of both places,
 FASTEST_M_S: Final = 1.4  # and of the way since
 
 
