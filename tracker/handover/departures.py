@@ -6,6 +6,8 @@ import math
 from collections.abc import Collection
 from typing import Final
 
+import numpy as np
+
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import Track
@@ -13,6 +15,7 @@ from peopleboy.tracker.track import Track
 FORGET_S: Final = 3.0
 REACH_M: Final = 1.2  # of errors of both places,
 FASTEST_M_S: Final = 1.4  # and of the way since
+DEPTH_SHARE: Final = 0.3  # by which errors in depth count, as the thermal image tells it badly at its border
 
 
 class Departures:
@@ -42,14 +45,20 @@ class Departures:
         """Tell whose number a new track should have: of who was near last, and is away; None for nobody's."""
         if track.place is None:
             return None
-        here = self._in_room(track)
         ways = {
-            number: math.dist(here, place) - FASTEST_M_S * (self._time_s - time_s)
+            number: self._apart(track.place.position_m, place) - FASTEST_M_S * (self._time_s - time_s)
             for number, (place, time_s) in self._places.items()
             if number not in present
         }
         nearest = min(ways, key=lambda number: ways[number], default=None)
         return nearest if nearest is not None and ways[nearest] < REACH_M else None
+
+    def _apart(self, seen_m: tuple[float, float], room_m: tuple[float, float]) -> float:
+        """Tell how far a place in the robot's frame is from one in the room [m], depth counting for less."""
+        there = self._pose.locate(np.array(room_m))
+        distance, known = math.hypot(*seen_m), math.hypot(*there)
+        turn = math.remainder(math.atan2(seen_m[1], seen_m[0]) - math.atan2(there[1], there[0]), math.tau)
+        return math.hypot(turn * min(distance, known), DEPTH_SHARE * (distance - known))
 
     def _in_room(self, track: Track) -> tuple[float, float]:
         assert track.place is not None

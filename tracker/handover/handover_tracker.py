@@ -97,7 +97,8 @@ class HandoverTracker:
         back: dict[int, Key] = {other: (THERMAL, one) for one, (_, other) in mates.items()}
         tracks = [*((PANORAMA, track) for track in around), *((THERMAL, track) for track in warm)]
         keys = [(camera, track.id) for camera, track in tracks]
-        present = {numbers.number[key] for key in keys if key in numbers.number}
+        seen = [(camera, track.id) for camera, track in tracks if _is_seen(track)]
+        present = {numbers.number[key] for key in seen if key in numbers.number}
         guess = partial(self._departures.who, present=present)
         numbers.name(PANORAMA, around, back, guess)
         numbers.name(THERMAL, warm, mates, guess)
