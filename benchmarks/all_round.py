@@ -28,10 +28,10 @@ from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.floor import Places, floor_squares
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
-from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA, PanoramicTracker
+from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.panoramic.people.place_file import load_places
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, make_tracker

@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 
 THERMAL: Final = "thermal"
 COLOUR: Final = "colour"
+PANORAMA: Final = "panorama"
 
 
 class Calibration(Protocol):

@@ -16,10 +16,10 @@ from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import invert_pose, transform
+from peopleboy.tracker.frame import PANORAMA
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
 from peopleboy.tracker.panoramic.paper.panoramic_explanation import PanoramicExplanation
-from peopleboy.tracker.panoramic.paper.paper_tracker import PANORAMA
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.track import FloorPlace, Track
 

@@ -8,13 +8,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Final
 
-from peopleboy.tracker.frame import THERMAL, Calibration, Frame
+from peopleboy.tracker.frame import PANORAMA, THERMAL, Calibration, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.handover.departures import Departures
 from peopleboy.tracker.handover.identities import Identities, Key
 from peopleboy.tracker.handover.introductions import Introductions, thermal_view
-from peopleboy.tracker.handover.links import Votes, apartness, pairs
-from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA, PanoramicTracker
+from peopleboy.tracker.handover.links import GATE, Votes, apartness, pairs
+from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.track import Status, Track
 
@@ -156,7 +156,7 @@ def _is_doubtful(track: Track, joined: Mapping[int, Track]) -> bool:
 def _merged(warm: Track, around: Track) -> Track:
     """Join two tracks of one person; its place is the panorama's as long as it is seen there."""
     better = around if _is_seen(around) or not _is_seen(warm) else warm
-    is_near = apartness(warm, around) < 2 * 9.21 or not _is_seen(warm)
+    is_near = apartness(warm, around) < 2 * GATE or not _is_seen(warm)
     return replace(
         better,
         boxes={**around.boxes, **(warm.boxes if is_near else {})},

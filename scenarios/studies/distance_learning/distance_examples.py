@@ -15,11 +15,11 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
-from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.frame import PANORAMA, Frame
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, learn_background
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure, measure
-from peopleboy.tracker.panoramic.paper.paper_tracker import PANORAMA, PanoramicConfig
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
 
 Floats = NDArray[np.float64]
 Row = list[float]

@@ -27,10 +27,10 @@ from peopleboy.scenarios.studies.distance_learning.distance_trials import (
 )
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
 from peopleboy.scenarios.studies.distance_learning.walks import walks
+from peopleboy.tracker.frame import PANORAMA
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 from peopleboy.tracker.panoramic.paper.appearance_file import FILE_NAME, AppearanceModel, ship
 from peopleboy.tracker.panoramic.paper.distance_network import Lessons, teach
-from peopleboy.tracker.panoramic.paper.paper_tracker import PANORAMA
 from peopleboy.tracker.panoramic.paper.position_filter import estimate_noise
 
 

@@ -19,10 +19,10 @@ from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.foreground_learning.film_task import FilmTask
 from peopleboy.scenarios.studies.foreground_learning.judge_masks import Judgement, judge
-from peopleboy.scenarios.studies.foreground_learning.masked_film import PANORAMA, MaskedFilm
+from peopleboy.scenarios.studies.foreground_learning.masked_film import MaskedFilm
 from peopleboy.scenarios.studies.foreground_learning.play_films import collect, study, watch
 from peopleboy.scenarios.studies.foreground_learning.teach_network import Adam, first_network
-from peopleboy.tracker.frame import Calibration
+from peopleboy.tracker.frame import PANORAMA, Calibration
 from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of

@@ -19,11 +19,9 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.frame import PANORAMA, Odometry
 
 Floats = NDArray[np.float64]
-
-PANORAMA = "panorama"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -10,8 +10,9 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.scenarios.studies.foreground_learning.film_task import FilmTask
-from peopleboy.scenarios.studies.foreground_learning.masked_film import PANORAMA, MaskedFilm, film_people
+from peopleboy.scenarios.studies.foreground_learning.masked_film import MaskedFilm, film_people
 from peopleboy.scenarios.studies.place_learning.place_examples import examples_of
+from peopleboy.tracker.frame import PANORAMA
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 
 

@@ -22,9 +22,10 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.sim.world import World
+from peopleboy.tracker.frame import PANORAMA
 from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, Background, learn_background
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
-from peopleboy.tracker.panoramic.paper.paper_tracker import PANORAMA, PanoramicConfig
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
 
 Floats = NDArray[np.float64]
 

@@ -10,11 +10,10 @@ from hypothesis import strategies as st
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.handover.handover_tracker import NEEDED_VOTES, HandoverTracker
 from peopleboy.tracker.handover.introductions import FARTHEST_M, PAUSE_S
-from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.variants import PEOPLEBOY

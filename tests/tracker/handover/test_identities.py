@@ -1,6 +1,5 @@
-from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.frame import PANORAMA, THERMAL
 from peopleboy.tracker.handover.identities import YOUNG_S, Identities
-from peopleboy.tracker.panoramic.people.panoramic_tracker import PANORAMA
 from tests.helpers.runs.hand_made_tracks import track
 
 OLD, YOUNG = 5.0, YOUNG_S / 2

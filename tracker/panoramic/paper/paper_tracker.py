@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import Calibration, Frame
+from peopleboy.tracker.frame import PANORAMA, Calibration, Frame
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.panorama_view import choose_view
 from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel
@@ -31,8 +31,6 @@ from peopleboy.tracker.panoramic.paper.position_filter import (
 )
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
-
-PANORAMA = "panorama"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

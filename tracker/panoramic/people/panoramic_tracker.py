@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import Calibration, Frame, Odometry
+from peopleboy.tracker.frame import PANORAMA, Calibration, Frame, Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
@@ -27,7 +27,6 @@ from peopleboy.tracker.panoramic.people.sighting import Onlooker, Sighting
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
-PANORAMA = "panorama"
 LONGEST_STEP_S = 2.0
 
 
