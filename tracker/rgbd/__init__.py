@@ -1,0 +1,1 @@
+"""People tracked on the floor by a depth camera with colour, on a moving robot."""

@@ -1,0 +1,1 @@
+"""What in a depth image has the size of a human."""

@@ -1,0 +1,69 @@
+"""How a depth image maps to metres."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import Calibration, Floats, PinholeCalibration
+
+Depth = NDArray[np.uint16]
+"""(H, W) [mm] along the optical axis, 0 where there is no reading."""
+
+BASELINE_M = 0.075
+"""Between projector and camera of the sensor that the thesis used; it only sets the unit of disparities."""
+
+
+@dataclass(frozen=True, slots=True)
+class DepthView:
+    """Geometry of a flat depth image.
+
+    The optical frame is x right, y down, z forward [m].
+
+    Attributes:
+        focal_px: focal length [px].
+        centre_u, centre_v: principal point [px].
+        calibration: where the camera sits on the robot.
+    """
+
+    focal_px: float
+    centre_u: float
+    centre_v: float
+    calibration: PinholeCalibration
+
+    @classmethod
+    def of(cls, calibration: Calibration | None, camera: str) -> DepthView:
+        """Read the geometry of a calibrated camera.
+
+        Raises:
+            BadInput: it has no calibration, or that of a camera whose image is not flat.
+        """
+        if not isinstance(calibration, PinholeCalibration):
+            raise BadInput(f"camera {camera!r}: the tracker wants a calibrated one with a flat image")
+        matrix = calibration.intrinsics
+        return cls(float(matrix[0, 0]), float(matrix[0, 2]), float(matrix[1, 2]), calibration)
+
+    @property
+    def disparity_px_m(self) -> float:
+        """Disparity [px] at a depth of 1 m."""
+        return self.focal_px * BASELINE_M
+
+    @property
+    def height_m(self) -> float:
+        """Of the camera above the floor."""
+        return self.calibration.position_m[2]
+
+    @property
+    def horizon_px(self) -> float:
+        """How far below the principal point the horizon lies in the image; negative for above."""
+        forward, down = self.calibration.robot_from_camera[2, 2], self.calibration.robot_from_camera[2, 1]
+        return float(self.focal_px * forward / -down) if down else 0.0
+
+    def on_floor(self, x_m: Floats, z_m: Floats) -> Floats:
+        """Give the places (N, 2) on the robot's floor, forward and left, below points at the horizon's height."""
+        points = np.stack([x_m, np.zeros_like(x_m), z_m], axis=-1)
+        pose = self.calibration.robot_from_camera
+        return np.asarray(points @ pose[:2, :3].T + pose[:2, 3])

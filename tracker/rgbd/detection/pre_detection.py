@@ -1,0 +1,163 @@
+"""Pre-detections: everything in a depth image that may be a human by its size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
+from peopleboy.tracker.rgbd.detection.human_size import HumanSize
+from peopleboy.tracker.rgbd.detection.u_depth import (
+    STEP_1_M,
+    Ints,
+    Piece,
+    UDepthConfig,
+    depths_m,
+    find_pieces,
+    u_depth,
+)
+from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine, find_ceiling, find_floor, v_disparity
+from peopleboy.tracker.track import Box
+
+_MARGIN_M: Final = 0.08  # above the floor and below the ceiling that is theirs
+_EMPTY_ROWS: Final = 4  # that a body may have
+_REACH_M: Final = 0.1  # SA 4.4.1: of an object's depth, that its readings may be off
+_REACH_STEPS: Final = 0.7  # the same in steps of the sensor, where these are coarser
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PreDetection:
+    """Something of the size of a human.
+
+    Attributes:
+        box: left, top, width, height [px].
+        x_m, z_m: its middle, to the right and along the optical axis [m].
+        width_m, height_m, depth_m: its extents [m].
+        probability: by its size (SA eq. 4.15).
+    """
+
+    box: Box
+    x_m: float
+    z_m: float
+    width_m: float
+    height_m: float
+    depth_m: float
+    probability: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layout:
+    """A depth image sorted out.
+
+    Attributes:
+        floor, ceiling: their lines; the ceiling is None where none is in view.
+        counts: (D, W) readings by depth and column between them.
+        detections: what has the size of a human, the nearest first.
+    """
+
+    floor: HeightLine
+    ceiling: HeightLine | None
+    counts: Ints
+    detections: tuple[PreDetection, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PreDetector:
+    """Finds what has the size of a human (SA 4.4.1).
+
+    Attributes:
+        size: of a human.
+        config: settings of the view from above.
+    """
+
+    size: HumanSize
+    config: UDepthConfig
+
+    def __call__(self, depth: Depth, view: DepthView) -> Layout:
+        """Sort out a depth image (H, W) [mm]."""
+        counts = v_disparity(depth, view)
+        floor = find_floor(counts, view) or HeightLine(view.horizon_px / view.focal_px, view.height_m)
+        ceiling = find_ceiling(counts, view)
+        first, last = self._row_limits(floor, ceiling, view)
+        above = u_depth(depth, first, last, self.config.row_m)
+        pieces = find_pieces(above, self.config)
+        rated = [self._rate(piece, depth, first, last, floor, view) for piece in pieces]
+        likely = [one for one in rated if one is not None and one.probability > self.size.least]
+        return Layout(floor, ceiling, above, tuple(likely))
+
+    def _row_limits(
+        self, floor: HeightLine, ceiling: HeightLine | None, view: DepthView
+    ) -> tuple[Floats, Floats]:
+        depth_m = depths_m(self.config.row_m)
+        last = floor.raised(_MARGIN_M).rows(depth_m, view)
+        if ceiling is None:
+            return np.full_like(last, -1.0), last
+        return ceiling.raised(-_MARGIN_M).rows(depth_m, view), last
+
+    def _rate(
+        self, piece: Piece, depth: Depth, first: Floats, last: Floats, floor: HeightLine, view: DepthView
+    ) -> PreDetection | None:
+        """Find the rows of a piece (SA 4.4.1, step 5), and rate its size."""
+        scale = piece.depth_m / view.focal_px
+        reach = max(_REACH_M, _REACH_STEPS * STEP_1_M * piece.depth_m**2)
+        row = min(int(piece.depth_m / self.config.row_m), len(first) - 1)
+        top, bottom = _rows_of(
+            depth,
+            (piece.left, piece.right),
+            (1000.0 * (piece.depth_m - reach), 1000.0 * (piece.depth_m + reach)),
+            (first[row], last[row]),
+        )
+        if bottom < top:
+            return None
+        width, height = piece.right - piece.left + 1, bottom - top + 1
+        extents = (width * scale, height * scale, piece.far_m - piece.near_m)
+        visible = self._visible_m(floor, piece.depth_m, depth.shape[0], view)
+        return PreDetection(
+            box=(float(piece.left), float(top), float(width), float(height)),
+            x_m=((piece.left + piece.right) / 2.0 - view.centre_u) * scale,
+            z_m=piece.depth_m,
+            width_m=extents[0],
+            height_m=extents[1],
+            depth_m=extents[2],
+            probability=self.size.probability(*extents, visible),
+        )
+
+    def _visible_m(self, floor: HeightLine, depth_m: float, rows: int, view: DepthView) -> float:
+        """Tell how much of a human's height can be in the image at a depth [m]."""
+        at = np.array([depth_m])
+        foot = float(floor.rows(at, view)[0])
+        head = float(floor.raised(self.size.height_m).rows(at, view)[0])
+        return (min(foot, rows - 0.5) - max(head, -0.5)) * depth_m / view.focal_px
+
+
+@njit(cache=True, nogil=True)
+def _rows_of(
+    depth: Depth, columns: tuple[int, int], span_mm: tuple[float, float], rows: tuple[float, float]
+) -> tuple[int, int]:
+    """Scan from the lowest row up for readings within a span of depth; give first and last of the longest run.
+
+    The source takes the first run, which may be a speck of the floor before the feet.
+    """
+    top, bottom = 0, -1
+    first, last = 0, -1
+    for v in range(min(int(rows[1]), depth.shape[0] - 1), max(int(rows[0]), 0) - 1, -1):
+        if _has_reading(depth[v, columns[0] : columns[1] + 1], span_mm):
+            if first - v > _EMPTY_ROWS or last < 0:
+                last = v
+            first = v
+            if last - first > bottom - top:
+                top, bottom = first, last
+    return top, bottom
+
+
+@njit(cache=True, nogil=True)
+def _has_reading(row: NDArray[np.uint16], span_mm: tuple[float, float]) -> bool:
+    for reading in row:
+        if span_mm[0] <= reading <= span_mm[1]:
+            return True
+    return False

@@ -1,0 +1,167 @@
+"""What stands out of the floor, seen from above: columns by depth, and the connected pieces of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.rgbd.detection.depth_view import Depth
+
+Ints = NDArray[np.int32]
+
+NEAREST_M: Final = 0.5
+FARTHEST_M: Final = 10.0
+STEP_1_M: Final = 0.00287  # between two depths that the sensor can tell apart at 1 m; grows with the square
+_LEAST_PX: Final = 10  # SA 4.4.1: cells with more readings are kept
+_LEAST_MASS: Final = 100
+_FRINGE_M: Final = 9.7  # what is farther may be the near fringe of a wall that the sensor does not reach
+# SA 4.4.1: gaps of 2, 4, 6 or 10 lines of 1 cm are bridged; so coarse is the sensor at these depths.
+_ZONES_M: Final = np.array([2.6, 3.7, 4.6])
+_GAPS_M: Final = np.array([0.04, 0.08, 0.12, 0.20])
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One connected piece of the view from above.
+
+    Attributes:
+        left, right: first and last column [px], without the outermost of its readings.
+        near_m, far_m: first and last depth [m] likewise.
+        depth_m: mean of its readings.
+        mass: number of them.
+    """
+
+    left: int
+    right: int
+    near_m: float
+    far_m: float
+    depth_m: float
+    mass: int
+
+
+@dataclass(frozen=True, slots=True)
+class UDepthConfig:
+    """Settings of the view from above.
+
+    Attributes:
+        row_m: [m] of depth in a row.
+        has_connector: whether gaps in depth are bridged, the wider the farther.
+        bridged_steps: [steps of the sensor] that a bridged gap reaches at least; beyond 8 m the printed gaps
+            are narrower than one, and everything falls apart.
+        trimmed: share of a piece's readings left out at either end of its extents.
+    """
+
+    row_m: float = 0.02
+    has_connector: bool = True
+    bridged_steps: float = 1.2
+    trimmed: float = 0.015
+
+
+def u_depth(depth: Depth, first_row: Floats, last_row: Floats, row_m: float) -> Ints:
+    """Count readings (D, W) by depth and column.
+
+    Args:
+        depth: (H, W) [mm].
+        first_row, last_row: (D,) [px] image rows that count at each depth, between ceiling and floor.
+        row_m: [m] of depth in a row.
+    """
+    limits = [np.clip(rows, -1.0, depth.shape[0]) for rows in (first_row, last_row)]
+    return _count(depth, limits[0], limits[1], round(1000.0 * row_m))
+
+
+def depths_m(row_m: float) -> Floats:
+    """Give the middle (D,) of each row's depths [m]."""
+    return np.asarray((np.arange(round(FARTHEST_M / row_m) + 1) + 0.5) * row_m)
+
+
+def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[Piece, ...]:
+    """Find the connected pieces, the nearest first."""
+    kept = (counts > _LEAST_PX).astype(np.uint8)
+    if config.has_connector:
+        _connect(kept, gaps(config))
+    number, labels, boxes, _ = cv2.connectedComponentsWithStats(kept, connectivity=8, ltype=cv2.CV_32S)
+    rows = _extents(counts, labels, np.ascontiguousarray(boxes), number, config.trimmed)
+    found = [
+        Piece(int(left), int(right), near * config.row_m, (far + 1) * config.row_m, mean * config.row_m, int(mass))
+        for left, right, near, far, mean, mass in rows
+        if mass >= _LEAST_MASS and mean * config.row_m < _FRINGE_M
+    ]
+    return tuple(sorted(found, key=lambda piece: piece.depth_m))
+
+
+def gaps(config: UDepthConfig) -> Ints:
+    """Give the rows (D,) that a gap behind each row may have."""
+    depth_m = depths_m(config.row_m)
+    printed = _GAPS_M[np.searchsorted(_ZONES_M, depth_m)]
+    step = config.bridged_steps * STEP_1_M * depth_m**2
+    return np.round(np.maximum(printed, step) / config.row_m).astype(np.int32)
+
+
+@njit(cache=True, nogil=True)
+def _count(depth: Depth, first_row: Floats, last_row: Floats, row_mm: int) -> Ints:
+    height, width = depth.shape
+    counts = np.zeros((len(first_row), width), np.int32)
+    for v in range(height):
+        for u in range(width):
+            reading = depth[v, u]
+            if reading == 0:
+                continue
+            row = reading // row_mm
+            if row < len(first_row) and first_row[row] <= v <= last_row[row]:
+                counts[row, u] += 1
+    return counts
+
+
+@njit(cache=True, nogil=True)
+def _connect(kept: NDArray[np.uint8], gap: Ints) -> None:
+    """Fill the gaps of each column that are narrow enough for their depth."""
+    for u in range(kept.shape[1]):
+        last = -1
+        for row in range(kept.shape[0]):
+            if kept[row, u] == 0:
+                continue
+            if last >= 0 and 0 < row - last - 1 <= gap[last]:
+                kept[last + 1 : row, u] = 1
+            last = row
+
+
+@njit(cache=True, nogil=True)
+def _extents(counts: Ints, labels: Ints, boxes: Ints, number: int, trimmed: float) -> Floats:
+    """Give left, right, near, far, mean row + 0.5 and mass (N, 6) of the pieces."""
+    found = np.zeros((number - 1, 6))
+    for label in range(1, number):
+        left, top, width, height = boxes[label, :4]
+        columns, rows = np.zeros(width), np.zeros(height)
+        for row in range(height):
+            for u in range(width):
+                if labels[top + row, left + u] == label:
+                    columns[u] += counts[top + row, left + u]
+                    rows[row] += counts[top + row, left + u]
+        mass = columns.sum()
+        first, last = _trim(columns, trimmed * mass)
+        near, far = _trim(rows, trimmed * mass)
+        mean = (rows * np.arange(height)).sum() / max(mass, 1.0) + top + 0.5
+        found[label - 1, :2] = left + first, left + last
+        found[label - 1, 2:4] = top + near, top + far
+        found[label - 1, 4:] = mean, mass
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _trim(mass: Floats, least: float) -> tuple[int, int]:
+    """Give the first and last place of what is left when so much is taken off either end."""
+    first, last, seen = 0, len(mass) - 1, mass[0]
+    while seen <= least and first < last:
+        first += 1
+        seen += mass[first]
+    seen = mass[last]
+    while seen <= least and last > first:
+        last -= 1
+        seen += mass[last]
+    return first, last
