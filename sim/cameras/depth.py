@@ -77,6 +77,20 @@ def _shades() -> NDArray[np.uint8]:
 _SHADES = _shades()
 
 
+def points_of(depth: Millimetres, camera: Pinhole, every: int) -> tuple[Metres, NDArray[np.int64]]:
+    """Find the points that every so-manieth pixel of every so-manieth row of a depth image stands for.
+
+    Returns:
+        (N, 3) [m] in the optical frame, x right, y down, z forward; and (N, 2) the row and the column of
+        each. Pixels where nothing is read have none.
+    """
+    first = every // 2
+    pixels = first + every * np.argwhere(depth[first::every, first::every])
+    z = depth[pixels[:, 0], pixels[:, 1]] / 1000.0
+    x, y = ((pixels[:, 1 - k] - camera.centre_px[k]) / camera.focal_px * z for k in (0, 1))
+    return np.stack([x, y, z], axis=1).astype(np.float32), pixels
+
+
 def to_millimetres(depth_m: Metres, config: DepthConfig) -> Millimetres:
     """Encode (H, W) depths [m]: 0 for those outside the sensor's range, and for NaN and infinity."""
     is_read = (depth_m >= config.nearest_m) & (depth_m <= config.farthest_m)

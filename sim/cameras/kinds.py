@@ -152,7 +152,7 @@ def layers_of(config: CameraConfig) -> tuple[Layer, ...]:
     return (*kind.layers, *kind.more_layers(config))
 
 
-def show_image_of(config: CameraConfig, image: Image) -> NDArray[np.uint8]:
+def shown_to_people(image: Image, config: CameraConfig) -> NDArray[np.uint8]:
     """Give what people are shown of a camera's first image: (H, W) grey or (H, W, 3) RGB, of 8 bits."""
     return layers_of(config)[0].show(image)
 
