@@ -157,7 +157,7 @@ class Recorder:
         colour = images[f"{name}_colour"] if config.colour else shown_to_people(images[name], config)
         every = max(round(math.sqrt(images[name].size / _POINTS)), 1)
         places, pixels = points_of(images[name], config.camera, every)
-        world = transform(tick.truths[name].world_from_camera, places)
+        world = transform(tick.truths[name].world_from_camera, places.astype(np.float64))
         colours = colour[pixels[:, 0], pixels[:, 1]]
         self._rows.add(points_path(name), rr.Points3D, positions=rounded(world, METRE_STEP), colors=colours)
 

@@ -32,7 +32,7 @@ _ROBOT_CURVES = {
     "curves/motion/speed": (("speed [m/s]", "speed asked for"), ((86, 180, 233), (52, 108, 140))),
     "curves/motion/turn_rate": (("turn rate [rad/s]", "turn rate asked for"), ((230, 159, 0), (138, 95, 0))),
 }
-_POINT_M = 0.012
+_POINT_M = 0.02
 
 
 class Still:
