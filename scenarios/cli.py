@@ -14,6 +14,7 @@ from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.export import export
 from peopleboy.scenarios.commands.learn_foreground import train_foreground
 from peopleboy.scenarios.commands.learn_places import train_places
+from peopleboy.scenarios.commands.learn_windows import train_windows
 from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
 from peopleboy.scenarios.commands.report import report
@@ -43,6 +44,7 @@ COMMANDS = (
     train_distance,
     train_foreground,
     train_places,
+    train_windows,
     reproduce,
 )
 

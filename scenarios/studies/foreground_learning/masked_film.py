@@ -10,14 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.percept import Percept
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.studies.blind_drive import blind_drive
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.observation import Observation
-from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
-from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import PANORAMA, Odometry
 
@@ -79,27 +75,18 @@ def film_people(scenario: Scenario, seed: int) -> MaskedFilm:
     Raises:
         BadInput: the robot needs eyes to drive.
     """
-    from peopleboy.sim.world import World  # here, as films that are there can be read without PyBullet
-
-    if scenario.robot.behaviour not in ("stand", "scripted"):
-        raise BadInput(f"{scenario.name}: take a scenario whose robot stands or is scripted")
-    loaded = scenario.mounting((PANORAMA,))
-    config, drive = loaded.world(seed), loaded.make_behaviour()
+    scenario = scenario.mounting((PANORAMA,))
     seen: dict[str, list[Any]] = {"images": [], "who": [], "time_s": [], "motion": [], "place_m": []}
     before: Planar | None = None
-    with World(config) as world:
-        for _ in range(round(loaded.duration_s * config.control_hz)):
-            observation = world.observe()
-            if PANORAMA in observation.images:
-                truth, now = world.truth(PANORAMA), observation.odometry
-                seen["images"].append(np.array(observation.images[PANORAMA]))
-                seen["who"].append(np.array(truth.instance))
-                seen["time_s"].append(observation.time_s)
-                seen["motion"].append(_motion(before, now))
-                seen["place_m"].append(_places(truth, len(config.people)))
-                before = now
-            command = drive.command(_blind_percept(observation))
-            world.step(command.linear_m_s, command.angular_rad_s)
+    for world, observation in blind_drive(scenario, seed):
+        if PANORAMA in observation.images:
+            truth, now = world.truth(PANORAMA), observation.odometry
+            seen["images"].append(np.array(observation.images[PANORAMA]))
+            seen["who"].append(np.array(truth.instance))
+            seen["time_s"].append(observation.time_s)
+            seen["motion"].append(_motion(before, now))
+            seen["place_m"].append(_places(truth, len(world.config.people)))
+            before = now
     return MaskedFilm(**{name: np.array(values) for name, values in seen.items()})
 
 
@@ -114,16 +101,3 @@ def _places(truth: Truth, people: int) -> Floats:
     for person in truth.people:
         places[person.id - 1] = truth.robot.locate(person.position_m)
     return places
-
-
-def _blind_percept(observation: Observation) -> Percept:
-    """Tell a drive by the clock all that it asks for: the time, and what its guard does, sonars and speed."""
-    left, right = observation.wheel_speeds_m_s
-    return Percept(
-        time_s=observation.time_s,
-        people=(),
-        sonar_m=observation.sonar_m,
-        sonar_angle_rad=SONAR_ANGLE_RAD,
-        linear_m_s=(left + right) / 2.0,
-        angular_rad_s=(right - left) / WHEEL_DISTANCE_M,
-    )

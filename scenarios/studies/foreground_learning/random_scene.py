@@ -27,10 +27,14 @@ _HANGING: Final = ("radiator", "poster", "window", "pipe")
 _TRIES: Final = 30
 
 
-def random_scene(seed: int) -> Data:
+def random_scene(seed: int, camera: str = "panorama") -> Data:
     """Draw a scene: the data of a scenario file, the same for the same seed.
 
     Every other scene's robot drives; one to four people walk or stand about.
+
+    Args:
+        seed: draws all.
+        camera: kind of the camera that it is filmed with.
     """
     rng = np.random.default_rng((seed, 2003))
     rate = int(rng.choice(list(IMAGES), p=[0.3, 0.2, 0.5]))
@@ -42,7 +46,7 @@ def random_scene(seed: int) -> Data:
         "clothes_differ": bool(rng.random() < 0.5),
         "lights": [{"at_s": 0.0, "level": _rounded(rng.uniform(0.55, 1.1))}],
     }
-    scene |= _until_valid(lambda: _stage(rng, rate, duration_s), scene)
+    scene |= _until_valid(lambda: _stage(rng, camera, rate, duration_s), scene)
     place = scene["place"]
     for _ in range(rng.integers(0, 9)):
         scene = _with_one_more(scene, "things", lambda: _thing(rng, place))
@@ -77,13 +81,13 @@ def _is_valid(scene: Data) -> bool:
     return True
 
 
-def _stage(rng: Draw, rate: int, duration_s: float) -> Data:
+def _stage(rng: Draw, camera: str, rate: int, duration_s: float) -> Data:
     """Draw a place, and a robot in it that stands, or drives as it likes."""
     place = _place(rng)
     robot: Data = {
         "at_m": _point(rng, place),
         "heading_deg": _rounded(rng.uniform(-180.0, 180.0)),
-        "cameras": {"panorama": {"kind": "panorama", "rate_hz": rate}},
+        "cameras": {camera: {"kind": camera, "rate_hz": rate}},
     }
     if rng.random() < 0.65:
         robot |= {"behaviour": "scripted", "commands": _drive(rng, duration_s)}

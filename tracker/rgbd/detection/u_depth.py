@@ -88,7 +88,14 @@ def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[Piece, ...]:
     number, labels, boxes, _ = cv2.connectedComponentsWithStats(kept, connectivity=8, ltype=cv2.CV_32S)
     rows = _extents(counts, labels, np.ascontiguousarray(boxes), number, config.trimmed)
     found = [
-        Piece(int(left), int(right), near * config.row_m, (far + 1) * config.row_m, mean * config.row_m, int(mass))
+        Piece(
+            int(left),
+            int(right),
+            near * config.row_m,
+            (far + 1) * config.row_m,
+            mean * config.row_m,
+            int(mass),
+        )
         for left, right, near, far, mean, mass in rows
         if mass >= _LEAST_MASS and mean * config.row_m < _FRINGE_M
     ]

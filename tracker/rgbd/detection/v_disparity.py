@@ -117,4 +117,3 @@ def _hough(counts: Counts, horizons: Floats, rows_per_bin: Floats, stride: int) 
                     total += min(counts[v, place], _MOST)
             votes[h, b] = total * stride
     return votes
-

@@ -1,0 +1,48 @@
+"""Playing a scenario whose robot drives without eyes, for whoever wants to see what it could see."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.percept import Percept
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.sim.observation import Observation
+from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
+from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
+
+if TYPE_CHECKING:
+    from peopleboy.sim.world import World
+
+
+def blind_drive(scenario: Scenario, seed: int) -> Iterator[tuple[World, Observation]]:
+    """Yield the world and what was observed, instant by instant; images that nobody asks for are never made.
+
+    Raises:
+        BadInput: the robot needs eyes to drive.
+    """
+    from peopleboy.sim.world import World  # here, as what was made before can be read without PyBullet
+
+    if scenario.robot.behaviour not in ("stand", "scripted"):
+        raise BadInput(f"{scenario.name}: take a scenario whose robot stands or is scripted")
+    config, drive = scenario.world(seed), scenario.make_behaviour()
+    with World(config) as world:
+        for _ in range(round(scenario.duration_s * config.control_hz)):
+            observation = world.observe()
+            yield world, observation
+            command = drive.command(_blind_percept(observation))
+            world.step(command.linear_m_s, command.angular_rad_s)
+
+
+def _blind_percept(observation: Observation) -> Percept:
+    """Tell a drive by the clock all that it asks for: the time, and what its guard does, sonars and speed."""
+    left, right = observation.wheel_speeds_m_s
+    return Percept(
+        time_s=observation.time_s,
+        people=(),
+        sonar_m=observation.sonar_m,
+        sonar_angle_rad=SONAR_ANGLE_RAD,
+        linear_m_s=(left + right) / 2.0,
+        angular_rad_s=(right - left) / WHEEL_DISTANCE_M,
+    )

@@ -1,0 +1,1 @@
+"""Teaching the RGB-D tracker what people look like."""

@@ -1,0 +1,76 @@
+"""The whole lesson: examples, machines, and how good these are in places that nobody learned from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Final
+
+from rich.console import Console
+
+from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.scenarios.running.engine.engine import work_through
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.studies.window_learning.teach_windows import judgement, teach_windows
+from peopleboy.scenarios.studies.window_learning.window_examples import WindowExamples
+from peopleboy.scenarios.studies.window_learning.window_task import WindowTask
+from peopleboy.tracker.rgbd.verification.window_model import SHIPPED
+
+FIRST_SEED: Final = 100
+"""Of scenes to learn from; those below are for judging."""
+
+TESTS: Final[Mapping[str, int]] = {
+    "": 30,
+    "crossing_2_moving": 2,
+    "crowd_8_moving": 1,
+    "fast_turn": 2,
+    "hall_visits": 1,
+}
+"""How many scenes judge the machines: drawn at random, and of the library, whose places nobody learned from."""
+
+
+def give_window_lesson(out: Path, workers: Workers, *, scenes: int, ship: bool) -> Path:
+    """Learn what people look like, and leave examples and machines in a folder.
+
+    Examples that are there are used.
+
+    Args:
+        out: the folder.
+        workers: who plays scenes.
+        scenes: how many to learn from.
+        ship: whether to put the machines in the place of the tracker's own.
+
+    Returns:
+        The machines' file.
+
+    Raises:
+        BadInput: a path that cannot be used, scikit-learn is missing, or too few examples.
+        TasksFailed: some scenes failed, after all others were done.
+    """
+    folder = out / "examples"
+    with writing_to(out):
+        folder.mkdir(parents=True, exist_ok=True)
+    task = partial(WindowTask, folder=str(folder))
+    tests = [
+        task(scenario=name, seed=k, has_jitter=False) for name, count in TESTS.items() for k in range(count)
+    ]
+    tasks = [task(seed=seed) for seed in range(FIRST_SEED, FIRST_SEED + scenes)]
+    work_through([one for one in (*tests, *tasks) if not one.path.is_file()], workers, "examples")
+    learned = _load(tasks)
+    model = teach_windows(learned)
+    words = judgement(model, _load(tests))
+    for kind, said in words.items():
+        Console(stderr=True).print(f"{kind}, other scenes: {said}", highlight=False)
+    path = SHIPPED if ship else out / SHIPPED.name
+    with writing_to(path.parent):
+        path.parent.mkdir(parents=True, exist_ok=True)
+    about = {f"{kind}, on other scenes": said for kind, said in words.items()}
+    about["trained on"] = f"{scenes} scenes drawn at random, seeds from {FIRST_SEED}"
+    replace(model, about=about).save(path)
+    return path
+
+
+def _load(tasks: Sequence[WindowTask]) -> WindowExamples:
+    return WindowExamples.joined([WindowExamples.load(task.path) for task in tasks])

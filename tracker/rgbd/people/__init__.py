@@ -1,0 +1,1 @@
+"""Hypotheses about people, each with a particle filter on the floor."""

@@ -1,0 +1,41 @@
+"""Which detection is whom."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from peopleboy.tracker.rgbd.people.detection import Detection
+from peopleboy.tracker.rgbd.people.hypothesis import Hypothesis
+from peopleboy.tracker.rgbd.people.looks import similarity
+from peopleboy.tracker.rgbd.rgbd_config import HypothesesConfig
+
+_NEVER = 1e6
+
+
+def associate(
+    people: Sequence[Hypothesis], detections: Sequence[Detection], config: HypothesesConfig
+) -> dict[int, int]:
+    """Match people and detections, each with at most one, so that distances are least in all (SA 4.5).
+
+    Who looks otherwise counts as farther. Nobody is matched beyond the gate.
+
+    Returns:
+        Index of the detection by index of the person.
+    """
+    if not people or not detections:
+        return {}
+    cost = np.full((len(people), len(detections)), _NEVER)
+    for row, person in enumerate(people):
+        for column, detection in enumerate(detections):
+            apart = float(np.hypot(*(detection.place_m - person.place_m)))
+            gate = config.gate_m + config.gate_per_m * detection.found.z_m**2
+            if apart < gate:
+                unlike = 1.0 - similarity(person.body.looks, detection.body.looks)
+                # Whoever is believed in goes first.
+                doubt = 0.0 if person.id else 0.5
+                cost[row, column] = apart / gate + config.looks_weight * unlike + doubt
+    rows, columns = linear_sum_assignment(cost)
+    return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if cost[r, c] < _NEVER}

@@ -1,0 +1,120 @@
+"""A particle filter for a person's place on the floor (SA 4.6)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from peopleboy.tracker.frame import Floats, Odometry
+from peopleboy.tracker.rgbd.people.look_at import Body, Glance, RgbdView, look_at
+from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig
+
+_FRAME_S = 1.0 / 15.0  # for which the spreads are given
+_BEST_SHARE = 0.05
+_HOLD_BELOW = 0.1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FloorFilter:
+    """P equally weighted particles of one person.
+
+    Attributes:
+        state: (P, 4) x forward, y left [m] and their speeds [m/s] in the robot's frame (SA eq. 4.23).
+    """
+
+    state: Floats
+
+    @classmethod
+    def begin(cls, place_m: Floats, config: FloorFilterConfig, rng: np.random.Generator) -> FloorFilter:
+        """Spread particles about a place (2,)."""
+        state = np.zeros((config.particles, 4))
+        state[:, :2] = place_m + rng.normal(0.0, config.random_m, (config.particles, 2))
+        state[:, 2:] = rng.normal(0.0, config.random_m_s, (config.particles, 2))
+        return cls(state)
+
+    @property
+    def place_m(self) -> Floats:
+        """(2,) mean place."""
+        return np.asarray(self.state[:, :2].mean(axis=0))
+
+    @property
+    def velocity_m_s(self) -> Floats:
+        """(2,) mean velocity."""
+        return np.asarray(self.state[:, 2:].mean(axis=0))
+
+    def carried(self, odometry: Odometry) -> FloorFilter:
+        """Give the same particles in the robot's frame after it moved."""
+        return FloorFilter(
+            np.hstack([carried(self.state[:, :2], odometry), turned(self.state[:, 2:], odometry)])
+        )
+
+    def predicted(self, dt_s: float, config: FloorFilterConfig, rng: np.random.Generator) -> FloorFilter:
+        """Let most particles walk on, and the others move at random (SA 4.6, as 3.7 to 3.10)."""
+        count = len(self.state)
+        walks = np.arange(count) < round(config.forward_share * count)
+        grown = math.sqrt(dt_s / _FRAME_S)
+        place = np.where(walks, config.walk_m, config.random_m) * grown
+        speed = np.where(walks, config.walk_m_s, config.random_m_s) * grown
+        noise = rng.normal(0.0, 1.0, (count, 4)) * np.stack([place, place, speed, speed], axis=1)
+        moved = self.state + noise
+        moved[:, :2] += np.where(walks[:, None], self.state[:, 2:] * dt_s, 0.0)
+        return FloorFilter(moved)
+
+    def weighed(
+        self, view: RgbdView, body: Body, config: FloorFilterConfig, rng: np.random.Generator
+    ) -> Update:
+        """Weigh particles by what is at their places (SA eq. 4.26 to 4.28), and draw new ones by the weights."""
+        glance = look_at(view, self.state[:, :2], body, config.foreground_m)
+        kernel = np.exp(-0.5 * (glance.miss_m / config.kernel_m) ** 2)
+        count = max(1, round(_BEST_SHARE * len(kernel)))
+        best = float(np.sort(kernel)[-count:].mean())
+        if config.has_hold and best < _HOLD_BELOW:
+            return Update(self, self.place_m, 0.0, glance, is_held=True)
+        weight = kernel * _by_looks(glance.similarity, config.sharpness)
+        total = float(weight.sum())
+        if total <= 0.0:
+            return Update(self, self.place_m, 0.0, glance, is_held=True)
+        weight /= total
+        place = weight @ self.state[:, :2]
+        confidence = float(weight @ (glance.similarity * kernel))
+        drawn = np.searchsorted(np.cumsum(weight), (np.arange(len(weight)) + rng.random()) / len(weight))
+        state = self.state[np.minimum(drawn, len(weight) - 1)]
+        return Update(replace(self, state=state), place, confidence, glance, is_held=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Update:
+    """What a look at the images makes of a filter.
+
+    Attributes:
+        filter: with new particles.
+        place_m: (2,) weighted mean of the old ones.
+        confidence: 0..1, weighted mean of similarity times kernel.
+        glance: what was at the places of the old ones.
+        is_held: whether nothing was there, so that the filter only predicted.
+    """
+
+    filter: FloorFilter
+    place_m: Floats
+    confidence: float
+    glance: Glance
+    is_held: bool
+
+
+def carried(places_m: Floats, odometry: Odometry) -> Floats:
+    """Give places (N, 2) in the robot's frame after it moved."""
+    return turned(places_m - np.array([odometry.advance_m, odometry.aside_m]), odometry)
+
+
+def turned(vectors: Floats, odometry: Odometry) -> Floats:
+    """Give directions (N, 2) in the robot's frame after it moved."""
+    sin, cos = math.sin(odometry.turn_rad), math.cos(odometry.turn_rad)
+    return np.asarray(vectors @ np.array([[cos, -sin], [sin, cos]]))
+
+
+def _by_looks(similarity: Floats, sharpness: float) -> Floats:
+    if sharpness <= 0.0:
+        return similarity
+    return np.asarray(np.exp(-(1.0 - similarity) / (2.0 * sharpness**2)))

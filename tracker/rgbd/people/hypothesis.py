@@ -1,0 +1,43 @@
+"""One hypothesis: a person that the tracker believes in, or soon may."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.rgbd.people.floor_filter import FloorFilter
+from peopleboy.tracker.rgbd.people.look_at import Body
+from peopleboy.tracker.track import Status
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Hypothesis:
+    """A person on the floor (SA eq. 4.17).
+
+    Attributes:
+        id: number of a track; 0 while nobody is believed to be there.
+        place_m: (2,) forward, left in the robot's frame [m].
+        covariance_m2: (2, 2) of its error.
+        body: what the person measures and looks like.
+        filter: its particles.
+        born_s, verified_s, seen_s: [s] when it was made, last verified, and last detected at all.
+        verifications: how often, up to the number that makes a person of it.
+        seen_through: frames in a row in which the camera saw what is behind.
+        confidence: 0..1.
+        status: whether the person is believed in, and how much of it is hidden.
+        occluder: id of who hides it; None if nobody does.
+    """
+
+    id: int = 0
+    place_m: Floats
+    covariance_m2: Floats
+    body: Body
+    filter: FloorFilter
+    born_s: float
+    verified_s: float
+    seen_s: float
+    verifications: int = 1
+    seen_through: int = 0
+    confidence: float = 0.5
+    status: Status = Status.TENTATIVE
+    occluder: int | None = None

@@ -1,0 +1,167 @@
+"""How hypotheses begin, go on, and end (SA 4.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from peopleboy.tracker.frame import Floats, Odometry
+from peopleboy.tracker.rgbd.people.detection import Detection
+from peopleboy.tracker.rgbd.people.floor_filter import FloorFilter, Update, carried, turned
+from peopleboy.tracker.rgbd.people.hypothesis import Hypothesis
+from peopleboy.tracker.rgbd.people.look_at import Body, RgbdView, box_at, look_at
+from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
+from peopleboy.tracker.track import Status
+
+_CONFIDENT: Final = 0.3
+_SIZE_SHARE: Final = 0.2
+_SEEN_THROUGH: Final = 0.8  # share of readings behind, by which somebody is gone
+_SEEN_THROUGH_FRAMES: Final = 5
+_HIDDEN: Final = 0.5  # share of readings before somebody who is hidden
+_PARTLY_HIDDEN: Final = 0.2
+_TENTATIVE_S: Final = 0.4
+_FLOOR_SD_M: Final = 0.035  # of one frame: gait, not the sensor
+_DEPTH_SD: Final = 0.0014  # [m/m2] of the sensor
+_DRIFT_M2_S: Final = 0.15  # by which the place of who is not seen becomes unsure
+
+
+@dataclass(frozen=True, slots=True)
+class Life:
+    """One frame in the lives of all.
+
+    Attributes:
+        config: settings.
+        view: what the sensor gives.
+        time_s: [s].
+        dt_s: [s] since the last frame.
+        rng: draws particles.
+    """
+
+    config: RgbdConfig
+    view: RgbdView
+    time_s: float
+    dt_s: float
+    rng: np.random.Generator
+
+    def expected(self, person: Hypothesis, odometry: Odometry | None) -> Hypothesis:
+        """Move a hypothesis by the robot's motion and its own."""
+        filtered, place, covariance = person.filter, person.place_m, person.covariance_m2
+        if odometry is not None and self.config.hypotheses.uses_odometry:
+            filtered, place = filtered.carried(odometry), carried(place[None], odometry)[0]
+            covariance = turned(turned(covariance, odometry).T, odometry).T
+        place = place + filtered.velocity_m_s * self.dt_s
+        filtered = filtered.predicted(self.dt_s, self.config.filter, self.rng)
+        grown = covariance + np.eye(2) * _DRIFT_M2_S * self.dt_s
+        return replace(person, filter=filtered, place_m=place, covariance_m2=grown)
+
+    def looked_for(self, person: Hypothesis) -> tuple[Hypothesis, Update]:
+        """Let a person's filter look at the images."""
+        update = person.filter.weighed(self.view, person.body, self.config.filter, self.rng)
+        return replace(person, filter=update.filter), update
+
+    def found(self, person: Hypothesis, update: Update, detection: Detection | None) -> Hypothesis:
+        """Merge what was measured into a hypothesis (SA eq. 4.22)."""
+        rules = self.config.hypotheses
+        is_confident = not update.is_held and update.confidence > _CONFIDENT
+        if is_confident and np.hypot(*(update.place_m - person.place_m)) < rules.gate_m:
+            person = replace(
+                person,
+                place_m=_merged(person.place_m, update.place_m, rules.filter_share),
+                seen_s=person.seen_s,
+            )
+        if detection is not None:
+            person = self._measured(person, detection, is_confident=is_confident)
+        return self._judged(person, update, is_seen=detection is not None or is_confident)
+
+    def born(self, detection: Detection) -> Hypothesis:
+        """Begin a hypothesis about what looks like a human."""
+        return Hypothesis(
+            place_m=detection.place_m,
+            covariance_m2=self._error_m2(detection),
+            body=detection.body,
+            filter=FloorFilter.begin(detection.place_m, self.config.filter, self.rng),
+            born_s=self.time_s,
+            verified_s=self.time_s,
+            seen_s=self.time_s,
+        )
+
+    def is_over(self, person: Hypothesis) -> bool:
+        """Tell whether a hypothesis is to be deleted."""
+        rules = self.config.hypotheses
+        if not person.id:
+            return self.time_s - person.verified_s > _TENTATIVE_S
+        if rules.has_see_through and person.seen_through >= _SEEN_THROUGH_FRAMES:
+            return True
+        is_hidden = person.status is Status.TOTALLY_OCCLUDED
+        return self.time_s - person.verified_s > (rules.hidden_s if is_hidden else rules.unverified_s)
+
+    def _measured(self, person: Hypothesis, detection: Detection, *, is_confident: bool) -> Hypothesis:
+        rules = self.config.hypotheses
+        share = rules.verified_share if detection.is_verified else rules.pre_share
+        changes = {
+            "place_m": _merged(person.place_m, detection.place_m, share),
+            "covariance_m2": self._error_m2(detection),
+            "seen_s": self.time_s,
+            "body": self._learned(person, detection, is_confident=is_confident),
+        }
+        if not is_confident:
+            changes["filter"] = FloorFilter.begin(detection.place_m, self.config.filter, self.rng)
+        if detection.is_verified:
+            changes |= {"verified_s": self.time_s, "verifications": person.verifications + 1}
+        return replace(person, **changes)
+
+    def _learned(self, person: Hypothesis, detection: Detection, *, is_confident: bool) -> Body:
+        """Take on size and looks, slowly (SA eq. 4.29)."""
+        old, new = person.body, detection.body
+        rate = self.config.filter.learning_rate if is_confident and detection.is_verified else 0.0
+        return Body(
+            width_m=old.width_m + _SIZE_SHARE * (new.width_m - old.width_m),
+            head_m=old.head_m + _SIZE_SHARE * (new.head_m - old.head_m),
+            low_m=old.low_m + _SIZE_SHARE * (new.low_m - old.low_m),
+            looks=old.looks + rate * (new.looks - old.looks),
+        )
+
+    def _judged(self, person: Hypothesis, update: Update, *, is_seen: bool) -> Hypothesis:
+        """Tell how well a person is seen, and whether the camera sees what is behind."""
+        at = look_at(self.view, person.place_m[None], person.body, 0.0)
+        nearer, beyond = float(at.nearer[0]), float(at.beyond[0])
+        through = person.seen_through + 1 if not is_seen and beyond > _SEEN_THROUGH else 0
+        if not person.id:
+            status = Status.TENTATIVE
+        elif not is_seen and nearer > _HIDDEN:
+            status = Status.TOTALLY_OCCLUDED
+        elif nearer > _PARTLY_HIDDEN:
+            status = Status.PARTLY_OCCLUDED
+        else:
+            status = Status.TRACKED
+        confidence = max(update.confidence, 0.5 if self.time_s == person.verified_s else 0.0)
+        return replace(person, seen_through=through, status=status, confidence=min(confidence, 1.0))
+
+    def _error_m2(self, detection: Detection) -> Floats:
+        """Give the covariance (2, 2) of a detection's place: the sensor's along the ray, the gait's all round."""
+        ray = detection.place_m / max(float(np.hypot(*detection.place_m)), 1e-6)
+        along = (_DEPTH_SD * detection.found.z_m**2) ** 2
+        return np.eye(2) * _FLOOR_SD_M**2 + np.outer(ray, ray) * along
+
+
+def _merged(old: Floats, new: Floats, share: float) -> Floats:
+    return np.asarray(old + share * (new - old))
+
+
+def occluder_of(person: Hypothesis, others: Sequence[Hypothesis], view: RgbdView) -> int | None:
+    """Name who of those that are nearer stands most before a person."""
+    if person.status not in (Status.PARTLY_OCCLUDED, Status.TOTALLY_OCCLUDED):
+        return None
+    left, _, width, _ = box_at(view.geometry, person.place_m, person.body)
+    best, most = None, 0.0
+    for other in others:
+        if other.id in (0, person.id) or other.place_m[0] >= person.place_m[0] - 0.2:
+            continue
+        start, _, wide, _ = box_at(view.geometry, other.place_m, other.body)
+        common = min(left + width, start + wide) - max(left, start)
+        if common > most:
+            best, most = other.id, common
+    return best

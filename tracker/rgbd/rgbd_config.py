@@ -1,0 +1,104 @@
+"""Settings of the RGB-D tracker: as its source prints it, and as it works better."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Final
+
+from peopleboy.tracker.rgbd.detection.human_size import PRINTED_SIZE, HumanSize
+from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FloorFilterConfig:
+    """Settings of the particle filter on the floor (SA 4.6).
+
+    Attributes:
+        particles: number of them.
+        forward_share: share that walks on; the others move at random.
+        walk_m, walk_m_s: spread of place [m] and speed [m/s] of those that walk on, in a frame of 1/15 s.
+        random_m, random_m_s: the same of those that move at random.
+        kernel_m: [m] width of the kernel about the measured place (SA eq. 4.27).
+        sharpness: deviation of one minus the similarity that halves the weight's logarithm; 0 weighs by the
+            similarity itself, as printed.
+        foreground_m: [m] from a particle's depth, within which colours count; 0 for all in its box.
+        has_hold: whether a filter only predicts while nothing is where its particles are.
+        learning_rate: of the histogram (SA eq. 4.29).
+    """
+
+    particles: int = 150
+    forward_share: float = 0.7
+    walk_m: float = 0.015
+    walk_m_s: float = 0.15
+    random_m: float = 0.06
+    random_m_s: float = 0.5
+    kernel_m: float = 0.25
+    sharpness: float = 0.15
+    foreground_m: float = 0.5
+    has_hold: bool = True
+    learning_rate: float = 0.05
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HypothesesConfig:
+    """Settings of the management of hypotheses (SA 4.5).
+
+    Attributes:
+        gate_m, gate_per_m: [m] distance of what belongs together, and by how much more it may be apart for
+            each square metre of squared depth.
+        births: verifications after which somebody is believed in.
+        pre_share, verified_share, filter_share: of a measurement in the merged place (SA eq. 4.22).
+        unverified_s: [s] without a verification after which a hypothesis is deleted.
+        hidden_s: [s] the same for who is hidden; claimed for `unverified_s` only.
+        has_see_through: whether a hypothesis is deleted when the camera sees through it.
+        looks_weight: how much unlike looks count in association, in gates.
+        uses_odometry: whether hypotheses are moved by the robot's own motion.
+        body_m: [m] from the surface that the camera sees to the middle of the body.
+    """
+
+    gate_m: float = 0.5
+    gate_per_m: float = 0.003
+    births: int = 2
+    pre_share: float = 0.3
+    verified_share: float = 0.6
+    filter_share: float = 0.5
+    unverified_s: float = 2.0
+    hidden_s: float = 6.0
+    has_see_through: bool = True
+    looks_weight: float = 0.5
+    uses_odometry: bool = True
+    body_m: float = 0.1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RgbdConfig:
+    """Settings of the whole tracker.
+
+    Attributes:
+        size: of a human.
+        above: of the view from above.
+        filter: of the particle filters.
+        hypotheses: of their management.
+        has_verification: whether what is found must look like a human, too.
+        has_own_detector: whether far windows are judged by the machine learned here, or by OpenCV's.
+        least_score: of a window that is taken for a human.
+    """
+
+    size: HumanSize = field(default_factory=HumanSize)
+    above: UDepthConfig = field(default_factory=UDepthConfig)
+    filter: FloorFilterConfig = field(default_factory=FloorFilterConfig)
+    hypotheses: HypothesesConfig = field(default_factory=HypothesesConfig)
+    has_verification: bool = True
+    has_own_detector: bool = True
+    least_score: float = 0.0
+
+
+PRINTED: Final = RgbdConfig(
+    size=PRINTED_SIZE,
+    above=UDepthConfig(row_m=0.01, bridged_steps=0.0),
+    filter=FloorFilterConfig(sharpness=0.0, foreground_m=0.0, has_hold=False),
+    hypotheses=HypothesesConfig(
+        gate_per_m=0.0, has_see_through=False, hidden_s=2.0, looks_weight=0.0, body_m=0.0
+    ),
+)
+"""As the source prints it."""

@@ -1,0 +1,1 @@
+"""Whether what has the size of a human looks like one."""

@@ -1,0 +1,94 @@
+"""Windows of the colour image that a detector of humans looks at, near and far."""
+
+from __future__ import annotations
+
+import math
+from enum import StrEnum
+from functools import lru_cache
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.rgbd.detection.depth_view import DepthView
+from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection
+from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine
+from peopleboy.tracker.track import Box
+
+Image = NDArray[np.uint8]
+Features = NDArray[np.float32]
+
+
+class Range(StrEnum):
+    """How far somebody is: so near that the feet are cut off, or farther (SA 4.4.2)."""
+
+    NEAR = "near"
+    FAR = "far"
+
+
+SIZES: Final = {Range.NEAR: (64, 64), Range.FAR: (64, 128)}
+"""Width and height [px] of the windows: of head and shoulders, and of a whole body."""
+
+_SAFETY_M: Final = 0.1
+_BODY: Final = 104.0 / 128.0  # of a far window's height is body
+_SHOULDERS: Final = 1.3  # widths of a body in a near window
+_ABOVE: Final = 0.12  # of a near window is above the head
+
+
+def range_of(z_m: float, floor: HeightLine, view: DepthView, rows: int) -> Range:
+    """Tell how far something is: far from where feet are in the image on (SA eq. 4.16)."""
+    half_angle = math.atan((rows / 2.0 + view.horizon_px) / view.focal_px)
+    farthest = floor.offset_m * math.tan(math.pi / 2.0 - half_angle) + _SAFETY_M
+    return Range.FAR if z_m > farthest else Range.NEAR
+
+
+def window_of(found: PreDetection, kind: Range, floor: HeightLine, view: DepthView) -> Box:
+    """Place a window [px] on what was found.
+
+    A far one reaches from the head to the floor, though legs may be hidden.
+    """
+    left, top, width, height = found.box
+    middle = left + width / 2.0
+    if kind is Range.NEAR:
+        side = max(_SHOULDERS * width, 8.0)
+        return middle - side / 2.0, top - _ABOVE * side, side, side
+    foot = float(floor.rows(np.array([found.z_m]), view)[0])
+    body = max(foot - top, height)
+    tall = body / _BODY
+    return middle - tall / 4.0, top - (tall - body) / 2.0, tall / 2.0, tall
+
+
+def features(image: Image, window: Box, kind: Range) -> Features:
+    """Describe a window of an RGB image by numbers (N,)."""
+    return hog(cut(image, window, kind), kind)
+
+
+def hog(patch: Image, kind: Range) -> Features:
+    """Give the histograms of oriented gradients (N,) of what was cut out."""
+    return np.asarray(_hog(kind).compute(patch), np.float32).ravel()
+
+
+def cut(image: Image, window: Box, kind: Range) -> Image:
+    """Cut a window out of an image and bring it to its size; beyond the border it goes on as it ends."""
+    left, top, width, height = window
+    first_u, first_v = math.floor(left), math.floor(top)
+    last_u, last_v = max(math.ceil(left + width), first_u + 2), max(math.ceil(top + height), first_v + 2)
+    rows, columns = image.shape[:2]
+    inner = image[
+        min(max(first_v, 0), rows - 1) : max(min(last_v, rows), 1),
+        min(max(first_u, 0), columns - 1) : max(min(last_u, columns), 1),
+    ]
+    borders = max(-first_v, 0), max(last_v - rows, 0), max(-first_u, 0), max(last_u - columns, 0)
+    if any(borders):
+        inner = cv2.copyMakeBorder(inner, *borders, cv2.BORDER_REPLICATE).astype(np.uint8, copy=False)
+    # Mean of the pixels that fall together: as if blurred before it is made smaller.
+    smaller = inner.shape[0] >= SIZES[kind][1]
+    way = cv2.INTER_AREA if smaller else cv2.INTER_LINEAR
+    return np.asarray(cv2.resize(inner, SIZES[kind], interpolation=way), np.uint8)
+
+
+@lru_cache(maxsize=2)
+def _hog(kind: Range) -> cv2.HOGDescriptor:
+    """Nine directions in cells of 8 px, blocks of two by two cells."""
+    return cv2.HOGDescriptor(SIZES[kind], (16, 16), (8, 8), (8, 8), 9)
