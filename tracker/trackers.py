@@ -18,6 +18,9 @@ from peopleboy.tracker.panoramic.paper.appearance_file import shipped_models
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.panoramic.people.place_file import load_places
+from peopleboy.tracker.rgbd.rgbd_config import PRINTED, RgbdConfig
+from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
 from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import LEARNED, VARIANTS
@@ -99,11 +102,17 @@ def _handover_tracker(rng: np.random.Generator) -> HandoverTracker:
     return HandoverTracker(_contour_tracker(DEFAULT_TRACKER, rng), _panoramic_tracker(rng))
 
 
+def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:
+    return RgbdTracker(config, shipped_windows(), rng)
+
+
 TRACKERS: Final[dict[str, Factory]] = {
     **{name: partial(_contour_tracker, name) for name in VARIANTS},
     "panoramic-paper": _panoramic_paper_tracker,
     "panoramic": _panoramic_tracker,
     "handover": _handover_tracker,
+    "rgbd": partial(_rgbd_tracker, RgbdConfig()),
+    "rgbd-printed": partial(_rgbd_tracker, PRINTED),
 }
 """Each tracker's factory by name; the first is the default. Whoever has a further one adds it here."""
 

@@ -44,6 +44,15 @@ ABOUT: Mapping[str, tuple[str, str]] = {
         "`peopleboy` for what is warm ahead and `panoramic` for all round it, which point people out to each "
         "other: a person keeps one number from the thermal image through the panorama and back.",
     ),
+    "rgbd": (
+        "the situation-awareness thesis, chapter 4, and beyond",
+        "People on the floor by a depth camera with colour, standing or driving: what has the size of a "
+        "human and looks like one, and a particle filter for each of them.",
+    ),
+    "rgbd-printed": (
+        "the situation-awareness thesis, chapter 4",
+        "The same as it is printed, where it is.",
+    ),
 }
 
 

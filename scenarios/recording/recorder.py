@@ -204,9 +204,10 @@ class Recorder:
         sketches = explained_sketches(tick.explanation, tick.tracks, self._cameras)
         for camera, sketch in ((c, s) for c, s in sketches.items() if c in tick.observation.images):
             path = camera_path(camera)
-            if not np.array_equal(self._backgrounds.get(camera, ()), sketch.background):
-                self._backgrounds[camera] = sketch.background
-                blob = encode_jpeg(sketch.background, _JPEG_QUALITY[3], has_own_codes=False)
+            empty = sketch.background
+            if empty is not None and not np.array_equal(self._backgrounds.get(camera, ()), empty):
+                self._backgrounds[camera] = empty
+                blob = encode_jpeg(empty, _JPEG_QUALITY[3], has_own_codes=False)
                 self._rows.add(
                     f"{path}/{BACKGROUND}", rr.EncodedImage, blob=[blob], media_type=["image/jpeg"]
                 )

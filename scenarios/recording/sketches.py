@@ -16,17 +16,19 @@ from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import invert_pose, transform
-from peopleboy.tracker.frame import PANORAMA
+from peopleboy.tracker.frame import DEPTH, PANORAMA
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
 from peopleboy.tracker.panoramic.paper.panoramic_explanation import PanoramicExplanation
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
-from peopleboy.tracker.track import FloorPlace, Track
+from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
+from peopleboy.tracker.track import Box, FloorPlace, Track
 
 Line = NDArray[np.float64]
 
 HISTOGRAM: Rgb = (245, 245, 245)
 NOBODYS: Rgb = (150, 150, 150)
+VERIFIED: Rgb = (245, 245, 245)
 _BAR_PX = 0.3  # height of a bar for each pixel that a column has
 _ROUND = np.linspace(0.0, 2.0 * np.pi, 49)
 
@@ -36,12 +38,12 @@ class Sketch:
     """What explains the newest image of one camera.
 
     Attributes:
-        background: (H, W) or (H, W, 3) the empty scene as the tracker knows it.
+        background: (H, W) or (H, W, 3) the empty scene as the tracker knows it; None if it knows none.
         lines: K lines of (n, 2) [px].
         colour: (K, 3).
     """
 
-    background: NDArray[np.uint8]
+    background: NDArray[np.uint8] | None
     lines: list[Line]
     colour: Colours
 
@@ -104,6 +106,21 @@ def _(
     return explained_sketches(explanation.panoramic, tracks, cameras)
 
 
+@explained_sketches.register
+def _(
+    explanation: RgbdExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    coloured = [
+        (_frame(one.found.box), VERIFIED if one.is_verified else NOBODYS) for one in explanation.detections
+    ]
+    for track in tracks:
+        if track.place is not None:
+            own = track_colour(track.id)
+            coloured += [(line, own) for line in floor_ellipse(track.place, cameras[DEPTH].camera)]
+    sketch = Sketch(None, [line for line, _ in coloured], colours_of(colour for _, colour in coloured))
+    return {DEPTH: sketch}
+
+
 def outlines_of(mask: NDArray[np.bool_]) -> list[Line]:
     """Trace closed lines (n, 2) round all that is set in an image (H, W), through its outermost pixels."""
     # Pixels of two by two have outlines even if they are alone.
@@ -139,6 +156,13 @@ def floor_ellipse(place: FloorPlace, camera: CameraGeometry) -> list[Line]:
     floor[:, :2] = np.array(place.position_m) + CHI_95 * ring @ axes.T
     pixels = camera.project(transform(invert_pose(camera.robot_from_camera), floor))
     return list(_parts(pixels[~np.isnan(pixels).any(axis=1)], around_px(camera)))
+
+
+def _frame(box: Box) -> Line:
+    """Draw a box (5, 2)."""
+    left, top, width, height = box
+    right, bottom = left + width, top + height
+    return np.array([(left, top), (right, top), (right, bottom), (left, bottom), (left, top)])
 
 
 def _parts(line: Line, around: float) -> Iterator[Line]:

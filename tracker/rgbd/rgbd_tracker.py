@@ -89,9 +89,8 @@ class RgbdTracker:
         geometry = DepthView.of(frame.calibrations.get(DEPTH), DEPTH)
         depth, colour = frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
         if depth.shape != colour.shape[:2]:
-            raise BadInput(
-                f"{DEPTH} and {DEPTH_COLOUR} must show the same pixels, got {depth.shape} and {colour.shape[:2]}"
-            )
+            sizes = f"{depth.shape} and {colour.shape[:2]}"
+            raise BadInput(f"{DEPTH} and {DEPTH_COLOUR} must show the same pixels, got {sizes}")
         return RgbdView(depth, colour, geometry, self.config.hypotheses.body_m)
 
     def _verified(self, found: PreDetection, layout: Layout, view: RgbdView) -> Detection:

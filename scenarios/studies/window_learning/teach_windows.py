@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.window_learning.window_examples import WindowExamples
-from peopleboy.tracker.rgbd.verification.window_model import Features, WindowModel
-from peopleboy.tracker.rgbd.verification.windows import Range
+from peopleboy.tracker.rgbd.verification.window_model import WindowModel
+from peopleboy.tracker.rgbd.verification.windows import Features, Range
 
 COST: Final = {Range.FAR: 0.01, Range.NEAR: 0.01}
 FALSE_ALARMS: Final = 0.01

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +60,7 @@ class WindowExamples:
 
     def save(self, path: Path) -> None:
         """Write them, whole or not at all."""
-        arrays = {f"{kind}_features": self.features[kind] for kind in Range}
+        arrays: dict[str, Any] = {f"{kind}_features": self.features[kind] for kind in Range}
         arrays |= {f"{kind}_is_person": self.is_person[kind].astype(np.float16) for kind in Range}
         with whole(path) as part, part.open("wb") as file:
             np.savez(file, **arrays)

@@ -28,7 +28,7 @@ TESTS: Final[Mapping[str, int]] = {
     "fast_turn": 2,
     "hall_visits": 1,
 }
-"""How many scenes judge the machines: drawn at random, and of the library, whose places nobody learned from."""
+"""How many scenes judge: drawn at random, and of the library, whose places nobody learned from."""
 
 
 def give_window_lesson(out: Path, workers: Workers, *, scenes: int, ship: bool) -> Path:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class HumanSize:
-    """Width, height and depth [m] of a human as a camera sees it, and how much they may differ (SA 4.12-4.15).
+    """Size of a human as a camera sees it, and how much it may differ (SA eq. 4.12 to 4.15).
 
     A camera sees the front of a body only, which is less than the body is deep.
 
@@ -32,7 +32,9 @@ class HumanSize:
         """Rate a size, 1 for the expected one.
 
         Args:
-            width_m, height_m, depth_m: [m] of what is there.
+            width_m: of what is there.
+            height_m: likewise.
+            depth_m: likewise.
             visible_m: [m] of the expected height that can be in the image.
         """
         expected = visible_m if self.is_cut else self.height_m

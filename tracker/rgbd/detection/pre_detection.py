@@ -139,7 +139,7 @@ class PreDetector:
 def _rows_of(
     depth: Depth, columns: tuple[int, int], span_mm: tuple[float, float], rows: tuple[float, float]
 ) -> tuple[int, int]:
-    """Scan from the lowest row up for readings within a span of depth; give first and last of the longest run.
+    """Scan from the lowest row up for readings within a span of depth; give the longest run's first and last.
 
     The source takes the first run, which may be a speck of the floor before the feet.
     """
@@ -157,7 +157,4 @@ def _rows_of(
 
 @njit(cache=True, nogil=True)
 def _has_reading(row: NDArray[np.uint16], span_mm: tuple[float, float]) -> bool:
-    for reading in row:
-        if span_mm[0] <= reading <= span_mm[1]:
-            return True
-    return False
+    return bool(((row >= span_mm[0]) & (row <= span_mm[1])).any())

@@ -68,7 +68,8 @@ def u_depth(depth: Depth, first_row: Floats, last_row: Floats, row_m: float) -> 
 
     Args:
         depth: (H, W) [mm].
-        first_row, last_row: (D,) [px] image rows that count at each depth, between ceiling and floor.
+        first_row: (D,) [px] first image row that counts at each depth, below the ceiling.
+        last_row: (D,) [px] last one, above the floor.
         row_m: [m] of depth in a row.
     """
     limits = [np.clip(rows, -1.0, depth.shape[0]) for rows in (first_row, last_row)]
@@ -86,7 +87,7 @@ def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[Piece, ...]:
     if config.has_connector:
         _connect(kept, gaps(config))
     number, labels, boxes, _ = cv2.connectedComponentsWithStats(kept, connectivity=8, ltype=cv2.CV_32S)
-    rows = _extents(counts, labels, np.ascontiguousarray(boxes), number, config.trimmed)
+    rows = _extents(counts, np.asarray(labels, np.int32), np.array(boxes, np.int32), number, config.trimmed)
     found = [
         Piece(
             int(left),
@@ -107,7 +108,7 @@ def gaps(config: UDepthConfig) -> Ints:
     depth_m = depths_m(config.row_m)
     printed = _GAPS_M[np.searchsorted(_ZONES_M, depth_m)]
     step = config.bridged_steps * STEP_1_M * depth_m**2
-    return np.round(np.maximum(printed, step) / config.row_m).astype(np.int32)
+    return np.asarray(np.round(np.maximum(printed, step) / config.row_m), np.int32)
 
 
 @njit(cache=True, nogil=True)

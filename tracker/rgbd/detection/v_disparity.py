@@ -52,7 +52,7 @@ def v_disparity(depth: Depth, view: DepthView) -> Counts:
 
 
 def find_floor(counts: Counts, view: DepthView) -> HeightLine | None:
-    """Find the line of the floor by a Hough vote over height and horizon; None where nothing looks like it."""
+    """Find the line of the floor by a Hough vote over height and horizon; None where there is none."""
     return _strongest(counts, view, *_FLOOR_M)
 
 
@@ -62,7 +62,7 @@ def find_ceiling(counts: Counts, view: DepthView) -> HeightLine | None:
 
 
 def _strongest(counts: Counts, view: DepthView, lowest_m: float, highest_m: float) -> HeightLine | None:
-    """Take the line that most readings are on; its slope is the horizon's shift by the focal length (4.11)."""
+    """Take the line that most readings are on; its slope is the horizon's shift in focal lengths (4.11)."""
     horizon = view.centre_v + view.horizon_px
     heights = np.arange(lowest_m, highest_m, 0.04)
     rows = horizon + np.arange(-_SHIFT_PX, _SHIFT_PX + 1.0, 2.0)

@@ -65,7 +65,7 @@ class FloorFilter:
     def weighed(
         self, view: RgbdView, body: Body, config: FloorFilterConfig, rng: np.random.Generator
     ) -> Update:
-        """Weigh particles by what is at their places (SA eq. 4.26 to 4.28), and draw new ones by the weights."""
+        """Weigh particles by what is at their places (SA eq. 4.26 to 4.28), and draw new ones by that."""
         glance = look_at(view, self.state[:, :2], body, config.foreground_m)
         kernel = np.exp(-0.5 * (glance.miss_m / config.kernel_m) ** 2)
         count = max(1, round(_BEST_SHARE * len(kernel)))

@@ -67,11 +67,7 @@ class Life:
         rules = self.config.hypotheses
         is_confident = not update.is_held and update.confidence > _CONFIDENT
         if is_confident and np.hypot(*(update.place_m - person.place_m)) < rules.gate_m:
-            person = replace(
-                person,
-                place_m=_merged(person.place_m, update.place_m, rules.filter_share),
-                seen_s=person.seen_s,
-            )
+            person = replace(person, place_m=_merged(person.place_m, update.place_m, rules.filter_share))
         if detection is not None:
             person = self._measured(person, detection, is_confident=is_confident)
         return self._judged(person, update, is_seen=detection is not None or is_confident)
@@ -82,7 +78,7 @@ class Life:
             place_m=detection.place_m,
             covariance_m2=self._error_m2(detection),
             body=detection.body,
-            filter=FloorFilter.begin(detection.place_m, self.config.filter, self.rng),
+            filter=self._spread(detection),
             born_s=self.time_s,
             verified_s=self.time_s,
             seen_s=self.time_s,
@@ -99,19 +95,22 @@ class Life:
         return self.time_s - person.verified_s > (rules.hidden_s if is_hidden else rules.unverified_s)
 
     def _measured(self, person: Hypothesis, detection: Detection, *, is_confident: bool) -> Hypothesis:
-        rules = self.config.hypotheses
-        share = rules.verified_share if detection.is_verified else rules.pre_share
-        changes = {
-            "place_m": _merged(person.place_m, detection.place_m, share),
-            "covariance_m2": self._error_m2(detection),
-            "seen_s": self.time_s,
-            "body": self._learned(person, detection, is_confident=is_confident),
-        }
-        if not is_confident:
-            changes["filter"] = FloorFilter.begin(detection.place_m, self.config.filter, self.rng)
-        if detection.is_verified:
-            changes |= {"verified_s": self.time_s, "verifications": person.verifications + 1}
-        return replace(person, **changes)
+        rules, now = self.config.hypotheses, self.time_s
+        is_verified = detection.is_verified
+        share = rules.verified_share if is_verified else rules.pre_share
+        return replace(
+            person,
+            place_m=_merged(person.place_m, detection.place_m, share),
+            covariance_m2=self._error_m2(detection),
+            seen_s=now,
+            body=self._learned(person, detection, is_confident=is_confident),
+            filter=person.filter if is_confident else self._spread(detection),
+            verified_s=now if is_verified else person.verified_s,
+            verifications=person.verifications + is_verified,
+        )
+
+    def _spread(self, detection: Detection) -> FloorFilter:
+        return FloorFilter.begin(detection.place_m, self.config.filter, self.rng)
 
     def _learned(self, person: Hypothesis, detection: Detection, *, is_confident: bool) -> Body:
         """Take on size and looks, slowly (SA eq. 4.29)."""
@@ -141,7 +140,7 @@ class Life:
         return replace(person, seen_through=through, status=status, confidence=min(confidence, 1.0))
 
     def _error_m2(self, detection: Detection) -> Floats:
-        """Give the covariance (2, 2) of a detection's place: the sensor's along the ray, the gait's all round."""
+        """Give the covariance (2, 2) of a detection's place: the sensor's along the ray, and the gait's."""
         ray = detection.place_m / max(float(np.hypot(*detection.place_m)), 1e-6)
         along = (_DEPTH_SD * detection.found.z_m**2) ** 2
         return np.eye(2) * _FLOOR_SD_M**2 + np.outer(ray, ray) * along

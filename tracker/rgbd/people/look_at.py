@@ -22,6 +22,7 @@ ROWS: Final = 20
 _MIDDLE: Final = np.array([3, 7, 5, 15])  # columns from, to, rows from, to, whose depth is measured
 _LEAST_SAMPLES: Final = 20
 _NOWHERE_M: Final = 10.0
+_OFF_M: Final = 0.5  # from which on a reading belongs to something else
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -152,44 +153,61 @@ def _glances(
     """Give similarity, miss, share nearer, share beyond (P, 4)."""
     found = np.zeros((len(places), 4))
     found[:, 1] = _NOWHERE_M
+    samples = np.zeros((COLUMNS * ROWS, 4))
     for n in range(len(places)):
         left, top, width, height, z = _box(rotation, origin, camera, places[n], body[0], body[1], body[2])
         if z <= 0.0:
             continue
-        counts = np.zeros(BINS)
-        samples = readings = nearer = beyond = middle = 0
-        x_sum = z_sum = 0.0
-        for row in range(ROWS):
-            v = int(top + (row + 0.5) / ROWS * height + 0.5)
-            if v < 0 or v >= depth.shape[0]:
-                continue
-            for column in range(COLUMNS):
-                u = int(left + (column + 0.5) / COLUMNS * width + 0.5)
-                if u < 0 or u >= depth.shape[1]:
-                    continue
-                reading = depth[v, u] / 1000.0
-                off = reading + body[3] - z
-                if reading > 0.0:
-                    readings += 1
-                    nearer += off < -0.5
-                    beyond += off > 0.5
-                    if _MIDDLE[0] <= column < _MIDDLE[1] and _MIDDLE[2] <= row < _MIDDLE[3]:
-                        middle += 1
-                        z_sum += reading + body[3]
-                        x_sum += (u - camera[1]) / camera[0] * reading
-                if math.isinf(foreground_m) or (reading > 0.0 and abs(off) < foreground_m):
-                    samples += 1
-                    counts[bin_at(colour, v, u, table)] += 1.0
-        if readings > 0:
-            found[n, 2], found[n, 3] = nearer / readings, beyond / readings
-        if samples < _LEAST_SAMPLES or middle == 0:
+        count = _sample(depth, left, top, width, height, samples)
+        off = samples[:count, 2] + body[3] - z
+        is_read = samples[:count, 2] > 0.0
+        readings = is_read.sum()
+        if readings == 0:
             continue
-        similar = 0.0
-        for k in range(BINS):
-            similar += math.sqrt(looks[k] * counts[k] / samples)
-        found[n, 0] = similar
-        found[n, 1] = _miss(rotation, origin, places[n], x_sum / middle, z_sum / middle)
+        found[n, 2] = (is_read & (off < -_OFF_M)).sum() / readings
+        found[n, 3] = (is_read & (off > _OFF_M)).sum() / readings
+        found[n, 0] = _similarity(colour, samples[:count], off, foreground_m, looks, table)
+        middle = samples[:count][is_read & (samples[:count, 3] > 0.0)]
+        if found[n, 0] > 0.0 and len(middle):
+            x = ((middle[:, 0] - camera[1]) / camera[0] * middle[:, 2]).mean()
+            found[n, 1] = _miss(rotation, origin, places[n], x, middle[:, 2].mean() + body[3])
     return found
+
+
+@njit(cache=True, nogil=True)
+def _sample(depth: Depth, left: float, top: float, width: float, height: float, samples: Floats) -> int:
+    """Fill in u, v, reading [m] and whether it is in the middle (N, 4) of a grid in a box; give N."""
+    count = 0
+    for row in range(ROWS):
+        v = int(top + (row + 0.5) / ROWS * height + 0.5)
+        if v < 0 or v >= depth.shape[0]:
+            continue
+        for column in range(COLUMNS):
+            u = int(left + (column + 0.5) / COLUMNS * width + 0.5)
+            if 0 <= u < depth.shape[1]:
+                is_middle = _MIDDLE[0] <= column < _MIDDLE[1] and _MIDDLE[2] <= row < _MIDDLE[3]
+                samples[count, 0], samples[count, 1] = u, v
+                samples[count, 2], samples[count, 3] = depth[v, u] / 1000.0, is_middle
+                count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _similarity(
+    colour: Image, samples: Floats, off: Floats, foreground_m: float, looks: Floats, table: NDArray[np.uint8]
+) -> float:
+    """Compare the colours of samples that are near enough; 0 for too few of them (SA eq. 4.25)."""
+    counts, total = np.zeros(BINS), 0
+    for k in range(len(samples)):
+        if math.isinf(foreground_m) or (samples[k, 2] > 0.0 and abs(off[k]) < foreground_m):
+            total += 1
+            counts[bin_at(colour, int(samples[k, 1]), int(samples[k, 0]), table)] += 1.0
+    if total < _LEAST_SAMPLES:
+        return 0.0
+    similar = 0.0
+    for k in range(BINS):
+        similar += math.sqrt(looks[k] * counts[k] / total)
+    return similar
 
 
 @njit(cache=True, nogil=True)
@@ -217,16 +235,16 @@ def _foreground_looks(depth: Depth, colour: Image, box: Floats, table: NDArray[n
     if n == 0:
         return counts
     limit = _between_two(readings[:n])
-    for k in range(n):
-        if readings[k] <= limit:
-            counts[bins[k]] += 1.0
-    return counts / counts.sum()
+    near = np.flatnonzero(readings[:n] <= limit)
+    for k in near:
+        counts[bins[k]] += 1.0 / len(near)
+    return counts
 
 
 @njit(cache=True, nogil=True)
 def _between_two(readings: Floats) -> float:
     """Part readings [m] into two by their means; give the limit between them (SA 4.4.2)."""
-    near, far = readings.min(), readings.max()
+    near, far = float(readings.min()), float(readings.max())
     for _ in range(10):
         limit = 0.5 * (near + far)
         is_near = readings <= limit
