@@ -21,9 +21,9 @@ STEP_1_M: Final = 0.00287  # between two depths that the sensor can tell apart a
 _LEAST_PX: Final = 10  # SA 4.4.1: cells with more readings are kept
 _LEAST_MASS: Final = 100
 _FRINGE_M: Final = 9.7  # what is farther may be the near fringe of a wall that the sensor does not reach
-# SA 4.4.1: gaps of 2, 4, 6 or 10 lines of 1 cm are bridged; so coarse is the sensor at these depths.
+# SA 4.4.1: gaps of 2, 4, 6 or 10 rows are bridged; where each begins is not printed.
 _ZONES_M: Final = np.array([2.6, 3.7, 4.6])
-_GAPS_M: Final = np.array([0.04, 0.08, 0.12, 0.20])
+_GAPS: Final = np.array([2, 4, 6, 10])
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,27 +88,22 @@ def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[Piece, ...]:
         _connect(kept, gaps(config))
     number, labels, boxes, _ = cv2.connectedComponentsWithStats(kept, connectivity=8, ltype=cv2.CV_32S)
     rows = _extents(counts, np.asarray(labels, np.int32), np.array(boxes, np.int32), number, config.trimmed)
-    found = [
-        Piece(
-            int(left),
-            int(right),
-            near * config.row_m,
-            (far + 1) * config.row_m,
-            mean * config.row_m,
-            int(mass),
-        )
-        for left, right, near, far, mean, mass in rows
-        if mass >= _LEAST_MASS and mean * config.row_m < _FRINGE_M
-    ]
-    return tuple(sorted(found, key=lambda piece: piece.depth_m))
+    found = [_piece(row, config.row_m) for row in rows.tolist()]
+    kept = [one for one in found if one.mass >= _LEAST_MASS and one.depth_m < _FRINGE_M]
+    return tuple(sorted(kept, key=lambda piece: piece.depth_m))
+
+
+def _piece(row: list[float], row_m: float) -> Piece:
+    left, right, near, far, mean, mass = row
+    return Piece(int(left), int(right), near * row_m, (far + 1.0) * row_m, mean * row_m, int(mass))
 
 
 def gaps(config: UDepthConfig) -> Ints:
     """Give the rows (D,) that a gap behind each row may have."""
     depth_m = depths_m(config.row_m)
-    printed = _GAPS_M[np.searchsorted(_ZONES_M, depth_m)]
-    step = config.bridged_steps * STEP_1_M * depth_m**2
-    return np.asarray(np.round(np.maximum(printed, step) / config.row_m), np.int32)
+    printed = _GAPS[np.searchsorted(_ZONES_M, depth_m)]
+    steps = np.round(config.bridged_steps * STEP_1_M * depth_m**2 / config.row_m)
+    return np.asarray(np.maximum(printed, steps), np.int32)
 
 
 @njit(cache=True, nogil=True)

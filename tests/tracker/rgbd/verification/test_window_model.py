@@ -1,0 +1,64 @@
+"""Files of machines that tell humans by their windows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.rgbd.verification.window_model import WindowModel, feature_length, shipped_windows
+from peopleboy.tracker.rgbd.verification.windows import Range
+
+
+def make_model(extra: int = 0) -> WindowModel:
+    rng = np.random.default_rng(3)
+    return WindowModel(
+        {kind: rng.normal(size=feature_length(kind) + 1 + extra).astype(np.float32) for kind in Range},
+        {"trained on": "nothing"},
+    )
+
+
+def test_a_model_comes_back_from_its_file(tmp_path: Path) -> None:
+    model = make_model()
+    model.save(tmp_path / "windows.npz")
+    read = WindowModel.load(tmp_path / "windows.npz")
+    assert read.about == model.about
+    assert all(np.array_equal(read.weights[kind], model.weights[kind]) for kind in Range)
+
+
+def test_a_score_is_the_distance_from_a_plane() -> None:
+    model, seen = make_model(), np.ones(feature_length(Range.NEAR), np.float32)
+    weights = model.weights[Range.NEAR].astype(float)
+    assert model.score(seen, Range.NEAR) == pytest.approx(weights.sum(), rel=1e-4)
+
+
+def test_machines_of_another_window_are_refused(tmp_path: Path) -> None:
+    make_model(extra=36).save(tmp_path / "other.npz")
+    with pytest.raises(BadInput, match=r"other\.npz: near: the machine of a 64 x 64 window has 1765"):
+        WindowModel.load(tmp_path / "other.npz")
+
+
+def test_a_missing_file_names_the_command(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="train-windows"):
+        WindowModel.load(tmp_path / "none.npz")
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04 broken", b"far: [1, 2]"])
+def test_what_is_no_model_is_refused(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "bad.npz").write_bytes(content)
+    with pytest.raises(BadInput, match="is no file of weights"):
+        WindowModel.load(tmp_path / "bad.npz")
+
+
+def test_numbers_that_are_not_finite_are_refused(tmp_path: Path) -> None:
+    model = make_model()
+    model.weights[Range.FAR][7] = np.nan
+    model.save(tmp_path / "nan.npz")
+    with pytest.raises(BadInput, match="finite"):
+        WindowModel.load(tmp_path / "nan.npz")
+
+
+def test_the_model_that_is_shipped_says_what_it_was_trained_on() -> None:
+    assert "seeds from 100" in shipped_windows().about["trained on"]
