@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -34,10 +34,18 @@ class RgbdTracker:
         config: settings.
         model: tells humans by their windows.
         rng: draws particles.
+        is_human: tells humans by something else than their windows; None for nothing else.
     """
 
-    def __init__(self, config: RgbdConfig, model: WindowModel, rng: np.random.Generator) -> None:
+    def __init__(
+        self,
+        config: RgbdConfig,
+        model: WindowModel,
+        rng: np.random.Generator,
+        is_human: Callable[[PreDetection, Frame], bool] | None = None,
+    ) -> None:
         self.config = config
+        self._is_human = is_human
         self._model, self._rng = model, rng
         self._detector = PreDetector(config.size, config.above)
         self._people: tuple[Hypothesis, ...] = ()
@@ -71,7 +79,7 @@ class RgbdTracker:
         """
         view = self._view(frame)
         layout = self._detector(view.depth, view.geometry)
-        detections = tuple(self._verified(found, layout, view) for found in layout.detections)
+        detections = tuple(self._verified(found, layout, view, frame) for found in layout.detections)
         life = Life(
             self.config, view, frame.time_s, min(frame.time_s - self._time_s, _LONGEST_STEP_S), self._rng
         )
@@ -93,7 +101,7 @@ class RgbdTracker:
             raise BadInput(f"{DEPTH} and {DEPTH_COLOUR} must show the same pixels, got {sizes}")
         return RgbdView(depth, colour, geometry, self.config.hypotheses.body_m)
 
-    def _verified(self, found: PreDetection, layout: Layout, view: RgbdView) -> Detection:
+    def _verified(self, found: PreDetection, layout: Layout, view: RgbdView, frame: Frame) -> Detection:
         """Look at the window of what was found (SA 4.4.2)."""
         geometry = view.geometry
         kind = range_of(found.z_m, layout.floor, geometry, len(view.depth))
@@ -102,6 +110,8 @@ class RgbdTracker:
             window = window_of(found, kind, layout.floor, geometry)
             score = self._model.score(features(view.colour, window, kind), kind)
         is_verified = not self.config.has_verification or score > self.config.least_score
+        if not is_verified and self._is_human is not None:
+            is_verified = self._is_human(found, frame)
         ground = layout.floor.slope * found.z_m + layout.floor.offset_m
         top = (found.box[1] - geometry.centre_v) * found.z_m / geometry.focal_px
         head = ground - top

@@ -1,0 +1,1 @@
+"""People by heat, depth and colour at once, each with one number."""

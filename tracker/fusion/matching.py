@@ -1,0 +1,74 @@
+"""Whose a track is: by bearing and range, as sure as each sensor is of them, by looks, height and memory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.fusion.fusion_config import FusionConfig
+from peopleboy.tracker.fusion.person import Person
+from peopleboy.tracker.fusion.told import Told
+from peopleboy.tracker.rgbd.people.looks import similarity
+
+_NEVER = 1e6
+
+
+def apart(person: Person, told: Told, floor_m: float) -> float:
+    """Tell by how much what is told differs from a person's place: squared, in standard deviations.
+
+    A thermal track is sure of its bearing and not of its range; one by depth is sure of both.
+    """
+    away = told.place_m - person.motion.place_m
+    error = told.error_m2 + person.motion.place_m2 + np.eye(2) * floor_m**2
+    return float(away @ np.linalg.solve(error, away))
+
+
+def cost(person: Person, told: Told, own: int | None, config: FusionConfig) -> float:
+    """Tell how unlikely it is that a person is told of; infinite if it is out of the question.
+
+    Args:
+        person: where it is expected.
+        told: what a tracker tells.
+        own: id of that tracker's track that was the person's before.
+        config: settings.
+    """
+    is_own = told.id == own
+    away = apart(person, told, config.floor_m)
+    w = told.box is not None
+    if away > ((config.own_warm_gate if w else config.own_gate) if is_own else config.gate):
+        return np.inf
+    return away + unlikeness(person, told, config) - ((config.warm_loyalty if w else config.loyalty) if is_own else 0.0)
+
+
+def unlikeness(person: Person, told: Told, config: FusionConfig) -> float:
+    """Rate how different looks and height are; 0 as far as they are not known."""
+    found = 0.0
+    if told.looks is not None and person.looks is not None:
+        found += config.looks_weight * (1.0 - similarity(person.looks, told.looks))
+    if told.tall_m is not None and person.depth is not None:
+        found += min(((told.tall_m - person.tall_m) / config.height_sd_m) ** 2, config.most_height)
+    return found
+
+
+def pairs(people: Sequence[Person], told: Sequence[Told], owns: Sequence[int | None], config: FusionConfig) -> dict[int, int]:
+    """Match people and what is told, each at most once, so that all pairs together cost least.
+
+    Returns:
+        Index of what is told by index of the person.
+    """
+    costs = np.array(
+        [[cost(person, one, own, config) for one in told] for person, own in zip(people, owns, strict=True)]
+    ).reshape(len(people), len(told))
+    return cheapest(costs)
+
+
+def cheapest(costs: Floats) -> dict[int, int]:
+    """Match rows and columns of costs (N, M): as many as can be, as cheaply as that goes; never at infinity."""
+    if costs.size == 0:
+        return {}
+    rows, columns = linear_sum_assignment(np.where(np.isfinite(costs), costs, _NEVER))
+    chosen = zip(rows.tolist(), columns.tolist(), strict=True)
+    return {row: column for row, column in chosen if np.isfinite(costs[row, column])}
