@@ -50,6 +50,7 @@ class AheadTracker:
         else:
             people = self._with_depth(people, deep or ())
             people = self._with_heat(people, warm or ())
+        people = self._exchanged(people)
         if self._config.peeks and deep is not None:
             people = [self._peeked(p, people, frame) for p in people]
         people = self._widths(self._without_doubles(people), frame)
@@ -125,12 +126,39 @@ class AheadTracker:
         return [self._measured(p, frame) for p in people]
 
     def _measured(self, p: Person, frame: Frame) -> Person:
-        if p.warm is None or p.deep is None or not p.warm.is_clear or not p.deep.is_clear or p.warm.box is None:
+        if p.warm is None or not p.warm.is_clear or p.warm.box is None:
             return p
-        x, y = self._pose.locate(p.motion.place_m)
-        c = frame.calibrations[THERMAL].project(np.array([[x, y, p.tall_m], [x, y, 0.0]]))
-        wide = p.warm.box[2] * self._config.torso_per_contour * p.tall_m / (c[1, 1] - c[0, 1])
-        return replace(p, wide_m=p.wide_m + self._config.learned * (wide - p.wide_m))
+        _, _, width, height = p.warm.box
+        if p.deep is not None and p.deep.is_clear and p.deep.span_m is not None:
+            x, y = self._pose.locate(p.motion.place_m)
+            c = frame.calibrations[THERMAL].project(np.array([[x, y, p.tall_m], [x, y, 0.0]]))
+            contour = width * p.tall_m / (c[1, 1] - c[0, 1])
+            wide = 0.045 * p.tall_m + 0.32 * contour + 0.47 * p.deep.span_m
+        else:
+            wide = p.tall_m * (0.065 + 0.715 * width / height)
+        return replace(p, wide_m=p.wide_m + self._config.torso_per_contour * (wide - p.wide_m))
+
+    def _exchanged(self, people: list[Person]) -> list[Person]:
+        config = self._config
+        people = list(people)
+        for k, a in enumerate(people):
+            if a.strange < config.strange or a.deep is None or a.deep.looks is None or not a.deep.is_clear:
+                continue
+            best, most = None, config.least_alike
+            for j, b in enumerate(people):
+                if j == k or b.looks is None or (b.told and b.strange < 2):
+                    continue
+                away = float(np.hypot(*(a.motion.place_m - b.motion.place_m)))
+                if not b.told and away > config.reach_m + config.fastest_m_s * (self._time_s - b.seen_s + 1.0):
+                    continue
+                alike = similarity(b.looks, a.deep.looks)
+                if alike > most and abs(a.deep.tall_m - b.tall_m) < config.tallest_off_m:
+                    best, most = j, alike
+            if best is not None:
+                b = people[best]
+                who = lambda p: dict(id=p.id, looks=p.looks, tall_m=p.tall_m, wide_m=p.wide_m, span_m=p.span_m, born_s=p.born_s, strange=0)
+                people[k], people[best] = replace(a, **who(b)), replace(b, **who(a))
+        return people
 
     def _peeked(self, p: Person, people: Sequence[Person], frame: Frame) -> Person:
         if any(one.is_clear for one in p.told) or self._time_s - p.seen_s > self._config.peek_s or p.depth is None:
@@ -161,7 +189,7 @@ class AheadTracker:
         return p.warm is not None or late <= config.blink_s
 
     def _track(self, p: Person, frame: Frame) -> Track:
-        box = outline(p, frame, self._pose, self._config.torso_per_contour)
+        box = outline(p, frame, self._pose)
         return Track(
             id=p.id,
             boxes={} if box is None else {THERMAL: box},

@@ -41,7 +41,7 @@ class FusionConfig:
     warm_loyalty: float = 6.0
     heat_first: int = 0
     own_warm_gate: float = 25.0
-    looks_weight: float = 8.0
+    looks_weight: float = 20.0
     height_sd_m: float = 0.08
     most_height: float = 4.0
     floor_m: float = 0.12
@@ -62,8 +62,11 @@ class FusionConfig:
     remembered_s: float = 20.0
     reach_m: float = 1.2
     fastest_m_s: float = 1.4
+    least_own: float = 0.6
+    strange: int = 5
+    relearn: int = 15
     least_alike: float = 0.7
     tallest_off_m: float = 0.12
     seen_through: float = 0.7
     least_warm: float = 0.15
-    torso_per_contour: float = 1.08
+    torso_per_contour: float = 0.5

@@ -46,9 +46,9 @@ def cost(person: Person, told: Told, own: int | None, config: FusionConfig) -> f
 def unlikeness(person: Person, told: Told, config: FusionConfig) -> float:
     """Rate how different looks and height are; 0 as far as they are not known."""
     found = 0.0
-    if told.looks is not None and person.looks is not None:
-        found += config.looks_weight * (1.0 - similarity(person.looks, told.looks))
-    if told.tall_m is not None and person.depth is not None:
+    if told.looks is not None and person.looks is not None and told.is_seen:
+        found += (1.0 if told.is_clear else 0.5) * config.looks_weight * (1.0 - similarity(person.looks, told.looks))
+    if told.tall_m is not None and told.is_clear and person.depth is not None:
         found += min(((told.tall_m - person.tall_m) / config.height_sd_m) ** 2, config.most_height)
     return found
 

@@ -14,7 +14,7 @@ from peopleboy.tracker.track import Box
 _LEAST_DEPTH_M: Final = 0.3
 
 
-def outline(person: Person, frame: Frame, pose: RobotPose, torso_per_contour: float) -> Box | None:
+def outline(person: Person, frame: Frame, pose: RobotPose) -> Box | None:
     """Give left, top, width, height [px] in the thermal image, which may lie outside.
 
     Depth knows best where head and feet are, heat where the middle is, and how wide the torso appears just
@@ -24,20 +24,15 @@ def outline(person: Person, frame: Frame, pose: RobotPose, torso_per_contour: fl
         None where neither can tell.
     """
     warm = person.warm
-    contour = None if warm is None or warm.box is None else widened(warm.box, torso_per_contour)
-    is_clear = warm is not None and warm.is_clear
     standing = _standing(person, frame, pose)
-    if standing is None or (is_clear and person.deep is None):
-        return contour or standing
-    if contour is None or not is_clear:
+    if warm is None or warm.box is None or not warm.is_clear:
         return standing
-    return contour[0], standing[1], contour[2], standing[3]
-
-
-def widened(box: Box, factor: float) -> Box:
-    """Give a box of another width about the same middle."""
-    left, top, width, height = box
-    return left + width * (1.0 - factor) / 2.0, top, width * factor, height
+    left, top, width, height = warm.box
+    if standing is None:
+        return warm.box
+    if person.deep is None:
+        standing = (left, top, standing[2] * height / standing[3], height)
+    return left + (width - standing[2]) / 2.0, standing[1], standing[2], standing[3]
 
 
 def _standing(person: Person, frame: Frame, pose: RobotPose) -> Box | None:

@@ -12,6 +12,7 @@ from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.told import Told
 from peopleboy.tracker.panoramic.people.floor_motion import Motion
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
+from peopleboy.tracker.rgbd.people.looks import similarity
 from peopleboy.tracker.track import FloorPlace, Status
 
 TALL_M: Final = 1.72
@@ -45,6 +46,7 @@ class Person:
     span_m: float = 0.48
     looks: Floats | None = None
     peeked: bool = False
+    strange: int = 0
     born_s: float
     seen_s: float
 
@@ -81,8 +83,14 @@ class Person:
         tall, looks = self.tall_m, self.looks
         if told.tall_m is not None and (told.is_clear or self.depth is None):
             tall += (config.learned if self.depth is not None else 1.0) * (told.tall_m - tall)
-        if told.looks is not None:
-            looks = told.looks if looks is None else looks + config.learned * (told.looks - looks)
+        if told.looks is not None and told.is_clear:
+            alike = 1.0 if looks is None else similarity(looks, told.looks)
+            strange = self.strange + 1 if alike < config.least_own else 0
+            person = replace(person, strange=strange)
+            if looks is None or strange > config.relearn:
+                looks = told.looks
+            elif strange == 0:
+                looks = looks + config.learned * (told.looks - looks)
         span = self.span_m
         if told.is_clear and told.span_m is not None:
             span += config.learned * (told.span_m - span)

@@ -90,11 +90,11 @@ class Depth:
         assert explanation is not None
         people = {one.id: one for one in explanation.hypotheses}
         is_lit = float(frame.rgb(DEPTH_COLOUR)[::_EVERY, ::_EVERY].mean()) > LIT
-        told = (self._told(track, people[track.id], frame, pose, is_lit=is_lit) for track in tracks)
+        told = (self._told(track, people[track.id], explanation.detections, frame, pose, is_lit=is_lit) for track in tracks)
         return [one for one in told if one is not None]
 
     def _told(
-        self, track: Track, person: Hypothesis, frame: Frame, pose: RobotPose, *, is_lit: bool
+        self, track: Track, person: Hypothesis, detections, frame: Frame, pose: RobotPose, *, is_lit: bool
     ) -> Told | None:
         assert track.place is not None
         found = glance_for(np.array(track.place.position_m), person.body, _REACH_M, frame)
@@ -102,6 +102,8 @@ class Depth:
             return None
         is_seen = frame.time_s - person.seen_s < _MISSED_S
         place, error = in_room(track, pose)
+        near = [(float(np.hypot(*(d.place_m - person.place_m))), k) for k, d in enumerate(detections)] if is_seen else []
+        body = detections[min(near)[1]].body if near and min(near)[0] < 0.35 else None
         return Told(
             id=track.id,
             place_m=place,
@@ -109,9 +111,9 @@ class Depth:
             status=track.status if is_seen else Status.TOTALLY_OCCLUDED,
             confidence=track.confidence,
             occluder=track.occluder,
-            tall_m=person.body.head_m,
+            tall_m=person.body.head_m if body is None else body.head_m,
             span_m=person.body.width_m,
-            looks=person.body.looks if is_lit else None,
+            looks=body.looks if is_lit and body is not None else None,
         )
 
 
