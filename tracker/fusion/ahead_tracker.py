@@ -84,7 +84,7 @@ class AheadTracker:
         best, least = None, np.inf
         slack = 2.0 * math.sqrt(float(np.linalg.eigvalsh(one.error_m2)[-1]))
         for k, p in enumerate(people):
-            if p.told or k >= len(owns):
+            if p.is_seen or k >= len(owns):
                 continue
             late = self._time_s - p.seen_s
             reach = config.reach_m + config.fastest_m_s * late + slack
@@ -115,12 +115,19 @@ class AheadTracker:
         return p.is_seen and one.tall_m is None and apart(p, one, self._config.floor_m) < self._config.own_gate
 
     def _without_doubles(self, people: list[Person]) -> list[Person]:
-        gone = set()
+        """Make one of two of whom one is only warm, and the other only deep, at one place."""
+        kept = list(people)
         for a in people:
-            for b in people:
-                if a.deep is not None and a.warm is None and a.deep.is_seen and b.deep is None and b.warm is not None and b.warm.is_seen and not {a.id, b.id} & gone and apart(a, b.warm, self._config.floor_m) < self._config.gate:
-                    gone.add(max(a.id, b.id))
-        return [p for p in people if p.id not in gone]
+            if a not in kept or a.deep is None or a.warm is not None or not a.deep.is_seen:
+                continue
+            for b in kept:
+                if b.deep is None and b.warm is not None and b.warm.is_seen and apart(a, b.warm, self._config.floor_m) < self._config.gate:
+                    both = replace(a, warm=b.warm, heat=b.heat)
+                    if b.id < a.id:
+                        both = replace(both, id=b.id, born_s=b.born_s, looks=a.looks if b.looks is None else b.looks)
+                    kept = [both if p is a else p for p in kept if p is not b]
+                    break
+        return kept
 
     def _widths(self, people: list[Person], frame: Frame) -> list[Person]:
         return [self._measured(p, frame) for p in people]
@@ -139,26 +146,36 @@ class AheadTracker:
         return replace(p, wide_m=p.wide_m + self._config.torso_per_contour * (wide - p.wide_m))
 
     def _exchanged(self, people: list[Person]) -> list[Person]:
+        """Let people whose looks are another's have that one's number."""
         config = self._config
-        people = list(people)
-        for k, a in enumerate(people):
-            if a.strange < config.strange or a.deep is None or a.deep.looks is None or not a.deep.is_clear:
+        known = {p.id: p for p in people}
+        for a in people:
+            a = known.get(a.id)
+            if a is None or a.deep is None or a.deep.looks is None or not a.deep.is_clear:
                 continue
-            best, most = None, config.least_alike
-            for j, b in enumerate(people):
-                if j == k or b.looks is None or (b.told and b.strange < 2):
+            is_young, is_strange = self._time_s - a.born_s < config.young_s, a.strange >= config.strange
+            if not is_young and not is_strange:
+                continue
+            best, most = None, config.least_alike if is_strange else config.least_young
+            for b in known.values():
+                if b is a or b.looks is None or (b.is_seen and (b.strange < 2 or not is_strange)):
+                    continue
+                if b.born_s > a.born_s - 1.0 and not is_strange:
                     continue
                 away = float(np.hypot(*(a.motion.place_m - b.motion.place_m)))
-                if not b.told and away > config.reach_m + config.fastest_m_s * (self._time_s - b.seen_s + 1.0):
+                if not b.is_seen and away > config.reach_m + config.fastest_m_s * (self._time_s - b.seen_s + 1.0):
                     continue
                 alike = similarity(b.looks, a.deep.looks)
                 if alike > most and abs(a.deep.tall_m - b.tall_m) < config.tallest_off_m:
-                    best, most = j, alike
-            if best is not None:
-                b = people[best]
-                who = lambda p: dict(id=p.id, looks=p.looks, tall_m=p.tall_m, wide_m=p.wide_m, span_m=p.span_m, born_s=p.born_s, strange=0)
-                people[k], people[best] = replace(a, **who(b)), replace(b, **who(a))
-        return people
+                    best, most = b, alike
+            if best is None:
+                continue
+            known[best.id] = a.named(best)
+            if is_young and not best.is_seen:
+                del known[a.id]
+            else:
+                known[a.id] = best.named(a)
+        return list(known.values())
 
     def _peeked(self, p: Person, people: Sequence[Person], frame: Frame) -> Person:
         if any(one.is_clear for one in p.told) or self._time_s - p.seen_s > self._config.peek_s or p.depth is None:

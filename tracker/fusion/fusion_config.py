@@ -64,6 +64,8 @@ class FusionConfig:
     fastest_m_s: float = 1.4
     least_own: float = 0.6
     strange: int = 5
+    young_s: float = 3.0
+    least_young: float = 0.85
     relearn: int = 15
     least_alike: float = 0.7
     tallest_off_m: float = 0.12

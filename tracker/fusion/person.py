@@ -106,6 +106,13 @@ class Person:
         motion = self.motion.corrected(told.place_m, error)
         return replace(person, motion=motion, seen_s=time_s)
 
+    def named(self, other: Person) -> Person:
+        """Give who is here, and is told of so, with the number, the measures and the looks of another."""
+        return replace(
+            self, id=other.id, looks=other.looks, tall_m=other.tall_m, wide_m=other.wide_m,
+            span_m=other.span_m, born_s=other.born_s, strange=0,
+        )
+
     def floor_place(self, pose: RobotPose, shared_m: float) -> FloorPlace:
         """Tell where the person stands in the robot's frame.
 
