@@ -90,11 +90,12 @@ class RgbdConfig:
     hypotheses: HypothesesConfig = field(default_factory=HypothesesConfig)
     has_verification: bool = True
     has_own_detector: bool = True
-    least_score: float = 0.0
+    least_score: float = 0.4
 
 
 PRINTED: Final = RgbdConfig(
     size=PRINTED_SIZE,
+    least_score=0.0,
     above=UDepthConfig(row_m=0.01, bridged_steps=0.0),
     filter=FloorFilterConfig(sharpness=0.0, foreground_m=0.0, has_hold=False),
     hypotheses=HypothesesConfig(

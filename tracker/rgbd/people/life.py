@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -17,6 +18,8 @@ from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
 from peopleboy.tracker.track import Status
 
 _CONFIDENT: Final = 0.3
+_GAIN: Final = 0.15  # of what the place was off in a frame that goes into the velocity
+_SLOWS_S: Final = 1.0  # in which somebody who is not seen is thought to lose most of the velocity
 _SIZE_SHARE: Final = 0.2
 _SEEN_THROUGH: Final = 0.8  # share of readings behind, by which somebody is gone
 _SEEN_THROUGH_FRAMES: Final = 5
@@ -49,13 +52,15 @@ class Life:
     def expected(self, person: Hypothesis, odometry: Odometry | None) -> Hypothesis:
         """Move a hypothesis by the robot's motion and its own."""
         filtered, place, covariance = person.filter, person.place_m, person.covariance_m2
+        velocity = person.velocity_m_s
         if odometry is not None and self.config.hypotheses.uses_odometry:
             filtered, place = filtered.carried(odometry), carried(place[None], odometry)[0]
             covariance = turned(turned(covariance, odometry).T, odometry).T
-        place = place + filtered.velocity_m_s * self.dt_s
+            velocity = turned(velocity[None], odometry)[0]
+        place = place + velocity * self.dt_s
         filtered = filtered.predicted(self.dt_s, self.config.filter, self.rng)
         grown = covariance + np.eye(2) * _DRIFT_M2_S * self.dt_s
-        return replace(person, filter=filtered, place_m=place, covariance_m2=grown)
+        return replace(person, filter=filtered, place_m=place, velocity_m_s=velocity, covariance_m2=grown)
 
     def looked_for(self, person: Hypothesis) -> tuple[Hypothesis, Update]:
         """Let a person's filter look at the images."""
@@ -65,17 +70,20 @@ class Life:
     def found(self, person: Hypothesis, update: Update, detection: Detection | None) -> Hypothesis:
         """Merge what was measured into a hypothesis (SA eq. 4.22)."""
         rules = self.config.hypotheses
+        expected = person.place_m
         is_confident = not update.is_held and update.confidence > _CONFIDENT
         if is_confident and np.hypot(*(update.place_m - person.place_m)) < rules.gate_m:
             person = replace(person, place_m=_merged(person.place_m, update.place_m, rules.filter_share))
         if detection is not None:
             person = self._measured(person, detection, is_confident=is_confident)
-        return self._judged(person, update, is_seen=detection is not None or is_confident)
+        is_seen = detection is not None or is_confident
+        return self._judged(self._walking(person, expected, is_seen=is_seen), update, is_seen=is_seen)
 
     def born(self, detection: Detection) -> Hypothesis:
         """Begin a hypothesis about what looks like a human."""
         return Hypothesis(
             place_m=detection.place_m,
+            velocity_m_s=np.zeros(2),
             covariance_m2=self._error_m2(detection),
             body=detection.body,
             filter=self._spread(detection),
@@ -108,6 +116,15 @@ class Life:
             verified_s=now if is_verified else person.verified_s,
             verifications=person.verifications + is_verified,
         )
+
+    def _walking(self, person: Hypothesis, expected: Floats, *, is_seen: bool) -> Hypothesis:
+        """Learn how somebody walks from how far off the expected place was; who is not seen slows down."""
+        if is_seen:
+            off = (person.place_m - expected) / max(self.dt_s, 1e-3)
+            return replace(person, velocity_m_s=person.velocity_m_s + _GAIN * off)
+        slowed = person.velocity_m_s * math.exp(-self.dt_s / _SLOWS_S)
+        filtered = FloorFilter.begin(person.place_m, self.config.filter, self.rng)
+        return replace(person, velocity_m_s=slowed, filter=filtered)
 
     def _spread(self, detection: Detection) -> FloorFilter:
         return FloorFilter.begin(detection.place_m, self.config.filter, self.rng)
