@@ -21,7 +21,7 @@ class Hypothesis:
         covariance_m2: (2, 2) of its error.
         body: what the person measures and looks like.
         filter: its particles.
-        born_s, verified_s, seen_s: [s] when it was made, last verified, and last detected at all.
+        born_s, verified_s, seen_s: [s] when it was made, last verified, and last seen by detector or filter.
         verifications: how often, up to the number that makes a person of it.
         seen_through: frames in a row in which the camera saw what is behind.
         confidence: 0..1.

@@ -25,6 +25,7 @@ _SEEN_THROUGH: Final = 0.8  # share of readings behind, by which somebody is gon
 _SEEN_THROUGH_FRAMES: Final = 5
 _HIDDEN: Final = 0.5  # share of readings before somebody who is hidden
 _PARTLY_HIDDEN: Final = 0.2
+_HIDDEN_ONES: Final = (Status.PARTLY_OCCLUDED, Status.TOTALLY_OCCLUDED)
 _TENTATIVE_S: Final = 0.4
 _FLOOR_SD_M: Final = 0.035  # of one frame: gait, not the sensor
 _DEPTH_SD: Final = 0.0014  # [m/m2] of the sensor
@@ -99,8 +100,21 @@ class Life:
             return self.time_s - person.verified_s > _TENTATIVE_S
         if rules.has_see_through and person.seen_through >= _SEEN_THROUGH_FRAMES:
             return True
-        is_hidden = person.status is Status.TOTALLY_OCCLUDED
-        return self.time_s - person.verified_s > (rules.hidden_s if is_hidden else rules.unverified_s)
+        limit_s = rules.hidden_s if self._is_excused(person) else rules.unverified_s
+        return self.time_s - person.verified_s > limit_s
+
+    def is_claimed(self, person: Hypothesis) -> bool:
+        """Tell whether somebody is said to be there: believed in, and seen not long ago."""
+        rules = self.config.hypotheses
+        limit_s = rules.unverified_s if self._is_excused(person) else rules.missing_s
+        return person.id > 0 and self.time_s - person.seen_s <= limit_s
+
+    def _is_excused(self, person: Hypothesis) -> bool:
+        """Tell whether a person need not be seen, being hidden or outside the image."""
+        if person.status in _HIDDEN_ONES:
+            return True
+        left, _, width, _ = box_at(self.view.geometry, person.place_m, person.body)
+        return width <= 0.0 or not 0.0 <= left + width / 2.0 < self.view.depth.shape[1]
 
     def _measured(self, person: Hypothesis, detection: Detection, *, is_confident: bool) -> Hypothesis:
         rules, now = self.config.hypotheses, self.time_s
@@ -110,7 +124,6 @@ class Life:
             person,
             place_m=_merged(person.place_m, detection.place_m, share),
             covariance_m2=self._error_m2(detection),
-            seen_s=now,
             body=self._learned(person, detection, is_confident=is_confident),
             filter=person.filter if is_confident else self._spread(detection),
             verified_s=now if is_verified else person.verified_s,
@@ -121,7 +134,7 @@ class Life:
         """Learn how somebody walks from how far off the expected place was; who is not seen slows down."""
         if is_seen:
             off = (person.place_m - expected) / max(self.dt_s, 1e-3)
-            return replace(person, velocity_m_s=person.velocity_m_s + _GAIN * off)
+            return replace(person, velocity_m_s=person.velocity_m_s + _GAIN * off, seen_s=self.time_s)
         slowed = person.velocity_m_s * math.exp(-self.dt_s / _SLOWS_S)
         filtered = FloorFilter.begin(person.place_m, self.config.filter, self.rng)
         return replace(person, velocity_m_s=slowed, filter=filtered)
@@ -169,7 +182,7 @@ def _merged(old: Floats, new: Floats, share: float) -> Floats:
 
 def occluder_of(person: Hypothesis, others: Sequence[Hypothesis], view: RgbdView) -> int | None:
     """Name who of those that are nearer stands most before a person."""
-    if person.status not in (Status.PARTLY_OCCLUDED, Status.TOTALLY_OCCLUDED):
+    if person.status not in _HIDDEN_ONES:
         return None
     left, _, width, _ = box_at(view.geometry, person.place_m, person.body)
     best, most = None, 0.0
