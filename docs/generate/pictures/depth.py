@@ -14,7 +14,7 @@ from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 
-PEOPLE = {"anna": (3.4, -0.7), "carl": (5.6, 0.6), "dora": (8.2, -0.35)}
+PEOPLE = {"anna": (3.9, -0.8), "carl": (5.6, 0.6), "dora": (8.2, -0.35)}
 ROWS = slice(120, 400)
 SCALES = {"plain": 0.0, "depth": 1.0, "rough": 3.0}
 
