@@ -18,7 +18,7 @@ from peopleboy.sim.cameras.camera_config import (
     PanoramaConfig,
     ThermalConfig,
 )
-from peopleboy.sim.cameras.depth import show_depth
+from peopleboy.sim.cameras.depth_image import show_depth
 from peopleboy.sim.cameras.sensors import (
     ColourSensor,
     DepthSensor,

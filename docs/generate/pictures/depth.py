@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from docs.generate.pictures.paper import panels, show
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
-from peopleboy.sim.cameras.depth import show_depth
+from peopleboy.sim.cameras.depth_image import show_depth
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
