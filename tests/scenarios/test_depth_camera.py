@@ -139,6 +139,18 @@ def test_mcap_has_its_depth_its_colours_and_their_points(run: Path, tmp_path: Pa
     assert not found["/depth/points"][-1].width
 
 
+def test_a_rendered_set_counts_its_millimetres(tmp_path: Path) -> None:
+    scene, out = tmp_path / "seen.yaml", tmp_path / "set"
+    scene.write_text(yaml.safe_dump(SEEN | {"faults": []}), encoding="utf-8")
+    assert run_cli("render", scene, "--frames", "--seeds", "1", "--workers", "1", "--out", out) == 0
+    assert "| depth images, mean ± deviation [mm] |" in (out / "README.md").read_text(encoding="utf-8")
+    statistics = json.loads((out / "dataset.json").read_text(encoding="utf-8"))["statistics"]["all"]
+    (first,) = out.glob("*/depth/000001.png")
+    assert statistics["image_mean"]["depth"] == [
+        pytest.approx(cv2.imread(str(first), cv2.IMREAD_UNCHANGED).mean(), abs=0.01)
+    ]
+
+
 def test_an_environment_gives_its_millimetres(run: Path) -> None:
     env = PeopleBoyEnv(run.parent / "seen.yaml", observation="pixels", image_size=(96, 64))
     seen, _ = env.reset(seed=0)
