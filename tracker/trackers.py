@@ -13,6 +13,10 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Calibration, Frame
+from peopleboy.tracker.fusion.ahead_tracker import AheadTracker
+from peopleboy.tracker.fusion.fused_tracker import FusedTracker
+from peopleboy.tracker.fusion.fusion_config import FusionConfig
+from peopleboy.tracker.fusion.warmth import is_warm
 from peopleboy.tracker.handover.handover_tracker import HandoverTracker
 from peopleboy.tracker.panoramic.paper.appearance_file import shipped_models
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
@@ -106,6 +110,13 @@ def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:
     return RgbdTracker(config, shipped_windows(), rng)
 
 
+def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
+    by_heat, by_depth = rng.spawn(2)
+    thermal = _contour_tracker(DEFAULT_TRACKER, by_heat)
+    rgbd = RgbdTracker(RgbdConfig(), shipped_windows(), by_depth, is_warm)
+    return FusedTracker(AheadTracker(thermal, rgbd, FusionConfig()), _panoramic_tracker(rng))
+
+
 TRACKERS: Final[dict[str, Factory]] = {
     **{name: partial(_contour_tracker, name) for name in VARIANTS},
     "panoramic-paper": _panoramic_paper_tracker,
@@ -113,6 +124,7 @@ TRACKERS: Final[dict[str, Factory]] = {
     "handover": _handover_tracker,
     "rgbd": partial(_rgbd_tracker, RgbdConfig()),
     "rgbd-printed": partial(_rgbd_tracker, PRINTED),
+    "fused": _fused_tracker,
 }
 """Each tracker's factory by name; the first is the default. Whoever has a further one adds it here."""
 

@@ -53,6 +53,11 @@ ABOUT: Mapping[str, tuple[str, str]] = {
         "the situation-awareness thesis, chapter 4",
         "The same as it is printed, where it is.",
     ),
+    "fused": (
+        "both theses, and beyond",
+        "`peopleboy` and `rgbd` at once, and `panoramic` where that camera is mounted: thermal says warm, "
+        "depth says where, colour says who. It goes on with the cameras that are left, and in the dark.",
+    ),
 }
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.palette import Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.recording.marks import Lines, Points, colours_of, lines_of, particle_points
+from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS
 from peopleboy.tracker.thermal.contour.outline import section_lines
@@ -47,6 +48,11 @@ def _(explanation: BothExplanations, tick: Tick) -> Lines:
     return explained_lines(explanation.thermal, replace(tick, tracks=warm))
 
 
+@explained_lines.register
+def _(explanation: FusedExplanation, tick: Tick) -> Lines:
+    return explained_lines(explanation.both, tick)
+
+
 @singledispatch
 def explained_points(explanation: object) -> Mapping[str, Points]:  # noqa: ARG001
     """Give the points on the thermal image that explain a tick's tracks, by the layer that they lie in."""
@@ -64,6 +70,11 @@ def _(explanation: ContourExplanation) -> Mapping[str, Points]:
 @explained_points.register
 def _(explanation: BothExplanations) -> Mapping[str, Points]:
     return explained_points(explanation.thermal)
+
+
+@explained_points.register
+def _(explanation: FusedExplanation) -> Mapping[str, Points]:
+    return explained_points(explanation.both)
 
 
 def section_marks(

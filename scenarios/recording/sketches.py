@@ -17,6 +17,7 @@ from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import invert_pose, transform
 from peopleboy.tracker.frame import DEPTH, PANORAMA
+from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
 from peopleboy.tracker.panoramic.paper.panoramic_explanation import PanoramicExplanation
@@ -119,6 +120,16 @@ def _(
             coloured += [(line, own) for line in floor_ellipse(track.place, cameras[DEPTH].camera)]
     sketch = Sketch(None, [line for line, _ in coloured], colours_of(colour for _, colour in coloured))
     return {DEPTH: sketch}
+
+
+@explained_sketches.register
+def _(
+    explanation: FusedExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    parts = (explanation.both, explanation.depth)
+    return {
+        name: sketch for part in parts for name, sketch in explained_sketches(part, tracks, cameras).items()
+    }
 
 
 def outlines_of(mask: NDArray[np.bool_]) -> list[Line]:

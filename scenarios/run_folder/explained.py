@@ -7,6 +7,7 @@ from dataclasses import asdict
 from functools import singledispatch
 from typing import Any
 
+from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import ContourExplanation
@@ -34,6 +35,11 @@ def _(explanation: ContourExplanation, track: int) -> Mapping[str, Any]:
 @explained.register
 def _(explanation: BothExplanations, track: int) -> Mapping[str, Any]:
     return explained(explanation.thermal, track) if track in explanation.thermal.ellipses else _NOTHING
+
+
+@explained.register
+def _(explanation: FusedExplanation, track: int) -> Mapping[str, Any]:
+    return explained(explanation.both, track)
 
 
 def read_explanation(tracker: str, rows: Iterable[Mapping[str, Any]]) -> ContourExplanation | None:

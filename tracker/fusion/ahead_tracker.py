@@ -5,29 +5,47 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
+from peopleboy.tracker.fusion.glance import glance
 from peopleboy.tracker.fusion.matching import apart, pairs
-from peopleboy.tracker.fusion.outline import outline
+from peopleboy.tracker.fusion.outline import outline, with_width
 from peopleboy.tracker.fusion.peek import peek
 from peopleboy.tracker.fusion.person import Person, newborn
-from peopleboy.tracker.fusion.senses import Depth, Heat, glance_for
-from peopleboy.tracker.fusion.told import Told
+from peopleboy.tracker.fusion.recognition import Recognition
+from peopleboy.tracker.fusion.senses import Depth, Heat
+from peopleboy.tracker.fusion.told import Told, to_room
+from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
-from peopleboy.tracker.rgbd.people.look_at import Body
-from peopleboy.tracker.rgbd.people.looks import BINS, similarity
+from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.track import Box, Status, Track
+from peopleboy.tracker.track import Box, Track
 
-_LONGEST_STEP_S = 0.5
+_LONGEST_STEP_S: Final = 0.5
+_CROWDED_M: Final = (0.5, 0.7)  # in depth and to the side, within which two people's shoulders are mixed up
+_UNSURE: Final = 0.1  # confidence in who is not told of
+
+Own = Callable[[Person], int | None]
+Take = Callable[[Person, Told], Person]
 
 
 class AheadTracker:
-    """People whom a thermal tracker and one by depth tell of, each with one number."""
+    """People of whom a thermal tracker and one by depth tell, each with one number.
+
+    Both go on by themselves. A person is told of by at most one track of each, has one place in the room, by
+    a Kalman filter over what both say, and is looked for in the depth image while it is hidden in part.
+
+    Args:
+        thermal: tracks people in the thermal image.
+        rgbd: tracks them by depth and colour.
+        config: settings.
+    """
 
     def __init__(self, thermal: PeopleTracker, rgbd: RgbdTracker, config: FusionConfig) -> None:
         self._config = config
@@ -37,181 +55,161 @@ class AheadTracker:
         self._time_s = -math.inf
         self._newest = 0
 
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """Those of both trackers."""
+        return (*self._heat.tracker.cameras, *self._depth.tracker.cameras)
+
+    @property
+    def explanation(self) -> ContourExplanation:
+        """What the thermal tracker believes, by the numbers of the people."""
+        number = {one.warm.id: one.id for one in self._people if one.warm is not None}
+        return BothExplanations.of(self._heat.tracker.explanation, None, number).thermal
+
+    @property
+    def by_depth(self) -> RgbdExplanation | None:
+        """What the tracker by depth believes; None before its first image."""
+        return self._depth.tracker.explanation
+
+    def introduce(self, box: Box) -> None:
+        """Tell that a person is at this box [px] of the thermal image in the next frame."""
+        self._heat.tracker.introduce(box)
+
     def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame, whichever images it has, and tell who is where.
+
+        Raises:
+            BadInput: as both trackers say of images that are there.
+        """
         if frame.odometry is not None:
             self._pose = self._pose.moved(frame.odometry)
-        dt_s = min(frame.time_s - self._time_s, _LONGEST_STEP_S)
-        self._time_s = frame.time_s
+        dt_s, self._time_s = min(frame.time_s - self._time_s, _LONGEST_STEP_S), frame.time_s
         deep, warm = self._depth.told(frame, self._pose), self._heat.told(frame, self._pose)
         people = [one.later(dt_s, self._config) for one in self._people]
-        if self._config.heat_first:
-            people = self._with_heat(people, warm or ())
-            people = self._with_depth(people, deep or ())
-        else:
-            people = self._with_depth(people, deep or ())
-            people = self._with_heat(people, warm or ())
-        people = self._exchanged(people)
-        if self._config.peeks and deep is not None:
-            people = [self._peeked(p, people, frame) for p in people]
-        people = self._widths(self._without_doubles(people), frame)
-        self._people = tuple(p for p in people if frame.time_s - p.seen_s <= self._config.remembered_s)
-        return tuple(self._track(p, frame) for p in self._people if self._is_shown(p, frame))
+        people = self._joined(people, deep, _depth, self._with_depth)
+        people = self._joined(people, warm, _heat, self._with_heat)
+        people = Recognition(self._config, frame.time_s).put_right(people)
+        people = self._single([self._peeked(one, people, frame) for one in people])
+        self._people = tuple(
+            with_width(one, frame, self._pose, self._config.learned_width)
+            for one in people
+            if frame.time_s - one.seen_s <= self._config.remembered_s
+        )
+        shown = [one for one in self._people if self._is_shown(one, frame)]
+        return tuple(self._track(one, frame) for one in sorted(shown, key=lambda one: one.id))
 
-    def _with_depth(self, people: Sequence[Person], told: Sequence[Told]) -> list[Person]:
-        take: Callable[[Person, Told], Person] = lambda p, t: p.with_depth(t, self._time_s, self._config)
-        return self._joined(people, told, [p.depth for p in people], take)
+    def _with_depth(self, person: Person, told: Told) -> Person:
+        return person.with_depth(told, self._time_s, self._config)
 
-    def _with_heat(self, people: Sequence[Person], told: Sequence[Told]) -> list[Person]:
-        take: Callable[[Person, Told], Person] = lambda p, t: p.with_heat(t, self._time_s, self._config)
-        return self._joined(people, told, [p.heat for p in people], take)
+    def _with_heat(self, person: Person, told: Told) -> Person:
+        return person.with_heat(told, self._time_s, self._config)
 
-    def _joined(self, people: Sequence[Person], told: Sequence[Told], owns, take) -> list[Person]:
-        found = pairs(people, told, owns, self._config)
-        joined = [take(p, told[found[k]]) if k in found else p for k, p in enumerate(people)]
+    def _joined(self, people: Sequence[Person], told: Sequence[Told], own: Own, take: Take) -> list[Person]:
+        """Tell people what a tracker knows of them; who is nobody's turns up again, or is new."""
+        found = pairs(people, told, [own(one) for one in people], self._config)
+        joined = [take(one, told[found[k]]) if k in found else one for k, one in enumerate(people)]
+        recognition, taken = Recognition(self._config, self._time_s), set(found.values())
         for k, one in enumerate(told):
-            if k in found.values() or not one.is_seen:
+            if k in taken or not one.is_seen:
                 continue
-            known = self._returned(joined, one, owns)
+            known = recognition.returned(one, joined, own)
             if known is not None:
-                joined[known] = take(replace(joined[known], motion=newborn(1, one, 0.0).motion), one)
-            elif not any(self._is_on(one, p) for p in joined):
+                here = replace(known, motion=newborn(known.id, one, self._time_s).motion)
+                joined = [take(here, one) if person is known else person for person in joined]
+            elif not self._is_double(one, joined):
                 self._newest += 1
                 joined.append(take(newborn(self._newest, one, self._time_s), one))
         return joined
 
-    def _returned(self, people: Sequence[Person], one: Told, owns) -> int | None:
+    def _is_double(self, told: Told, people: Sequence[Person]) -> bool:
+        """Tell whether a thermal track is likely somebody who has another one."""
+        gate, floor_m = self._config.own_gate, self._config.floor_m
+        return told.box is not None and any(
+            one.is_seen and apart(one, told, floor_m) < gate for one in people
+        )
+
+    def _peeked(self, person: Person, people: Sequence[Person], frame: Frame) -> Person:
+        """Look for somebody where it is expected if nobody sees it whole."""
         config = self._config
-        best, least = None, np.inf
-        slack = 2.0 * math.sqrt(float(np.linalg.eigvalsh(one.error_m2)[-1]))
-        for k, p in enumerate(people):
-            if p.is_seen or k >= len(owns):
-                continue
-            late = self._time_s - p.seen_s
-            reach = config.reach_m + config.fastest_m_s * late + slack
-            away = float(np.hypot(*(one.place_m - p.motion.place_m)))
-            if away > reach:
-                continue
-            cost = away / reach
-            knows = one.looks is not None and p.looks is not None
-            if knows:
-                alike = similarity(p.looks, one.looks)
-                if alike < config.least_alike:
-                    continue
-                cost += 5.0 * (1.0 - alike)
-            if one.tall_m is not None and p.depth is not None:
-                off = abs(one.tall_m - p.tall_m)
-                if off > config.tallest_off_m:
-                    continue
-                cost += off / config.tallest_off_m
-            if one.id == owns[k]:
-                cost -= 1.0
-            elif not knows and late > 3.0:
-                continue
-            if cost < least:
-                best, least = k, cost
-        return best
+        is_due = person.depth is not None and self._time_s - person.seen_s <= config.peek_s
+        if not is_due or any(one.is_clear for one in person.told) or self._is_crowded(person, people):
+            return person
+        here = self._pose.locate(person.motion.place_m)
+        found = peek(here, person.span_m, person.tall_m, frame)
+        if found is None or (found.warm is not None and found.warm < config.peek_warm):
+            return person
+        place, error = to_room(found.place_m, self._pose), np.eye(2) * config.peek_m**2
+        motion = person.motion.corrected(place, error)
+        return replace(person, motion=motion, is_peeked=True, seen_s=self._time_s)
 
-    def _is_on(self, one: Told, p: Person) -> bool:
-        return p.is_seen and one.tall_m is None and apart(p, one, self._config.floor_m) < self._config.own_gate
+    def _is_crowded(self, person: Person, people: Sequence[Person]) -> bool:
+        here, (deep_m, aside_m) = self._pose.locate(person.motion.place_m), _CROWDED_M
+        others = (
+            self._pose.locate(one.motion.place_m) for one in people if one is not person and one.is_seen
+        )
+        return any(abs(x - here[0]) < deep_m and abs(y - here[1]) < aside_m for x, y in others)
 
-    def _without_doubles(self, people: list[Person]) -> list[Person]:
-        """Make one of two of whom one is only warm, and the other only deep, at one place."""
+    def _single(self, people: Sequence[Person]) -> list[Person]:
+        """Make one of two at one place of whom one is seen by heat alone, and the other by depth alone."""
         kept = list(people)
-        for a in people:
-            if a not in kept or a.deep is None or a.warm is not None or not a.deep.is_seen:
+        for person in people:
+            if (
+                person not in kept
+                or person.deep is None
+                or person.warm is not None
+                or not person.deep.is_seen
+            ):
                 continue
-            for b in kept:
-                if b.deep is None and b.warm is not None and b.warm.is_seen and apart(a, b.warm, self._config.floor_m) < self._config.gate:
-                    both = replace(a, warm=b.warm, heat=b.heat)
-                    if b.id < a.id:
-                        both = replace(both, id=b.id, born_s=b.born_s, looks=a.looks if b.looks is None else b.looks)
-                    kept = [both if p is a else p for p in kept if p is not b]
-                    break
+            double = next((one for one in kept if self._is_same(person, one)), None)
+            if double is not None:
+                both = replace(person, warm=double.warm, heat=double.heat)
+                if double.id < person.id:
+                    looks = person.looks if double.looks is None else double.looks
+                    both = replace(both, id=double.id, born_s=double.born_s, looks=looks)
+                kept = [both if one is person else one for one in kept if one is not double]
         return kept
 
-    def _widths(self, people: list[Person], frame: Frame) -> list[Person]:
-        return [self._measured(p, frame) for p in people]
-
-    def _measured(self, p: Person, frame: Frame) -> Person:
-        if p.warm is None or not p.warm.is_clear or p.warm.box is None:
-            return p
-        _, _, width, height = p.warm.box
-        if p.deep is not None and p.deep.is_clear and p.deep.span_m is not None:
-            x, y = self._pose.locate(p.motion.place_m)
-            c = frame.calibrations[THERMAL].project(np.array([[x, y, p.tall_m], [x, y, 0.0]]))
-            contour = width * p.tall_m / (c[1, 1] - c[0, 1])
-            wide = 0.045 * p.tall_m + 0.32 * contour + 0.47 * p.deep.span_m
-        else:
-            wide = p.tall_m * (0.065 + 0.715 * width / height)
-        return replace(p, wide_m=p.wide_m + self._config.torso_per_contour * (wide - p.wide_m))
-
-    def _exchanged(self, people: list[Person]) -> list[Person]:
-        """Let people whose looks are another's have that one's number."""
-        config = self._config
-        known = {p.id: p for p in people}
-        for a in people:
-            a = known.get(a.id)
-            if a is None or a.deep is None or a.deep.looks is None or not a.deep.is_clear:
-                continue
-            is_young, is_strange = self._time_s - a.born_s < config.young_s, a.strange >= config.strange
-            if not is_young and not is_strange:
-                continue
-            best, most = None, config.least_alike if is_strange else config.least_young
-            for b in known.values():
-                if b is a or b.looks is None or (b.is_seen and (b.strange < 2 or not is_strange)):
-                    continue
-                if b.born_s > a.born_s - 1.0 and not is_strange:
-                    continue
-                away = float(np.hypot(*(a.motion.place_m - b.motion.place_m)))
-                if not b.is_seen and away > config.reach_m + config.fastest_m_s * (self._time_s - b.seen_s + 1.0):
-                    continue
-                alike = similarity(b.looks, a.deep.looks)
-                if alike > most and abs(a.deep.tall_m - b.tall_m) < config.tallest_off_m:
-                    best, most = b, alike
-            if best is None:
-                continue
-            known[best.id] = a.named(best)
-            if is_young and not best.is_seen:
-                del known[a.id]
-            else:
-                known[a.id] = best.named(a)
-        return list(known.values())
-
-    def _peeked(self, p: Person, people: Sequence[Person], frame: Frame) -> Person:
-        if any(one.is_clear for one in p.told) or self._time_s - p.seen_s > self._config.peek_s or p.depth is None:
-            return p
-        here = self._pose.locate(p.motion.place_m)
-        for q in people:
-            if q.id != p.id and q.is_seen:
-                there = self._pose.locate(q.motion.place_m)
-                if abs(there[0] - here[0]) < 0.5 and abs(there[1] - here[1]) < 0.7:
-                    return p
-        found = peek(here, p.span_m, p.tall_m, frame)
-        if found is None or (found.warm is not None and found.warm < self._config.peek_warm):
-            return p
-        place = self._pose.place(float(np.hypot(*found.place_m)), float(np.arctan2(found.place_m[1], found.place_m[0])))
-        motion = p.motion.corrected(place, np.eye(2) * self._config.peek_m**2)
-        return replace(p, motion=motion, peeked=True, seen_s=self._time_s)
-
-    def _is_shown(self, p: Person, frame: Frame) -> bool:
-        if p.is_seen:
-            return True
-        late, config = self._time_s - p.seen_s, self._config
-        if late > config.hidden_s:
+    def _is_same(self, deep: Person, other: Person) -> bool:
+        warm = other.warm
+        if other.deep is not None or warm is None or not warm.is_seen:
             return False
-        body = Body(p.wide_m, p.tall_m, 0.0, np.zeros(BINS))
-        found = glance_for(self._pose.locate(p.motion.place_m), body, 0.4, frame)
+        return apart(deep, warm, self._config.floor_m) < self._config.gate
+
+    def _is_shown(self, person: Person, frame: Frame) -> bool:
+        """Tell whether somebody is said to be there: who is hidden for a while, others for a blink."""
+        config, late_s = self._config, self._time_s - person.seen_s
+        if person.is_seen or late_s > config.hidden_s:
+            return person.is_seen
+        found = glance(self._pose.locate(person.motion.place_m), person.wide_m, person.tall_m, frame)
         if found is not None:
             return found.nearer > config.hidden_share
-        return p.warm is not None or late <= config.blink_s
+        return person.warm is not None or late_s <= config.blink_s
 
-    def _track(self, p: Person, frame: Frame) -> Track:
-        box = outline(p, frame, self._pose)
+    def _track(self, person: Person, frame: Frame) -> Track:
+        box = outline(person, frame, self._pose)
         return Track(
-            id=p.id,
+            id=person.id,
             boxes={} if box is None else {THERMAL: box},
-            place=p.floor_place(self._pose, self._config.shared_m),
-            confidence=max((t.confidence for t in p.told), default=0.1),
-            status=p.status,
-            age_s=self._time_s - p.born_s,
+            place=person.floor_place(self._pose, self._config.shared_m),
+            confidence=max((one.confidence for one in person.told), default=_UNSURE),
+            status=person.status,
+            age_s=self._time_s - person.born_s,
+            occluder=self._occluder_of(person),
         )
+
+    def _occluder_of(self, person: Person) -> int | None:
+        """Name who hides a person, by either tracker; None for nobody."""
+        for told, own in ((person.deep, _depth), (person.warm, _heat)):
+            if told is not None and told.occluder is not None:
+                found = [one.id for one in self._people if own(one) == told.occluder and one.id != person.id]
+                if found:
+                    return found[0]
+        return None
+
+
+def _heat(person: Person) -> int | None:
+    return person.heat
+
+
+def _depth(person: Person) -> int | None:
+    return person.depth

@@ -30,7 +30,7 @@ class FreshImages:
         An image equal to the last one is no new one: the noise of a camera never repeats.
         """
         self._way = joined(self._way, frame.odometry)
-        image = frame.images[self._camera] if self._camera in frame.images else None
+        image = frame.images.get(self._camera)
         if image is None or (self._last is not None and np.array_equal(image, self._last)):
             return None
         way, self._way, self._last = self._way, Odometry(), image

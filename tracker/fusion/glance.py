@@ -1,4 +1,4 @@
-"""What the depth image tells of somewhere in the thermal image, and the other way round."""
+"""What the depth image shows where somebody may stand."""
 
 from __future__ import annotations
 
@@ -6,95 +6,90 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import DEPTH, THERMAL, Floats, Frame, PinholeCalibration
-from peopleboy.tracker.fusion.warmth import WARM
+from peopleboy.tracker.frame import DEPTH, Floats, Frame
+from peopleboy.tracker.fusion.warmth import depths_at, grid, warm_share
 from peopleboy.tracker.rgbd.detection.depth_view import DepthView
-from peopleboy.tracker.track import Box
+from peopleboy.tracker.rgbd.people.look_at import Body, box_at
+from peopleboy.tracker.rgbd.people.looks import BINS
+
+BODY_M: Final = 0.1  # from the surface that is seen to the middle of a body
+REACH_M: Final = 0.4  # from that surface, within which readings belong to it
 
 _COLUMNS: Final = 8
 _ROWS: Final = 16
 _LEAST: Final = 12  # readings from which on shares mean anything
+_NO_LOOKS: Final = np.zeros(BINS)
 
 
 @dataclass(frozen=True, slots=True)
-class Glance:
+class Glimpse:
     """What stands where somebody may be.
 
     Attributes:
-        readings: how many there are.
         nearer, beyond: shares of the readings before and behind the person.
-        warm: share of its own readings that are as warm as people are; None if too few are in view.
-        range_m: [m] median depth of its own; None for too few.
+        warm: share of its own that is as warm as people are; None where the thermal image shows too few.
     """
 
-    readings: int
     nearer: float
     beyond: float
     warm: float | None
-    range_m: float | None
 
 
-def glance_at(box: Box, z_m: float, reach_m: float, frame: Frame) -> Glance | None:
-    """Look into a box [px] of the depth image for somebody at a depth, give or take a reach [m].
+def glance(
+    place_m: Floats, wide_m: float, tall_m: float, frame: Frame, reach_m: float = REACH_M
+) -> Glimpse | None:
+    """Look at the middle of somebody at a place (2,) in the robot's frame.
+
+    Args:
+        place_m: forward, left [m].
+        wide_m: width of the person.
+        tall_m: height likewise.
+        frame: with a depth image, if there is one.
+        reach_m: [m] by which the person may be nearer or farther.
 
     Returns:
-        None without a depth image, or where it shows nothing of that box.
+        None where the depth image does not show that place, or there is none.
     """
-    calibration = frame.calibrations.get(DEPTH)
-    if not isinstance(calibration, PinholeCalibration) or DEPTH not in frame.images:
+    view = view_of(frame)
+    if view is None:
         return None
-    depth = frame.depth(DEPTH)
-    pixels = _grid(box, (depth.shape[1], depth.shape[0]))
-    z = depth[pixels[:, 1], pixels[:, 0]] / 1000.0
-    pixels, z = pixels[z > 0.0], z[z > 0.0]
-    if len(z) < _LEAST:
+    left, top, width, height = box_at(view, place_m, _body(wide_m, tall_m, 0.0))
+    if width <= 0.0:
         return None
-    own = np.abs(z - z_m) < reach_m
-    return Glance(
-        readings=len(z),
-        nearer=float((z <= z_m - reach_m).mean()),
-        beyond=float((z >= z_m + reach_m).mean()),
-        warm=warm_share_of(pixels[own], z[own], frame),
-        range_m=float(np.median(z[own])) if own.sum() >= _LEAST else None,
+    middle = (left + 0.2 * width, top + 0.05 * height, 0.6 * width, 0.8 * height)
+    pixels = grid(middle, _COLUMNS, _ROWS, frame)
+    z_m = depths_at(pixels, frame)
+    pixels, z_m = pixels[z_m > 0.0], z_m[z_m > 0.0]
+    if len(z_m) < _LEAST:
+        return None
+    off = z_m - surface_m(view, place_m)
+    own = np.abs(off) < reach_m
+    return Glimpse(
+        nearer=float((off <= -reach_m).mean()),
+        beyond=float((off >= reach_m).mean()),
+        warm=warm_share(pixels[own], z_m[own], frame),
     )
 
 
-def depth_of(place_m: Floats, frame: Frame) -> float:
-    """Give the depth [m] of a place (2,) in the robot's frame as the depth camera measures it."""
-    calibration = frame.calibrations[DEPTH]
-    view = DepthView.of(calibration, DEPTH)
+def view_of(frame: Frame) -> DepthView | None:
+    """Give the geometry of a frame's depth image; None without one."""
+    if DEPTH not in frame.images or DEPTH not in frame.calibrations:
+        return None
+    return DepthView.of(frame.calibrations[DEPTH], DEPTH)
+
+
+def shoulders(view: DepthView, place_m: Floats, wide_m: float, low_m: float, high_m: float) -> Floats:
+    """Give left, top, width, height [px] of a body from one height above the floor to another."""
+    return np.array(box_at(view, place_m, _body(wide_m, high_m, low_m)))
+
+
+def surface_m(view: DepthView, place_m: Floats) -> float:
+    """Give the depth [m] at which the camera sees the surface of somebody at a place (2,)."""
     pose = view.calibration.robot_from_camera
     point = np.array([*place_m, pose[2, 3]])
-    return float((point - pose[:3, 3]) @ pose[:3, 2])
+    return float((point - pose[:3, 3]) @ pose[:3, 2]) - BODY_M
 
 
-def _grid(box: Box, size: tuple[int, int]) -> np.ndarray[tuple[int, int], np.dtype[np.int64]]:
-    """Give pixels (N, 2) spread over the middle of a box, as far as it lies in the image."""
-    left, top, width, height = box
-    u = left + width * (0.2 + 0.6 * (np.arange(_COLUMNS) + 0.5) / _COLUMNS)
-    v = top + height * (0.05 + 0.8 * (np.arange(_ROWS) + 0.5) / _ROWS)
-    pixels = np.rint(np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)).astype(np.int64)
-    inside = (pixels >= 0).all(axis=1) & (pixels < np.array(size)).all(axis=1)
-    return pixels[inside]
-
-
-def warm_share_of(pixels: NDArray[np.int64], z_m: Floats, frame: Frame) -> float | None:
-    """Give the share of surfaces at pixels (N, 2) of the depth image, z_m (N,) deep, that is as warm as people.
-
-    Returns:
-        None where the thermal image shows too few of them.
-    """
-    calibration, thermal = frame.calibrations.get(DEPTH), frame.calibrations.get(THERMAL)
-    if not isinstance(calibration, PinholeCalibration) or thermal is None or THERMAL not in frame.images:
-        return None
-    if len(z_m) < _LEAST:
-        return None
-    points = calibration.robot_from_camera[:3, 3] + calibration.rays(pixels.astype(np.float64)) * z_m[:, None]
-    seen, image = np.rint(thermal.project(points)), frame.grey(THERMAL)
-    inside = (seen >= 0.0).all(axis=1) & (seen < np.array(image.shape[::-1])).all(axis=1)
-    if inside.sum() < _LEAST:
-        return None
-    columns, rows = seen[inside].astype(np.int64).T
-    return float((image[rows, columns] > WARM).mean())
+def _body(wide_m: float, high_m: float, low_m: float) -> Body:
+    return Body(width_m=wide_m, head_m=high_m, low_m=low_m, looks=_NO_LOOKS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -13,7 +14,8 @@ from peopleboy.tracker.fusion.person import Person
 from peopleboy.tracker.fusion.told import Told
 from peopleboy.tracker.rgbd.people.looks import similarity
 
-_NEVER = 1e6
+_NEVER: Final = 1e6
+_HALF_SEEN: Final = 0.5  # what looks count of somebody who is hidden in part
 
 
 def apart(person: Person, told: Told, floor_m: float) -> float:
@@ -37,36 +39,44 @@ def cost(person: Person, told: Told, own: int | None, config: FusionConfig) -> f
     """
     is_own = told.id == own
     away = apart(person, told, config.floor_m)
-    w = told.box is not None
-    if away > ((config.own_warm_gate if w else config.own_gate) if is_own else config.gate):
+    if away > (config.own_gate if is_own else config.gate):
         return np.inf
-    return away + unlikeness(person, told, config) - ((config.warm_loyalty if w else config.loyalty) if is_own else 0.0)
+    return away + _unlikeness(person, told, config) - (config.loyalty if is_own else 0.0)
 
 
-def unlikeness(person: Person, told: Told, config: FusionConfig) -> float:
+def _unlikeness(person: Person, told: Told, config: FusionConfig) -> float:
     """Rate how different looks and height are; 0 as far as they are not known."""
     found = 0.0
-    if told.looks is not None and person.looks is not None and told.is_seen:
-        found += (1.0 if told.is_clear else 0.5) * config.looks_weight * (1.0 - similarity(person.looks, told.looks))
+    if told.looks is not None and person.looks is not None:
+        share = 1.0 if told.is_clear else _HALF_SEEN
+        found += share * config.looks_weight * (1.0 - similarity(person.looks, told.looks))
     if told.tall_m is not None and told.is_clear and person.depth is not None:
         found += min(((told.tall_m - person.tall_m) / config.height_sd_m) ** 2, config.most_height)
     return found
 
 
-def pairs(people: Sequence[Person], told: Sequence[Told], owns: Sequence[int | None], config: FusionConfig) -> dict[int, int]:
+def pairs(
+    people: Sequence[Person], told: Sequence[Told], owns: Sequence[int | None], config: FusionConfig
+) -> dict[int, int]:
     """Match people and what is told, each at most once, so that all pairs together cost least.
+
+    Args:
+        people: N.
+        told: M.
+        owns: of each person the id of its track of before.
+        config: settings.
 
     Returns:
         Index of what is told by index of the person.
     """
-    costs = np.array(
-        [[cost(person, one, own, config) for one in told] for person, own in zip(people, owns, strict=True)]
-    ).reshape(len(people), len(told))
-    return cheapest(costs)
+    costs = [
+        [cost(person, one, own, config) for one in told] for person, own in zip(people, owns, strict=True)
+    ]
+    return cheapest(np.array(costs).reshape(len(people), len(told)))
 
 
 def cheapest(costs: Floats) -> dict[int, int]:
-    """Match rows and columns of costs (N, M): as many as can be, as cheaply as that goes; never at infinity."""
+    """Match rows and columns of costs (N, M): as many as can be, as cheaply as can be."""
     if costs.size == 0:
         return {}
     rows, columns = linear_sum_assignment(np.where(np.isfinite(costs), costs, _NEVER))

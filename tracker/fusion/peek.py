@@ -1,4 +1,4 @@
-"""Looking for somebody who is known where it is expected in the depth image, as far as it can be seen there."""
+"""Looking for somebody who is known where it is expected in the depth image, as far as it can be seen."""
 
 from __future__ import annotations
 
@@ -9,95 +9,124 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import DEPTH, Floats, Frame
-from peopleboy.tracker.fusion.glance import depth_of, warm_share_of
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
-from peopleboy.tracker.rgbd.people.look_at import Body, box_at
-from peopleboy.tracker.rgbd.people.looks import BINS
+from peopleboy.tracker.fusion.glance import BODY_M, shoulders, surface_m, view_of
+from peopleboy.tracker.fusion.warmth import warm_share
 
-_LOW_M: Final = 0.8  # above the floor, from which on arms and legs do not spread
+_LOW_M: Final = 0.8  # above the floor, from which on legs do not spread
 _HIGH: Final = 0.92  # share of the height, up to which there are shoulders
 _ROWS: Final = 12
 _COLUMNS: Final = 25
-_ASIDE: Final = 0.75  # widths to either side of the middle that are looked at, beyond the body
+_HALF: Final = 1.25  # widths to either side of the middle that are looked at
 _REACH_M: Final = 0.35
-_BODY_M: Final = 0.1  # from the surface that is seen to the middle of the body
-_MOST: Final = 0.5  # share of a column's readings that decide about it
-_LEAST_SHARE: Final = 0.15
-_WIDEST: Final = 1.5
-_EDGE_SD_M: Final = 0.06
-_RANGE_SD_M: Final = 0.06
+_DECIDES: Final = 0.5  # share of a column's readings that tell whose it is
+_LEAST_WIDE: Final = 0.15  # widths that must be seen,
+_WHOLE: Final = 0.6  # and of somebody whom nothing covers
+_WIDEST: Final = 1.5  # widths that one person has at most
+_FARTHEST: Final = 0.8  # widths that the person may be off
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Peek:
-    """What of a person the depth image shows.
+    """What the depth image shows of a person.
 
     Attributes:
         place_m: (2,) forward, left in the robot's frame [m].
-        share: of its width that is seen.
         warm: share of what is seen that is as warm as people are; None where the thermal image shows nothing.
     """
 
     place_m: Floats
-    share: float
     warm: float | None
 
 
-def peek(place_m: Floats, wide_m: float, tall_m: float, frame: Frame) -> Peek | None:
-    """Find the middle of a person's shoulders from the sides of them that nobody covers.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Columns:
+    """Columns of pixels across the shoulders of somebody, and whose each is.
 
-    A side beside which something nearer stands is no side of the person: its middle is half a width from
-    the other one.
+    Attributes:
+        u: (N,) [px] from left to right.
+        v: (M,) rows [px].
+        z_m: (M, N) depths.
+        own: (M, N) whether a reading may be the person's.
+        is_own, is_near: (N,) whether most of a column are, or are of something nearer.
+    """
+
+    u: NDArray[np.int64]
+    v: NDArray[np.int64]
+    z_m: Floats
+    own: NDArray[np.bool_]
+    is_own: NDArray[np.bool_]
+    is_near: NDArray[np.bool_]
+
+
+def peek(place_m: Floats, wide_m: float, tall_m: float, frame: Frame) -> Peek | None:
+    """Find the middle of a person's shoulders by those of their sides that nobody covers.
+
+    A side beside which something nearer stands is no side of the person: the middle is half a width from the
+    other one.
+
+    Args:
+        place_m: (2,) forward, left in the robot's frame [m], where the person is expected.
+        wide_m: its width.
+        tall_m: its height.
+        frame: with a depth image, if there is one.
 
     Returns:
-        None where nothing of the person is seen, or more than one person may be.
+        None where it cannot be told where the person is.
     """
-    if DEPTH not in frame.images or DEPTH not in frame.calibrations:
+    view = view_of(frame)
+    if view is None:
         return None
-    view = DepthView.of(frame.calibrations[DEPTH], DEPTH)
-    left, top, width, height = box_at(view, place_m, Body(wide_m, _HIGH * tall_m, _LOW_M, np.zeros(BINS)))
+    left, top, width, height = shoulders(view, place_m, wide_m, _LOW_M, _HIGH * tall_m)
+    expected = left + width / 2.0
+    columns = _columns(expected, width, (top, height), surface_m(view, place_m), frame)
+    run = None if columns is None else _longest(columns.is_own)
+    if columns is None or run is None:
+        return None
+    middle = _middle(columns, run, width)
+    if middle is None or abs(middle - expected) > _FARTHEST * width:
+        return None
+    rows, across = np.nonzero(columns.own[:, run[0] : run[1] + 1])
+    z_m = columns.z_m[rows, run[0] + across]
+    pixels = np.stack([columns.u[run[0] + across], columns.v[rows]], axis=1)
+    deep = float(np.median(z_m)) + BODY_M
+    aside = (middle - view.centre_u) / view.focal_px * deep
+    there = view.on_floor(np.array([aside]), np.array([deep]))[0]
+    return Peek(np.asarray(there), warm_share(pixels, z_m, frame))
+
+
+def _columns(
+    middle: float, width: float, rows: tuple[float, float], surface: float, frame: Frame
+) -> _Columns | None:
     depth = frame.depth(DEPTH)
-    u = np.rint(left + width / 2.0 + width * (0.5 + _ASIDE) * np.linspace(-1.0, 1.0, _COLUMNS)).astype(np.int64)
-    v = np.rint(top + height * (np.arange(_ROWS) + 0.5) / _ROWS).astype(np.int64)
+    u = np.rint(middle + width * _HALF * np.linspace(-1.0, 1.0, _COLUMNS)).astype(np.int64)
+    v = np.rint(rows[0] + rows[1] * (np.arange(_ROWS) + 0.5) / _ROWS).astype(np.int64)
     u, v = u[(u >= 0) & (u < depth.shape[1])], v[(v >= 0) & (v < depth.shape[0])]
     if width <= 0.0 or len(u) < 3 or len(v) < 3:
         return None
-    z = depth[np.ix_(v, u)] / 1000.0
-    at = depth_of(place_m, frame) - _BODY_M
-    is_read, is_own, is_near = z > 0.0, np.abs(z - at) < _REACH_M, (z > 0.0) & (z <= at - _REACH_M)
-    readings = np.maximum(is_read.sum(axis=0), 1)
-    own, near = is_own.sum(axis=0) / readings > _MOST, is_near.sum(axis=0) / readings > _MOST
-    run = _longest(own)
-    if run is None:
-        return None
-    first, last = run
+    z_m = depth[np.ix_(v, u)] / 1000.0
+    own = np.abs(z_m - surface) < _REACH_M
+    near = (z_m > 0.0) & (z_m <= surface - _REACH_M)
+    readings = np.maximum((z_m > 0.0).sum(axis=0), 1)
+    is_own, is_near = (part.sum(axis=0) / readings > _DECIDES for part in (own, near))
+    return _Columns(u, v, z_m, own, is_own, is_near)
+
+
+def _middle(columns: _Columns, run: tuple[int, int], width: float) -> float | None:
+    """Give the column [px] of the middle of somebody of a width [px] of whom a run of columns is seen."""
+    u, (first, last) = columns.u, run
     step = (u[-1] - u[0]) / (len(u) - 1)
-    wide = (u[last] - u[first] + step) / width
-    if wide < _LEAST_SHARE or wide > _WIDEST:
+    starts, ends = float(u[first] - step / 2.0), float(u[last] + step / 2.0)
+    seen = (ends - starts) / width
+    if not _LEAST_WIDE <= seen <= _WIDEST:
         return None
-    starts, ends = u[first] - step / 2.0, u[last] + step / 2.0
-    left_free, right_free = first > 0 and not near[first - 1], last < len(u) - 1 and not near[last + 1]
-    if left_free and right_free:
-        if wide < 0.6:
-            return None
-        middle = (starts + ends) / 2.0
-    elif left_free:
-        middle = starts + max(width, ends - starts) / 2.0
-    elif right_free:
-        middle = ends - max(width, ends - starts) / 2.0
-    else:
-        return None
-    block = is_own[:, first : last + 1]
-    range_m = float(np.median(z[:, first : last + 1][block]))
-    if range_m * 0 != 0 or abs(middle - left - width / 2.0) > 0.8 * width:
-        return None
-    z_m = range_m + _BODY_M
-    x_m = (middle - view.centre_u) / view.focal_px * z_m
-    rows, columns = np.nonzero(block)
-    pixels = np.stack([u[first + columns], v[rows]], axis=1)
-    warm = warm_share_of(pixels, z[rows, first + columns], frame)
-    place = view.on_floor(np.array([x_m]), np.array([z_m]))[0]
-    return Peek(np.asarray(place), min(1.0, float(wide)), warm)
+    is_left = first > 0 and not columns.is_near[first - 1]
+    is_right = last < len(u) - 1 and not columns.is_near[last + 1]
+    if is_left and is_right:
+        return (starts + ends) / 2.0 if seen >= _WHOLE else None
+    half = max(width, ends - starts) / 2.0
+    if is_left or is_right:
+        return starts + half if is_left else ends - half
+    return None
 
 
 def _longest(flags: NDArray[np.bool_]) -> tuple[int, int] | None:

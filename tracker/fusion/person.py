@@ -17,21 +17,24 @@ from peopleboy.tracker.track import FloorPlace, Status
 
 TALL_M: Final = 1.72
 WIDE_M: Final = 0.42
+SPAN_M: Final = 0.48
 
 _BEST_FIRST: Final = (Status.TRACKED, Status.PARTLY_OCCLUDED, Status.TOTALLY_OCCLUDED)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Person:
-    """Somebody whom at least one of the trackers has told of.
+    """Somebody of whom at least one of the trackers has told.
 
     Attributes:
         id: number of the fused track.
         motion: place and velocity in the room.
         heat, depth: ids of the tracks in the thermal and in the depth image that are, or were last, its own.
         warm, deep: what these tell in this frame; None for nothing.
-        tall_m, wide_m: [m] height, and width of the torso.
+        is_peeked: whether it was found where it was expected in the depth image of this frame.
+        tall_m, wide_m, span_m: [m] height, and width of the torso and with the arms.
         looks: (BINS,) histogram of colours; None before any were seen in the light.
+        strange: frames in a row in which it looked otherwise.
         born_s, seen_s: [s] when it was born, and last seen.
     """
 
@@ -41,11 +44,11 @@ class Person:
     depth: int | None = None
     warm: Told | None = None
     deep: Told | None = None
+    is_peeked: bool = False
     tall_m: float = TALL_M
     wide_m: float = WIDE_M
-    span_m: float = 0.48
+    span_m: float = SPAN_M
     looks: Floats | None = None
-    peeked: bool = False
     strange: int = 0
     born_s: float
     seen_s: float
@@ -57,60 +60,49 @@ class Person:
 
     @property
     def is_seen(self) -> bool:
-        """Whether any tracker sees the person in this frame."""
-        return self.peeked or any(one.is_seen for one in self.told)
+        """Whether the person is seen in this frame."""
+        return self.is_peeked or any(one.is_seen for one in self.told)
 
     @property
     def status(self) -> Status:
         """How well the tracker that sees the person best does."""
         told = (one.status for one in self.told)
-        found = min(told, key=_BEST_FIRST.index, default=Status.TOTALLY_OCCLUDED)
-        return Status.PARTLY_OCCLUDED if self.peeked and found is Status.TOTALLY_OCCLUDED else found
+        best = min(told, key=_BEST_FIRST.index, default=Status.TOTALLY_OCCLUDED)
+        is_found = self.is_peeked and best is Status.TOTALLY_OCCLUDED
+        return Status.PARTLY_OCCLUDED if is_found else best
 
     def later(self, dt_s: float, config: FusionConfig) -> Person:
         """Give the person after it has walked on; nobody has told of it yet."""
         motion = self.motion.later(dt_s, config.restlessness)
         if not self.is_seen:
             motion = motion.slowed(dt_s, config.slow_s)
-        return replace(self, motion=motion, warm=None, deep=None, peeked=False)
+        return replace(self, motion=motion, warm=None, deep=None, is_peeked=False)
 
     def with_depth(self, told: Told, time_s: float, config: FusionConfig) -> Person:
-        """Take in what the depth image tells."""
+        """Take in what the tracker by depth tells."""
         person = replace(self, depth=told.id, deep=told)
         if not told.is_seen:
             return person
-        error = told.error_m2 + np.eye(2) * (config.deep_m if told.is_clear else config.partly_m) ** 2
-        tall, looks = self.tall_m, self.looks
-        if told.tall_m is not None and (told.is_clear or self.depth is None):
-            tall += (config.learned if self.depth is not None else 1.0) * (told.tall_m - tall)
-        if told.looks is not None and told.is_clear:
-            alike = 1.0 if looks is None else similarity(looks, told.looks)
-            strange = self.strange + 1 if alike < config.least_own else 0
-            person = replace(person, strange=strange)
-            if looks is None or strange > config.relearn:
-                looks = told.looks
-            elif strange == 0:
-                looks = looks + config.learned * (told.looks - looks)
-        span = self.span_m
-        if told.is_clear and told.span_m is not None:
-            span += config.learned * (told.span_m - span)
-        motion = self.motion.corrected(told.place_m, error)
-        return replace(person, span_m=span, motion=motion, tall_m=tall, looks=looks, seen_s=time_s)
+        if told.is_clear or self.depth is None:
+            person = person._measured(told, 1.0 if self.depth is None else config.learned, config)
+        return replace(person, motion=self._placed(told, config), seen_s=time_s)
 
     def with_heat(self, told: Told, time_s: float, config: FusionConfig) -> Person:
-        """Take in what the thermal image tells."""
+        """Take in what the thermal tracker tells."""
         person = replace(self, heat=told.id, warm=told)
-        if not told.is_seen:
-            return person
-        error = told.error_m2 + np.eye(2) * (config.warm_m if told.is_clear else config.partly_m) ** 2
-        motion = self.motion.corrected(told.place_m, error)
-        return replace(person, motion=motion, seen_s=time_s)
+        return replace(person, motion=self._placed(told, config), seen_s=time_s) if told.is_seen else person
 
     def named(self, other: Person) -> Person:
-        """Give who is here, and is told of so, with the number, the measures and the looks of another."""
+        """Give who is here, and is told of so, the number, the measures and the looks of another."""
         return replace(
-            self, id=other.id, looks=other.looks, tall_m=other.tall_m, wide_m=other.wide_m,
-            span_m=other.span_m, born_s=other.born_s, strange=0,
+            self,
+            id=other.id,
+            looks=other.looks,
+            tall_m=other.tall_m,
+            wide_m=other.wide_m,
+            span_m=other.span_m,
+            born_s=other.born_s,
+            strange=0,
         )
 
     def floor_place(self, pose: RobotPose, shared_m: float) -> FloorPlace:
@@ -124,6 +116,32 @@ class Person:
         covariance = pose.turned(self.motion.place_m2) + np.eye(2) * shared_m**2
         (xx, xy), (_, yy) = covariance.tolist()
         return FloorPlace(position_m=(x, y), covariance_m2=(xx, xy, yy))
+
+    def _placed(self, told: Told, config: FusionConfig) -> Motion:
+        further_m = config.clear_m if told.is_clear else config.partly_m
+        return self.motion.corrected(told.place_m, told.error_m2 + np.eye(2) * further_m**2)
+
+    def _measured(self, told: Told, share: float, config: FusionConfig) -> Person:
+        """Learn height, width and looks."""
+        tall = self.tall_m if told.tall_m is None else self.tall_m + share * (told.tall_m - self.tall_m)
+        if not told.is_clear:
+            return replace(self, tall_m=tall)
+        span = (
+            self.span_m if told.span_m is None else self.span_m + config.learned * (told.span_m - self.span_m)
+        )
+        return replace(self, tall_m=tall, span_m=span)._looking(told, config)
+
+    def _looking(self, told: Told, config: FusionConfig) -> Person:
+        """Learn looks, but not those of somebody else."""
+        if told.looks is None:
+            return self
+        if self.looks is None:
+            return replace(self, looks=told.looks)
+        if similarity(self.looks, told.looks) >= config.least_own:
+            return replace(self, looks=self.looks + config.learned * (told.looks - self.looks), strange=0)
+        if self.strange >= config.relearn_frames:
+            return replace(self, looks=told.looks, strange=0)
+        return replace(self, strange=self.strange + 1)
 
 
 def newborn(number: int, told: Told, time_s: float) -> Person:

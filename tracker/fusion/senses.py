@@ -1,126 +1,138 @@
-"""The two trackers, and what of their tracks each other's image confirms."""
+"""What the two trackers tell, each checked by the image of the other."""
 
 from __future__ import annotations
 
 import math
-from typing import Final, Protocol
+from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Frame
 from peopleboy.tracker.fusion.fresh_images import FreshImages
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.fusion.glance import Glance, depth_of, glance_at
+from peopleboy.tracker.fusion.glance import REACH_M, glance
 from peopleboy.tracker.fusion.person import TALL_M, WIDE_M
 from peopleboy.tracker.fusion.told import Told, in_room
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
+from peopleboy.tracker.rgbd.people.detection import Detection
 from peopleboy.tracker.rgbd.people.hypothesis import Hypothesis
-from peopleboy.tracker.rgbd.people.look_at import Body, box_at
-from peopleboy.tracker.rgbd.people.looks import BINS
-from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
+from peopleboy.tracker.rgbd.people.look_at import Body
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.track import Status, Track
 
 LIT: Final = 40.0
-"""Mean of the colour image from which on colours mean anything."""
+"""Mean grey of the colour image from which on colours mean anything."""
 
 _EVERY: Final = 16  # pixels from one that is looked at for light to the next
-_MISSED_S: Final = 0.15  # without a detection, after which somebody is not seen any more
-_BODY_M: Final = 0.1
-_REACH_M: Final = 0.4
-_ANYBODY: Final = Body(width_m=WIDE_M, head_m=TALL_M, low_m=0.0, looks=np.zeros(BINS))
+_MISSED_S: Final = 0.15  # after which who is not found is not seen any more
+_OWN_M: Final = 0.35  # from a person's place, within which a detection is its own
 
 
 class Heat:
-    """What the thermal tracker tells, but for those through whom depth is seen."""
+    """The thermal tracker, without those through whom the depth camera sees what is behind.
+
+    Args:
+        tracker: finds people in the thermal image.
+        config: settings.
+    """
 
     def __init__(self, tracker: PeopleTracker, config: FusionConfig) -> None:
         self.tracker = tracker
         self._config = config
         self._images = FreshImages(THERMAL)
 
-    def told(self, frame: Frame, pose: RobotPose) -> list[Told] | None:
-        """Give who is told of; None without a new image."""
+    def told(self, frame: Frame, pose: RobotPose) -> list[Told]:
+        """Tell of everybody; nobody without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
-            return None
-        tracks = [one for one in self.tracker.update(fresh) if one.status is not Status.TENTATIVE]
+            return []
         return [
-            self._told(track, pose)
-            for track in tracks
-            if track.place is not None and not self._is_seen_through(track, frame)
+            _warm(track, pose)
+            for track in self.tracker.update(fresh)
+            if track.status is not Status.TENTATIVE and not self._is_seen_through(track, frame)
         ]
 
-    def _told(self, track: Track, pose: RobotPose) -> Told:
-        place, error = in_room(track, pose)
-        return Told(
-            id=track.id,
-            place_m=place,
-            error_m2=error,
-            status=track.status,
-            confidence=track.confidence,
-            occluder=track.occluder,
-            box=track.boxes[THERMAL],
-        )
-
     def _is_seen_through(self, track: Track, frame: Frame) -> bool:
-        assert track.place is not None
-        reach = _REACH_M + 3.0 * math.sqrt(track.place.covariance_m2[0])
-        found = glance_for(np.array(track.place.position_m), _ANYBODY, reach, frame)
+        if track.place is None:
+            return True  # nobody can say where to look
+        reach_m = REACH_M + 3.0 * math.sqrt(track.place.covariance_m2[0])
+        found = glance(np.array(track.place.position_m), WIDE_M, TALL_M, frame, reach_m)
         return found is not None and found.beyond > self._config.seen_through
 
 
 class Depth:
-    """What the tracker by depth tells, but for those who are cold."""
+    """The tracker by depth, without those who are cold.
+
+    Args:
+        tracker: finds people in the depth image.
+        config: settings.
+    """
 
     def __init__(self, tracker: RgbdTracker, config: FusionConfig) -> None:
         self.tracker = tracker
         self._config = config
         self._images = FreshImages(DEPTH)
 
-    def told(self, frame: Frame, pose: RobotPose) -> list[Told] | None:
-        """Give who is told of; None without a new image."""
+    def told(self, frame: Frame, pose: RobotPose) -> list[Told]:
+        """Tell of everybody; nobody without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
-            return None
+            return []
         tracks = self.tracker.update(fresh)
         explanation = self.tracker.explanation
         assert explanation is not None
         people = {one.id: one for one in explanation.hypotheses}
         is_lit = float(frame.rgb(DEPTH_COLOUR)[::_EVERY, ::_EVERY].mean()) > LIT
-        told = (self._told(track, people[track.id], explanation.detections, frame, pose, is_lit=is_lit) for track in tracks)
-        return [one for one in told if one is not None]
+        told = []
+        for track in tracks:
+            person = people[track.id]
+            is_found = frame.time_s - person.seen_s < _MISSED_S
+            body = _body_of(person, explanation.detections) if is_found else None
+            if not self._is_cold(track, person, frame):
+                told.append(_deep(track, person, body, pose, is_found=is_found, is_lit=is_lit))
+        return told
 
-    def _told(
-        self, track: Track, person: Hypothesis, detections, frame: Frame, pose: RobotPose, *, is_lit: bool
-    ) -> Told | None:
+    def _is_cold(self, track: Track, person: Hypothesis, frame: Frame) -> bool:
         assert track.place is not None
-        found = glance_for(np.array(track.place.position_m), person.body, _REACH_M, frame)
-        if found is not None and found.warm is not None and found.warm < self._config.least_warm:
-            return None
-        is_seen = frame.time_s - person.seen_s < _MISSED_S
-        place, error = in_room(track, pose)
-        near = [(float(np.hypot(*(d.place_m - person.place_m))), k) for k, d in enumerate(detections)] if is_seen else []
-        body = detections[min(near)[1]].body if near and min(near)[0] < 0.35 else None
-        return Told(
-            id=track.id,
-            place_m=place,
-            error_m2=error,
-            status=track.status if is_seen else Status.TOTALLY_OCCLUDED,
-            confidence=track.confidence,
-            occluder=track.occluder,
-            tall_m=person.body.head_m if body is None else body.head_m,
-            span_m=person.body.width_m,
-            looks=body.looks if is_lit and body is not None else None,
-        )
+        body = person.body
+        found = glance(np.array(track.place.position_m), body.width_m, body.head_m, frame)
+        return found is not None and found.warm is not None and found.warm < self._config.least_warm
 
 
-def glance_for(place_m: np.ndarray[tuple[int], np.dtype[np.float64]], body: Body, reach_m: float, frame: Frame) -> Glance | None:
-    """Look for somebody at a place (2,) in the robot's frame in the depth image; None where that is not seen."""
-    if DEPTH not in frame.images or DEPTH not in frame.calibrations:
-        return None
-    view = DepthView.of(frame.calibrations[DEPTH], DEPTH)
-    box = box_at(view, place_m, body)
-    return None if box[2] <= 0.0 else glance_at(box, depth_of(place_m, frame) - _BODY_M, reach_m, frame)
+def _warm(track: Track, pose: RobotPose) -> Told:
+    place, error = in_room(track, pose)
+    return Told(
+        id=track.id,
+        place_m=place,
+        error_m2=error,
+        status=track.status,
+        confidence=track.confidence,
+        occluder=track.occluder,
+        box=track.boxes[THERMAL],
+    )
+
+
+def _deep(
+    track: Track, person: Hypothesis, body: Body | None, pose: RobotPose, *, is_found: bool, is_lit: bool
+) -> Told:
+    place, error = in_room(track, pose)
+    return Told(
+        id=track.id,
+        place_m=place,
+        error_m2=error,
+        status=track.status if is_found else Status.TOTALLY_OCCLUDED,
+        confidence=track.confidence,
+        occluder=track.occluder,
+        tall_m=(body or person.body).head_m,
+        span_m=person.body.width_m,
+        looks=body.looks if body is not None and is_lit else None,
+    )
+
+
+def _body_of(person: Hypothesis, detections: Sequence[Detection]) -> Body | None:
+    """Give what the detection that is nearest to a person measures; None without one."""
+    ways = {k: math.dist(one.place_m, person.place_m) for k, one in enumerate(detections)}
+    nearest = min(ways, key=lambda k: ways[k], default=None)
+    return detections[nearest].body if nearest is not None and ways[nearest] < _OWN_M else None

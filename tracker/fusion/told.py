@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,9 +22,9 @@ class Told:
         status: how well the person is seen.
         confidence: 0..1.
         occluder: id of the same tracker's track that hides it; None for nobody.
-        box: in the thermal image [px]; None for a track without one.
-        tall_m: [m] height; None where the tracker does not measure it.
-        looks: (BINS,) histogram of colours; None where there is none, or it is dark.
+        box: in the thermal image [px], as the thermal tracker sees it; None from the other.
+        tall_m, span_m: [m] height, and width with the arms; None where the tracker does not measure them.
+        looks: (BINS,) histogram of what is seen just now; None where nothing is, or it is dark.
     """
 
     id: int
@@ -31,7 +32,7 @@ class Told:
     error_m2: Floats
     status: Status
     confidence: float
-    occluder: int | None
+    occluder: int | None = None
     box: Box | None = None
     tall_m: float | None = None
     span_m: float | None = None
@@ -47,16 +48,16 @@ class Told:
         """Whether nothing hides any of the person."""
         return self.status is Status.TRACKED
 
-    def hidden(self) -> Told:
-        """The same of somebody who is not seen."""
-        return replace(self, status=Status.TOTALLY_OCCLUDED)
-
 
 def in_room(track: Track, pose: RobotPose) -> tuple[Floats, Floats]:
     """Give place (2,) [m] and covariance (2, 2) [m2] of a track that has a place, in the room."""
     assert track.place is not None
-    ahead, aside = track.place.position_m
     xx, xy, yy = track.place.covariance_m2
-    place = pose.place(float(np.hypot(ahead, aside)), float(np.arctan2(aside, ahead)))
     back = RobotPose(heading=-pose.heading)
-    return place, back.turned(np.array([[xx, xy], [xy, yy]]))
+    return to_room(np.array(track.place.position_m), pose), back.turned(np.array([[xx, xy], [xy, yy]]))
+
+
+def to_room(place_m: Floats, pose: RobotPose) -> Floats:
+    """Put a place (2,) in the robot's frame into the room."""
+    ahead, aside = place_m.tolist()
+    return pose.place(math.hypot(ahead, aside), math.atan2(aside, ahead))

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Final
+from typing import Final, Protocol
 
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Calibration, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
@@ -15,13 +15,35 @@ from peopleboy.tracker.handover.identities import Identities, Key
 from peopleboy.tracker.handover.introductions import Introductions, thermal_view
 from peopleboy.tracker.handover.links import GATE, Votes, apartness, pairs
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.thermal.explanation import ContourExplanation
+from peopleboy.tracker.track import Box, Status, Track
 
 NEEDED_VOTES: Final = 3
 MOST_VOTES: Final = 15
 DOUBTFUL_S: Final = 0.7
 DOUBTFUL_RAD: Final = math.radians(6.0)
+
+
+class Ahead(Protocol):
+    """A tracker of people in the thermal image, by that alone or by more."""
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """Names of the cameras whose images it wants."""
+        ...
+
+    @property
+    def explanation(self) -> ContourExplanation:
+        """Contours and samples behind its tracks."""
+        ...
+
+    def introduce(self, box: Box) -> None:
+        """Tell that a person is at this box [px] of the thermal image in the next frame."""
+        ...
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame and tell who is seen."""
+        ...
 
 
 class HandoverTracker:
@@ -38,7 +60,7 @@ class HandoverTracker:
     that in the omnidirectional one.
     """
 
-    def __init__(self, thermal: PeopleTracker, panoramic: PanoramicTracker) -> None:
+    def __init__(self, thermal: Ahead, panoramic: PanoramicTracker) -> None:
         self._thermal, self._panoramic = thermal, panoramic
         self._votes = Votes(NEEDED_VOTES, MOST_VOTES)
         self._identities = Identities()
@@ -154,12 +176,13 @@ def _is_doubtful(track: Track, joined: Mapping[int, Track]) -> bool:
 
 
 def _merged(warm: Track, around: Track) -> Track:
-    """Join two tracks of one person; its place is the panorama's as long as it is seen there."""
+    """Join two tracks of one person; its place is the panorama's while it is seen there, or the surer."""
     better = around if _is_seen(around) or not _is_seen(warm) else warm
     is_near = apartness(warm, around) < 2 * GATE or not _is_seen(warm)
     return replace(
         better,
         boxes={**around.boxes, **(warm.boxes if is_near else {})},
+        place=warm.place if is_near and _is_surer(warm, around) else better.place,
         confidence=max(warm.confidence, around.confidence),
         status=warm.status if _is_seen(warm) else around.status,
         age_s=max(warm.age_s, around.age_s),
@@ -169,6 +192,14 @@ def _merged(warm: Track, around: Track) -> Track:
 
 def _is_seen(track: Track) -> bool:
     return track.status is not Status.TOTALLY_OCCLUDED
+
+
+def _is_surer(warm: Track, around: Track) -> bool:
+    """Tell whether the first of two who are both seen is surer of its place."""
+    if not (_is_seen(warm) and _is_seen(around)) or warm.place is None or around.place is None:
+        return False
+    (xx, _, yy), (other_xx, _, other_yy) = warm.place.covariance_m2, around.place.covariance_m2
+    return xx + yy < other_xx + other_yy
 
 
 def _bearing(track: Track) -> float:

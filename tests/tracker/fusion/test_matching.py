@@ -1,0 +1,75 @@
+"""Whose a track is."""
+
+from __future__ import annotations
+
+from itertools import permutations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from peopleboy.tracker.fusion.fusion_config import FusionConfig
+from peopleboy.tracker.fusion.matching import apart, cheapest, cost
+from peopleboy.tracker.fusion.person import Person, newborn
+from peopleboy.tracker.fusion.told import Told
+from peopleboy.tracker.rgbd.people.looks import BINS
+from peopleboy.tracker.track import Status
+
+CONFIG = FusionConfig()
+
+
+def looks(colour: int) -> np.ndarray:
+    found = np.zeros(BINS)
+    found[colour] = 1.0
+    return found
+
+
+def told(x: float, y: float, along_m: float = 0.05, **further: object) -> Told:
+    """Seen from far away along x, sure to 5 cm across."""
+    error = np.diag([along_m**2, 0.05**2])
+    given = {"id": 1, "status": Status.TRACKED, "confidence": 0.9} | further
+    return Told(place_m=np.array([x, y]), error_m2=error, **given)  # type: ignore[arg-type]
+
+
+def person(x: float, y: float, **further: object) -> Person:
+    one = told(x, y, **further)
+    return newborn(1, one, 0.0).with_depth(one, 0.0, CONFIG)
+
+
+def test_heat_is_sure_of_the_bearing_and_depth_of_the_range_too() -> None:
+    someone = person(6.0, 0.0)
+    farther, aside = told(6.8, 0.0, along_m=0.6), told(6.0, 0.8, along_m=0.6)
+    assert apart(someone, farther, CONFIG.floor_m) < 3.0 < CONFIG.gate < apart(someone, aside, CONFIG.floor_m)
+    assert apart(someone, told(6.8, 0.0), CONFIG.floor_m) > CONFIG.gate
+
+
+def test_looks_and_memory_decide_between_two_places_alike() -> None:
+    red = person(6.0, 0.0, looks=looks(1), tall_m=1.7)
+    same, other = (told(6.1, 0.0, looks=looks(colour), tall_m=1.7) for colour in (1, 2))
+    assert cost(red, same, None, CONFIG) < cost(red, other, None, CONFIG)
+    assert cost(red, same, 1, CONFIG) == cost(red, same, None, CONFIG) - CONFIG.loyalty
+
+
+costs = st.integers(1, 4).flatmap(
+    lambda rows: st.lists(
+        st.lists(st.floats(0.0, 50.0) | st.just(np.inf), min_size=4, max_size=4),
+        min_size=rows,
+        max_size=rows,
+    )
+)
+
+
+@given(costs)
+def test_as_many_as_can_be_are_matched_as_cheaply_as_can_be(table: list[list[float]]) -> None:
+    matrix = np.array(table)
+
+    def rate(columns: tuple[int, ...]) -> tuple[int, float]:
+        chosen = [matrix[row, column] for row, column in enumerate(columns)]
+        finite = [one for one in chosen if np.isfinite(one)]
+        return -len(finite), sum(finite)
+
+    best = min(rate(columns) for columns in permutations(range(4), len(matrix)))
+    found = cheapest(matrix)
+    assert all(np.isfinite(matrix[row, column]) for row, column in found.items())
+    assert len(set(found.values())) == len(found) == -best[0]
+    assert np.isclose(sum(matrix[row, column] for row, column in found.items()), best[1])
