@@ -11,7 +11,8 @@ class FusionConfig:
 
     Attributes:
         gate: squared distance, in standard deviations, beyond which a track is not a person's.
-        own_gate: the same for the track that was the person's before.
+        unlike_gate: the same with what other looks and another height count.
+        own_gate: the same as `gate` for the track that was the person's before.
         loyalty: by how much a person's track of before counts as nearer.
         looks_weight: what entirely other looks count.
         height_sd_m: [m] by which a person's height may be measured wrongly.
@@ -45,6 +46,7 @@ class FusionConfig:
     """
 
     gate: float = 12.0
+    unlike_gate: float = 18.0
     own_gate: float = 25.0
     loyalty: float = 6.0
     looks_weight: float = 20.0

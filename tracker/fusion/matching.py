@@ -37,11 +37,11 @@ def cost(person: Person, told: Told, own: int | None, config: FusionConfig) -> f
         own: id of that tracker's track that was the person's before.
         config: settings.
     """
-    is_own = told.id == own
-    away = apart(person, told, config.floor_m)
-    if away > (config.own_gate if is_own else config.gate):
-        return np.inf
-    return away + _unlikeness(person, told, config) - (config.loyalty if is_own else 0.0)
+    away, unlike = apart(person, told, config.floor_m), _unlikeness(person, told, config)
+    if told.id == own:
+        return np.inf if away > config.own_gate else away + unlike - config.loyalty
+    is_out = away > config.gate or away + unlike > config.unlike_gate
+    return np.inf if is_out else away + unlike
 
 
 def _unlikeness(person: Person, told: Told, config: FusionConfig) -> float:
