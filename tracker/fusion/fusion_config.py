@@ -55,8 +55,8 @@ class FusionConfig:
     floor_m: float = 0.12
     restlessness: float = 0.3
     slow_s: float = 4.0
-    clear_m: float = 0.05
-    partly_m: float = 0.3
+    clear_m: float = 0.08
+    partly_m: float = 0.12
     peek_m: float = 0.08
     peek_s: float = 1.5
     peek_warm: float = 0.25
@@ -64,7 +64,7 @@ class FusionConfig:
     learned: float = 0.1
     learned_width: float = 0.5
     blink_s: float = 0.35
-    hidden_s: float = 0.7
+    hidden_s: float = 0.4
     hidden_share: float = 0.4
     remembered_s: float = 20.0
     reach_m: float = 1.2

@@ -70,7 +70,6 @@ class Depth:
     cameras = (DEPTH,)
 
     def __init__(self) -> None:
-        self.tracks: dict[Track, int] = {}
         self.explanation: Any = None
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
@@ -109,6 +108,7 @@ class Around:
         return self.tracks
 
     def check_cameras(self, calibrations: Any) -> None:
+        del calibrations
         raise BadInput("another mirror")
 
 
@@ -180,9 +180,7 @@ def test_a_camera_that_stays_out_leaves_the_other_one(camera: str) -> None:
     for k in range(40):
         someone = Block(0.03 * k - 0.6, 5.0)
         without = [camera] if 10 <= k < 30 else []
-        seen = scene.see(
-            someone, warm=[by_heat(7, someone)], deep=[by_depth(3, someone)], without=without
-        )
+        seen = scene.see(someone, warm=[by_heat(7, someone)], deep=[by_depth(3, someone)], without=without)
         assert list(seen) == [1]
         assert seen[1].place is not None
         assert seen[1].place.position_m[1] == pytest.approx(-someone.x_m, abs=0.15)
@@ -273,9 +271,7 @@ def test_somebody_behind_the_robot_keeps_the_number_in_the_panorama() -> None:
     around = track(4, (3.1, 0.0), boxes={PANORAMA: (100.0, 50.0, 20.0, 60.0)})
     for _ in range(20):
         scene.around.tracks = (around,)
-        seen = scene.see(
-            someone, warm=[by_heat(7, someone)], deep=[by_depth(3, someone)], has_panorama=True
-        )
+        seen = scene.see(someone, warm=[by_heat(7, someone)], deep=[by_depth(3, someone)], has_panorama=True)
     (number,) = seen
     assert set(seen[number].boxes) == {THERMAL, PANORAMA}
     assert list(scene.see(has_panorama=True)) == [number]
