@@ -9,11 +9,11 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.glance import glance
 from peopleboy.tracker.fusion.matching import apart, pairs
-from peopleboy.tracker.fusion.outline import outline, with_width
+from peopleboy.tracker.fusion.outline import outline, standing_box, with_width
 from peopleboy.tracker.fusion.peek import peek
 from peopleboy.tracker.fusion.person import Person, newborn
 from peopleboy.tracker.fusion.recognition import Recognition
@@ -186,10 +186,13 @@ class AheadTracker:
         return person.warm is not None or late_s <= config.blink_s
 
     def _track(self, person: Person, frame: Frame) -> Track:
-        box = outline(person, frame, self._pose)
+        boxes = {
+            THERMAL: outline(person, frame, self._pose),
+            DEPTH: standing_box(person, DEPTH, frame, self._pose),
+        }
         return Track(
             id=person.id,
-            boxes={} if box is None else {THERMAL: box},
+            boxes={camera: box for camera, box in boxes.items() if box is not None},
             place=person.floor_place(self._pose, self._config.shared_m),
             confidence=max((one.confidence for one in person.told), default=_UNSURE),
             status=person.status,

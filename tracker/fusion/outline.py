@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.frame import THERMAL, Frame, PinholeCalibration
 from peopleboy.tracker.fusion.person import Person
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import Box
@@ -30,7 +30,7 @@ def outline(person: Person, frame: Frame, pose: RobotPose) -> Box | None:
         None for who is not ahead, and not in the thermal image either.
     """
     contour = _contour(person)
-    standing = _standing(person, frame, pose)
+    standing = standing_box(person, THERMAL, frame, pose)
     if contour is None or standing is None:
         return contour or standing
     left, top, width, height = contour
@@ -43,7 +43,7 @@ def outline(person: Person, frame: Frame, pose: RobotPose) -> Box | None:
 
 def with_width(person: Person, frame: Frame, pose: RobotPose, share: float) -> Person:
     """Learn how wide the torso appears, which changes as the person turns; not of who is hidden in part."""
-    contour, standing = _contour(person), _standing(person, frame, pose)
+    contour, standing = _contour(person), standing_box(person, THERMAL, frame, pose)
     if contour is None:
         return person
     _, _, width, height = contour
@@ -57,19 +57,22 @@ def with_width(person: Person, frame: Frame, pose: RobotPose, share: float) -> P
     return replace(person, wide_m=person.wide_m + share * (wide - person.wide_m))
 
 
-def _contour(person: Person) -> Box | None:
-    """Give the thermal tracker's box of who is seen whole."""
-    return person.warm.box if person.warm is not None and person.warm.is_clear else None
+def standing_box(person: Person, camera: str, frame: Frame, pose: RobotPose) -> Box | None:
+    """Project a person, upright at its place, in its own measures.
 
-
-def _standing(person: Person, frame: Frame, pose: RobotPose) -> Box | None:
-    """Project a person, upright at its place, in its own measures; None for who is not ahead."""
-    calibration = frame.calibrations.get(THERMAL)
-    if calibration is None:
-        return None
+    Returns:
+        left, top, width, height [px]; None for who is not before a camera, or one whose image is not flat.
+    """
+    calibration = frame.calibrations.get(camera)
     x, y = pose.locate(person.motion.place_m).tolist()
-    if x - calibration.position_m[0] < _NEAREST_M:
+    is_flat = isinstance(calibration, PinholeCalibration)
+    if calibration is None or not is_flat or x - calibration.position_m[0] < _NEAREST_M:
         return None
     (u, top), (_, bottom) = calibration.project(np.array([[x, y, person.tall_m], [x, y, 0.0]])).tolist()
     width = (bottom - top) * person.wide_m / person.tall_m
     return u - width / 2.0, top, width, bottom - top
+
+
+def _contour(person: Person) -> Box | None:
+    """Give the thermal tracker's box of who is seen whole."""
+    return person.warm.box if person.warm is not None and person.warm.is_clear else None

@@ -273,7 +273,7 @@ def test_somebody_behind_the_robot_keeps_the_number_in_the_panorama() -> None:
         scene.around.tracks = (around,)
         seen = scene.see(someone, warm=[by_heat(7, someone)], deep=[by_depth(3, someone)], has_panorama=True)
     (number,) = seen
-    assert set(seen[number].boxes) == {THERMAL, PANORAMA}
+    assert set(seen[number].boxes) == {THERMAL, DEPTH, PANORAMA}
     assert list(scene.see(has_panorama=True)) == [number]
     assert scene.tracker.explanation.both.panoramic is None
 
