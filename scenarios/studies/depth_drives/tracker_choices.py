@@ -14,7 +14,8 @@ from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
 
 OURS: Final = RgbdConfig()
-DEFAULT, LITERAL, NO_ODOMETRY = "default", "as printed", "no odometry"
+DEFAULT, LITERAL = "default", "as printed"
+NO_CONNECTOR, NO_ODOMETRY = "no connector", "no odometry"
 NO_DEPTH: Final = "no depth in the filters"
 OPENCV: Final = "OpenCV's far detector"
 
@@ -22,7 +23,7 @@ CHOICES: Final[Mapping[str, RgbdConfig]] = {
     DEFAULT: OURS,
     LITERAL: PRINTED,
     "printed size": replace(OURS, size=PRINTED_SIZE),
-    "no connector": replace(OURS, above=replace(OURS.above, has_connector=False)),
+    NO_CONNECTOR: replace(OURS, above=replace(OURS.above, has_connector=False)),
     "no verification": replace(OURS, has_verification=False),
     OPENCV: OURS,
     "no sharpening": replace(OURS, filter=replace(OURS.filter, sharpness=0.0)),

@@ -8,6 +8,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.reproduce.experiments.contents import Contents
 from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
 from peopleboy.scenarios.studies.reproduce.experiments.distances import DISTANCES, Correlations, FloorPath
+from peopleboy.scenarios.studies.reproduce.experiments.drives import DRIVES
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
 from peopleboy.scenarios.studies.reproduce.experiments.pictures import DEPICTIONS
@@ -243,13 +244,19 @@ _ALL: tuple[Experiment, ...] = (
     Correlations(),
     *DISTANCES,
     FloorPath(),
+    *DRIVES,
 )
 
 EXPERIMENTS: dict[str, Experiment] = {experiment.id: experiment for experiment in _ALL}
 """By id, in the order of the page."""
 
 
-PAPERS: Mapping[str, str] = {"thesis": "", "2005": "paper-", "panoramic": "panoramic-"}
+PAPERS: Mapping[str, str] = {
+    "thesis": "",
+    "2005": "paper-",
+    "panoramic": "panoramic-",
+    "situation": "situation-",
+}
 """The sources by name, and how the ids of each begin; those of the thesis are plain."""
 
 

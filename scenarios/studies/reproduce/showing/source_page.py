@@ -29,7 +29,8 @@ from peopleboy.scenarios.studies.reproduce.showing.source import Claim, SourceTa
 HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"
 MAIN = {"literal": ("literal", "room_long, random split", "room_long"), "default": ("default", "held out")}
-FINE = ("m", "|r|")  # columns that need three decimals
+FINE = ("m", "|r|", "rate", "FP/frame", "figure", "from", "to")  # columns that need three decimals
+COUNTS = ("images", "TP", "FN", "parameters")  # columns that need none
 EFFECT = "d to the source (95 %)"
 
 Figures = Mapping[str, tuple[float, float | None]]
@@ -182,7 +183,9 @@ def points(value: float, column: str) -> str:
 
 
 def _digits(column: str) -> int:
-    return 3 if column in FINE else 2
+    if column in COUNTS:
+        return 0
+    return 3 if column in FINE or column.endswith("[m]") else 2
 
 
 def _writer(lines: Sequence[Figures]) -> Callable[[str, tuple[float, float | None] | None], str]:
