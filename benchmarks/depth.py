@@ -1,4 +1,4 @@
-"""What a depth camera costs: view, depth, colour, and noise alone, beside OpenCV's HOG in the same run."""
+"""What a depth camera costs: view, depth and colour, and noise alone, beside OpenCV's HOG in the same run."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from peopleboy.scenarios.drawing.overlay import encode_jpeg
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.camera_truth import further_cameras
 from peopleboy.sim.cameras.camera_config import DepthConfig
-from peopleboy.sim.cameras.depth import points_of
+from peopleboy.sim.cameras.depth_image import points_of
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.planar import Planar

@@ -39,7 +39,7 @@ from peopleboy.scenarios.recording.rows import RowBuffer
 from peopleboy.scenarios.recording.sketches import explained_sketches
 from peopleboy.scenarios.recording.still import Still
 from peopleboy.sim.cameras.camera_config import DepthConfig
-from peopleboy.sim.cameras.depth import points_of
+from peopleboy.sim.cameras.depth_image import points_of
 from peopleboy.sim.cameras.kinds import kind_of, shown_to_people, with_boxes
 from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import WorldConfig

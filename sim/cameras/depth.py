@@ -1,4 +1,4 @@
-"""The depth image: what a sensor measures of the true depth, in millimetres, with its noise and its holes."""
+"""How sensors measure depth: by a pattern of light or by its time of flight, with their noise and holes."""
 
 from __future__ import annotations
 
@@ -6,35 +6,31 @@ import math
 from dataclasses import replace
 from typing import Final
 
-import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from peopleboy.sim.cameras.camera_config import DEPTH_BASELINE_M, DepthConfig
+from peopleboy.sim.cameras.depth_image import Millimetres, to_millimetres
 from peopleboy.sim.cameras.noise import gaussian, skip_gaussian, skip_smooth_gaussian, smooth_gaussian
 from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.rendering.view import View
 
 Metres = NDArray[np.float32]
-Millimetres = NDArray[np.uint16]
 
 # Structured light. Noise and steps of its disparity: Khoshelham & Oude Elberink 2012, Sensors 12:1437.
 DISPARITY_SD_PX: Final = 0.062
 DISPARITY_STEP_PX: Final = 0.125
 _PATCH_PX = 8  # over which half of the noise's variance is alike
-_FINE = 1.05  # of the disparity, by which the projector's light is shifted
-_SLACK_PX = 0.5
+_REACH = 1.05  # of shadows, in disparities
+_SLACK_PX = 0.5  # within which light still falls beside an edge
 
 # Time of flight.
 TOF_SD_M: Final = 0.005  # at 2 m, of a surface that is half white
 _FINER = 2  # rays of a pixel, in a row and in a column
 _BLACKEST = 0.02
-
-# How depth is shown to people.
-_BRIGHT_M, _DARK_M, _DARK = 1.0, 12.0, 50
 
 
 def hole_share(depth_m: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -53,48 +49,6 @@ def _edge_moves() -> NDArray[np.int8]:
 
 
 _LEVELS, _MOVES = _hole_levels(), _edge_moves()
-
-
-def show_depth(depth: Millimetres) -> NDArray[np.uint8]:
-    """Turn an (H, W) depth image into an RGB one: the nearer the brighter, and black where nothing is read.
-
-    A colour tells depth alone, whatever the sensor's range: brightest up to 1 m, darkest from 12 m on, and
-    as the logarithm goes between them.
-    """
-    return _SHADES[depth]
-
-
-def _shades() -> NDArray[np.uint8]:
-    """(65536, 3) RGB of each depth [mm]."""
-    depth_m = np.maximum(np.arange(65536), 1) / 1000.0
-    share = np.clip(np.log(depth_m / _BRIGHT_M) / math.log(_DARK_M / _BRIGHT_M), 0.0, 1.0)
-    levels = np.rint(255.0 - (255.0 - _DARK) * share).astype(np.uint8)
-    shades = cv2.applyColorMap(levels[:, None], cv2.COLORMAP_INFERNO)[:, 0, ::-1].copy()
-    shades[0] = 0
-    return np.asarray(shades, np.uint8)
-
-
-_SHADES = _shades()
-
-
-def points_of(depth: Millimetres, camera: Pinhole, every: int) -> tuple[Metres, NDArray[np.int64]]:
-    """Find the points that every so-manieth pixel of every so-manieth row of a depth image stands for.
-
-    Returns:
-        (N, 3) [m] in the optical frame, x right, y down, z forward; and (N, 2) the row and the column of
-        each. Pixels where nothing is read have none.
-    """
-    first = every // 2
-    pixels = first + every * np.argwhere(depth[first::every, first::every])
-    z = depth[pixels[:, 0], pixels[:, 1]] / 1000.0
-    x, y = ((pixels[:, 1 - k] - camera.centre_px[k]) / camera.focal_px * z for k in (0, 1))
-    return np.stack([x, y, z], axis=1).astype(np.float32), pixels
-
-
-def to_millimetres(depth_m: Metres, config: DepthConfig) -> Millimetres:
-    """Encode (H, W) depths [m]: 0 for those outside the sensor's range, and for NaN and infinity."""
-    is_read = (depth_m >= config.nearest_m) & (depth_m <= config.farthest_m)
-    return np.where(is_read, np.rint(1000.0 * np.where(is_read, depth_m, 0.0)), 0.0).astype(np.uint16)
 
 
 def structured_light(view: View, config: DepthConfig, rng: np.random.Generator) -> Millimetres:
@@ -159,7 +113,7 @@ def _from_disparity(
     for v in range(height):
         lit_to = -1e9
         for u in range(width):
-            ray = u + (_FINE * shift / depth[v, u] if part[v, u] >= 0 else 0.0)
+            ray = u + (_REACH * shift / depth[v, u] if part[v, u] >= 0 else 0.0)
             is_dark = ray < lit_to - _SLACK_PX
             lit_to = max(lit_to, ray)
             row = min(max(v + steps[moves[v, u, 0]], 0), height - 1)

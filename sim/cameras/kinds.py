@@ -18,7 +18,7 @@ from peopleboy.sim.cameras.camera_config import (
     PanoramaConfig,
     ThermalConfig,
 )
-from peopleboy.sim.cameras.depth import show_depth
+from peopleboy.sim.cameras.depth_image import show_depth
 from peopleboy.sim.cameras.sensors import (
     ColourSensor,
     DepthSensor,
@@ -79,7 +79,7 @@ class CameraKind:
         layers: its images; the first, without suffixes, is what people and controllers are shown.
         more_layers: what cameras of some settings give besides.
         channels: of that first image: 1 for (H, W), 3 for (H, W, 3) RGB.
-        dtype: of that first image.
+        dtype, unit: of that first image.
         has_boxes: whether a box round a person makes sense in it.
     """
 
@@ -90,6 +90,7 @@ class CameraKind:
     more_layers: Callable[[Any], tuple[Layer, ...]] = lambda config: ()  # noqa: ARG005
     channels: int = 1
     dtype: type[np.unsignedinteger[Any]] = np.uint8
+    unit: str = "grey"
     has_boxes: bool = True
 
 
@@ -119,6 +120,7 @@ KINDS: Final[dict[str, CameraKind]] = {
         layers=(Layer(what="16-bit, depth in millimetres, 0 where none is read", show=show_depth),),
         more_layers=_colour_of_depth,
         dtype=np.uint16,
+        unit="mm",
     ),
 }
 

@@ -15,8 +15,8 @@ from peopleboy.sim.cameras.depth import (
     skip_structured_light,
     structured_light,
     time_of_flight,
-    to_millimetres,
 )
+from peopleboy.sim.cameras.depth_image import to_millimetres
 from peopleboy.sim.cameras.noise import skip_gaussian
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.surfaces import MaterialTable

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import av
 import cv2
@@ -21,9 +21,13 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.sim.cameras.camera_config import DepthConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.tracker.frame import DEPTH as DEPTH_CAMERA
+from peopleboy.tracker.frame import DEPTH_COLOUR, Frame
+from peopleboy.tracker.track import Track
+from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
-from tests.helpers.runs.exported import CAMERAS, SCENE, export
+from tests.helpers.runs.exported import CAMERAS, SCENE, export, make_run
 
 DEPTH = {"kind": "depth", "width_px": 161, "height_px": 121, "rate_hz": 5}
 SEEN: dict[str, Any] = SCENE | {
@@ -139,6 +143,18 @@ def test_mcap_has_its_depth_its_colours_and_their_points(run: Path, tmp_path: Pa
     assert not found["/depth/points"][-1].width
 
 
+def test_a_rendered_set_counts_its_millimetres(tmp_path: Path) -> None:
+    scene, out = tmp_path / "seen.yaml", tmp_path / "set"
+    scene.write_text(yaml.safe_dump(SEEN | {"faults": []}), encoding="utf-8")
+    assert run_cli("render", scene, "--frames", "--seeds", "1", "--workers", "1", "--out", out) == 0
+    assert "| depth images, mean ± deviation [mm] |" in (out / "README.md").read_text(encoding="utf-8")
+    statistics = json.loads((out / "dataset.json").read_text(encoding="utf-8"))["statistics"]["all"]
+    (first,) = out.glob("*/depth/000001.png")
+    assert statistics["image_mean"]["depth"] == [
+        pytest.approx(cv2.imread(str(first), cv2.IMREAD_UNCHANGED).mean(), abs=0.01)
+    ]
+
+
 def test_an_environment_gives_its_millimetres(run: Path) -> None:
     env = PeopleBoyEnv(run.parent / "seen.yaml", observation="pixels", image_size=(96, 64))
     seen, _ = env.reset(seed=0)
@@ -167,6 +183,39 @@ def test_a_scene_changes_all_its_settings_and_a_tracker_may_ask_for_one(run: Pat
     assert mounted == DepthConfig()
     assert isinstance(mounted.camera, Pinhole)
     assert (mounted.camera.width, mounted.camera.height, mounted.camera.position_m[2]) == (640, 480, 1.2)
+
+
+class Floor:
+    """A tracker that sees nobody, and keeps the heights [m] of what it sees in the lowest rows."""
+
+    cameras = (DEPTH_CAMERA,)
+    heights: ClassVar[list[np.ndarray]] = []
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        del rng
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        depth, colour = frame.depth(DEPTH_CAMERA), frame.rgb(DEPTH_COLOUR)
+        assert colour.shape == (*depth.shape, 3)
+        calibration = frame.calibrations[DEPTH_CAMERA]
+        rows, columns = np.nonzero(depth[400:])
+        z = depth[400:][rows, columns, None] / 1000.0
+        rays = calibration.rays(np.stack([columns, rows + 400], axis=1).astype(float))
+        self.heights.append((np.array(calibration.position_m) + z * rays)[:, 2])
+        return ()
+
+
+def test_a_tracker_that_wants_depth_is_given_the_usual_camera_and_finds_the_floor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(TRACKERS, "floor", Floor)
+    monkeypatch.setattr(Floor, "heights", [])
+    make_run(SCENE | {"duration_s": 0.4, "things": []}, tmp_path / "run", "--tracker", "floor")
+    told = json.loads((tmp_path / "run" / "run.json").read_text(encoding="utf-8"))
+    assert told["mounted_for_tracker"] == ["depth"]
+    assert len(Floor.heights) == 6
+    assert np.median(np.concatenate(Floor.heights)) == pytest.approx(0.0, abs=0.003)
+    assert np.abs(np.quantile(np.concatenate(Floor.heights), (0.05, 0.5))).max() < 0.02
 
 
 @pytest.mark.parametrize(

@@ -46,10 +46,12 @@ class HypothesesConfig:
     Attributes:
         gate_m, gate_per_m: [m] distance of what belongs together, and by how much more it may be apart for
             each square metre of squared depth.
+        gate_m_s: [m/s] by which the gate grows, up to twice, while somebody is not seen.
         births: verifications after which somebody is believed in.
         pre_share, verified_share, filter_share: of a measurement in the merged place (SA eq. 4.22).
         unverified_s: [s] without a verification after which a hypothesis is deleted.
-        hidden_s: [s] the same for who is hidden; claimed for `unverified_s` only.
+        missing_s: [s] for which somebody is claimed who should be seen and is not.
+        hidden_s: [s] the same for who is hidden or outside the image; claimed for `unverified_s` only.
         has_see_through: whether a hypothesis is deleted when the camera sees through it.
         looks_weight: how much unlike looks count in association, in gates.
         uses_odometry: whether hypotheses are moved by the robot's own motion.
@@ -58,11 +60,13 @@ class HypothesesConfig:
 
     gate_m: float = 0.5
     gate_per_m: float = 0.003
+    gate_m_s: float = 0.4
     births: int = 2
     pre_share: float = 0.3
     verified_share: float = 0.6
     filter_share: float = 0.5
     unverified_s: float = 2.0
+    missing_s: float = 0.4
     hidden_s: float = 6.0
     has_see_through: bool = True
     looks_weight: float = 0.5
@@ -90,15 +94,22 @@ class RgbdConfig:
     hypotheses: HypothesesConfig = field(default_factory=HypothesesConfig)
     has_verification: bool = True
     has_own_detector: bool = True
-    least_score: float = 0.0
+    least_score: float = 0.4
 
 
 PRINTED: Final = RgbdConfig(
     size=PRINTED_SIZE,
+    least_score=0.0,
     above=UDepthConfig(row_m=0.01, bridged_steps=0.0),
     filter=FloorFilterConfig(sharpness=0.0, foreground_m=0.0, has_hold=False),
     hypotheses=HypothesesConfig(
-        gate_per_m=0.0, has_see_through=False, hidden_s=2.0, looks_weight=0.0, body_m=0.0
+        gate_per_m=0.0,
+        gate_m_s=0.0,
+        missing_s=2.0,
+        hidden_s=2.0,
+        has_see_through=False,
+        looks_weight=0.0,
+        body_m=0.0,
     ),
 )
 """As the source prints it."""

@@ -79,11 +79,7 @@ class RgbdTracker:
         people = self._followed(detections, life, frame)
         self._people = self._named(_without_doubles(people))
         self._explanation = RgbdExplanation(layout, detections, self._people)
-        return tuple(
-            self._track(person, frame)
-            for person in self._people
-            if person.id and frame.time_s - person.verified_s <= self.config.hypotheses.unverified_s
-        )
+        return tuple(self._track(person, frame) for person in self._people if life.is_claimed(person))
 
     def _view(self, frame: Frame) -> RgbdView:
         geometry = DepthView.of(frame.calibrations.get(DEPTH), DEPTH)
@@ -119,7 +115,7 @@ class RgbdTracker:
         """Look for everybody who is known, then for newcomers."""
         looked = [life.looked_for(life.expected(person, frame.odometry)) for person in self._people]
         people = [person for person, _ in looked]
-        matched = associate(people, detections, self.config.hypotheses)
+        matched = associate(people, detections, life.time_s, self.config.hypotheses)
         followed = [
             life.found(person, update, detections[matched[k]] if k in matched else None)
             for k, (person, update) in enumerate(looked)

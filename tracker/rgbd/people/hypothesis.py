@@ -17,10 +17,11 @@ class Hypothesis:
     Attributes:
         id: number of a track; 0 while nobody is believed to be there.
         place_m: (2,) forward, left in the robot's frame [m].
+        velocity_m_s: (2,) smoothed.
         covariance_m2: (2, 2) of its error.
         body: what the person measures and looks like.
         filter: its particles.
-        born_s, verified_s, seen_s: [s] when it was made, last verified, and last detected at all.
+        born_s, verified_s, seen_s: [s] when it was made, last verified, and last seen by detector or filter.
         verifications: how often, up to the number that makes a person of it.
         seen_through: frames in a row in which the camera saw what is behind.
         confidence: 0..1.
@@ -30,6 +31,7 @@ class Hypothesis:
 
     id: int = 0
     place_m: Floats
+    velocity_m_s: Floats
     covariance_m2: Floats
     body: Body
     filter: FloorFilter

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -17,11 +18,14 @@ from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
 from peopleboy.tracker.track import Status
 
 _CONFIDENT: Final = 0.3
+_GAIN: Final = 0.15  # of what the place was off in a frame that goes into the velocity
+_SLOWS_S: Final = 1.0  # in which somebody who is not seen is thought to lose most of the velocity
 _SIZE_SHARE: Final = 0.2
 _SEEN_THROUGH: Final = 0.8  # share of readings behind, by which somebody is gone
 _SEEN_THROUGH_FRAMES: Final = 5
 _HIDDEN: Final = 0.5  # share of readings before somebody who is hidden
 _PARTLY_HIDDEN: Final = 0.2
+_HIDDEN_ONES: Final = (Status.PARTLY_OCCLUDED, Status.TOTALLY_OCCLUDED)
 _TENTATIVE_S: Final = 0.4
 _FLOOR_SD_M: Final = 0.035  # of one frame: gait, not the sensor
 _DEPTH_SD: Final = 0.0014  # [m/m2] of the sensor
@@ -49,13 +53,15 @@ class Life:
     def expected(self, person: Hypothesis, odometry: Odometry | None) -> Hypothesis:
         """Move a hypothesis by the robot's motion and its own."""
         filtered, place, covariance = person.filter, person.place_m, person.covariance_m2
+        velocity = person.velocity_m_s
         if odometry is not None and self.config.hypotheses.uses_odometry:
             filtered, place = filtered.carried(odometry), carried(place[None], odometry)[0]
             covariance = turned(turned(covariance, odometry).T, odometry).T
-        place = place + filtered.velocity_m_s * self.dt_s
+            velocity = turned(velocity[None], odometry)[0]
+        place = place + velocity * self.dt_s
         filtered = filtered.predicted(self.dt_s, self.config.filter, self.rng)
         grown = covariance + np.eye(2) * _DRIFT_M2_S * self.dt_s
-        return replace(person, filter=filtered, place_m=place, covariance_m2=grown)
+        return replace(person, filter=filtered, place_m=place, velocity_m_s=velocity, covariance_m2=grown)
 
     def looked_for(self, person: Hypothesis) -> tuple[Hypothesis, Update]:
         """Let a person's filter look at the images."""
@@ -65,17 +71,20 @@ class Life:
     def found(self, person: Hypothesis, update: Update, detection: Detection | None) -> Hypothesis:
         """Merge what was measured into a hypothesis (SA eq. 4.22)."""
         rules = self.config.hypotheses
+        expected = person.place_m
         is_confident = not update.is_held and update.confidence > _CONFIDENT
         if is_confident and np.hypot(*(update.place_m - person.place_m)) < rules.gate_m:
             person = replace(person, place_m=_merged(person.place_m, update.place_m, rules.filter_share))
         if detection is not None:
             person = self._measured(person, detection, is_confident=is_confident)
-        return self._judged(person, update, is_seen=detection is not None or is_confident)
+        is_seen = detection is not None or is_confident
+        return self._judged(self._walking(person, expected, is_seen=is_seen), update, is_seen=is_seen)
 
     def born(self, detection: Detection) -> Hypothesis:
         """Begin a hypothesis about what looks like a human."""
         return Hypothesis(
             place_m=detection.place_m,
+            velocity_m_s=np.zeros(2),
             covariance_m2=self._error_m2(detection),
             body=detection.body,
             filter=self._spread(detection),
@@ -91,8 +100,21 @@ class Life:
             return self.time_s - person.verified_s > _TENTATIVE_S
         if rules.has_see_through and person.seen_through >= _SEEN_THROUGH_FRAMES:
             return True
-        is_hidden = person.status is Status.TOTALLY_OCCLUDED
-        return self.time_s - person.verified_s > (rules.hidden_s if is_hidden else rules.unverified_s)
+        limit_s = rules.hidden_s if self._is_excused(person) else rules.unverified_s
+        return self.time_s - person.verified_s > limit_s
+
+    def is_claimed(self, person: Hypothesis) -> bool:
+        """Tell whether somebody is said to be there: believed in, and seen not long ago."""
+        rules = self.config.hypotheses
+        limit_s = rules.unverified_s if self._is_excused(person) else rules.missing_s
+        return person.id > 0 and self.time_s - person.seen_s <= limit_s
+
+    def _is_excused(self, person: Hypothesis) -> bool:
+        """Tell whether a person need not be seen, being hidden or outside the image."""
+        if person.status in _HIDDEN_ONES:
+            return True
+        left, _, width, _ = box_at(self.view.geometry, person.place_m, person.body)
+        return width <= 0.0 or not 0.0 <= left + width / 2.0 < self.view.depth.shape[1]
 
     def _measured(self, person: Hypothesis, detection: Detection, *, is_confident: bool) -> Hypothesis:
         rules, now = self.config.hypotheses, self.time_s
@@ -102,12 +124,20 @@ class Life:
             person,
             place_m=_merged(person.place_m, detection.place_m, share),
             covariance_m2=self._error_m2(detection),
-            seen_s=now,
             body=self._learned(person, detection, is_confident=is_confident),
             filter=person.filter if is_confident else self._spread(detection),
             verified_s=now if is_verified else person.verified_s,
             verifications=person.verifications + is_verified,
         )
+
+    def _walking(self, person: Hypothesis, expected: Floats, *, is_seen: bool) -> Hypothesis:
+        """Learn how somebody walks from how far off the expected place was; who is not seen slows down."""
+        if is_seen:
+            off = (person.place_m - expected) / max(self.dt_s, 1e-3)
+            return replace(person, velocity_m_s=person.velocity_m_s + _GAIN * off, seen_s=self.time_s)
+        slowed = person.velocity_m_s * math.exp(-self.dt_s / _SLOWS_S)
+        filtered = FloorFilter.begin(person.place_m, self.config.filter, self.rng)
+        return replace(person, velocity_m_s=slowed, filter=filtered)
 
     def _spread(self, detection: Detection) -> FloorFilter:
         return FloorFilter.begin(detection.place_m, self.config.filter, self.rng)
@@ -152,7 +182,7 @@ def _merged(old: Floats, new: Floats, share: float) -> Floats:
 
 def occluder_of(person: Hypothesis, others: Sequence[Hypothesis], view: RgbdView) -> int | None:
     """Name who of those that are nearer stands most before a person."""
-    if person.status not in (Status.PARTLY_OCCLUDED, Status.TOTALLY_OCCLUDED):
+    if person.status not in _HIDDEN_ONES:
         return None
     left, _, width, _ = box_at(view.geometry, person.place_m, person.body)
     best, most = None, 0.0

@@ -167,7 +167,7 @@ def _glances(
         found[n, 2] = (is_read & (off < -_OFF_M)).sum() / readings
         found[n, 3] = (is_read & (off > _OFF_M)).sum() / readings
         found[n, 0] = _similarity(colour, samples[:count], off, foreground_m, looks, table)
-        middle = samples[:count][is_read & (samples[:count, 3] > 0.0)]
+        middle = samples[:count][is_read & (samples[:count, 3] > 0.0) & (np.abs(off) < foreground_m)]
         if found[n, 0] > 0.0 and len(middle):
             x = ((middle[:, 0] - camera[1]) / camera[0] * middle[:, 2]).mean()
             found[n, 1] = _miss(rotation, origin, places[n], x, middle[:, 2].mean() + body[3])

@@ -32,7 +32,7 @@ SIZES: Final = {Range.NEAR: (64, 64), Range.FAR: (64, 128)}
 
 _SAFETY_M: Final = 0.1
 _BODY: Final = 104.0 / 128.0  # of a far window's height is body
-_SHOULDERS: Final = 1.3  # widths of a body in a near window
+_SHOULDERS_M: Final = 0.7  # side of a near window
 _ABOVE: Final = 0.12  # of a near window is above the head
 
 
@@ -51,7 +51,7 @@ def window_of(found: PreDetection, kind: Range, floor: HeightLine, view: DepthVi
     left, top, width, height = found.box
     middle = left + width / 2.0
     if kind is Range.NEAR:
-        side = max(_SHOULDERS * width, 8.0)
+        side = _SHOULDERS_M * view.focal_px / found.z_m
         return middle - side / 2.0, top - _ABOVE * side, side, side
     foot = float(floor.rows(np.array([found.z_m]), view)[0])
     body = max(foot - top, height)

@@ -38,8 +38,8 @@ def test_a_far_window_has_its_body_in_the_middle_104_of_128_rows() -> None:
 
 def test_a_near_window_is_a_square_about_head_and_shoulders() -> None:
     left, top, width, height = window_of(BODY, Range.NEAR, FLOOR, make_view())
-    assert width == height == pytest.approx(1.3 * 30.0)
-    assert (left + width / 2, top) == pytest.approx((165.0, 86.0 - 0.12 * 39.0))
+    assert width == height == pytest.approx(0.7 * 300.0 / 4.0)
+    assert (left + width / 2, top) == pytest.approx((165.0, 86.0 - 0.12 * 52.5))
 
 
 @pytest.mark.parametrize("kind", list(Range))

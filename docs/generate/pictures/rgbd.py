@@ -1,0 +1,102 @@
+"""How people are found in depth: floor and ceiling, the view from above, and what has the size of a human."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from docs.generate.pictures.paper import show
+from peopleboy.scenarios.drawing.palette import track_colour
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.studies.blind_drive import blind_drive
+from peopleboy.sim.cameras.depth_image import show_depth
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
+from peopleboy.tracker.rgbd.detection.depth_view import DepthView
+from peopleboy.tracker.rgbd.detection.u_depth import FARTHEST_M, depths_m
+from peopleboy.tracker.rgbd.detection.v_disparity import BIN_PX, HeightLine, v_disparity
+from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
+from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+from peopleboy.tracker.track import Track
+from peopleboy.tracker.trackers import make_tracker
+
+SCENARIO, SEED, AT_S = "crowd_8_moving", 0, 5.0
+NEAREST_M = 1.5
+FOUND, LINE = "#1b9e77", "#d95f02"
+
+
+def steps() -> Figure:
+    """Colour with tracks, depth with what was found, the v-disparity image, and the view from above."""
+    frame, view, tracks, told = _watch()
+    figure = Figure(figsize=(7.6, 5.9), layout="constrained")
+    (colour, depth), (rows, above) = figure.subplots(2, 2)
+    show(colour, frame.rgb(DEPTH_COLOUR))
+    colour.set_title("tracks", fontsize=9)
+    for track in tracks:
+        _draw(colour, track.boxes[DEPTH], tuple(c / 255 for c in track_colour(track.id)), str(track.id))
+    show(depth, show_depth(frame.depth(DEPTH)))
+    depth.set_title("size of a human; solid: looks like one", fontsize=9)
+    for one in told.detections:
+        _draw(depth, one.found.box, FOUND, "", dashed=not one.is_verified)
+    _draw_rows(rows, frame, view, told)
+    _draw_above(above, told)
+    return figure
+
+
+def _watch() -> tuple[Frame, DepthView, tuple[Track, ...], RgbdExplanation]:
+    scenario = load_scenario(SCENARIO).mounting((DEPTH,))
+    calibrations = calibrations_of(scenario.world(SEED).robot.cameras)
+    tracker = make_tracker("rgbd", np.random.default_rng(SEED))
+    assert isinstance(tracker, RgbdTracker)
+    for _, observation in blind_drive(scenario, SEED):
+        images = {name: observation.images[name] for name in (DEPTH, DEPTH_COLOUR)}
+        frame = Frame(images=images, time_s=observation.time_s, calibrations=calibrations)
+        tracks = tracker.update(frame)
+        if observation.time_s >= AT_S:
+            break
+    assert tracker.explanation is not None
+    return frame, DepthView.of(calibrations[DEPTH], DEPTH), tracks, tracker.explanation
+
+
+def _draw(axes: Axes, box: tuple[float, ...], colour: object, text: str, *, dashed: bool = False) -> None:
+    left, top, width, height = box
+    style = "--" if dashed else "-"
+    axes.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor=colour, lw=1.3, ls=style))
+    axes.text(left, top - 6, text, color=colour, fontsize=8, clip_on=True)
+
+
+def _draw_rows(axes: Axes, frame: Frame, view: DepthView, told: RgbdExplanation) -> None:
+    """Rows by disparity: the floor is a line that falls, the ceiling one that rises, people stand upright."""
+    counts = v_disparity(frame.depth(DEPTH), view)
+    last = int(view.disparity_px_m / NEAREST_M / BIN_PX)
+    axes.imshow(
+        np.log1p(counts[:, :last]), cmap="gray_r", aspect="auto", extent=(0, last * BIN_PX, 479.5, -0.5)
+    )
+    depth_m = np.linspace(NEAREST_M, FARTHEST_M, 200)
+    for line in (told.layout.floor, told.layout.ceiling):
+        if isinstance(line, HeightLine):
+            axes.plot(view.disparity_px_m / depth_m, line.rows(depth_m, view), color=LINE, lw=1.2)
+    axes.set(xlim=(0, last * BIN_PX), ylim=(479.5, -0.5), xlabel="disparity (px)", ylabel="row")
+    axes.set_title("v-disparity: floor and ceiling", fontsize=9)
+
+
+def _draw_above(axes: Axes, told: RgbdExplanation) -> None:
+    """Columns by depth, between floor and ceiling."""
+    counts = told.layout.counts
+    depth_m = depths_m(FARTHEST_M / (len(counts) - 1))
+    extent = (-0.5, counts.shape[1] - 0.5, 0.0, float(depth_m[-1]))
+    axes.imshow(np.log1p(counts), cmap="gray_r", aspect="auto", origin="lower", extent=extent)
+    for one in told.detections:
+        left, _, width, _ = one.found.box
+        low = one.found.z_m - one.found.depth_m / 2.0
+        _draw_flat(axes, (left, low, width, one.found.depth_m), dashed=not one.is_verified)
+    axes.set(xlim=extent[:2], ylim=(NEAREST_M, 10.0), xlabel="column", ylabel="depth (m)")
+    axes.set_title("view from above: size of a human", fontsize=9)
+
+
+def _draw_flat(axes: Axes, box: tuple[float, ...], *, dashed: bool) -> None:
+    left, low, width, depth = box
+    style = "--" if dashed else "-"
+    axes.add_patch(Rectangle((left, low), width, depth, fill=False, edgecolor=FOUND, lw=1.3, ls=style))
