@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.studies.depth_drives.play_drive import Moment, Stander, play_drive
-from peopleboy.scenarios.studies.depth_drives.tracker_choices import DEFAULT, make_choice
+from peopleboy.scenarios.studies.depth_drives.tracker_choices import DEFAULT, OURS, make_choice
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
@@ -152,7 +152,12 @@ def slide(image: Image, how: Slide) -> Floats:
     hog.setSVMDetector(machines.weights[how.kind])
     # Grouping by OpenCV takes minutes for the thousands of hits of near windows.
     boxes, scores = hog.detectMultiScale(
-        image, winStride=(how.shift_px, how.shift_px), padding=(8, 8), scale=how.scale, groupThreshold=0
+        image,
+        hitThreshold=0.0 if how.is_opencv else OURS.least_score,
+        winStride=(how.shift_px, how.shift_px),
+        padding=(8, 8),
+        scale=how.scale,
+        groupThreshold=0,
     )
     found = np.asarray(boxes, np.float64).reshape(-1, 4)
     kept = cv2.dnn.NMSBoxes(found.tolist(), np.ravel(scores).tolist(), 0.0, _DOUBLE) if len(found) else []
@@ -214,7 +219,7 @@ def _verified(
     for found in detections:
         kind = range_of(found.z_m, floor, view, image.shape[0])
         window = window_of(found, kind, floor, view)
-        if model.score(features(image, window, kind), kind) > 0.0:
+        if model.score(features(image, window, kind), kind) > OURS.least_score:
             yield kind, window
 
 
