@@ -79,7 +79,7 @@ def watch_drive(scenario: Scenario, seed: int, names: Iterable[str]) -> dict[str
     for moment in play_drive(scenario, seed):
         for watcher in watchers.values():
             watcher.see(moment)
-        truth += [_row(moment.number, person) for person in moment.people]
+        truth += [truth_row(moment.number, person) for person in moment.people]
         pose = moment.robot
         robot.append((round(pose.x, 3), round(pose.y, 3), round(pose.heading, 4)))
     return {name: watcher.plain() for name, watcher in watchers.items()} | {
@@ -88,7 +88,8 @@ def watch_drive(scenario: Scenario, seed: int, names: Iterable[str]) -> dict[str
     }
 
 
-def _row(frame: int, person: Stander) -> tuple[float, ...]:
+def truth_row(frame: int, person: Stander) -> tuple[float, ...]:
+    """Give frame, person, place, distance, hidden share, and whether somebody counts."""
     x, y = person.place_m
     shares = round(x, 3), round(y, 3), round(person.distance_m, 2), round(person.hidden, 3)
     return (frame, person.id, *shares, int(person.is_counted))

@@ -73,7 +73,8 @@ def _about(plan: Plan, papers: Set[str], means: Means, store: Store, seconds: fl
         "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
         "Python": platform.python_version(),
         "Seeds": f"random streams of the trackers, and webcams, 0 to {plan.repeats - 1}; people before a "
-        f"panoramic camera 0 to {plan.walks - 1}; data sets as in their files",
+        f"panoramic camera 0 to {plan.walks - 1}; drives with a depth camera 0 to {plan.drives - 1}; "
+        "data sets as in their files",
         "Machine": f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}",
         "Time": f"{seconds / 60:.1f} min for this call; {spent / 60:.1f} min of processor time in trackers",
         "Results": f"{len(store)} units of work in {RESULTS}, beside this page",
@@ -87,9 +88,15 @@ def _amount(plan: Plan, papers: Set[str]) -> str:
         return (
             f"One run per data set and of it {QUICK_S:g} s at most, {plan.repeats} repeats instead of 10, "
             "fewer values of each parameter, figure 6.6 with 200 samples instead of 1000, pairs of people "
-            f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room."
+            f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room, "
+            f"{plan.drive_s:g} s of {len(plan.sets)} of the 12 drives with a depth camera."
         )
     if papers == {"panoramic"}:
         return f"{plan.walks} films of each room, and {plan.repeats} by webcams."
+    if papers == {"situation"}:
+        return (
+            f"{plan.drives} runs of each of {len(plan.sets)} drives, {plan.ablated} where trackers differ in "
+            f"one thing or the noise is varied, {2 * plan.drives} where odometry is left out."
+        )
     total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
     return f"{plan.repeats} repeats of everything with other random numbers in the trackers. {total}."

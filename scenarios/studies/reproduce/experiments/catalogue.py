@@ -8,6 +8,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.reproduce.experiments.contents import Contents
 from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
 from peopleboy.scenarios.studies.reproduce.experiments.distances import DISTANCES, Correlations, FloorPath
+from peopleboy.scenarios.studies.reproduce.experiments.drive_figures import FIGURES
+from peopleboy.scenarios.studies.reproduce.experiments.drive_windows import WINDOWS
 from peopleboy.scenarios.studies.reproduce.experiments.drives import DRIVES
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
@@ -245,6 +247,8 @@ _ALL: tuple[Experiment, ...] = (
     *DISTANCES,
     FloorPath(),
     *DRIVES,
+    *WINDOWS,
+    *FIGURES,
 )
 
 EXPERIMENTS: dict[str, Experiment] = {experiment.id: experiment for experiment in _ALL}

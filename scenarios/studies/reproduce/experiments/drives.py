@@ -147,11 +147,11 @@ class Noise:
     def samples(self, plan: Plan, done: Done) -> Samples:
         """Give the figures by seed."""
         return {
-            Line(f"noise x {scale:g}", who): columns(
-                compared(one) | pre_detected(one) for one in _seeds(noisy_drives(plan, scale), done, who)
+            Line(f"noise x {scale:g}{name}", DEFAULT): columns(
+                compared(one) for one in _seeds(noisy_drives(plan, scale), done, who)
             )
             for scale in SCALES
-            for who in (DEFAULT, NO_CONNECTOR)
+            for name, who in (("", DEFAULT), (f", {NO_CONNECTOR}", NO_CONNECTOR))
         }
 
 
@@ -191,9 +191,8 @@ class SizeRecall:
     def samples(self, plan: Plan, done: Done) -> Samples:
         """Give the figures of all sets together, by seed."""
         return {
-            Line("pre-detection", who): columns(
-                pre_detected(one) for one in by_seed(plan, done, who, plan.sets)
-            )
+            Line(name, who): columns(measure(one) for one in by_seed(plan, done, who, plan.sets))
+            for name, measure in _BY_SIZE.items()
             for who in MAIN
         }
 
@@ -258,13 +257,6 @@ def by_seed(plan: Plan, done: Done, who: str, numbers: Sequence[int]) -> list[Dr
     return _seeds(units, done, who)
 
 
-def pre_detected(record: DriveRecord) -> Row:
-    """Give recall by the share that others hide, and what is found of nobody."""
-    names = ("recall, hidden < .1", "recall, hidden < .4", "recall, hidden < .7", "recall, hidden more")
-    recall = dict(zip(names, record.size_recall.tolist(), strict=True))
-    return recall | {"false sizes/frame": record.false_sizes / record.frames}
-
-
 def columns(rows: Iterable[Row]) -> dict[str, Floats]:
     """Turn rows of figures into columns (R,)."""
     listed = list(rows)
@@ -314,6 +306,18 @@ _TRUTHS: Final = {
         ("middle of the body", lambda record: record.error_m),
         ("surface that is seen", lambda record: record.surface_error_m),
     )
+}
+
+_BANDS: Final = ("hidden < .1", "hidden < .4", "hidden < .7", "hidden more")
+
+
+def _recall(band: int) -> Measure:
+    return lambda record: {"recall": float(record.size_recall[band])}
+
+
+_BY_SIZE: Final[Mapping[str, Measure]] = {
+    **{name: _recall(band) for band, name in enumerate(_BANDS)},
+    "nobody": lambda record: {"false sizes/frame": record.false_sizes / record.frames},
 }
 
 _WANTED: Final[Mapping[str, Callable[[DriveRecord], float]]] = {

@@ -8,6 +8,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.studies.depth_drives.play_drive import with_cameras
 from peopleboy.scenarios.studies.depth_drives.watch_drive import watch_drive
+from peopleboy.scenarios.studies.depth_drives.watch_legs import watch_legs
 from peopleboy.tracker.frame import DEPTH
 
 
@@ -43,3 +44,27 @@ class DriveUnit:
         if self.scale != 1.0:
             scenario = with_cameras(scenario, {DEPTH: {"kind": DEPTH, "scale": self.scale}})
         return watch_drive(scenario, self.seed, self.names)
+
+
+@dataclass(frozen=True, slots=True)
+class LegsUnit:
+    """Follow a person by legs and by depth and colour at the same time.
+
+    Attributes:
+        scenario: of the library, played with seed 0.
+        most_s: [s] after which the film is cut.
+    """
+
+    scenario: str
+    most_s: float
+    is_timing: bool = False
+
+    @property
+    def key(self) -> str:
+        """The film."""
+        return f"legs {self.scenario} {self.most_s:g}s"
+
+    def run(self) -> Result:
+        """Play and follow."""
+        scenario = load_scenario(self.scenario)
+        return watch_legs(scenario.lasting(min(scenario.duration_s, self.most_s)), 0)

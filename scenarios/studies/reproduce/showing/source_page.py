@@ -29,8 +29,8 @@ from peopleboy.scenarios.studies.reproduce.showing.source import Claim, SourceTa
 HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"
 MAIN = {"literal": ("literal", "room_long, random split", "room_long"), "default": ("default", "held out")}
-FINE = ("m", "|r|", "rate", "FP/frame", "figure", "from", "to")  # columns that need three decimals
-COUNTS = ("images", "TP", "FN", "parameters")  # columns that need none
+FINE = ("m", "|r|", "rate", "FP/frame", "recall", "figure", "from", "to")  # columns that need three decimals
+COUNTS = ("images", "TP", "FN", "FP", "people", "others", "parameters")  # columns that need none
 EFFECT = "d to the source (95 %)"
 
 Figures = Mapping[str, tuple[float, float | None]]
@@ -192,7 +192,6 @@ def _writer(lines: Sequence[Figures]) -> Callable[[str, tuple[float, float | Non
     """Choose how a table's figures are written: counts, times of less than 1 ms, or two or three decimals."""
     known = [mean for figures in lines for mean, _ in figures.values() if not math.isnan(mean)]
     are_counts = all(mean == round(mean) for mean in known)
-    are_times = any("ms" in figures for figures in lines)
 
     def write(column: str, figure: tuple[float, float | None] | None) -> str:
         if figure is None or math.isnan(figure[0]):
@@ -201,7 +200,7 @@ def _writer(lines: Sequence[Figures]) -> Callable[[str, tuple[float, float | Non
         if are_counts:
             return f"{mean:.0f}"
         digits = _digits(column)
-        text = f"{mean:#.2g}" if are_times and mean < 1 else f"{mean:.{digits}f}"
+        text = f"{mean:#.2g}" if column == "ms" and mean < 1 else f"{mean:.{digits}f}"
         return text if spread is None else f"{text} ± {spread:.{digits}f}"
 
     return write
