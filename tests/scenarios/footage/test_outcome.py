@@ -2,8 +2,9 @@ import re
 
 import pytest
 
+from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.outcome import outcome_lines
-from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
+from peopleboy.scenarios.footage.track_footage import Tracked
 from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.thermal.variants import VARIANTS
 from tests.helpers.calls.footage_calls import call
