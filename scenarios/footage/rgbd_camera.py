@@ -12,6 +12,8 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 VERTICAL_FOV_DEG: Final = 43.0
 """Of the sensor that the tracker was made for."""
 STEEPEST_DEG: Final = 60.0
+LEVEL_DEG: Final = 10.0
+"""Up to this tilt the tracker's boxes and places are right: it is made for a camera that looks ahead."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +44,15 @@ class RgbdCamera:
         _check("--pitch-deg", self.pitch_deg, -STEEPEST_DEG, STEEPEST_DEG)
         _check("--focal-px", self.focal_px, 0.0, 1e5)
         _check("--vertical-fov-deg", self.vertical_fov_deg, 0.0, 170.0)
+
+    @property
+    def notes(self) -> list[str]:
+        """What the tracker cannot make good."""
+        if abs(self.pitch_deg) <= LEVEL_DEG:
+            return []
+        return [
+            f"beyond {LEVEL_DEG:g} degrees of pitch boxes and places are off: the camera should look ahead"
+        ]
 
     def geometry(self, width: int, height: int) -> Pinhole:
         """Give its geometry for pictures of a size [px]; x and y begin below its lens."""

@@ -36,7 +36,8 @@ class RgbdViews:
         self._options, self._rgbd = options, rgbd
         self._counts = DepthCounts(rgbd.depth, rgbd.m_per_count)
         folders = [_folder(path, image) for path, image in _folders(options, rgbd)]
-        self.notes = list(dict.fromkeys(note for folder in folders for note in folder.notes))
+        told = [*rgbd.camera.notes, *(note for folder in folders for note in folder.notes)]
+        self.notes = list(dict.fromkeys(told))
         self._pairs = pair_up(*(folder.paths for folder in folders))
         self.expected = len(self._pairs.colour)
         if options.rate_hz is not None and self._pairs.time_s is not None:

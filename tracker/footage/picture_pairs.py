@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.wording import counted
 
 Floats = NDArray[np.float64]
 
@@ -102,9 +103,10 @@ def _check_near(paths: Sequence[Path], away_s: Floats, most_s: float) -> None:
     is_far = away_s > most_s + 1e-6  # names have no more decimals
     if not is_far.any():
         return
-    worst = int(np.argmax(is_far))
-    more = f", nor have {is_far.sum() - 1} more pictures" if is_far.sum() > 1 else ""
+    first = int(np.argmax(is_far))
+    others = int(is_far.sum()) - 1
+    more = f", and {counted(others, 'more picture')} have none either" if others else ""
     raise BadInput(
-        f"{paths[worst]}: has no depth picture within {most_s:.3f} s, half a picture's time; the nearest is "
-        f"{away_s[worst]:.3f} s away{more}; take out what has no depth"
+        f"{paths[first]}: has no depth picture within {most_s:.3f} s, half a picture's time; the nearest is "
+        f"{away_s[first]:.3f} s away{more}; take out what has no depth"
     )
