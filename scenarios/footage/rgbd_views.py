@@ -10,13 +10,12 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.overlay import Picture
 from peopleboy.scenarios.footage.checks import check_first, colour_picture
 from peopleboy.scenarios.footage.options import DEFAULT_RATE_HZ, RgbdOptions, TrackOptions
-from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.tracker.footage.depth_counts import DepthCounts
 from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.footage.odometry_file import load_odometry
 from peopleboy.tracker.footage.picture_pairs import pair_up
 from peopleboy.tracker.footage.pictures import PictureFolder, read_picture, read_row, size_of
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame, Odometry
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame, Odometry, PinholeCalibration
 
 
 class RgbdViews:
@@ -56,8 +55,7 @@ class RgbdViews:
         Raises:
             BadInput: a picture that cannot be used, or depth of another size than its colour.
         """
-        calibration = calibration_of(self._geometry)
-        assert calibration is not None
+        calibration = PinholeCalibration(self._geometry.intrinsics, self._geometry.robot_from_camera)
         colours, depths = (read_row(paths, self.notes) for paths in (self._pairs.colour, self._pairs.depth))
         for number, (colour, counts) in enumerate(zip(colours, depths, strict=True)):
             if colour.shape[:2] != counts.shape[:2]:
@@ -114,7 +112,7 @@ def _folders(options: TrackOptions, rgbd: RgbdOptions) -> tuple[tuple[Path, str]
 
 def _folder(path: Path, image: str) -> PictureFolder:
     if not path.is_dir():
-        raise BadInput(f"{path}: must be a folder of pictures, colour with --depth and depth apart")
+        raise BadInput(f"{path}: there is no such folder; colour pictures and their depth are in one each")
     if (path / "run.json").is_file():
         raise BadInput(f"{path}: is a run; give {path / image}")
     return PictureFolder(path, path.name)

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.wording import counted
 
 Floats = NDArray[np.float64]
 
@@ -104,9 +103,8 @@ def _check_near(paths: Sequence[Path], away_s: Floats, most_s: float) -> None:
     if not is_far.any():
         return
     first = int(np.argmax(is_far))
-    others = int(is_far.sum()) - 1
-    more = f", and {counted(others, 'more picture')} have none either" if others else ""
     raise BadInput(
         f"{paths[first]}: has no depth picture within {most_s:.3f} s, half a picture's time; the nearest is "
-        f"{away_s[first]:.3f} s away{more}; take out what has no depth"
+        f"{away_s[first]:.3f} s away; take out what has none (without depth: {is_far.sum()} of {len(paths)} "
+        "pictures)"
     )

@@ -43,6 +43,11 @@ def test_who_gave_black_hot_is_told_to_leave_it_out(tmp_path):
     assert "--black-hot" in outcome_lines(tracked(tracks=0), options)[1]
 
 
+def test_of_a_tracker_of_ones_own_no_heights_are_known(tmp_path):
+    options = TrackOptions(footage=tmp_path, out=tmp_path, tracker="mine:Tracker")
+    assert_names(outcome_lines(tracked(tracks=0), options)[1], "contact_sheet.png", "--black-hot")
+
+
 def test_one_is_not_a_plural(tmp_path):
     told = call(write_folder(tmp_path / "clip", 1), "--out", tmp_path / "out", "--start", START).stdout
     assert "1 frame, 1 track, " in told

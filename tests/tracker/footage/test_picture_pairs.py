@@ -66,7 +66,7 @@ def test_depth_that_is_off_by_more_than_half_a_pictures_time_is_refused(number: 
 
 def test_how_many_pictures_have_no_depth_is_told() -> None:
     colour = [f"{10 + k / 10:.3f}" for k in range(9)]
-    with refused("10.300", "5 more pictures"):
+    with refused("10.300", "6 of 9"):
         pair_up(paths("rgb", *colour), paths("depth", *colour[:3]))
 
 
