@@ -19,7 +19,7 @@ from peopleboy.tracker.track import Status
 
 _CONFIDENT: Final = 0.3
 _GAIN: Final = 0.15  # of what the place was off in a frame that goes into the velocity
-_SLOWS_S: Final = 1.0  # in which somebody who is not seen is thought to lose most of the velocity
+_SLOWS_S: Final = 2.0  # in which somebody who is not seen is thought to lose most of the velocity
 _SIZE_SHARE: Final = 0.2
 _SEEN_THROUGH: Final = 0.8  # share of readings behind, by which somebody is gone
 _SEEN_THROUGH_FRAMES: Final = 5
