@@ -113,23 +113,15 @@ class Ablations:
 
     def wants(self, plan: Plan, done: Done) -> list[Unit]:
         """Some of the sets, seen by all trackers."""
-        return missing(self._units(plan), done)
+        return missing(noisy_drives(plan, 1.0), done)
 
     def samples(self, plan: Plan, done: Done) -> Samples:
         """Give the figures by seed."""
-        units = self._units(plan)
+        units = noisy_drives(plan, 1.0)
         return {
             Line(name, DEFAULT): columns(compared(one) for one in _seeds(units, done, name))
             for name in CHOICES
         }
-
-    def _units(self, plan: Plan) -> list[DriveUnit]:
-        sets = [number for number in plan.sets if number in ABLATED]
-        return [
-            drive(plan, SETS[number - 1], seed, tuple(CHOICES))
-            for number in sets
-            for seed in range(plan.ablated)
-        ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,8 +232,8 @@ def all_drives(plan: Plan) -> list[DriveUnit]:
 
 
 def noisy_drives(plan: Plan, scale: float) -> list[DriveUnit]:
-    """List the drives on which the sensor's noise is varied."""
-    names = (DEFAULT, NO_CONNECTOR)
+    """List the drives on which the sensor's noise is varied; all trackers see them with the usual one."""
+    names = tuple(CHOICES) if scale == 1.0 else (DEFAULT, NO_CONNECTOR)
     sets = [number for number in plan.sets if number in ABLATED]
     return [drive(plan, SETS[n - 1], seed, names, scale) for n in sets for seed in range(plan.ablated)]
 
