@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
 import platform
 import time
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.store import Store
@@ -17,10 +20,12 @@ from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experim
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan
+from peopleboy.scenarios.studies.reproduce.showing.against_source import mean_and_spread
 from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, Section, section, write_page
 
 PAGE = "index.html"
 RESULTS = "units.jsonl"
+MEANS = "figures.json"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +44,7 @@ class Means:
 
 
 def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tuple[Path, list[Section]]:
-    """Do what is missing, and write the page.
+    """Do what is missing, and write the page, and the means of all figures beside it.
 
     Whoever is killed begins again with the same folder: results that are there are taken from there.
 
@@ -54,11 +59,25 @@ def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tu
     store = open_store(means.out / RESULTS)
     while wanted := unique_units(experiments, plan, store):
         run_units(wanted, store, means.workers)
-    sections = [section(Outcome.of(one, plan, store)) for one in experiments]
+    outcomes = [Outcome.of(one, plan, store) for one in experiments]
+    sections = [section(one) for one in outcomes]
+    (means.out / MEANS).write_text(json.dumps(_means(outcomes), indent=1) + "\n", encoding="utf-8")
     page = means.out / PAGE
     papers = {paper_of(one.id) for one in experiments}
     write_page(page, sections, _about(plan, papers, means, store, time.monotonic() - start))
     return page, sections
+
+
+def _means(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """Give the mean of every figure by experiment, group, whose it is, and column; None for NaN."""
+    tables: dict[str, Any] = {}
+    for outcome in outcomes:
+        table = tables.setdefault(outcome.experiment.id, {})
+        for line, figures in outcome.samples.items():
+            row = {name: mean_and_spread(values)[0] for name, values in figures.items()}
+            plain = {name: None if math.isnan(mean) else mean for name, mean in row.items()}
+            table.setdefault(line.group, {})[line.who] = plain
+    return tables
 
 
 def unique_units(experiments: Sequence[Experiment], plan: Plan, store: Store) -> list[Unit]:

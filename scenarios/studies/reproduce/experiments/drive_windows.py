@@ -175,7 +175,13 @@ def _slid(plan: Plan) -> SlideUnit:
 
 def _tallied(plain: Mapping[str, Any]) -> Row:
     rate = plain["found"] / plain["people"] if plain["people"] else float("nan")
-    return {"ms": plain["ms"], "rate": rate, "FP": plain["false"], "images": plain["images"]}
+    return {
+        "ms": plain["ms"],
+        "rate": rate,
+        "FP": plain["false"],
+        "FP per image": plain["false"] / plain["images"],
+        "images": plain["images"],
+    }
 
 
 def _numbers(config: type[Any]) -> int:

@@ -39,7 +39,7 @@ def tracked(record: DriveRecord) -> Row:
     """Give table 4.1's figures."""
     return {
         "images": record.frames,
-        "FP/frame": record.false_per_frame(),
+        "FP per image": record.false_per_frame(),
         "TP": record.found(),
         "FN": record.missed,
         "rate": record.rate(),
@@ -51,7 +51,7 @@ def compared(record: DriveRecord) -> Row:
     """Give the figures by which trackers are compared."""
     return {
         "rate": record.rate(),
-        "FP/frame": record.false_per_frame(),
+        "FP per image": record.false_per_frame(),
         "switches": record.switches,
         "mean [m]": _mean(record.error_m),
         "median [m]": _median(record.error_m),
@@ -283,7 +283,7 @@ def _truth(radius_m: float, errors: Callable[[DriveRecord], Floats]) -> Measure:
         off = off[off <= radius_m]
         return {
             "rate": record.rate(radius_m),
-            "FP/frame": record.false_per_frame(radius_m),
+            "FP per image": record.false_per_frame(radius_m),
             "mean [m]": _mean(off),
             "median [m]": _median(off),
         }
@@ -309,16 +309,16 @@ def _recall(band: int) -> Measure:
 
 _BY_SIZE: Final[Mapping[str, Measure]] = {
     **{name: _recall(band) for band, name in enumerate(_BANDS)},
-    "nobody": lambda record: {"false sizes/frame": record.false_sizes / record.frames},
+    "nobody": lambda record: {"false sizes per image": record.false_sizes / record.frames},
 }
 
 _WANTED: Final[Mapping[str, Callable[[DriveRecord], float]]] = {
     "rate": DriveRecord.rate,
-    "FP/frame": DriveRecord.false_per_frame,
+    "FP per image": DriveRecord.false_per_frame,
     "error, mean [m]": lambda record: _mean(record.error_m),
     "error, median [m]": lambda record: _median(record.error_m),
     "recall of the pre-detection, hidden < .1": lambda record: float(record.size_recall[0]),
-    "false sizes/frame": lambda record: record.false_sizes / record.frames,
+    "false sizes per image": lambda record: record.false_sizes / record.frames,
 }
 
 

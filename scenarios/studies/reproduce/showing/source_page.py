@@ -32,7 +32,16 @@ MAIN = {
     "literal": ("literal", "as printed", "room_long, random split", "room_long"),
     "default": ("default", "held out"),
 }
-FINE = ("m", "|r|", "rate", "FP/frame", "recall", "figure", "from", "to")  # columns that need three decimals
+FINE = (
+    "m",
+    "|r|",
+    "rate",
+    "FP per image",
+    "recall",
+    "figure",
+    "from",
+    "to",
+)  # columns that need three decimals
 COUNTS = ("images", "TP", "FN", "FP", "people", "others", "parameters")  # columns that need none
 EFFECT = "d to the source (95 %)"
 

@@ -30,12 +30,12 @@ from peopleboy.scenarios.studies.reproduce.experiments.experiment import (
     Outcome,
     Samples,
 )
-from peopleboy.scenarios.studies.reproduce.experiments.tracking import Tracking
+from peopleboy.scenarios.studies.reproduce.experiments.tracking import THESIS, Tracking
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import BASES, Setting, changed
 from peopleboy.scenarios.studies.reproduce.measuring.units import RECORDS, TrackUnit, restored
 from peopleboy.scenarios.studies.reproduce.measuring.window_units import MACHINES
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan, full_plan
-from peopleboy.scenarios.studies.reproduce.reproduce import RESULTS, Means, reproduce
+from peopleboy.scenarios.studies.reproduce.reproduce import MEANS, RESULTS, Means, reproduce
 from peopleboy.scenarios.studies.reproduce.showing.against_source import ClaimStatus, judge, paired_t_test
 from peopleboy.scenarios.studies.reproduce.showing.print_sections import print_sections
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim, source_tables
@@ -148,7 +148,7 @@ def test_goals_are_reached_or_not_by_what_was_measured() -> None:
     figures = {line.group: figures["figure"].tolist() for line, figures in samples.items()}
     assert figures["rate"] == figures["rate of the worst set"] == [0.75]
     assert figures["error, mean [m]"] == pytest.approx([0.1])
-    assert figures["false sizes/frame"] == pytest.approx([1.0 / 3.0])
+    assert figures["false sizes per image"] == pytest.approx([1.0 / 3.0])
     assert figures["rate in turns, gained by odometry"] == [0.0]
 
 
@@ -311,6 +311,9 @@ def test_a_little_of_everything_becomes_a_page_and_is_done_once(tmp_path: Path) 
     chosen = choose(["3.1", "4.1", "4.8", "5.5", "figure-7.3", "paper-table-3"])
     page, _ = reproduce(chosen, plan, Means(out=tmp_path))
     assert read(page)[1].ids >= {one.id for one in chosen}
+    means = json.loads((tmp_path / MEANS).read_text())
+    assert set(means) == {one.id for one in chosen}
+    assert means["figure-4.8"]["dataset1"]["default"].keys() == set(THESIS)
     done = [json.loads(line)["key"] for line in (tmp_path / RESULTS).read_text().splitlines()]
     assert len(done) == len(set(done)) > 30
     assert reproduce(chosen, plan, Means(out=tmp_path))[0] == page
