@@ -49,7 +49,7 @@ class Stander:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Moment:
+class DriveMoment:
     """One instant of a drive.
 
     Attributes:
@@ -67,7 +67,7 @@ class Moment:
     observation: Observation
 
 
-def play_drive(scenario: Scenario, seed: int) -> Iterator[Moment]:
+def play_drive(scenario: Scenario, seed: int) -> Iterator[DriveMoment]:
     """Play a scenario, and yield every image of the depth camera, which is mounted if there is none.
 
     Raises:
@@ -85,7 +85,7 @@ def play_drive(scenario: Scenario, seed: int) -> Iterator[Moment]:
         frame = make_frame(observation, calibrations, before)
         before = observation.odometry
         truth = world.truth(DEPTH)
-        yield Moment(number, frame, tuple(_standers(truth, view)), truth.robot, observation)
+        yield DriveMoment(number, frame, tuple(_standers(truth, view)), truth.robot, observation)
 
 
 def with_cameras(scenario: Scenario, cameras: Mapping[str, Mapping[str, object]]) -> Scenario:

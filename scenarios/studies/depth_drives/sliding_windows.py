@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.studies.depth_drives.play_drive import Moment, Stander, play_drive
+from peopleboy.scenarios.studies.depth_drives.play_drive import DriveMoment, Stander, play_drive
 from peopleboy.scenarios.studies.depth_drives.tracker_choices import DEFAULT, OURS, make_choice
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.boxes import iou
@@ -89,7 +89,7 @@ _Window = tuple[Range, Box]
 
 
 @dataclass(frozen=True, slots=True)
-class _Person:
+class _Sought:
     """Windows that somebody should be in, by range; in which range the person is; whether in plain view."""
 
     windows: Mapping[Range, Box]
@@ -98,7 +98,7 @@ class _Person:
 
 
 @dataclass(slots=True, eq=False)
-class Tally:
+class WindowTally:
     """How a detector does: times of images [ms], people there, people found, and windows on nobody."""
 
     times_ms: list[float] = field(default_factory=list)
@@ -106,7 +106,7 @@ class Tally:
     found: int = 0
     false: int = 0
 
-    def add(self, windows: Sequence[_Window], people: Sequence[_Person], kinds: Sequence[Range]) -> None:
+    def add(self, windows: Sequence[_Window], people: Sequence[_Sought], kinds: Sequence[Range]) -> None:
         """Take in an image: what was found, and who is there; only people in some ranges must be found."""
         matches = [[_is_on(window, person) for window in windows] for person in people]
         wanted = [number for number, person in enumerate(people) if person.is_plain and person.kind in kinds]
@@ -166,9 +166,9 @@ def slide(image: Image, how: Slide) -> Floats:
 
 class _Comparison:
     def __init__(self) -> None:
-        self.slides = {how: Tally() for how in (*FAR_SLIDES, *NEAR_SLIDES)}
-        self.by_size: dict[tuple[Range, ...], Tally] = {
-            kinds: Tally() for kinds in (tuple(Range), (Range.FAR,), (Range.NEAR,))
+        self.slides = {how: WindowTally() for how in (*FAR_SLIDES, *NEAR_SLIDES)}
+        self.by_size: dict[tuple[Range, ...], WindowTally] = {
+            kinds: WindowTally() for kinds in (tuple(Range), (Range.FAR,), (Range.NEAR,))
         }
         self.parts: dict[str, list[float]] = {name: [] for name in PARTS}
         self.detector = PreDetector(HumanSize(), UDepthConfig())
@@ -192,7 +192,7 @@ class _Comparison:
         return tallies | {"parts": {name: float(np.median(times)) for name, times in self.parts.items()}}
 
     def _look_by_size(
-        self, moment: Moment, people: Sequence[_Person], view: DepthView
+        self, moment: DriveMoment, people: Sequence[_Sought], view: DepthView
     ) -> tuple[float, float]:
         image = moment.frame.rgb(DEPTH_COLOUR)
         with _timed() as sizes:
@@ -204,7 +204,7 @@ class _Comparison:
             tally.add(windows, people, kinds)
         return sizes[0], looks[0]
 
-    def _slide(self, moment: Moment, people: Sequence[_Person]) -> None:
+    def _slide(self, moment: DriveMoment, people: Sequence[_Sought]) -> None:
         for how, tally in self.slides.items():
             with _timed() as spent:
                 found = slide(moment.frame.rgb(DEPTH_COLOUR), how)
@@ -223,7 +223,7 @@ def _verified(
             yield kind, window
 
 
-def _people(moment: Moment, view: DepthView) -> list[_Person]:
+def _people(moment: DriveMoment, view: DepthView) -> list[_Sought]:
     """Place windows on everybody, by the truth."""
     floor = HeightLine(view.horizon_px / view.focal_px, view.height_m)
     return [
@@ -233,7 +233,7 @@ def _people(moment: Moment, view: DepthView) -> list[_Person]:
     ]
 
 
-def _person(person: Stander, view: DepthView, floor: HeightLine, shape: tuple[int, ...]) -> _Person:
+def _person(person: Stander, view: DepthView, floor: HeightLine, shape: tuple[int, ...]) -> _Sought:
     assert person.whole_box is not None
     left, top, width, height = person.whole_box
     z_m = person.place_m[0] - view.calibration.position_m[0] - _FRONT_M
@@ -248,14 +248,14 @@ def _person(person: Stander, view: DepthView, floor: HeightLine, shape: tuple[in
         depth_m=0.0,
         probability=1.0,
     )
-    return _Person(
+    return _Sought(
         windows={kind: window_of(body, kind, floor, view) for kind in Range},
         kind=range_of(z_m, floor, view, shape[0]),
         is_plain=person.is_counted and person.hidden < _HIDDEN and 0.0 <= middle < shape[1],
     )
 
 
-def _is_on(window: _Window, person: _Person) -> bool:
+def _is_on(window: _Window, person: _Sought) -> bool:
     kind, box = window
     return float(iou(np.array(box), np.array(person.windows[kind]))) > _OVERLAP
 

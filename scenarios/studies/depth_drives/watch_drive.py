@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.studies.depth_drives.play_drive import Moment, Stander, play_drive
+from peopleboy.scenarios.studies.depth_drives.play_drive import DriveMoment, Stander, play_drive
 from peopleboy.scenarios.studies.depth_drives.score_drive import RADIUS_M, DriveScore, match
 from peopleboy.scenarios.studies.depth_drives.tracker_choices import CHOICES, make_choice
 from peopleboy.sim.random_streams import stream
@@ -38,7 +38,7 @@ class Watcher:
         self._false = 0
         self._told: list[tuple[float, ...]] = []
 
-    def see(self, moment: Moment) -> None:
+    def see(self, moment: DriveMoment) -> None:
         """Take in an instant."""
         start = time.process_time()
         said = self.tracker.update(moment.frame)

@@ -83,7 +83,7 @@ class SetTable:
 
 
 @dataclass(frozen=True, slots=True)
-class Distances:
+class Truths:
     """Rates and errors by what is called found, and by what is called the truth."""
 
     id: str = "situation-positions"
@@ -348,7 +348,7 @@ def _gain(pairs: Sequence[tuple[DriveRecord, DriveRecord]]) -> float:
 DRIVES = (
     SetTable("situation-table-4.1", tracked),
     SetTable("situation-table-B.1", errors_along),
-    Distances(),
+    Truths(),
     Ablations(),
     Noise(),
     Turning(),
