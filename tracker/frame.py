@@ -17,6 +17,8 @@ Floats = NDArray[np.float64]
 THERMAL: Final = "thermal"
 COLOUR: Final = "colour"
 PANORAMA: Final = "panorama"
+DEPTH: Final = "depth"
+DEPTH_COLOUR: Final = "depth_colour"
 
 
 class Calibration(Protocol):
@@ -113,8 +115,9 @@ class Frame:
 
     Attributes:
         images: by the camera's name, such as `thermal`, (H, W) uint8 grey, linear over 24..36 degC by
-            default, and `colour`, (H, W, 3) uint8 RGB; their sizes may differ. A camera that takes no image
-            at this instant is left out. An image may be made only when it is asked for.
+            default, `colour`, (H, W, 3) uint8 RGB, and `depth`, (H, W) uint16 along the optical axis [mm],
+            0 where none is read; their sizes may differ. A camera that takes no image at this instant is
+            left out. An image may be made only when it is asked for.
         calibrations: of those cameras whose place on the robot is known, by name; none for footage.
         time_s: when the images were taken [s].
         odometry: how the robot moved since the last frame; None if unknown.
@@ -152,6 +155,16 @@ class Frame:
         _check_image(f"{camera} image must be (H, W, 3) uint8", image, 3)
         return image
 
+    def depth(self, camera: str) -> NDArray[np.uint16]:
+        """Read the (H, W) depth image [mm] of a camera, along its optical axis; 0 where none is read.
+
+        Raises:
+            BadInput: there is none, or it has another shape or type.
+        """
+        image = self._image(camera)
+        _check_image(f"{camera} image must be (H, W) uint16", image, 2, np.uint16)
+        return image
+
     def _image(self, camera: str) -> NDArray[Any]:
         if camera not in self.images:
             raise BadInput(
@@ -165,9 +178,11 @@ def _check_finite(name: str, value: float) -> None:
         raise BadInput(f"{name} must be a finite number, got {value}")
 
 
-def _check_image(rule: str, image: object, dimensions: int) -> None:
+def _check_image(
+    rule: str, image: object, dimensions: int, dtype: type[np.unsignedinteger[Any]] = np.uint8
+) -> None:
     if not isinstance(image, np.ndarray):
         raise BadInput(f"{rule}, got {type(image).__name__}")
     is_right_shape = image.ndim == dimensions and image.size > 0 and (dimensions == 2 or image.shape[2] == 3)
-    if not is_right_shape or image.dtype != np.uint8:
+    if not is_right_shape or image.dtype != dtype:
         raise BadInput(f"{rule}, got {image.shape} {image.dtype}")

@@ -164,8 +164,9 @@ class ContactSheet:
     def _further_picture(self, shot: Shot, beside: int, moment: Moment) -> Picture:
         """Draw what a further camera saw, with tracks, truth where it has boxes, name and how old it is."""
         scale = _fitting_scale(shot.image, _share(beside))
-        picture, camera = enlarge(show_image(shot.image), scale), self._robot.cameras[shot.camera].camera
-        if kind_of(self._robot.cameras[shot.camera]).has_boxes:
+        config = self._robot.cameras[shot.camera]
+        picture, camera = enlarge(show_image(shot.image, config), scale), config.camera
+        if kind_of(config).has_boxes:
             plates: list[Plate] = []
             picture = self._with_tracks(shot.camera, picture, shot.tracks, scale, None, plates)
             picture = draw_truth(picture, people_parts(shot.people, camera), scale, plates=plates)

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,14 +44,14 @@ class Shot:
     Attributes:
         camera: its name.
         time_s: [s] when it was taken.
-        image: (H, W) or (H, W, 3).
+        image: (H, W) or (H, W, 3), as the camera gave it.
         people: what was true in it.
         tracks: what the tracker made of it.
     """
 
     camera: str
     time_s: float
-    image: NDArray[np.uint8]
+    image: NDArray[Any]
     people: tuple[PersonTruth, ...]
     tracks: tuple[Track, ...]
 

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Protocol
+from typing import Any, Protocol
 
 import cv2
 import numpy as np
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.contour_lines import lines_of
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
 from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.kinds import shown_to_people
 from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import around_px
@@ -78,9 +79,10 @@ def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
     return np.asarray(cv2.cvtColor(cv2.applyColorMap(thermal, colours), cv2.COLOR_BGR2RGB), np.uint8)
 
 
-def show_image(image: NDArray[np.uint8]) -> Picture:
-    """Turn a camera's image, (H, W) grey or (H, W, 3) RGB, into a picture of the same size."""
-    return show_thermal(image) if image.ndim == 2 else image
+def show_image(image: NDArray[Any], config: CameraConfig) -> Picture:
+    """Turn a camera's image into a picture of the same size, as its kind is shown to people."""
+    shown = shown_to_people(image, config)
+    return show_thermal(shown) if shown.ndim == 2 else shown
 
 
 def encode_jpeg(image: NDArray[np.uint8], quality: int, *, has_own_codes: bool = True) -> bytes:

@@ -49,7 +49,8 @@ def observation_space(kind: str, robot: RobotConfig) -> spaces.Space[Arrays]:
     `sonar` is (16,) [m], counted from the left to the front and round; `odometry` is (6,): x, y [m] from the
     start in its frame, cosine and sine of the heading since the start, forward speed [m/s], turn rate
     [rad/s]. `pixels` has the newest image of each camera beside them by its name, (H, W, 1) or (H, W, 3)
-    uint8, such as `thermal` and `colour`; `tracks` and `truth` have `tracks` (35,), five rows of `COLUMNS`.
+    uint8, such as `thermal` and `colour`, or of a depth camera (H, W, 1) uint16 [mm]; `tracks` and `truth`
+    have `tracks` (35,), five rows of `COLUMNS`.
     """
     sonar = robot.sonar
     odometry = np.array([_FARTHEST_M, _FARTHEST_M, 1.0, 1.0, _FASTEST, _FASTEST], np.float32)
@@ -59,7 +60,8 @@ def observation_space(kind: str, robot: RobotConfig) -> spaces.Space[Arrays]:
     }
     if kind == "pixels":
         for name, camera in robot.cameras.items():
-            found[name] = spaces.Box(0, 255, _shape(camera), np.uint8)
+            dtype = kind_of(camera).dtype
+            found[name] = spaces.Box(0, int(np.iinfo(dtype).max), _shape(camera), dtype)
     else:
         lowest, highest = (np.tile(np.array(row, np.float32), MOST_TRACKS) for row in (_LOWEST, _HIGHEST))
         found["tracks"] = spaces.Box(lowest, highest, dtype=np.float32)

@@ -96,7 +96,7 @@ def _picture(tick: Tick, camera: str, robot: RobotConfig) -> Picture:
     """Draw the image of a camera, tracks where they are known, and truth."""
     image = tick.observation.images[camera]
     scale = min(HEIGHT_PX / image.shape[0], _WIDEST_PX / image.shape[1])
-    picture, plates = enlarge(show_image(image), scale), list[Plate]()
+    picture, plates = enlarge(show_image(image, robot.cameras[camera]), scale), list[Plate]()
     picture = draw_tracks_of(camera, picture, tick.tracks, robot.cameras, scale, tick.explanation, plates)
     if kind_of(robot.cameras[camera]).has_boxes:
         people = people_parts(tick.truths[camera].people, robot.cameras[camera].camera)

@@ -46,7 +46,8 @@ def _camera(name: str, spec: CameraSpec) -> CameraConfig:
             geometry["mirror"] = _mirror(mirror)
     for unknown in geometry.keys() - {field.name for field in fields(usual.camera)}:
         raise BadInput(f"{name}.{_KEYS[unknown]}: a camera of the kind {kind!r} has none; leave it out")
-    return replace(usual, camera=replace(usual.camera, **geometry), **given)
+    with found_in(name):
+        return replace(usual, camera=replace(usual.camera, **geometry), **given)
 
 
 def _mirror(said: str | dict[str, float]) -> Mirror:

@@ -109,10 +109,11 @@ def active(faults: Sequence[FaultSpec], time_s: float) -> dict[str, float]:
 
 
 def _blackened(image: NDArray[Any]) -> NDArray[Any]:
-    """Darken an 8-bit image; what is not 8-bit is beside it, and stays."""
-    if image.dtype != np.uint8:
+    """Darken an 8-bit image, and let depth read nothing; what has numbers beside an image stays."""
+    if image.dtype not in (np.uint8, np.uint16):
         return image
-    return image & np.uint8(1) if image.ndim == 2 else np.zeros_like(image)  # dead grey still flickers
+    is_grey = image.ndim == 2 and image.dtype == np.uint8
+    return image & np.uint8(1) if is_grey else np.zeros_like(image)  # dead grey still flickers
 
 
 def _jumped(pose: Planar, lasted_s: float) -> Planar:

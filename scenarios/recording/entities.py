@@ -6,6 +6,7 @@ world/robot/thermal/...     image, tracks with evidence, particles, truth
 world/robot/colour/...      image, tracks, truth
 world/robot/CAMERA/...      image, truth, and tracks if they have boxes there, of any further camera
 world/robot/CAMERA/explained  what the tracker explains of that image: the empty scene, and lines
+world/points/CAMERA         what a depth camera sees, as points with their colours
 world/robot/places          where on the floor the tracker takes people to be, with 95 % ellipses
 world/people/NAME/body      capsules, and the name
 world/occlusions            arrows from who hides to who is hidden
@@ -46,6 +47,11 @@ BACKGROUND: Final = "explained/background"
 def camera_path(name: str) -> str:
     """Give the entity of a camera."""
     return f"world/robot/{name}"
+
+
+def points_path(camera: str) -> str:
+    """Give the entity of the points that a depth camera sees."""
+    return f"world/points/{camera}"
 
 
 def person_path(name: str) -> str:

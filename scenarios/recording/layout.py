@@ -17,6 +17,7 @@ from peopleboy.scenarios.recording.entities import (
     TRAILS,
     camera_path,
 )
+from peopleboy.sim.cameras.camera_config import DepthConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
@@ -95,6 +96,10 @@ def _world_view(config: WorldConfig) -> rrb.Spatial3DView:
         f"- {camera_path(name)}/image"
         for name, camera in cameras.items()
         if not isinstance(camera.camera, Pinhole)
+    ]
+    # The points of a depth image are there by themselves, in their own colours.
+    overlays += [
+        f"- {camera_path(name)}/image" for name, camera in cameras.items() if isinstance(camera, DepthConfig)
     ]
     return rrb.Spatial3DView(
         origin="world",

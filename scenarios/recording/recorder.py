@@ -8,6 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+import cv2
 import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ from peopleboy.scenarios.recording.entities import (
     TRAILS,
     camera_path,
     person_path,
+    points_path,
 )
 from peopleboy.scenarios.recording.explanations import explained_lines, explained_points
 from peopleboy.scenarios.recording.layout import lay_out
@@ -36,16 +38,19 @@ from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_
 from peopleboy.scenarios.recording.rows import RowBuffer
 from peopleboy.scenarios.recording.sketches import explained_sketches
 from peopleboy.scenarios.recording.still import Still
-from peopleboy.sim.cameras.kinds import kind_of, with_boxes
+from peopleboy.sim.cameras.camera_config import DepthConfig
+from peopleboy.sim.cameras.depth_image import points_of
+from peopleboy.sim.cameras.kinds import kind_of, shown_to_people, with_boxes
 from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.geometry.pinhole import Matrix, transform
 from peopleboy.sim.geometry.planar import Planar
 
 APPLICATION = "peopleboy"
 
 _FRAMES_SENT_TOGETHER = 15
 _JPEG_QUALITY = {1: 60, 3: 45}  # by channels
+_POINTS = 10_000  # about, of a depth image
 _NAME_HEIGHT = 1.0 / 15.0  # [image heights] of names above boxes
 _GRAVE = ("contact", "lost")
 
@@ -136,9 +141,25 @@ class Recorder:
     def _log_images(self, tick: Tick) -> None:
         images = tick.observation.images
         for name in (name for name in self._cameras if name in images):
-            quality = _JPEG_QUALITY[kind_of(self._cameras[name]).channels]
+            config = self._cameras[name]
+            if isinstance(config, DepthConfig):
+                self._log_depth(name, config, tick)
+                continue
+            quality = _JPEG_QUALITY[kind_of(config).channels]
             blob = encode_jpeg(images[name], quality, has_own_codes=False)
             self._rows.add(f"{camera_path(name)}/image", rr.EncodedImage, blob=[blob])
+
+    def _log_depth(self, name: str, config: DepthConfig, tick: Tick) -> None:
+        """Log a depth image without loss, and the points that it stands for where they are in the world."""
+        images = tick.observation.images
+        blob = cv2.imencode(".png", images[name], [cv2.IMWRITE_PNG_COMPRESSION, 1])[1].tobytes()
+        self._rows.add(f"{camera_path(name)}/image", rr.EncodedDepthImage, blob=[blob])
+        colour = images[f"{name}_colour"] if config.colour else shown_to_people(images[name], config)
+        every = max(round(math.sqrt(images[name].size / _POINTS)), 1)
+        places, pixels = points_of(images[name], config.camera, every)
+        world = transform(tick.truths[name].world_from_camera, places.astype(np.float64))
+        colours = colour[pixels[:, 0], pixels[:, 1]]
+        self._rows.add(points_path(name), rr.Points3D, positions=rounded(world, METRE_STEP), colors=colours)
 
     def _log_tracks(self, tick: Tick) -> None:
         contours = explained_lines(tick.explanation, tick)

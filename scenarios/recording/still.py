@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import rerun as rr
-from rerun.components import FillMode
+from rerun.components import Colormap, FillMode
 
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
 from peopleboy.scenarios.recording.entities import (
@@ -19,10 +19,11 @@ from peopleboy.scenarios.recording.entities import (
     TRAILS,
     camera_path,
     person_path,
+    points_path,
 )
 from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
+from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import ShapeKind
@@ -31,6 +32,7 @@ _ROBOT_CURVES = {
     "curves/motion/speed": (("speed [m/s]", "speed asked for"), ((86, 180, 233), (52, 108, 140))),
     "curves/motion/turn_rate": (("turn rate [rad/s]", "turn rate asked for"), ((230, 159, 0), (138, 95, 0))),
 }
+_POINT_M = 0.02
 
 
 class Still:
@@ -52,7 +54,9 @@ class Still:
         own = {"thermal": (on_thermal, 1.4), "colour": (ON_COLOUR, 0.8)}
         for name, camera in config.robot.cameras.items():
             layers, reach_m = own.get(name, (ON_FURTHER, 0.8))
-            self._log_camera(camera_path(name), camera.camera, layers, reach_m)
+            self._log_camera(camera_path(name), camera, layers, reach_m)
+            if isinstance(camera, DepthConfig):
+                self._log(points_path(name), rr.Points3D.from_fields(radii=[_POINT_M]))
         self._log(PLACES, rr.Ellipsoids3D.from_fields(fill_mode=FillMode.MajorWireframe))
         self._log(TRAILS, rr.LineStrips3D.from_fields(radii=[0.02]))
         self._log(OCCLUSIONS, rr.Arrows3D.from_fields(radii=[0.03]))
@@ -81,15 +85,26 @@ class Still:
             alike = [solid for solid in solids if solid.kind is kind]
             self._log(f"{path}/{kind.name.lower()}", _shape(kind, alike, fill))
 
-    def _log_camera(self, path: str, camera: CameraGeometry, layers: Sequence[str], reach_m: float) -> None:
+    def _log_camera(self, path: str, config: CameraConfig, layers: Sequence[str], reach_m: float) -> None:
+        camera = config.camera
         pose = camera.robot_from_camera
         frame = rr.Transform3D(translation=pose[:3, 3], mat3x3=pose[:3, :3])
         self._log(path, frame, *([_pinhole(camera, reach_m)] if isinstance(camera, Pinhole) else []))
-        self._log(f"{path}/image", rr.EncodedImage.from_fields(media_type="image/jpeg"))
+        self._log(f"{path}/image", _picture(config))
         for layer in layers:
             archetype, radius = LAYERS[layer]
             more = {"show_labels": False} if archetype is rr.Arrows2D else {}
             self._log(f"{path}/{layer}", archetype.from_fields(radii=rr.Radius.ui_points([radius]), **more))
+
+
+def _picture(config: CameraConfig) -> rr.AsComponents:
+    """Say how images of a camera are packed, and coloured if they are of depth [mm]."""
+    if not isinstance(config, DepthConfig):
+        return rr.EncodedImage.from_fields(media_type="image/jpeg")
+    reach_mm = 1000.0 * np.array([config.nearest_m, config.farthest_m])
+    return rr.EncodedDepthImage.from_fields(
+        media_type="image/png", meter=1000.0, colormap=Colormap.Turbo, depth_range=reach_mm
+    )
 
 
 def _pinhole(camera: Pinhole, reach_m: float) -> rr.Pinhole:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Self
+from typing import ClassVar, Final, Literal, Self, get_args
 
+from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
@@ -14,12 +15,23 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 COLOUR_BASELINE_M = 0.06
 COLOUR_ZOOM = 1.2
 
+DEPTH_BASELINE_M: Final = 0.075  # from the projector of a structured-light sensor to its camera
+_DEPTH_ROWS = 480  # that such a sensor has, however many of them an image has
+
+FARTHEST_M: Final = 65.0  # that 16 bits of millimetres hold
+
+DepthSensorName = Literal["kinect", "tof"]
+
 
 def _colour_camera() -> Pinhole:
     thermal = Pinhole()
     x, y, z = thermal.position_m
     half_angle = math.atan(math.tan(thermal.vertical_fov_rad / 2.0) / COLOUR_ZOOM)
     return Pinhole(vertical_fov_rad=2.0 * half_angle, position_m=(x, y + COLOUR_BASELINE_M, z))
+
+
+def _depth_camera() -> Pinhole:
+    return Pinhole(width=640, height=480, vertical_fov_rad=math.radians(43.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,3 +136,50 @@ class PanoramaConfig(LightConfig):
 
     camera: Panorama = field(default_factory=Panorama)
     raw: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DepthConfig(LightConfig):
+    """A camera that measures depth, and sees colours through the same lens: an RGB-D camera.
+
+    Attributes:
+        sensor: "kinect", structured light, whose noise is in disparity; or "tof", time of flight.
+        scale: of the noise: 0 for exact depth without holes, 1 as it usually is.
+        nearest_m, farthest_m: [m] depths that it can measure.
+        colour: whether it gives colour, too.
+
+    Raises:
+        BadInput: no such sensor, a negative scale, or no depths that it can measure.
+    """
+
+    kind: ClassVar[str] = "depth"
+
+    camera: Pinhole = field(default_factory=_depth_camera)
+    sensor: DepthSensorName = "kinect"
+    scale: float = 1.0
+    nearest_m: float = 0.5
+    farthest_m: float = 10.0
+    colour: bool = True
+
+    def __post_init__(self) -> None:
+        """Refuse what no sensor does."""
+        if self.sensor not in get_args(DepthSensorName):
+            known = ", ".join(get_args(DepthSensorName))
+            raise BadInput(f"no such sensor: {self.sensor!r}; choose from {known}", key=("sensor",))
+        if not 0.0 <= self.scale < math.inf:
+            raise BadInput(f"{self.scale} must be 0 or more, and finite", key=("scale",))
+        if not 0.0 <= self.nearest_m < self.farthest_m <= FARTHEST_M:
+            raise BadInput(
+                f"{self.farthest_m} must be more than nearest_m, {self.nearest_m}, and at most {FARTHEST_M}",
+                key=("farthest_m",),
+            )
+
+    @property
+    def disparity_px_m(self) -> float:
+        """Disparity [px] of what is 1 m away, in pixels of the sensor, which has 480 rows."""
+        return self.camera.focal_px * _DEPTH_ROWS / self.camera.height * DEPTH_BASELINE_M
+
+    def noisier(self, factor: float) -> Self:
+        """The same camera with so many times the noise, of depth and of colour."""
+        brighter = LightConfig.noisier(self, factor)
+        return replace(brighter, scale=factor * self.scale)

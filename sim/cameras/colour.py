@@ -7,7 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import rotation_blur
-from peopleboy.sim.cameras.camera_config import ColourConfig, LightConfig
+from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, LightConfig
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
 from peopleboy.sim.geometry.pinhole import Matrix
@@ -67,7 +67,7 @@ _GAMMA = _gamma_table()
 def colour_image(
     view: View,
     materials: MaterialTable,
-    config: ColourConfig,
+    config: ColourConfig | DepthConfig,
     world_from_camera: Matrix,
     world_from_part: Matrix,
     light_level: float,

@@ -11,8 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, PanoramaConfig, ThermalConfig
-from peopleboy.sim.cameras.sensors import ColourSensor, Image, PanoramaSensor, Sensor, ThermalSensor
+from peopleboy.sim.cameras.camera_config import (
+    CameraConfig,
+    ColourConfig,
+    DepthConfig,
+    PanoramaConfig,
+    ThermalConfig,
+)
+from peopleboy.sim.cameras.depth_image import show_depth
+from peopleboy.sim.cameras.sensors import (
+    ColourSensor,
+    DepthSensor,
+    Image,
+    PanoramaSensor,
+    Sensor,
+    ThermalSensor,
+)
 from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.panoramic_sight import PanoramicSight
@@ -21,7 +35,7 @@ from peopleboy.sim.rendering.sight import FLAT, Sight
 Stored = NDArray[np.uint8] | NDArray[np.uint16]
 
 
-def _as_it_is(image: Image) -> Stored:
+def _as_it_is(image: Image) -> Image:
     return image
 
 
@@ -34,17 +48,24 @@ class Layer:
         suffix: of its name, behind that of the camera.
         folder: suffix of the folder that its files lie in, behind the name of the camera.
         encode: gives what a PNG file can hold of it, without loss: (H, W) of 8 or 16 bits, or (H, W, 3) RGB.
+        show: gives what people are shown of it: (H, W) grey or (H, W, 3) RGB, of 8 bits.
     """
 
     what: str = "8-bit, as the robot sees it"
     suffix: str = ""
     folder: str = ""
     encode: Callable[[Image], Stored] = _as_it_is
+    show: Callable[[Image], NDArray[np.uint8]] = _as_it_is
 
 
 def _round_image(config: PanoramaConfig) -> tuple[Layer, ...]:
     what = "8-bit colour, the round image that a panorama is unrolled from"
     return (Layer(what=what, suffix="_raw", folder="_raw"),) if config.raw else ()
+
+
+def _colour_of_depth(config: DepthConfig) -> tuple[Layer, ...]:
+    what = "8-bit colour, of the same pixels as the depth"
+    return (Layer(what=what, suffix="_colour", folder="_colour"),) if config.colour else ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,9 +76,10 @@ class CameraKind:
         config: class of its settings.
         sensor: opens a camera by settings, name and seed; the name is that of its streams of noise, too.
         sight: draws what it sees, and tells the outlines of the truth's boxes; by default as a pinhole does.
-        layers: its images; the first, without suffixes, is uint8, and what people and controllers are shown.
+        layers: its images; the first, without suffixes, is what people and controllers are shown.
         more_layers: what cameras of some settings give besides.
-        channels: of that first image: 1 for (H, W) grey, 3 for (H, W, 3) RGB.
+        channels: of that first image: 1 for (H, W), 3 for (H, W, 3) RGB.
+        dtype, unit: of that first image.
         has_boxes: whether a box round a person makes sense in it.
     """
 
@@ -67,6 +89,8 @@ class CameraKind:
     layers: tuple[Layer, ...] = (Layer(),)
     more_layers: Callable[[Any], tuple[Layer, ...]] = lambda config: ()  # noqa: ARG005
     channels: int = 1
+    dtype: type[np.unsignedinteger[Any]] = np.uint8
+    unit: str = "grey"
     has_boxes: bool = True
 
 
@@ -89,6 +113,14 @@ KINDS: Final[dict[str, CameraKind]] = {
         layers=(Layer(what="8-bit colour all round, from the robot's back by its left, front and right"),),
         more_layers=_round_image,
         channels=3,
+    ),
+    "depth": CameraKind(
+        config=DepthConfig,
+        sensor=DepthSensor,
+        layers=(Layer(what="16-bit, depth in millimetres, 0 where none is read", show=show_depth),),
+        more_layers=_colour_of_depth,
+        dtype=np.uint16,
+        unit="mm",
     ),
 }
 
@@ -120,6 +152,11 @@ def layers_of(config: CameraConfig) -> tuple[Layer, ...]:
     """Tell which images a camera of these settings gives at an instant."""
     kind = kind_of(config)
     return (*kind.layers, *kind.more_layers(config))
+
+
+def shown_to_people(image: Image, config: CameraConfig) -> NDArray[np.uint8]:
+    """Give what people are shown of a camera's first image: (H, W) grey or (H, W, 3) RGB, of 8 bits."""
+    return layers_of(config)[0].show(image)
 
 
 def image_names(name: str, config: CameraConfig) -> tuple[str, ...]:

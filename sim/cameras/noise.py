@@ -32,6 +32,22 @@ def gaussian(shape: tuple[int, ...], rng: np.random.Generator) -> NDArray[np.flo
     return noise.reshape(shape)
 
 
+def smooth_gaussian(shape: tuple[int, int], patch_px: int, rng: np.random.Generator) -> NDArray[np.float32]:
+    """Draw (H, W) noise of mean 0 and variance 1 that is alike over patches.
+
+    Between the knots of a grid with `patch_px` meshes it is their weighted sum, whose variance is 1
+    everywhere; pixels that are two meshes apart have nothing in common.
+    """
+    rows, columns = (length // patch_px + 2 for length in shape)
+    return _interpolate(gaussian((rows, columns), rng), shape[0], shape[1], patch_px)
+
+
+def skip_smooth_gaussian(shape: tuple[int, int], patch_px: int, rng: np.random.Generator) -> None:
+    """Leave the generator as `smooth_gaussian` would."""
+    rows, columns = (length // patch_px + 2 for length in shape)
+    skip_gaussian((rows, columns), rng)
+
+
 def skip_gaussian(shape: tuple[int, ...], rng: np.random.Generator) -> None:
     """Leave the generator as `gaussian` would."""
     _words(shape, rng)
@@ -48,3 +64,23 @@ def _look_up(quantiles: NDArray[np.float32], words: NDArray[np.uint64], noise: N
     for i in range(noise.shape[0]):
         quarter = words[i >> 2] >> np.uint64(16 * (i & 3))
         noise[i] = quantiles[quarter & np.uint64(_LEVELS - 1)]
+
+
+@njit(cache=True, fastmath=True)
+def _interpolate(knots: NDArray[np.float32], height: int, width: int, patch_px: int) -> NDArray[np.float32]:
+    """Sum the four knots around each pixel of an (H, W) image, by weights whose squares sum to 1."""
+    image = np.empty((height, width), np.float32)
+    before, after = np.empty(patch_px, np.float32), np.empty(patch_px, np.float32)
+    for k in range(patch_px):
+        share = (k + 0.5) / patch_px
+        length = math.hypot(share, 1.0 - share)
+        before[k], after[k] = (1.0 - share) / length, share / length
+    line = np.empty(knots.shape[1], np.float32)
+    for v in range(height):
+        row, k = v // patch_px, v % patch_px
+        for c in range(len(line)):
+            line[c] = before[k] * knots[row, c] + after[k] * knots[row + 1, c]
+        for u in range(width):
+            c, k = u // patch_px, u % patch_px
+            image[v, u] = before[k] * line[c] + after[k] * line[c + 1]
+    return image

@@ -8,8 +8,15 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.camera_config import ColourConfig, PanoramaConfig, ThermalConfig
+from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, PanoramaConfig, ThermalConfig
 from peopleboy.sim.cameras.colour import colour_image, expose
+from peopleboy.sim.cameras.depth import (
+    rays_of,
+    skip_structured_light,
+    structured_light,
+    time_of_flight,
+)
+from peopleboy.sim.cameras.depth_image import to_millimetres
 from peopleboy.sim.cameras.noise import skip_gaussian
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.surfaces import MaterialTable
@@ -133,3 +140,46 @@ class PanoramaSensor:
             view, glimpse.materials, camera, glimpse.world_from_camera, glimpse.world_from_part,
             glimpse.light_level * config.gain, glimpse.turn_rad_s * config.exposure_s,
         )  # fmt: skip
+
+
+class DepthSensor:
+    """Gives depth in millimetres; on request 8-bit sRGB of the same pixels."""
+
+    def __init__(self, config: DepthConfig, name: str, seed: int) -> None:
+        self._config = config
+        self._noise = stream(seed, f"{name}.noise")
+        self._colour_noise = stream(seed, f"{name}.colour.noise")
+
+    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+        """Take the (H, W) uint16, and the (H, W, 3) uint8, images of an instant."""
+        depth = self._depth(glimpse)
+        return (depth, self._colour(glimpse)) if self._config.colour else (depth,)
+
+    def skip(self) -> None:
+        """Let the noise of an image go by."""
+        config, shape = self._config, (self._config.camera.height, self._config.camera.width)
+        if config.scale > 0.0 and config.sensor == "kinect":
+            skip_structured_light(config.camera, self._noise)
+        elif config.scale > 0.0:
+            skip_gaussian(shape, self._noise)
+        if config.colour:
+            skip_gaussian((*shape, 3), self._colour_noise)
+
+    def _depth(self, glimpse: Glimpse) -> Image:
+        config = self._config
+        if config.scale == 0.0:
+            return to_millimetres(glimpse.view.depth, config)
+        if config.sensor == "kinect":
+            return structured_light(glimpse.view, config, self._noise)
+        return time_of_flight(
+            glimpse.draw(rays_of(config.camera)), config, glimpse.materials, glimpse.world_from_camera,
+            glimpse.world_from_part, self._noise,
+        )  # fmt: skip
+
+    def _colour(self, glimpse: Glimpse) -> Image:
+        config = self._config
+        linear = colour_image(
+            glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
+            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s,
+        )  # fmt: skip
+        return expose(linear, config, self._colour_noise)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
+from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
 from tests.helpers.calls.refused import refused
 
 GREY = np.zeros((240, 320), dtype=np.uint8)
@@ -24,6 +24,30 @@ def test_a_thermal_image_of_another_shape_or_type_is_refused_by_name(image, got)
 def test_a_colour_image_without_three_channels_is_refused():
     with refused("colour image", "(240, 320) uint8"):
         Frame(images={THERMAL: GREY, COLOUR: GREY}, time_s=0.0).rgb(COLOUR)
+
+
+@pytest.mark.parametrize(
+    ("image", "got"),
+    [
+        (GREY, "(240, 320) uint8"),
+        (np.zeros((240, 320, 1), dtype=np.uint16), "(240, 320, 1) uint16"),
+        (np.zeros((240, 320), dtype=np.float32), "(240, 320) float32"),
+        (np.zeros((0, 320), dtype=np.uint16), "(0, 320) uint16"),
+        ([[1000]], "list"),
+    ],
+)
+def test_a_depth_image_of_another_shape_or_type_is_refused_by_name(image, got):
+    with refused("depth image", "(H, W) uint16", got):
+        Frame(images={DEPTH: image}, time_s=0.0).depth(DEPTH)
+
+
+def test_depth_is_read_and_is_no_grey_image():
+    depth = np.full((4, 5), 2500, np.uint16)
+    frame = Frame(images={DEPTH: depth, DEPTH_COLOUR: np.zeros((4, 5, 3), np.uint8)}, time_s=0.0)
+    assert frame.depth(DEPTH) is depth
+    assert frame.rgb(DEPTH_COLOUR).shape == (4, 5, 3)
+    with refused("depth image", "(H, W) uint8", "uint16"):
+        frame.grey(DEPTH)
 
 
 def test_an_image_that_there_is_none_of_is_refused_with_those_that_there_are():

@@ -9,7 +9,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL.Image import Image
 
-from docs.generate.pictures import all_round, occlusion, panorama, rays, runs, thermal, tracker
+from docs.generate.pictures import all_round, depth, occlusion, panorama, rays, runs, thermal, tracker
 from docs.generate.pictures.paper import save
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
@@ -24,6 +24,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,
+    "depth": depth.scales,
     "panoramic_features": draw_features,
     "panoramic_errors": panorama.errors_over_distance,
     "all_round": all_round.all_round,

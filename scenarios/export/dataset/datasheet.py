@@ -6,7 +6,7 @@ The questions are those of Gebru et al., "Datasheets for Datasets", 2021.
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,8 @@ from peopleboy.scenarios.export.dataset.statistics import Bin, Statistics
 from peopleboy.scenarios.export.image_words import describe_images
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.sim.cameras.kinds import image_folders
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.kinds import KINDS, image_folders, kind_of
 
 _TEMPLATE = Path(__file__).parent / "datasheet.md.jinja"
 
@@ -48,9 +49,16 @@ def write_datasheet(
         about=about,
         scenarios=scenarios,
         images=describe_images(outfits),
+        units=_units(outfits),
         folders={folder: layer.what for outfit in outfits for folder, _, layer in image_folders(outfit)},
     )
     path.write_text(text, encoding="utf-8")
+
+
+def _units(outfits: Iterable[Mapping[str, CameraConfig]]) -> dict[str, str]:
+    """Name the unit of each camera's images; one that a tracker had mounted has the name of its kind."""
+    usual = {name: kind.unit for name, kind in KINDS.items()}
+    return usual | {name: kind_of(config).unit for outfit in outfits for name, config in outfit.items()}
 
 
 def _span(one: Bin) -> str:

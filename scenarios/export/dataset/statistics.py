@@ -21,6 +21,7 @@ from peopleboy.sim.cameras.kinds import kind_of
 
 VISIBLE_EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 DISTANCE_EDGES_M = (0.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, np.inf)
+_AS_STORED = cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH
 _EVERY = 15  # of so many images one goes into the means
 
 
@@ -45,7 +46,7 @@ class Statistics:
         height_px: 5, 25, 50, 75 and 95 percent of their boxes are no higher [px].
         hidden_mostly_by: boxes of which more is hidden by this kind of thing than by any other: person,
             thing, border; and those of which nothing is.
-        image_mean, image_sd: by channel [grey], of every 15th image; empty without images.
+        image_mean, image_sd: by channel [grey], of depth [mm], of every 15th image; empty without images.
     """
 
     runs: int
@@ -113,7 +114,7 @@ def _image_statistics(runs: Sequence[Path]) -> tuple[dict[str, list[float]], dic
     cameras = {name: camera for run in runs for name, camera in cameras_of(run).items()}
     for name, camera in cameras.items():
         paths = [path for run in runs for path in sorted((run / name).glob("*.png"))[::_EVERY]]
-        images = (image for path in paths if (image := cv2.imread(str(path))) is not None)
+        images = (image for path in paths if (image := cv2.imread(str(path), _AS_STORED)) is not None)
         channels = kind_of(camera).channels
         each = [_moments(image[..., :channels]) for image in images]
         if not each:

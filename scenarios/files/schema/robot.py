@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import (
     Discriminator,
@@ -36,10 +36,16 @@ class _AnyCamera(Strict):
     """What all cameras have; what is left out is as usual for the kind."""
 
     width_px: int | None = Field(
-        default=None, ge=16, le=4096, description="columns of the image; usually 320, of a panorama 480"
+        default=None,
+        ge=16,
+        le=4096,
+        description="columns of the image; usually 320, of a panorama 480, of depth 640",
     )
     height_px: int | None = Field(
-        default=None, ge=16, le=4096, description="rows of the image; usually 240, of a panorama 120"
+        default=None,
+        ge=16,
+        le=4096,
+        description="rows of the image; usually 240, of a panorama 120, of depth 480",
     )
     exposure_s: float | None = Field(
         default=None, ge=0.0, le=1.0, description="time over which rotation blurs the image"
@@ -59,7 +65,7 @@ class _Camera(_AnyCamera):
         default=None,
         ge=5.0,
         le=150.0,
-        description="angle from upper to lower edge; usually 44, of a colour camera 37.2",
+        description="angle from upper to lower edge; usually 44, of a colour camera 37.2, of depth 43",
     )
     mount_m: Position | None = Field(
         default=None, description="optical centre in the robot's frame: forward, left, up from the floor"
@@ -135,23 +141,56 @@ class PanoramaCameraSpec(_AnyCamera):
     )
 
 
+class DepthCameraSpec(_Camera):
+    """A camera that measures depth, and sees colours by the same lens."""
+
+    kind: Literal["depth"] = Field(description="what it sees: how far everything is, and light")
+    sensor: Literal["kinect", "tof"] | None = Field(
+        default=None,
+        description="how it measures: `kinect`, the usual one, by a pattern of light, with noise and steps "
+        "in disparity, shadows, frayed edges and holes; `tof` by the time that light takes, with depths "
+        "between two surfaces at edges",
+    )
+    scale: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=100.0,
+        description="of the noise of its depth; usually 1; 0 gives exact depth, without holes but beyond its "
+        "range",
+    )
+    nearest_m: float | None = Field(
+        default=None, ge=0.0, le=65.0, description="depth from which on it measures; usually 0.5"
+    )
+    farthest_m: float | None = Field(
+        default=None, gt=0.0, le=65.0, description="depth up to which it measures; usually 10"
+    )
+    colour: bool | None = Field(
+        default=None,
+        description="whether it gives colour, pixel for pixel beside the depth; usually true",
+    )
+
+
 class PlainCameraSpec(_Camera):
     """A camera of any further kind: it has the keys that all have, and none of its own."""
 
     kind: str
 
 
-CameraSpec = ThermalCameraSpec | ColourCameraSpec | PanoramaCameraSpec | PlainCameraSpec
+_OwnCameraSpec = ThermalCameraSpec | ColourCameraSpec | PanoramaCameraSpec | DepthCameraSpec
+CameraSpec = _OwnCameraSpec | PlainCameraSpec
+_WITH_OWN_KEYS = frozenset(
+    get_args(spec.model_fields["kind"].annotation)[0] for spec in get_args(_OwnCameraSpec)
+)
 
 
 def _by_kind(data: Any, with_own_keys: ValidatorFunctionWrapHandler) -> Any:
     """Read a camera of a kind that says nothing of its own keys; its kind may be younger than this schema."""
     kind = data.get("kind") if isinstance(data, dict) else None
-    is_plain = isinstance(kind, str) and kind in KINDS and kind not in ("thermal", "colour", "panorama")
+    is_plain = isinstance(kind, str) and kind in KINDS and kind not in _WITH_OWN_KEYS
     return PlainCameraSpec.model_validate(data) if is_plain else with_own_keys(data)
 
 
-_ByKind = Annotated[ThermalCameraSpec | ColourCameraSpec | PanoramaCameraSpec, Field(discriminator="kind")]
+_ByKind = Annotated[_OwnCameraSpec, Field(discriminator="kind")]
 
 
 class CommandSpec(Strict):

@@ -1,0 +1,203 @@
+"""How sensors measure depth: by a pattern of light or by its time of flight, with their noise and holes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+from peopleboy.sim.cameras.camera_config import DEPTH_BASELINE_M, DepthConfig
+from peopleboy.sim.cameras.depth_image import Millimetres, to_millimetres
+from peopleboy.sim.cameras.noise import gaussian, skip_gaussian, skip_smooth_gaussian, smooth_gaussian
+from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.rendering.view import View
+
+Metres = NDArray[np.float32]
+
+# Structured light. Noise and steps of its disparity: Khoshelham & Oude Elberink 2012, Sensors 12:1437.
+DISPARITY_SD_PX: Final = 0.062
+DISPARITY_STEP_PX: Final = 0.125
+_PATCH_PX = 8  # over which half of the noise's variance is alike
+_REACH = 1.05  # of shadows, in disparities
+_SLACK_PX = 0.5  # within which light still falls beside an edge
+
+# Time of flight.
+TOF_SD_M: Final = 0.005  # at 2 m, of a surface that is half white
+_FINER = 2  # rays of a pixel, in a row and in a column
+_BLACKEST = 0.02
+
+
+def hole_share(depth_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give the share of a surface at some depths [m] that structured light cannot read: patches of 8 px."""
+    return 0.005 + 0.115 * np.minimum(np.asarray(depth_m) / 10.0, 1.0) ** 2
+
+
+def _hole_levels() -> NDArray[np.float32]:
+    """(1025,) level below which smooth noise makes a hole, by depths from 0 to 10 m."""
+    return np.asarray(ndtri(hole_share(np.linspace(0.0, 10.0, 1025))), np.float32)
+
+
+def _edge_moves() -> NDArray[np.int8]:
+    """(256,) [px] equally likely whole steps, of a Gaussian with a standard deviation of 0.6 px."""
+    return np.asarray(np.rint(0.6 * ndtri((np.arange(256) + 0.5) / 256)), np.int8)
+
+
+_LEVELS, _MOVES = _hole_levels(), _edge_moves()
+
+
+def structured_light(view: View, config: DepthConfig, rng: np.random.Generator) -> Millimetres:
+    """Measure depth by the disparity of a projected pattern.
+
+    Noise and steps are in disparity, so that both grow with the square of the depth. Nothing is read where
+    the projector's light does not fall, which is to the right of what is near, and in patches, the more the
+    farther. Edges are frayed: at some pixels the surface beside them is read.
+
+    Source: Khoshelham & Oude Elberink 2012.
+    """
+    height, width = view.part.shape
+    white, alike, patches, moves = _draw(height, width, rng)
+    return _from_disparity(
+        view.part, view.depth, white, alike, patches, moves, _MOVES, _LEVELS,
+        config.camera.focal_px * DEPTH_BASELINE_M, config.disparity_px_m,
+        config.scale * DISPARITY_SD_PX / math.sqrt(2.0), config.nearest_m, config.farthest_m,
+    )  # fmt: skip
+
+
+def skip_structured_light(camera: Pinhole, rng: np.random.Generator) -> None:
+    """Leave the generator as `structured_light` would."""
+    shape = camera.height, camera.width
+    skip_gaussian(shape, rng)
+    skip_smooth_gaussian(shape, _PATCH_PX, rng)
+    skip_smooth_gaussian(shape, _PATCH_PX, rng)
+    _draw_moves(*shape, rng)
+
+
+def _draw(
+    height: int, width: int, rng: np.random.Generator
+) -> tuple[Metres, Metres, Metres, NDArray[np.uint8]]:
+    shape = height, width
+    white, alike = gaussian(shape, rng), smooth_gaussian(shape, _PATCH_PX, rng)
+    return white, alike, smooth_gaussian(shape, _PATCH_PX, rng), _draw_moves(height, width, rng)
+
+
+def _draw_moves(height: int, width: int, rng: np.random.Generator) -> NDArray[np.uint8]:
+    """(H, W, 2) random bytes."""
+    words = rng.integers(0, 2**64, -(-height * width // 4), dtype=np.uint64)
+    return words.astype("<u8", copy=False).view(np.uint8)[: 2 * height * width].reshape(height, width, 2)
+
+
+@njit(cache=True, fastmath=True)
+def _from_disparity(
+    part: NDArray[np.int32],
+    depth: Metres,
+    white: Metres,
+    alike: Metres,
+    patches: Metres,
+    moves: NDArray[np.uint8],
+    steps: NDArray[np.int8],
+    levels: Metres,
+    shift: float,
+    constant: float,
+    sd: float,
+    nearest: float,
+    farthest: float,
+) -> Millimetres:
+    height, width = part.shape
+    image = np.zeros((height, width), np.uint16)
+    for v in range(height):
+        lit_to = -1e9
+        for u in range(width):
+            ray = u + (_REACH * shift / depth[v, u] if part[v, u] >= 0 else 0.0)
+            is_dark = ray < lit_to - _SLACK_PX
+            lit_to = max(lit_to, ray)
+            row = min(max(v + steps[moves[v, u, 0]], 0), height - 1)
+            column = min(max(u + steps[moves[v, u, 1]], 0), width - 1)
+            if part[row, column] == part[v, u]:
+                row, column = v, u
+            if is_dark or part[row, column] < 0:
+                continue
+            z = depth[row, column]
+            if patches[v, u] < levels[min(int(102.4 * z), 1024)]:
+                continue
+            disparity = constant / z + sd * (white[v, u] + alike[v, u])
+            read = DISPARITY_STEP_PX * math.floor(disparity / DISPARITY_STEP_PX + 0.5)
+            if read > 0.0 and nearest <= constant / read <= farthest:
+                image[v, u] = int(1000.0 * constant / read + 0.5)
+    return image
+
+
+def time_of_flight(
+    fine: View,
+    config: DepthConfig,
+    materials: MaterialTable,
+    world_from_camera: Matrix,
+    world_from_part: Matrix,
+    rng: np.random.Generator,
+) -> Millimetres:
+    """Measure depth by how long light takes.
+
+    Noise grows with the square of the depth and the darkness of the surface. A pixel whose rays meet several
+    surfaces reads a depth between them, the nearer to one the more light that sends back.
+
+    Args:
+        fine: what a camera of `rays_of` sees.
+        config: of the camera.
+        materials: of the P parts.
+        world_from_camera: (4, 4).
+        world_from_part: (P, 4, 4).
+        rng: of the noise.
+    """
+    camera = config.camera
+    matrices = part_from_pixel(rays_of(camera), world_from_camera, world_from_part)
+    depth = _mean_of_rays(
+        fine.part, fine.depth, matrices, materials.colour, materials.kind, materials.period, materials.phase,
+        gaussian((camera.height, camera.width), rng), config.scale * TOF_SD_M,
+    )  # fmt: skip
+    return to_millimetres(depth, config)
+
+
+def rays_of(camera: Pinhole) -> Pinhole:
+    """The camera whose pixels are the rays that a pixel of time of flight takes the mean of."""
+    return replace(camera, width=_FINER * camera.width, height=_FINER * camera.height)
+
+
+@njit(cache=True, fastmath=True)
+def _mean_of_rays(
+    part: NDArray[np.int32],
+    depth: Metres,
+    matrices: Matrix,
+    colour: Matrix,
+    kind: NDArray[np.int64],
+    period: Matrix,
+    phase: Matrix,
+    noise: Metres,
+    sd_m: float,
+) -> Metres:
+    height, width = noise.shape
+    image = np.zeros((height, width), np.float32)
+    for v in range(height):
+        for u in range(width):
+            rays, light, weight, summed = 0, 0.0, 0.0, 0.0
+            for row in range(_FINER * v, _FINER * (v + 1)):
+                for column in range(_FINER * u, _FINER * (u + 1)):
+                    p = part[row, column]
+                    if p < 0:
+                        continue
+                    z = depth[row, column]
+                    x, y, up = surface_point(matrices, p, column, row, z)
+                    second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, up, phase, p)
+                    grey = (colour[p, second] + colour[p, second + 1] + colour[p, second + 2]) / 3.0
+                    sent = max(grey, _BLACKEST) / (z * z)
+                    rays, light = rays + 1, light + grey
+                    weight, summed = weight + sent, summed + sent * z
+            if rays > 0:
+                z = summed / weight
+                darkness = min(max(0.5 * rays / max(light, 1e-6), 0.5), 6.0)
+                image[v, u] = z + sd_m * (z / 2.0) ** 2 * darkness * noise[v, u]
+    return image
