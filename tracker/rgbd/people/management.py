@@ -33,8 +33,8 @@ _DRIFT_M2_S: Final = 0.15  # by which the place of who is not seen becomes unsur
 
 
 @dataclass(frozen=True, slots=True)
-class Life:
-    """One frame in the lives of all.
+class Management:
+    """What one frame does to all hypotheses.
 
     Attributes:
         config: settings.
