@@ -18,7 +18,8 @@ from rich.console import Console
 from rich.table import Table
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.footage.track_footage import TrackOptions, track_footage
+from peopleboy.scenarios.footage.options import TrackOptions
+from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 

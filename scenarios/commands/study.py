@@ -127,7 +127,8 @@ def train_distance(
 @click.argument("names", metavar="[ID]...", nargs=-1)
 @click.option(
     "--paper",
-    help="Only what is of one source: thesis, of 2007; 2005, its evaluation; panoramic, of 2003.",
+    help="Only what is of one source: thesis, of 2007; 2005, its evaluation; panoramic, of 2003; situation, "
+    "a thesis on depth and colour.",
 )
 @click.option("--quick", is_flag=True, help="A little of everything, in minutes.")
 @click.option(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,9 +11,13 @@ import click
 from peopleboy.bad_input import BadInput
 
 if TYPE_CHECKING:
-    from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
+    from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
+    from peopleboy.scenarios.footage.track_footage import Tracked
 
-_TRACKERS = "footage, peopleboy, learned, thesis, colour, thermal or paper; or module:Class, your own"
+_TRACKERS = (
+    "footage, peopleboy, learned, thesis, colour, thermal or paper; rgbd or rgbd-printed with --depth; "
+    "or module:Class, your own"
+)
 
 
 @click.command()
@@ -36,7 +41,22 @@ _TRACKERS = "footage, peopleboy, learned, thesis, colour, thermal or paper; or m
     type=click.FloatRange(min=0.1, max=1000.0),
     help="Pictures a second.  [default: the video's own; 15 for a folder]",
 )
-@click.option("--tracker", default="footage", show_default=True, help=f"One of {_TRACKERS}.")
+@click.option(
+    "--depth",
+    type=click.Path(path_type=Path),
+    help="Folder of 16-bit depth pictures; FOLDER then holds the colours of the same pixels.",
+)
+@click.option("--depth-scale", type=float, metavar="M", help="Metres a count stands for; 0.001: millimetres.")
+@click.option("--camera-height-m", type=float, help="Of the depth camera above the floor.  [default: 1.2]")
+@click.option("--pitch-deg", type=float, help="By which it looks down.  [default: 0]")
+@click.option("--focal-px", type=float, help="Focal length of its pictures; or the next.")
+@click.option("--vertical-fov-deg", type=float, help="From top to bottom of its pictures.  [default: 43]")
+@click.option(
+    "--odometry",
+    type=click.Path(path_type=Path),
+    help="CSV file of how it moved: advance_m, aside_m, turn_deg for each picture.  [default: it stands]",
+)
+@click.option("--tracker", help=f"One of {_TRACKERS}.  [default: footage; rgbd with --depth]")
 @click.option(
     "--truth",
     type=click.Path(path_type=Path),
@@ -60,7 +80,14 @@ def track(
     scale: str | None,
     black_hot: bool,
     rate_hz: float | None,
-    tracker: str,
+    depth: Path | None,
+    depth_scale: float | None,
+    camera_height_m: float | None,
+    pitch_deg: float | None,
+    focal_px: float | None,
+    vertical_fov_deg: float | None,
+    odometry: Path | None,
+    tracker: str | None,
     truth: Path | None,
     start: str | None,
     seed: int,
@@ -70,12 +97,21 @@ def track(
     """Track people in a folder of thermal pictures (PNG, TIFF, JPEG, BMP; 8 or 16 bit) or in a video.
 
     Leaves tracks.txt (MOTChallenge), tracks.parquet, run.json and contact_sheet.png; metrics.json if there is
-    truth. Without temperatures the grey follows the scene's contrast.
+    truth. Without temperatures the grey follows the scene's contrast. With --depth and --depth-scale, people
+    are tracked in colour with depth, and tracks.parquet has their places on the floor.
     """
-    from peopleboy.scenarios.footage.track_footage import TrackOptions, track_footage
+    from peopleboy.scenarios.footage.options import RGBD_TRACKER, TrackOptions
+    from peopleboy.scenarios.footage.track_footage import track_footage
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.tracker.footage.grey import Radiometry, parse_scale
+    from peopleboy.tracker.trackers import FOOTAGE_TRACKER
 
+    camera = {
+        "height_m": camera_height_m,
+        "pitch_deg": pitch_deg,
+        "focal_px": focal_px,
+        "vertical_fov_deg": vertical_fov_deg,
+    }
     options = TrackOptions(
         footage=footage,
         out=out,
@@ -85,8 +121,9 @@ def track(
             scale=None if scale is None else parse_scale(scale),
             is_inverted=black_hot,
         ),
+        rgbd=_rgbd(depth, depth_scale, camera, odometry),
         rate_hz=rate_hz,
-        tracker=tracker,
+        tracker=tracker or (FOOTAGE_TRACKER if depth is None else RGBD_TRACKER),
         truth=truth,
         start=None if start is None else _parse_start(start),
         seed=seed,
@@ -96,6 +133,22 @@ def track(
     with progress_bar(footage.name, unit="frames") as show:
         tracked = track_footage(options, lambda frame, expected: show(frame, max(expected, frame)))
     _tell(tracked, options)
+
+
+def _rgbd(
+    depth: Path | None, depth_scale: float | None, camera: Mapping[str, float | None], odometry: Path | None
+) -> RgbdOptions | None:
+    from peopleboy.scenarios.footage.options import RgbdOptions
+    from peopleboy.scenarios.footage.rgbd_camera import RgbdCamera
+
+    told = {name: value for name, value in camera.items() if value is not None}
+    if depth is None:
+        if told or depth_scale is not None or odometry is not None:
+            raise BadInput("options of a depth camera need --depth FOLDER; without it, leave them out")
+        return None
+    if depth_scale is None:
+        raise BadInput("--depth needs --depth-scale, the metres a count stands for: 0.001 for millimetres")
+    return RgbdOptions(depth=depth, m_per_count=depth_scale, camera=RgbdCamera(**told), odometry=odometry)
 
 
 def _parse_start(text: str) -> tuple[float, float, float, float] | str:

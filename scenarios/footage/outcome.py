@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
+from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
+from peopleboy.scenarios.footage.track_footage import Tracked
 from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.wording import counted
 
@@ -21,10 +22,20 @@ def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:
 
 
 def _what_to_look_at(options: TrackOptions) -> str:
+    if options.rgbd is not None:
+        return _what_depth_asks(options.rgbd)
     remedy = "leave --black-hot out" if options.radiometry.is_inverted else "give --black-hot"
+    asked = f"is warm bright there? If not, {remedy}."
+    if options.tracker in VARIANTS:
+        asked += f" Are people {_heights(options.tracker)} of the picture's height, from head to feet?"
+    return f"{asked} Is their outline to be seen, or only a hot face?"
+
+
+def _what_depth_asks(rgbd: RgbdOptions) -> str:
+    camera = rgbd.camera
     return (
-        f"is warm bright there? If not, {remedy}. Are people {_heights(options.tracker)} of the picture's "
-        "height, from head to feet? Is their outline to be seen, or only a hot face?"
+        f"was the camera {camera.height_m:g} m above the floor (--camera-height-m), and looked down by "
+        f"{camera.pitch_deg:g} degrees (--pitch-deg)? Do people stand upright? Is depth read where they are?"
     )
 
 

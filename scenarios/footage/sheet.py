@@ -19,11 +19,9 @@ from peopleboy.scenarios.drawing.overlay import (
     draw_tracks,
     draw_truth,
     enlarge,
-    show_thermal,
 )
 from peopleboy.scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, draw_head
 from peopleboy.tracker.boxes import Box
-from peopleboy.tracker.footage.grey import Grey
 from peopleboy.tracker.track import Track
 
 FILM_PX: Final = 480
@@ -46,20 +44,26 @@ class Annotated:
 
 
 def draw_frame(
-    grey: Grey,
+    picture: Picture,
     tracks: Sequence[Track],
     people: Sequence[Annotated],
     explanation: object,
     scale: float,
     words: str,
+    *,
+    camera: str,
 ) -> Picture:
-    """Draw one frame `scale` times enlarged: tracks solid, truth dashed, and a word in the corner."""
+    """Draw one frame `scale` times enlarged: tracks solid, truth dashed, and a word in the corner.
+
+    Boxes are those in the image of `camera`, which `picture` (H, W, 3) shows.
+    """
     plates: list[Plate] = []
-    picture = draw_tracks(enlarge(show_thermal(grey), scale), tracks, scale, explanation, plates=plates)
-    picture = draw_truth(picture, people, scale, plates=plates)
+    large = enlarge(picture, scale)
+    tracked = draw_tracks(large, tracks, scale, explanation, plates=plates, camera=camera)
+    drawn = draw_truth(tracked, people, scale, plates=plates)
     for shade, thickness in (((20, 20, 20), 3), ((240, 240, 240), 1)):
-        cv2.putText(picture, words, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.45, shade, thickness, cv2.LINE_AA)
-    return picture
+        cv2.putText(drawn, words, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.45, shade, thickness, cv2.LINE_AA)
+    return drawn
 
 
 class Sheet:

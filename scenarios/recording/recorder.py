@@ -268,9 +268,9 @@ class Recorder:
                 self._tracks_named.add(track.id)
                 self._still.log_track(track.id)
             curves[f"curves/confidence/track_{track.id}"] = [track.confidence]
-            if "thermal" in track.boxes:
-                offset = marks.box_offset(track.boxes["thermal"], self._width)
-                curves[f"curves/offset/track_{track.id}"] = [offset]
+            box = track.boxes.get("thermal")  # a number that is none interrupts the line
+            offset = math.nan if box is None else marks.box_offset(box, self._width)
+            curves[f"curves/offset/track_{track.id}"] = [offset]
         for path, values in curves.items():
             self._rows.add(path, rr.Scalars, scalars=np.array(values, np.float64))
 

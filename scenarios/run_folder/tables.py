@@ -178,8 +178,11 @@ def _person_row(tick: Tick, person: PersonTruth) -> Row:
     return _instant(tick) | row | boxes
 
 
-def track_row(frame: int, time_s: float, track: Track, explanation: object) -> Row:
-    """Row of the tracks table for one track at one instant, with what the tracker explained of it."""
+def track_row(frame: int, time_s: float, track: Track, explanation: object, camera: str = THERMAL) -> Row:
+    """Row of the tracks table for one track at one instant, with what the tracker explained of it.
+
+    The box is that in the image of the camera of this name.
+    """
     row = {
         "id": track.id,
         "status": str(track.status),
@@ -190,7 +193,7 @@ def track_row(frame: int, time_s: float, track: Track, explanation: object) -> R
     return (
         {"frame": frame, "time_s": time_s}
         | row
-        | _box("", track.boxes.get(THERMAL))
+        | _box("", track.boxes.get(camera))
         | _place(track.place)
         | hider
         | dict(explained(explanation, track.id))

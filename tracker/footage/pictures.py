@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Final, Protocol
 
@@ -68,42 +68,32 @@ def _home_of_pictures(path: Path) -> Path:
 
 
 class PictureFolder:
-    """The pictures of a folder, in natural order of their names."""
+    """The pictures of a folder, in natural order of their names.
+
+    Attributes:
+        paths: its files.
+
+    Raises:
+        BadInput: there are none, or the folder cannot be read.
+    """
 
     def __init__(self, folder: Path, name: str) -> None:
         self.name = name
         self.rate_hz: float | None = None
         self.notes: list[str] = []
-        self._paths = pictures_in(folder)
-        self.expected = len(self._paths)
-        if not self._paths:
+        self.paths = pictures_in(folder)
+        self.expected = len(self.paths)
+        if not self.paths:
             raise BadInput(f"{folder}: there are no pictures here, {_where_else(folder)}")
-        if gaps := [f"{before} to {after}" for before, after in jumps(self._paths)]:
+        if gaps := [f"{before} to {after}" for before, after in jumps(self.paths)]:
             more = f" and {counted(len(gaps) - 3, 'time')} more" if len(gaps) > 3 else ""
             self.notes.append(
                 f"numbers of pictures jump from {', '.join(gaps[:3])}{more}; frames are counted without gaps"
             )
 
     def __iter__(self) -> Iterator[Raw]:
-        """Read them one by one, each of the size of the first.
-
-        Raises:
-            BadInput: a picture is damaged, or of another size than the first.
-        """
-        first: Raw | None = None
-        for path in self._paths:
-            picture = read_picture(path, self.notes)
-            first = picture if first is None else first
-            if picture.shape[:2] != first.shape[:2]:
-                raise BadInput(
-                    f"{path}: all pictures must have one size, {_size(first)} as the first, "
-                    f"got {_size(picture)}"
-                )
-            if picture.dtype != first.dtype:
-                raise BadInput(
-                    f"{path}: all pictures must be {first.dtype} as the first, got {picture.dtype}"
-                )
-            yield picture
+        """Read them one by one, as `read_row` does."""
+        return read_row(self.paths, self.notes)
 
 
 class Video:
@@ -146,6 +136,26 @@ class Video:
                 "a folder of pictures always works"
             )
         return film
+
+
+def read_row(paths: Iterable[Path], notes: list[str]) -> Iterator[Raw]:
+    """Read pictures one by one, each of the size and the depth of the first.
+
+    Raises:
+        BadInput: a picture is damaged, or of another size or depth than the first.
+    """
+    first: Raw | None = None
+    for path in paths:
+        picture = read_picture(path, notes)
+        first = picture if first is None else first
+        if picture.shape[:2] != first.shape[:2]:
+            raise BadInput(
+                f"{path}: all pictures must have one size, {size_of(first)} as the first, "
+                f"got {size_of(picture)}"
+            )
+        if picture.dtype != first.dtype:
+            raise BadInput(f"{path}: all pictures must be {first.dtype} as the first, got {picture.dtype}")
+        yield picture
 
 
 def read_picture(path: Path, notes: list[str]) -> Raw:
@@ -206,5 +216,6 @@ def _where_else(folder: Path) -> str:
     return f"wanted are {', '.join(SUFFIXES)}"
 
 
-def _size(picture: Raw) -> str:
+def size_of(picture: Raw) -> str:
+    """Write a picture's size as WIDTHxHEIGHT."""
     return f"{picture.shape[1]}x{picture.shape[0]}"

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Final, Protocol
 
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Calibration, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.handover.departures import Departures
-from peopleboy.tracker.handover.identities import Identities, Key
-from peopleboy.tracker.handover.introductions import Introductions, thermal_view
-from peopleboy.tracker.handover.links import GATE, Votes, apartness, pairs
+from peopleboy.tracker.handover.identities import Identities
+from peopleboy.tracker.handover.introductions import Introductions
+from peopleboy.tracker.handover.joining import joined, renamed
+from peopleboy.tracker.handover.links import Votes, is_seen, pairs
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.track import Box, Status, Track
 
 NEEDED_VOTES: Final = 3
 MOST_VOTES: Final = 15
-DOUBTFUL_S: Final = 0.7
-DOUBTFUL_RAD: Final = math.radians(6.0)
 
 
 class Ahead(Protocol):
@@ -66,7 +63,7 @@ class HandoverTracker:
         self._identities = Identities()
         self._departures = Departures()
         self._introductions = Introductions()
-        self._warm: tuple[int, ...] = ()
+        self._warm: tuple[Track, ...] = ()
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -84,9 +81,7 @@ class HandoverTracker:
     @property
     def explanation(self) -> BothExplanations:
         """Those of both trackers."""
-        numbers = self._identities.number
-        number = {one: shared for (camera, one), shared in numbers.items() if camera == THERMAL}
-        shown = {one: number[one] for one in self._warm if one in number}
+        shown = {track.id: number for number, track in self._identities.of(THERMAL, self._warm).items()}
         return BothExplanations.of(self._thermal.explanation, self._panoramic.explanation, shown)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
@@ -97,37 +92,42 @@ class HandoverTracker:
         """
         around = self._panoramic.update(frame)
         warm = [track for track in self._thermal.update(frame) if track.status is not Status.TENTATIVE]
+        self._warm = tuple(warm)
         self._departures.go_on(frame)
-        self._warm = tuple(track.id for track in warm)
-        agreed = pairs(
-            [track for track in warm if _is_seen(track)], [track for track in around if _is_seen(track)]
-        )
-        by_heat, by_place = {track.id: track for track in warm}, {track.id: track for track in around}
-        self._votes.count([(one.id, other.id) for one, other in agreed], by_heat, by_place)
-        self._number(warm, around, agreed)
+        self._number(warm, around)
         self._introduce(around, warm, frame)
-        joined = self._joined(warm, around, frame)
-        self._departures.note([track for track in joined if _is_seen(track)])
-        return joined
+        by_heat, by_place = self._identities.of(THERMAL, warm), self._identities.of(PANORAMA, around)
+        self._departures.note(THERMAL, by_heat)
+        self._departures.note(PANORAMA, by_place)
+        return joined(renamed(by_heat), renamed(by_place), frame)
 
-    def _number(
-        self, warm: Sequence[Track], around: Sequence[Track], agreed: Sequence[tuple[Track, Track]]
-    ) -> None:
-        numbers, linked = self._identities, self._votes.linked
-        mates: dict[int, Key] = {one.id: (PANORAMA, other.id) for one, other in agreed}
-        mates |= {one: (PANORAMA, other) for one, other in linked.items()}
-        back: dict[int, Key] = {other: (THERMAL, one) for one, (_, other) in mates.items()}
-        tracks = [*((PANORAMA, track) for track in around), *((THERMAL, track) for track in warm)]
-        keys = [(camera, track.id) for camera, track in tracks]
-        seen = [(camera, track.id) for camera, track in tracks if _is_seen(track)]
-        present = {numbers.number[key] for key in seen if key in numbers.number}
-        guess = partial(self._departures.who, present=present)
-        numbers.name(PANORAMA, around, back, guess)
-        numbers.name(THERMAL, warm, mates, guess)
+    def _number(self, warm: Sequence[Track], around: Sequence[Track]) -> None:
+        """Give all tracks their numbers, and one to two that have been together for long enough."""
         by_heat, by_place = {track.id: track for track in warm}, {track.id: track for track in around}
+        seen = pairs([one for one in warm if is_seen(one)], [one for one in around if is_seen(one)])
+        agreed = {one.id: other.id for one, other in seen}
+        self._votes.count(list(agreed.items()), by_heat, by_place)
+        linked, numbers = self._votes.linked, self._identities
+        mates = agreed | linked
+        self._name(PANORAMA, around, {other: one for one, other in mates.items()}, THERMAL, warm)
+        self._name(THERMAL, warm, mates, PANORAMA, around)
+        keys = [*((PANORAMA, one) for one in by_place), *((THERMAL, one) for one in by_heat)]
         for one, other in linked.items():
             if one in by_heat and other in by_place:
                 numbers.agree(((THERMAL, one), by_heat[one]), ((PANORAMA, other), by_place[other]), keys)
+
+    def _name(
+        self,
+        camera: str,
+        tracks: Sequence[Track],
+        mates: Mapping[int, int],
+        other: str,
+        others: Sequence[Track],
+    ) -> None:
+        """Number the new tracks of a camera by their mates of the other one, or by who was near last."""
+        known = {one: (other, mate) for one, mate in mates.items()}
+        guess = partial(self._departures.who, camera=camera, others=self._identities.of(other, others))
+        self._identities.name(camera, tracks, known, guess)
 
     def _introduce(self, around: Sequence[Track], warm: Sequence[Track], frame: Frame) -> None:
         """Point out to the thermal tracker whom it does not see, though that one is before its camera."""
@@ -136,73 +136,3 @@ class HandoverTracker:
         box = self._introductions.next(around, warm, linked, frame)
         if box is not None:
             self._thermal.introduce(box)
-
-    def _joined(self, warm: Sequence[Track], around: Sequence[Track], frame: Frame) -> tuple[Track, ...]:
-        """Make one track of those that are one person."""
-        number = self._identities.number
-        by_heat = _renamed(warm, {track.id: number[THERMAL, track.id] for track in warm})
-        by_place = _renamed(around, {track.id: number[PANORAMA, track.id] for track in around})
-        calibration = frame.calibrations.get(THERMAL)
-        if calibration is not None and THERMAL in frame.images:
-            width = frame.images[THERMAL].shape[1]
-            by_place = {one: _shown(track, calibration, width) for one, track in by_place.items()}
-        both = {one: _merged(by_heat[one], by_place[one]) for one in by_heat.keys() & by_place.keys()}
-        joined = by_place | by_heat | both
-        return tuple(joined[one] for one in sorted(joined) if not _is_doubtful(joined[one], joined))
-
-
-def _renamed(tracks: Sequence[Track], number: Mapping[int, int]) -> dict[int, Track]:
-    """Give tracks, and those who hide them, other numbers, and list them by these."""
-    renamed = (replace(one, id=number[one.id], occluder=number.get(one.occluder or 0)) for one in tracks)
-    return {track.id: track for track in renamed}
-
-
-def _shown(track: Track, calibration: Calibration, width_px: int) -> Track:
-    """Put somebody who is seen in the panorama into the thermal image, too."""
-    box = thermal_view(track, calibration, width_px)
-    return track if box is None else replace(track, boxes={**track.boxes, THERMAL: box})
-
-
-def _is_doubtful(track: Track, joined: Mapping[int, Track]) -> bool:
-    """Tell whether a new track of the panorama is likely one of the thermal image, not linked to it yet."""
-    if track.age_s >= DOUBTFUL_S or PANORAMA not in track.boxes:
-        return False
-    return any(
-        other is not track
-        and PANORAMA not in other.boxes
-        and abs(_bearing(other) - _bearing(track)) < DOUBTFUL_RAD
-        for other in joined.values()
-    )
-
-
-def _merged(warm: Track, around: Track) -> Track:
-    """Join two tracks of one person; its place is the panorama's while it is seen there, or the surer."""
-    better = around if _is_seen(around) or not _is_seen(warm) else warm
-    is_near = apartness(warm, around) < 2 * GATE or not _is_seen(warm)
-    return replace(
-        better,
-        boxes={**around.boxes, **(warm.boxes if is_near else {})},
-        place=warm.place if is_near and _is_surer(warm, around) else better.place,
-        confidence=max(warm.confidence, around.confidence),
-        status=warm.status if _is_seen(warm) else around.status,
-        age_s=max(warm.age_s, around.age_s),
-        occluder=warm.occluder if _is_seen(warm) else around.occluder,
-    )
-
-
-def _is_seen(track: Track) -> bool:
-    return track.status is not Status.TOTALLY_OCCLUDED
-
-
-def _is_surer(warm: Track, around: Track) -> bool:
-    """Tell whether the first of two who are both seen is surer of its place."""
-    if not (_is_seen(warm) and _is_seen(around)) or warm.place is None or around.place is None:
-        return False
-    (xx, _, yy), (other_xx, _, other_yy) = warm.place.covariance_m2, around.place.covariance_m2
-    return xx + yy < other_xx + other_yy
-
-
-def _bearing(track: Track) -> float:
-    return (
-        math.inf if track.place is None else math.atan2(track.place.position_m[1], track.place.position_m[0])
-    )

@@ -25,12 +25,17 @@ class Identities:
     number: dict[Key, int] = field(default_factory=dict)
     _newest: int = 0
 
+    def of(self, camera: str, tracks: Collection[Track]) -> dict[int, Track]:
+        """List the tracks of a camera that have a number by it."""
+        keys = {(camera, track.id): track for track in tracks}
+        return {self.number[key]: track for key, track in keys.items() if key in self.number}
+
     def name(
         self,
         camera: str,
         tracks: Collection[Track],
         known: Mapping[int, Key],
-        guess: Callable[[Track], int | None],
+        guess: Callable[[Track, Collection[int]], int | None],
     ) -> None:
         """Number the tracks of a camera that have none yet.
 
@@ -38,13 +43,15 @@ class Identities:
             camera: its name.
             tracks: all of them.
             known: for ids of tracks that agree with one of the other camera, that one.
-            guess: tells the number of a track that agrees with none; None for a new one.
+            guess: tells the number of a track that agrees with none that has one, and none of these that
+                its camera has; None for a new one.
         """
         for track in tracks:
             if (camera, track.id) not in self.number:
-                other = known.get(track.id)
-                number = guess(track) if other is None else self.number.get(other)
-                present = {self.number.get((camera, mate.id)) for mate in tracks}
+                present = self.of(camera, tracks).keys()
+                number = self.number.get(known[track.id]) if track.id in known else None
+                if number is None:
+                    number = guess(track, present)
                 if number is None or number in present:
                     number = self._new()
                 self._take((camera, track.id), number)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Final
 
@@ -9,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from peopleboy.tracker.track import FloorPlace, Track
+from peopleboy.tracker.track import FloorPlace, Status, Track
 
 GATE: Final = 9.21
 """Squared Mahalanobis distance that one person's two places exceed in one case of a hundred."""
 
 FLOOR_M2: Final = (0.2**2, 0.0, 0.2**2)
 """What either camera may be off in earnest beyond what it believes [m2]."""
+
+SAME_WAY_RAD: Final = math.radians(6.0)
+"""By how much the bearings of one person may differ in two cameras."""
 
 
 def pairs(ones: Sequence[Track], others: Sequence[Track]) -> list[tuple[Track, Track]]:
@@ -40,6 +44,20 @@ def apartness(one: Track, other: Track) -> float:
     away = np.subtract(one.place.position_m, other.place.position_m)
     error = _matrix(one.place) + _matrix(other.place) + _spread(FLOOR_M2)
     return float(away @ np.linalg.solve(error, away))
+
+
+def is_same_way(one: Track, other: Track) -> bool:
+    """Tell whether two tracks are in the same direction, however far away."""
+    if one.place is None or other.place is None:
+        return False
+    (ahead, aside), (further, across) = one.place.position_m, other.place.position_m
+    turn = math.remainder(math.atan2(aside, ahead) - math.atan2(across, further), math.tau)
+    return abs(turn) < SAME_WAY_RAD
+
+
+def is_seen(track: Track) -> bool:
+    """Tell whether a track is more than a guess."""
+    return track.status is not Status.TOTALLY_OCCLUDED
 
 
 def _matrix(place: FloorPlace) -> NDArray[np.float64]:

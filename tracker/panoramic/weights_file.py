@@ -20,9 +20,10 @@ VIEW: Final = "camera"
 ABOUT: Final = "about"
 
 # An encrypted member, or one that is compressed in an unknown way, makes zipfile raise RuntimeError.
-_NO_ARCHIVE: Final = (
+NO_ARCHIVE: Final = (
     ValueError, KeyError, TypeError, EOFError, RuntimeError, SyntaxError, zipfile.BadZipFile, zlib.error
 )  # fmt: skip
+"""What is raised by reading a file that is no archive of arrays, or not the one that is looked for."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,7 +63,7 @@ class Weights:
         except OSError as error:
             why = error.strerror or str(error)
             raise BadInput(f"cannot be read: {why}; `{command}` makes one", file=str(path)) from None
-        except _NO_ARCHIVE:
+        except NO_ARCHIVE:
             raise BadInput(f"is no file of weights; `{command}` makes one", file=str(path)) from None
         for name, array in found.items():
             if array.dtype != np.float32 or not np.isfinite(array).all():

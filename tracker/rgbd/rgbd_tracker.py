@@ -15,8 +15,8 @@ from peopleboy.tracker.rgbd.detection.pre_detection import Layout, PreDetection,
 from peopleboy.tracker.rgbd.people.associate import associate
 from peopleboy.tracker.rgbd.people.detection import Detection
 from peopleboy.tracker.rgbd.people.hypothesis import Hypothesis
-from peopleboy.tracker.rgbd.people.life import Life, occluder_of
 from peopleboy.tracker.rgbd.people.look_at import Body, RgbdView, box_at, looks_in
+from peopleboy.tracker.rgbd.people.management import Management, occluder_of
 from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
 from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
 from peopleboy.tracker.rgbd.verification.window_model import WindowModel
@@ -80,14 +80,14 @@ class RgbdTracker:
         view = self._view(frame)
         layout = self._detector(view.depth, view.geometry)
         detections = tuple(self._verified(found, layout, view, frame) for found in layout.detections)
-        life = Life(
+        management = Management(
             self.config, view, frame.time_s, min(frame.time_s - self._time_s, _LONGEST_STEP_S), self._rng
         )
         self._time_s = frame.time_s
-        people = self._followed(detections, life, frame)
+        people = self._followed(detections, management, frame)
         self._people = self._named(_without_doubles(people))
         self._explanation = RgbdExplanation(layout, detections, self._people)
-        return tuple(self._track(person, frame) for person in self._people if life.is_claimed(person))
+        return tuple(self._track(person, frame) for person in self._people if management.is_claimed(person))
 
     def _view(self, frame: Frame) -> RgbdView:
         geometry = DepthView.of(frame.calibrations.get(DEPTH), DEPTH)
@@ -121,20 +121,24 @@ class RgbdTracker:
             found=found, place_m=_place(found, view), body=body, score=score, is_verified=is_verified
         )
 
-    def _followed(self, detections: Sequence[Detection], life: Life, frame: Frame) -> tuple[Hypothesis, ...]:
+    def _followed(
+        self, detections: Sequence[Detection], management: Management, frame: Frame
+    ) -> tuple[Hypothesis, ...]:
         """Look for everybody who is known, then for newcomers."""
-        looked = [life.looked_for(life.expected(person, frame.odometry)) for person in self._people]
+        looked = [
+            management.looked_for(management.expected(person, frame.odometry)) for person in self._people
+        ]
         people = [person for person, _ in looked]
-        matched = associate(people, detections, life.time_s, self.config.hypotheses)
+        matched = associate(people, detections, management.time_s, self.config.hypotheses)
         followed = [
-            life.found(person, update, detections[matched[k]] if k in matched else None)
+            management.found(person, update, detections[matched[k]] if k in matched else None)
             for k, (person, update) in enumerate(looked)
         ]
-        kept = [person for person in followed if not life.is_over(person)]
+        kept = [person for person in followed if not management.is_over(person)]
         taken = set(matched.values())
-        new = [life.born(one) for k, one in enumerate(detections) if k not in taken and one.is_verified]
+        new = [management.born(one) for k, one in enumerate(detections) if k not in taken and one.is_verified]
         everybody = (*kept, *new)
-        return tuple(replace(one, occluder=occluder_of(one, everybody, life.view)) for one in everybody)
+        return tuple(replace(one, occluder=occluder_of(one, everybody, management.view)) for one in everybody)
 
     def _named(self, people: Sequence[Hypothesis]) -> tuple[Hypothesis, ...]:
         """Give numbers to those who were verified often enough."""

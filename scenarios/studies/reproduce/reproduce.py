@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
 import platform
 import time
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.store import Store
@@ -17,10 +20,12 @@ from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experim
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan
+from peopleboy.scenarios.studies.reproduce.showing.against_source import mean_and_spread
 from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, Section, section, write_page
 
 PAGE = "index.html"
 RESULTS = "units.jsonl"
+MEANS = "figures.json"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +44,7 @@ class Means:
 
 
 def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tuple[Path, list[Section]]:
-    """Do what is missing, and write the page.
+    """Do what is missing, and write the page, and the means of all figures beside it.
 
     Whoever is killed begins again with the same folder: results that are there are taken from there.
 
@@ -54,11 +59,25 @@ def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tu
     store = open_store(means.out / RESULTS)
     while wanted := unique_units(experiments, plan, store):
         run_units(wanted, store, means.workers)
-    sections = [section(Outcome.of(one, plan, store)) for one in experiments]
+    outcomes = [Outcome.of(one, plan, store) for one in experiments]
+    sections = [section(one) for one in outcomes]
+    (means.out / MEANS).write_text(json.dumps(_means(outcomes), indent=1) + "\n", encoding="utf-8")
     page = means.out / PAGE
     papers = {paper_of(one.id) for one in experiments}
     write_page(page, sections, _about(plan, papers, means, store, time.monotonic() - start))
     return page, sections
+
+
+def _means(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """Give the mean of every figure by experiment, group, whose it is, and column; None for NaN."""
+    tables: dict[str, Any] = {}
+    for outcome in outcomes:
+        table = tables.setdefault(outcome.experiment.id, {})
+        for line, figures in outcome.samples.items():
+            row = {name: mean_and_spread(values)[0] for name, values in figures.items()}
+            plain = {name: None if math.isnan(mean) else mean for name, mean in row.items()}
+            table.setdefault(line.group, {})[line.who] = plain
+    return tables
 
 
 def unique_units(experiments: Sequence[Experiment], plan: Plan, store: Store) -> list[Unit]:
@@ -73,7 +92,8 @@ def _about(plan: Plan, papers: Set[str], means: Means, store: Store, seconds: fl
         "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
         "Python": platform.python_version(),
         "Seeds": f"random streams of the trackers, and webcams, 0 to {plan.repeats - 1}; people before a "
-        f"panoramic camera 0 to {plan.walks - 1}; data sets as in their files",
+        f"panoramic camera 0 to {plan.walks - 1}; drives with a depth camera 0 to {plan.drives - 1}; "
+        "data sets as in their files",
         "Machine": f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}",
         "Time": f"{seconds / 60:.1f} min for this call; {spent / 60:.1f} min of processor time in trackers",
         "Results": f"{len(store)} units of work in {RESULTS}, beside this page",
@@ -87,9 +107,15 @@ def _amount(plan: Plan, papers: Set[str]) -> str:
         return (
             f"One run per data set and of it {QUICK_S:g} s at most, {plan.repeats} repeats instead of 10, "
             "fewer values of each parameter, figure 6.6 with 200 samples instead of 1000, pairs of people "
-            f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room."
+            f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room, "
+            f"{plan.drive_s:g} s of {len(plan.sets)} of the 12 drives with a depth camera."
         )
     if papers == {"panoramic"}:
         return f"{plan.walks} films of each room, and {plan.repeats} by webcams."
+    if papers == {"situation"}:
+        return (
+            f"{plan.drives} runs of each of {len(plan.sets)} drives, {plan.ablated} where trackers differ in "
+            f"one thing or the noise is varied, {2 * plan.drives} where odometry is left out."
+        )
     total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
     return f"{plan.repeats} repeats of everything with other random numbers in the trackers. {total}."

@@ -15,7 +15,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.studies.blind_drive import blind_drive
-from peopleboy.sim.truth.truth import Truth
+from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
 from peopleboy.tracker.rgbd.detection.depth_view import DepthView
 from peopleboy.tracker.rgbd.detection.human_size import HumanSize
@@ -131,10 +131,15 @@ def _is_person(found: PreDetection, truth: Truth, view: DepthView) -> bool | Non
         away = math.dist(truth.robot.locate(person.position_m), at)
         inside = person.inside_fraction
         if away < _NEAR_M and inside > 0.0 and person.visible_fraction / inside > _LEAST_VISIBLE:
-            return True
+            return True if _has_head(person) else None
         if away < _APART_M and person.visible_px:
             answer = None
     return answer if answer is None or not _shows_somebody(found, truth) else None
+
+
+def _has_head(person: PersonTruth) -> bool:
+    """Tell whether the head is in the image; of who is so near that it is not, no window shows enough."""
+    return person.whole_box is not None and person.whole_box[1] > -0.02 * person.whole_box[3]
 
 
 def _shows_somebody(found: PreDetection, truth: Truth) -> bool:

@@ -10,7 +10,8 @@ from click.testing import CliRunner
 from PIL import Image
 
 from peopleboy.scenarios.commands.evaluate import evaluate
-from peopleboy.scenarios.footage.track_footage import TrackOptions, track_footage
+from peopleboy.scenarios.footage.options import TrackOptions
+from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.tracker.evaluation.table import NEED_EVERYBODY
 from peopleboy.tracker.footage.grey import AutomaticGrey, Radiometry, parse_scale
 from peopleboy.tracker.footage.picture_names import natural_order

@@ -2,8 +2,9 @@ import re
 
 import pytest
 
+from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.outcome import outcome_lines
-from peopleboy.scenarios.footage.track_footage import Tracked, TrackOptions
+from peopleboy.scenarios.footage.track_footage import Tracked
 from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.thermal.variants import VARIANTS
 from tests.helpers.calls.footage_calls import call
@@ -40,6 +41,11 @@ def test_the_heights_told_are_those_that_the_tracker_looks_for(tmp_path, name):
 def test_who_gave_black_hot_is_told_to_leave_it_out(tmp_path):
     options = TrackOptions(footage=tmp_path, out=tmp_path, radiometry=Radiometry(is_inverted=True))
     assert "--black-hot" in outcome_lines(tracked(tracks=0), options)[1]
+
+
+def test_of_a_tracker_of_ones_own_no_heights_are_known(tmp_path):
+    options = TrackOptions(footage=tmp_path, out=tmp_path, tracker="mine:Tracker")
+    assert_names(outcome_lines(tracked(tracks=0), options)[1], "contact_sheet.png", "--black-hot")
 
 
 def test_one_is_not_a_plural(tmp_path):

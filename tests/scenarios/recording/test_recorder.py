@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 import os
 import signal
 import subprocess
@@ -82,6 +83,17 @@ def test_every_layer_has_a_row_for_every_frame_on_both_timelines(recording: Reco
 def test_curves_of_a_track_last_as_long_as_the_track(recording: Recording) -> None:
     assert recording.column("/curves/confidence/track_1", "frame") == list(range(5, 70))
     assert recording.column("/curves/offset/track_1", "Scalars:scalars")[0] == pytest.approx([0.5 / 160.0])
+
+
+def test_the_curve_of_a_track_has_a_gap_where_it_is_not_in_the_thermal_image(tmp_path: Path) -> None:
+    with Recorder(tmp_path / "recording.rrd", made.config(), title="made") as recorder:
+        for frame, boxes in enumerate((made.TRACK.boxes, {}, made.TRACK.boxes), start=1):
+            recorder.log(made.make_tick(frame, replace(made.TRACK, boxes=boxes)), [])
+    (first,), (gap,), (last,) = Recording(tmp_path / "recording.rrd").column(
+        "/curves/offset/track_1", "Scalars:scalars"
+    )  # type: ignore[misc]
+    assert first == last == pytest.approx(0.5 / 160.0)
+    assert math.isnan(gap)
 
 
 def test_a_person_who_left_has_no_body_and_is_not_visible(recording: Recording) -> None:

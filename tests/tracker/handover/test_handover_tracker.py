@@ -14,6 +14,7 @@ from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.handover.handover_tracker import NEEDED_VOTES, HandoverTracker
 from peopleboy.tracker.handover.introductions import FARTHEST_M, PAUSE_S
+from peopleboy.tracker.handover.joining import DOUBTFUL_S
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
@@ -117,6 +118,38 @@ def test_from_one_image_into_the_other_and_back_a_person_keeps_its_number(first)
         told = both.see(thermal, [*panoramic, other], times=20)
         assert len(told) == 2
         assert PANORAMA in told[number].boxes
+
+
+def test_a_person_keeps_its_number_though_the_panorama_begins_anew_and_the_thermal_image_tells_no_depth():
+    both = Both()
+    (number,) = both.see([warm(1)], [around(2)], times=20)
+    deep = warm(1, (6.4, 0.3))
+    for again in (3, 4):
+        for age_s in (0.0, 0.5, 2.0):
+            (one,) = both.see([deep], [around(again, age_s=age_s)], times=8).values()
+            assert one.id == number
+            assert one.place == around(again).place
+    assert set(both.see([], [around(4)], times=20)) == {number}
+
+
+def test_whoever_is_seen_behind_a_person_whom_the_panorama_has_lost_is_another_one():
+    both = Both()
+    behind = around(2, (6.4, 0.3))
+    (number,) = both.see([warm(1)], [around(1)], times=20)
+    told = both.see([warm(1)], [behind], times=9)
+    assert len(told) == 2
+    assert told[number].boxes == warm(1).boxes
+    told = both.see([warm(1)], [behind, around(3)], times=9)
+    assert len(told) == 2
+    assert told[number].boxes == {**warm(1).boxes, **around(3).boxes}
+
+
+def test_a_young_track_of_the_panorama_is_left_out_before_a_person_whom_only_the_thermal_image_shows():
+    both = Both()
+    deep = warm(1, (10.0, 0.5))
+    (number,) = both.see([deep], times=20)
+    assert set(both.see([deep], [around(1, age_s=DOUBTFUL_S / 2)])) == {number}
+    assert len(both.see([deep], [around(1, age_s=DOUBTFUL_S)])) == 2
 
 
 def test_a_moment_of_agreement_makes_nobody_one():

@@ -39,3 +39,28 @@ def test_who_agrees_already_keeps_the_number_and_so_does_everybody_else():
     identities = Identities(number=dict(before), _newest=7)
     identities.agree((WARM, track(1, age_s=YOUNG)), (AROUND, track(2)), [WARM, AROUND, OTHER])
     assert identities.number == before
+
+
+def named(known, number, guessed=None):
+    """The numbers after two tracks of the thermal image are there, the first of them new; what was asked."""
+    identities, asked = Identities(number=dict(number), _newest=9), []
+
+    def guess(one, present):
+        asked.append((one.id, set(present)))
+        return guessed
+
+    identities.name(THERMAL, [track(1), track(5)], known, guess)
+    return identities.number[WARM], asked
+
+
+def test_a_new_track_has_the_number_of_its_mate_or_that_of_who_is_guessed_or_a_new_one():
+    there = {OTHER: 7, AROUND: 3}
+    assert named({1: AROUND}, there) == (3, [])
+    assert named({}, there, guessed=4) == (4, [(1, {7})])
+    assert named({}, there) == (10, [(1, {7})])
+    assert named({1: AROUND}, {OTHER: 7}, guessed=4) == (4, [(1, {7})])
+
+
+def test_no_new_track_has_a_number_that_its_camera_has_already():
+    assert named({1: AROUND}, {OTHER: 7, AROUND: 7})[0] == 10
+    assert named({}, {OTHER: 7}, guessed=7)[0] == 10

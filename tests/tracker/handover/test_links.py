@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.handover.links import FLOOR_M2, GATE, Votes, apartness, pairs
+from peopleboy.tracker.handover.links import FLOOR_M2, GATE, Votes, apartness, is_same_way, pairs
 from peopleboy.tracker.track import FloorPlace
 from tests.helpers.runs.hand_made_tracks import track
 
@@ -26,6 +26,22 @@ def test_apartness_counts_along_the_line_of_sight_less_where_that_is_unsure():
     unsure = type(one)(id=2, place=place, confidence=1.0, status=one.status, age_s=1.0)
     along, aside = track(3, (2.5, 2.5)), track(3, (2.5, 1.5))
     assert apartness(unsure, along) < apartness(unsure, aside) / 3
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "expected"),
+    [
+        ((2.0, 0.0), (7.0, 0.7), True),
+        ((2.0, 0.0), (2.0, 0.25), False),
+        ((-3.0, 0.1), (-3.0, -0.1), True),
+        ((3.0, 0.0), (-3.0, 0.0), False),
+        (None, (2.0, 0.0), False),
+    ],
+    ids=["farther", "aside", "at the back", "behind", "nowhere"],
+)
+def test_two_are_in_the_same_direction_however_far_away(one, other, expected):
+    assert is_same_way(track(1, one), track(2, other)) is expected
+    assert is_same_way(track(1, other), track(2, one)) is expected
 
 
 @settings(max_examples=60)

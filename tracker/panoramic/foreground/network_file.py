@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import zipfile
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any, Final
@@ -21,6 +20,7 @@ from peopleboy.tracker.panoramic.foreground.mask_network import (
     MaskNetwork,
 )
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.weights_file import NO_ARCHIVE
 
 SHIPPED: Final = Path(__file__).parent / "networks" / "foreground.npz"
 """The network that comes with the tracker."""
@@ -57,12 +57,12 @@ class ForegroundModel:
             BadInput: the file cannot be read, or is no such model.
         """
         try:
-            with np.load(path, allow_pickle=False) as arrays:
+            with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
                 words = json.loads(str(arrays[_WORDS]))
                 weights = {each.name: arrays[each.name] for each in fields(MaskNetwork)}
                 view = PanoramaView.of_plain(words["camera"])
                 about = {str(key): str(value) for key, value in words["about"].items()}
-        except (OSError, ValueError, KeyError, TypeError, AttributeError, zipfile.BadZipFile) as error:
+        except (OSError, AttributeError, *NO_ARCHIVE) as error:
             raise BadInput(f"{path}: is no network for panoramas: {_in_one_line(error)}") from error
         _check_weights(path, weights, view)
         return cls(network=MaskNetwork(**weights), view=view, about=about)

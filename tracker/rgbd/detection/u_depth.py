@@ -89,8 +89,8 @@ def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[Piece, ...]:
     number, labels, boxes, _ = cv2.connectedComponentsWithStats(kept, connectivity=8, ltype=cv2.CV_32S)
     rows = _extents(counts, np.asarray(labels, np.int32), np.array(boxes, np.int32), number, config.trimmed)
     found = [_piece(row, config.row_m) for row in rows.tolist()]
-    kept = [one for one in found if one.mass >= _LEAST_MASS and one.depth_m < _FRINGE_M]
-    return tuple(sorted(kept, key=lambda piece: piece.depth_m))
+    likely = [one for one in found if one.mass >= _LEAST_MASS and one.depth_m < _FRINGE_M]
+    return tuple(sorted(likely, key=lambda piece: piece.depth_m))
 
 
 def _piece(row: list[float], row_m: float) -> Piece:

@@ -8,6 +8,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.reproduce.experiments.contents import Contents
 from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
 from peopleboy.scenarios.studies.reproduce.experiments.distances import DISTANCES, Correlations, FloorPath
+from peopleboy.scenarios.studies.reproduce.experiments.drive_figures import FIGURES
+from peopleboy.scenarios.studies.reproduce.experiments.drive_windows import WINDOWS
+from peopleboy.scenarios.studies.reproduce.experiments.drives import DRIVES
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
 from peopleboy.scenarios.studies.reproduce.experiments.pictures import DEPICTIONS
@@ -243,13 +246,21 @@ _ALL: tuple[Experiment, ...] = (
     Correlations(),
     *DISTANCES,
     FloorPath(),
+    *DRIVES,
+    *WINDOWS,
+    *FIGURES,
 )
 
 EXPERIMENTS: dict[str, Experiment] = {experiment.id: experiment for experiment in _ALL}
 """By id, in the order of the page."""
 
 
-PAPERS: Mapping[str, str] = {"thesis": "", "2005": "paper-", "panoramic": "panoramic-"}
+PAPERS: Mapping[str, str] = {
+    "thesis": "",
+    "2005": "paper-",
+    "panoramic": "panoramic-",
+    "situation": "situation-",
+}
 """The sources by name, and how the ids of each begin; those of the thesis are plain."""
 
 

@@ -11,18 +11,25 @@ from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Result, Store, code_digest
 from peopleboy.scenarios.running.engine.task import Task, Tell
 from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.studies.depth_drives.drive_sets import SETS, TURNS
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 
 STUDIES = Path(__file__).parents[2]
 LIBRARY = STUDIES.with_name("library")
+_STUDIES = ("webcams", "distance_learning", "depth_drives", "window_learning")
+_MODELS = (
+    "corridor_meeting", "corridor_straight", "crossing_2", "follow_visitors", "hall_visits", "hidden_2s",
+)  # fmt: skip
+_SCENARIOS = ("corner_webcams", "room_long", "room_narrow", "room_short", *SETS, TURNS, *_MODELS)
+
 MEASURES = (
     *(
         Path(__file__).with_name(f"{kind}units.py")
-        for kind in ("", "delay_", "distance_", "learn_", "picture_")
+        for kind in ("", "delay_", "distance_", "drive_", "learn_", "picture_", "window_")
     ),
     *sorted(Path(__file__).parents[1].glob("pictures/*.py")),
-    *(path for study in ("webcams", "distance_learning") for path in sorted((STUDIES / study).glob("*.py"))),
-    *(LIBRARY / f"{name}.yaml" for name in ("corner_webcams", "room_long", "room_narrow", "room_short")),
+    *(path for study in _STUDIES for path in sorted((STUDIES / study).glob("*.py"))),
+    *(LIBRARY / f"{name}.yaml" for name in _SCENARIOS),
 )
 """The files that say how results are measured, beside trackers and simulator."""
 

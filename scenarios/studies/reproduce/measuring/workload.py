@@ -26,6 +26,10 @@ class Plan:
         rounds: of boosting.
         timing_steps: how often each step is timed.
         walks: seeds of each room in which people walk before a panoramic camera.
+        sets: numbers of the drives with a depth camera, from 1.
+        drives: seeds of each of them.
+        ablated: seeds of those on which trackers are compared that differ in one thing.
+        drive_s: [s] after which drives are cut.
     """
 
     cache: Path
@@ -38,6 +42,10 @@ class Plan:
     rounds: int = 40
     timing_steps: int = 200
     walks: int = 10
+    sets: tuple[int, ...] = tuple(range(1, 13))
+    drives: int = 5
+    ablated: int = 2
+    drive_s: float = 3600.0
 
 
 QUICK_S = 20.0
@@ -62,6 +70,10 @@ def quick_plan(cache: Path) -> Plan:
         rounds=20,
         timing_steps=60,
         walks=2,
+        sets=(2, 7, 11),
+        drives=1,
+        ablated=1,
+        drive_s=10.0,
     )
 
 

@@ -28,8 +28,21 @@ from peopleboy.scenarios.studies.reproduce.showing.source import Claim, SourceTa
 
 HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"
-MAIN = {"literal": ("literal", "room_long, random split", "room_long"), "default": ("default", "held out")}
-FINE = ("m", "|r|")  # columns that need three decimals
+MAIN = {
+    "literal": ("literal", "as printed", "room_long, random split", "room_long"),
+    "default": ("default", "held out"),
+}
+FINE = (
+    "m",
+    "|r|",
+    "rate",
+    "FP per image",
+    "recall",
+    "figure",
+    "from",
+    "to",
+)  # columns that need three decimals
+COUNTS = ("images", "TP", "FN", "FP", "people", "others", "parameters")  # columns that need none
 EFFECT = "d to the source (95 %)"
 
 Figures = Mapping[str, tuple[float, float | None]]
@@ -182,14 +195,15 @@ def points(value: float, column: str) -> str:
 
 
 def _digits(column: str) -> int:
-    return 3 if column in FINE else 2
+    if column in COUNTS:
+        return 0
+    return 3 if column in FINE or column.endswith("[m]") else 2
 
 
 def _writer(lines: Sequence[Figures]) -> Callable[[str, tuple[float, float | None] | None], str]:
     """Choose how a table's figures are written: counts, times of less than 1 ms, or two or three decimals."""
     known = [mean for figures in lines for mean, _ in figures.values() if not math.isnan(mean)]
     are_counts = all(mean == round(mean) for mean in known)
-    are_times = any("ms" in figures for figures in lines)
 
     def write(column: str, figure: tuple[float, float | None] | None) -> str:
         if figure is None or math.isnan(figure[0]):
@@ -198,7 +212,7 @@ def _writer(lines: Sequence[Figures]) -> Callable[[str, tuple[float, float | Non
         if are_counts:
             return f"{mean:.0f}"
         digits = _digits(column)
-        text = f"{mean:#.2g}" if are_times and mean < 1 else f"{mean:.{digits}f}"
+        text = f"{mean:#.2g}" if column == "ms" and mean < 1 else f"{mean:.{digits}f}"
         return text if spread is None else f"{text} ± {spread:.{digits}f}"
 
     return write

@@ -12,15 +12,30 @@ from scipy.stats import t as student
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
+from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.scenarios.studies.depth_drives.sliding_windows import (
+    BY_SIZE,
+    FAR_SLIDES,
+    NEAR_SLIDES,
+    PARTS,
+)
+from peopleboy.scenarios.studies.depth_drives.tracker_choices import CHOICES
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
 from peopleboy.scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS, PAPERS, choose
 from peopleboy.scenarios.studies.reproduce.experiments.distances import CUES, Correlations, Distances
-from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line, Outcome, Samples
-from peopleboy.scenarios.studies.reproduce.experiments.tracking import Tracking
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import (
+    Depicted,
+    Experiment,
+    Line,
+    Outcome,
+    Samples,
+)
+from peopleboy.scenarios.studies.reproduce.experiments.tracking import THESIS, Tracking
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import BASES, Setting, changed
 from peopleboy.scenarios.studies.reproduce.measuring.units import RECORDS, TrackUnit, restored
+from peopleboy.scenarios.studies.reproduce.measuring.window_units import MACHINES
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan, full_plan
-from peopleboy.scenarios.studies.reproduce.reproduce import RESULTS, Means, reproduce
+from peopleboy.scenarios.studies.reproduce.reproduce import MEANS, RESULTS, Means, reproduce
 from peopleboy.scenarios.studies.reproduce.showing.against_source import ClaimStatus, judge, paired_t_test
 from peopleboy.scenarios.studies.reproduce.showing.print_sections import print_sections
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim, source_tables
@@ -38,13 +53,50 @@ PANORAMIC = (
     *(f"figure-{number}" for number in range(1, 7)),
     *("webcams", "angle", "general", "personal", "position", "noise"),
 )
+SITUATION = (
+    *(f"table-{number}" for number in ("4.1", "4.2", "4.3", "4.4", "4.5", "4.7", "B.1")),
+    *(f"figure-{number}" for number in ("4.25", "4.26", "4.28", "4.29", "4.30", "4.33")),
+    *("positions", "ablations", "noise", "odometry", "pre-detection", "windows", "goals"),
+)
 ALL = {
     *(f"figure-{number}" for number in FIGURES),
     *(f"table-{number}" for number in TABLES),
     *(f"paper-{number}" for number in PAPER),
     *(f"panoramic-{name}" for name in PANORAMIC),
+    *(f"situation-{name}" for name in SITUATION),
     "section-5.3",
 }
+
+
+DRIVES = Plan(cache=Path("films"), drives=2)
+
+
+class MadeUp(dict[str, Result]):
+    """Results of drives and windows, all of them invented."""
+
+    def __missing__(self, key: str) -> Result:
+        if key.startswith("windows "):
+            return {f"{kind} {who}": {"people": [1.0, 2.0], "others": [-1.0]} for kind, who in MACHINES}
+        if key.startswith("slide "):
+            tally = {"ms": 10.0, "images": 3, "people": 4, "found": 3, "false": 5}
+            kinds = (f"{one} {BY_SIZE}" for one in ("near+far", "far", "near"))
+            slides = (how.key for how in (*FAR_SLIDES, *NEAR_SLIDES))
+            return dict.fromkeys((*slides, *kinds), tally) | {"parts": dict.fromkeys(PARTS, 3.0)}
+        truth = [[1, 1, 2.0, 0.5, 2.0, 0.0, 1], [2, 1, 4.0, 0.5, 4.0, 0.0, 1], [3, 1, 6.0, 0.5, 6.0, 0.0, 1]]
+        told = [[frame, 1, x, y + 0.1] for frame, _, x, y, *_ in truth]
+        hits = [[frame, 1, 1, 0.0, 0.1, 0.0, 0.1] for frame, *_ in truth]
+        pre = {"bands": [[3, 3], [2, 1], [2, 1], [2, 0]], "false": 1}
+        seen = {
+            "frames": 3,
+            "hits": hits,
+            "missed": [[3, 2]],
+            "false": [],
+            "ms": 9.0,
+            "pre": pre,
+            "told": told,
+        }
+        robot = [[0.1 * frame, 0.0, 0.0] for frame in range(3)]
+        return dict.fromkeys(CHOICES, seen) | {"truth": truth, "robot": robot, "depth": told, "legs": told}
 
 
 def made_up(experiment: Experiment) -> Samples:
@@ -54,6 +106,8 @@ def made_up(experiment: Experiment) -> Samples:
         return {Line(group, "room_long, random split"): {"m": errors(rng)} for group in experiment.picks}
     if isinstance(experiment, Correlations):
         return {Line(cue, "room_long"): {"|r|": rng.uniform(0.5, 0.9, 3)} for cue in CUES}
+    if experiment.id.startswith("situation-"):
+        return experiment.samples(DRIVES, MadeUp())
     if isinstance(experiment, Tracking):
         return {t.line: {m: rng.uniform(50, 90, 3) for m in experiment.metrics} for t in experiment.trials}
     values = source_tables()[experiment.id].values
@@ -82,16 +136,33 @@ def test_numbers_stand_for_all_that_have_them() -> None:
     assert [one.id for one in choose([])] == list(EXPERIMENTS)
 
 
+@pytest.mark.parametrize("number", [f"situation-{name}" for name in SITUATION if name.startswith("figure")])
+def test_figures_of_drives_are_drawn(number: str) -> None:
+    experiment = EXPERIMENTS[number]
+    assert isinstance(experiment, Depicted)
+    assert str(experiment.picture(DRIVES, MadeUp())).startswith("data:image/png;base64,")
+
+
+def test_goals_are_reached_or_not_by_what_was_measured() -> None:
+    samples = made_up(EXPERIMENTS["situation-goals"])
+    figures = {line.group: figures["figure"].tolist() for line, figures in samples.items()}
+    assert figures["rate"] == figures["rate of the worst set"] == [0.75]
+    assert figures["error, mean [m]"] == pytest.approx([0.1])
+    assert figures["false sizes per image"] == pytest.approx([1.0 / 3.0])
+    assert figures["rate in turns, gained by odometry"] == [0.0]
+
+
 def test_papers_share_all_experiments_among_themselves() -> None:
     papers = {paper: [one.id for one in choose([], paper)] for paper in PAPERS}
     assert sorted(number for ids in papers.values() for number in ids) == sorted(ALL)
     assert papers["2005"] == [one.id for one in choose(["paper"])]
+    assert papers["situation"] == [one.id for one in choose(["situation"])]
     assert papers["panoramic"] == [one.id for one in choose(["panoramic"])]
     assert [one.id for one in choose(["panoramic-figure-5"], "panoramic")] == ["panoramic-figure-5"]
 
 
 def test_a_paper_that_there_is_not_and_an_id_of_another_one_are_refused() -> None:
-    with refused("'2006'", "thesis, 2005, panoramic"):
+    with refused("'2006'", "thesis, 2005, panoramic, situation"):
         choose([], "2006")
     with refused("'figure-4.8'", "panoramic-general"):
         choose(["figure-4.8"], "panoramic")
@@ -240,6 +311,9 @@ def test_a_little_of_everything_becomes_a_page_and_is_done_once(tmp_path: Path) 
     chosen = choose(["3.1", "4.1", "4.8", "5.5", "figure-7.3", "paper-table-3"])
     page, _ = reproduce(chosen, plan, Means(out=tmp_path))
     assert read(page)[1].ids >= {one.id for one in chosen}
+    means = json.loads((tmp_path / MEANS).read_text())
+    assert set(means) == {one.id for one in chosen}
+    assert means["figure-4.8"]["dataset1"]["default"].keys() == set(THESIS)
     done = [json.loads(line)["key"] for line in (tmp_path / RESULTS).read_text().splitlines()]
     assert len(done) == len(set(done)) > 30
     assert reproduce(chosen, plan, Means(out=tmp_path))[0] == page
@@ -277,7 +351,7 @@ def test_the_command_lists_one_paper(capsys: pytest.CaptureFixture[str]) -> None
     shown = capsys.readouterr().out
     assert "panoramic-figure-6" in shown
     assert "paper-table-1" not in shown
-    assert "thesis, 2005, panoramic" in refusal(capsys, "reproduce", "--paper", "2006")
+    assert "thesis, 2005, panoramic, situation" in refusal(capsys, "reproduce", "--paper", "2006")
 
 
 def test_sections_are_printed_with_both_figures_and_both_tests(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,8 +1,11 @@
+import gc
 from dataclasses import asdict, replace
+from io import BufferedReader
 
 import numpy as np
 import pytest
 
+from peopleboy.bad_input import BadInput
 from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
 from peopleboy.tracker.panoramic.foreground.network_file import ForegroundModel
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView
@@ -84,6 +87,19 @@ def test_a_file_that_is_no_network_is_refused(tmp_path):
     np.savez(path, words=np.array(["x"], dtype=object))
     with refused("model.npz", "pickle"):
         ForegroundModel.load(path)
+
+
+@pytest.mark.parametrize("kept", [0, 40, 0.5, -30], ids=["nothing", "head", "half", "no end"])
+def test_a_damaged_file_is_refused_and_closed(network, tmp_path, kept):
+    path = tmp_path / "model.npz"
+    ForegroundModel(network=network, view=VIEW).save(path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: round(kept * len(whole)) if isinstance(kept, float) else kept])
+    with pytest.raises(BadInput, match=r"model\.npz: is no network for panoramas") as caught:
+        ForegroundModel.load(path)
+    assert caught.value.__cause__ is not None  # whose frames still have what they opened
+    files = [one for one in gc.get_objects() if isinstance(one, BufferedReader)]
+    assert [one for one in files if one.name == str(path) and not one.closed] == []
 
 
 @pytest.mark.parametrize(

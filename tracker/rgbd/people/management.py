@@ -19,7 +19,7 @@ from peopleboy.tracker.track import Status
 
 _CONFIDENT: Final = 0.3
 _GAIN: Final = 0.15  # of what the place was off in a frame that goes into the velocity
-_SLOWS_S: Final = 1.0  # in which somebody who is not seen is thought to lose most of the velocity
+_SLOWS_S: Final = 2.0  # in which somebody who is not seen is thought to lose most of the velocity
 _SIZE_SHARE: Final = 0.2
 _SEEN_THROUGH: Final = 0.8  # share of readings behind, by which somebody is gone
 _SEEN_THROUGH_FRAMES: Final = 5
@@ -33,8 +33,8 @@ _DRIFT_M2_S: Final = 0.15  # by which the place of who is not seen becomes unsur
 
 
 @dataclass(frozen=True, slots=True)
-class Life:
-    """One frame in the lives of all.
+class Management:
+    """What one frame does to all hypotheses.
 
     Attributes:
         config: settings.

@@ -1,0 +1,75 @@
+"""The RGB-D camera of others: where it stood, and how wide it sees."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.pinhole import Pinhole
+
+VERTICAL_FOV_DEG: Final = 43.0
+"""Of the sensor that the tracker was made for."""
+STEEPEST_DEG: Final = 60.0
+LEVEL_DEG: Final = 10.0
+"""Up to this tilt the tracker's boxes and places are right: it is made for a camera that looks ahead."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RgbdCamera:
+    """A camera without distortion, whose principal point is the middle of the image.
+
+    Attributes:
+        height_m: above the floor.
+        pitch_deg: tilt, positive looks down.
+        focal_px: focal length; None for that of the angle.
+        vertical_fov_deg: between the upper and the lower edge of the image; None for what the focal length
+            tells, or for `VERTICAL_FOV_DEG`.
+
+    Raises:
+        BadInput: both are given, or a number of no camera.
+    """
+
+    height_m: float = 1.2
+    pitch_deg: float = 0.0
+    focal_px: float | None = None
+    vertical_fov_deg: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is no camera."""
+        if self.focal_px is not None and self.vertical_fov_deg is not None:
+            raise BadInput("--focal-px and --vertical-fov-deg say the same; give one")
+        _check("--camera-height-m", self.height_m, 0.0, 10.0)
+        _check("--pitch-deg", self.pitch_deg, -STEEPEST_DEG, STEEPEST_DEG)
+        _check("--focal-px", self.focal_px, 0.0, 1e5)
+        _check("--vertical-fov-deg", self.vertical_fov_deg, 0.0, 170.0)
+
+    @property
+    def notes(self) -> list[str]:
+        """What the tracker cannot make good."""
+        if abs(self.pitch_deg) <= LEVEL_DEG:
+            return []
+        return [
+            f"beyond {LEVEL_DEG:g} degrees of pitch boxes and places are off: the camera should look ahead"
+        ]
+
+    def geometry(self, width: int, height: int) -> Pinhole:
+        """Give its geometry for pictures of a size [px]; x and y begin below its lens."""
+        return Pinhole(
+            width=width,
+            height=height,
+            vertical_fov_rad=self._angle_rad(height),
+            position_m=(0.0, 0.0, self.height_m),
+            pitch_rad=math.radians(self.pitch_deg),
+        )
+
+    def _angle_rad(self, height: int) -> float:
+        if self.focal_px is not None:
+            return 2.0 * math.atan(height / 2.0 / self.focal_px)
+        return math.radians(VERTICAL_FOV_DEG if self.vertical_fov_deg is None else self.vertical_fov_deg)
+
+
+def _check(option: str, value: float | None, low: float, high: float) -> None:
+    if value is not None and not low < value < high:
+        raise BadInput(f"{option} must be between {low:g} and {high:g}, got {value:g}")

@@ -1,0 +1,145 @@
+"""A tracker of legs by a laser near the floor, of the kind that was usual before depth cameras."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from peopleboy.sim.observation import Observation
+from peopleboy.tracker.frame import Floats, Odometry
+
+HEIGHT_M: Final = 0.3
+FARTHEST_M: Final = 5.0  # SA 4.7.7: legs are told from other things up to 3 to 5 m
+FORWARD_M: Final = 0.3
+
+_COLUMNS, _ROWS = 361, 16
+_FOV_DEG: Final = math.degrees(2.0 * math.atan(_ROWS / _COLUMNS))  # upright; it is 90 degrees across
+_YAWS_DEG: Final = {"legs_left": 45.0, "legs_right": -45.0}
+
+CAMERAS: Final = {
+    name: {
+        "kind": "depth",
+        "scale": 0.0,
+        "colour": False,
+        "width_px": _COLUMNS,
+        "height_px": _ROWS,
+        "vertical_fov_deg": _FOV_DEG,
+        "mount_m": [FORWARD_M, 0.0, HEIGHT_M],
+        "pitch_deg": 0.0,
+        "yaw_deg": yaw_deg,
+    }
+    for name, yaw_deg in _YAWS_DEG.items()
+}
+"""Two depth cameras without noise, one row of which makes half a circle."""
+
+_GAP_M: Final = 0.12  # between neighbours of different things
+_LEG_M: Final = (0.05, 0.25)
+_APART_M: Final = 0.5  # of a pair of legs
+_GATE_M: Final = 0.6
+_BIRTHS, _PATIENCE = 4, 10  # frames
+
+
+def scan(observation: Observation) -> Floats:
+    """Give the points (N, 2) of half a circle, forward and left of the robot [m], from left to right."""
+    parts = []
+    for name, yaw_deg in _YAWS_DEG.items():
+        depth = observation.images[name][_ROWS // 2].astype(np.float64) / 1000.0
+        column = np.arange(_COLUMNS) - (_COLUMNS - 1) / 2.0
+        ahead, left = depth, -column / (_COLUMNS / 2.0) * depth
+        cosine, sine = math.cos(math.radians(yaw_deg)), math.sin(math.radians(yaw_deg))
+        x, y = FORWARD_M + cosine * ahead - sine * left, sine * ahead + cosine * left
+        parts.append(np.where(depth[:, None] > 0.0, np.stack([x, y], axis=1), np.nan))
+    return np.concatenate(parts)
+
+
+def find_people(points: Floats) -> list[tuple[float, float]]:
+    """Take pairs of what is as wide as a leg, and single ones, for people."""
+    legs = list(_legs(points))
+    people = []
+    while legs:
+        leg = legs.pop(0)
+        other = min(legs, key=lambda one: math.dist(one, leg), default=None)
+        if other is not None and math.dist(other, leg) < _APART_M:
+            legs.remove(other)
+            leg = ((leg[0] + other[0]) / 2.0, (leg[1] + other[1]) / 2.0)
+        people.append(leg)
+    return people
+
+
+@dataclass(frozen=True, slots=True)
+class LegTrack:
+    """Somebody followed by the legs: where, how often seen, and for how many frames not."""
+
+    id: int
+    place_m: tuple[float, float]
+    seen: int = 1
+    unseen: int = 0
+
+
+class LegTracker:
+    """Follows whoever has legs from frame to frame: the nearest one is the same."""
+
+    def __init__(self) -> None:
+        self._tracks: list[LegTrack] = []
+        self._last_id = 0
+
+    def update(self, points: Floats, odometry: Odometry | None) -> list[LegTrack]:
+        """Take in a scan, and give those who were seen often enough."""
+        found = find_people(points)
+        kept = []
+        for track in sorted((_moved(one, odometry) for one in self._tracks), key=lambda one: -one.seen):
+            nearest = min(found, key=lambda place: math.dist(place, track.place_m), default=None)
+            if nearest is not None and math.dist(nearest, track.place_m) < _GATE_M:
+                found.remove(nearest)
+                kept.append(replace(track, place_m=nearest, seen=track.seen + 1, unseen=0))
+            elif track.unseen < _PATIENCE:
+                kept.append(replace(track, unseen=track.unseen + 1))
+        for place in found:
+            self._last_id += 1
+            kept.append(LegTrack(self._last_id, place))
+        self._tracks = kept
+        return [track for track in kept if track.seen >= _BIRTHS]
+
+
+def _legs(points: Floats) -> Iterator[tuple[float, float]]:
+    """Find pieces of the scan that stand before all else, and are as wide as legs."""
+    reach = np.hypot(*points.T)
+    for first, last in _pieces(points):
+        piece = points[first : last + 1]
+        width = math.dist(piece[0], piece[-1])
+        x, y = piece.mean(axis=0).tolist()
+        if (
+            _LEG_M[0] <= width <= _LEG_M[1]
+            and math.hypot(x, y) <= FARTHEST_M
+            and _stands_out(reach, first, last)
+        ):
+            yield x, y
+
+
+def _pieces(points: Floats) -> Iterator[tuple[int, int]]:
+    gaps = np.hypot(*np.diff(points, axis=0).T)
+    is_break = ~(gaps <= _GAP_M)  # no reading is a break, too
+    starts = np.concatenate([[0], np.flatnonzero(is_break) + 1])
+    ends = np.concatenate([np.flatnonzero(is_break), [len(points) - 1]])
+    for first, last in zip(starts.tolist(), ends.tolist(), strict=True):
+        if np.isfinite(points[first : last + 1]).all():
+            yield first, last
+
+
+def _stands_out(reach: Floats, first: int, last: int) -> bool:
+    sides: Sequence[tuple[int, int]] = ((first, first - 1), (last, last + 1))
+    return all(
+        not 0 <= beside < len(reach) or not reach[beside] < reach[edge] + _GAP_M for edge, beside in sides
+    )
+
+
+def _moved(track: LegTrack, odometry: Odometry | None) -> LegTrack:
+    if odometry is None:
+        return track
+    x, y = track.place_m[0] - odometry.advance_m, track.place_m[1] - odometry.aside_m
+    cosine, sine = math.cos(odometry.turn_rad), math.sin(odometry.turn_rad)
+    return replace(track, place_m=(cosine * x + sine * y, cosine * y - sine * x))

@@ -1,0 +1,110 @@
+"""Colour and depth pictures that belong together: by their order, or by the times that their names tell."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+
+Floats = NDArray[np.float64]
+
+STAMP: Final = re.compile(r"\d+\.\d+")
+"""Seconds with decimals, as the TUM RGB-D benchmark names its pictures."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PicturePairs:
+    """Pictures of the same instants.
+
+    Attributes:
+        colour: N files.
+        depth: N files; one may be there twice.
+        time_s: (N,) since the first; None if the names tell no times.
+        rate_hz: pairs a second, by the median of the times between them; None if the names do not tell it.
+    """
+
+    colour: Sequence[Path]
+    depth: Sequence[Path]
+    time_s: Floats | None = None
+    rate_hz: float | None = None
+
+
+def pair_up(colour: Sequence[Path], depth: Sequence[Path]) -> PicturePairs:
+    """Find the depth picture of each colour picture: the nearest in time if all names are time stamps.
+
+    Args:
+        colour: at least one file, in order.
+        depth: likewise.
+
+    Raises:
+        BadInput: there are more of one kind than of the other, or two of one time; or a depth picture is
+            older or newer than its colour by more than half of the time between two colour pictures.
+    """
+    times, depth_times = time_stamps(colour), time_stamps(depth)
+    if times is None or depth_times is None:
+        return _in_order(colour, depth)
+    by_time, depth_by_time = np.argsort(times), np.argsort(depth_times)
+    colour, depth = [colour[k] for k in by_time], [depth[k] for k in depth_by_time]
+    times, depth_times = times[by_time], depth_times[depth_by_time]
+    step_s = _step(colour, times) if len(times) > 1 else None
+    nearest = _nearest(depth_times, times)
+    if step_s is not None:
+        _check_near(colour, np.abs(depth_times[nearest] - times), step_s / 2)
+    return PicturePairs(
+        colour=colour,
+        depth=[depth[k] for k in nearest],
+        time_s=times - times[0],
+        rate_hz=None if step_s is None else 1.0 / step_s,
+    )
+
+
+def time_stamps(paths: Sequence[Path]) -> Floats | None:
+    """Read names as seconds (N,); None if one of them is no time stamp."""
+    if not all(STAMP.fullmatch(path.stem) for path in paths):
+        return None
+    return np.array([float(path.stem) for path in paths])
+
+
+def _in_order(colour: Sequence[Path], depth: Sequence[Path]) -> PicturePairs:
+    if len(colour) != len(depth):
+        raise BadInput(
+            f"{depth[0].parent}: must have as many pictures as {colour[0].parent}, {len(colour)}, "
+            f"got {len(depth)}; pictures whose names are seconds, as 12.345678.png, go together by time"
+        )
+    return PicturePairs(colour, depth)
+
+
+def _nearest(sorted_times: Floats, times: Floats) -> NDArray[np.int64]:
+    """Give which of the sorted times is nearest to each of others (N,)."""
+    after = np.searchsorted(sorted_times, times).clip(1, max(len(sorted_times) - 1, 1))
+    before, last = after - 1, np.minimum(after, len(sorted_times) - 1)
+    is_before = times - sorted_times[before] <= sorted_times[last] - times
+    return np.where(is_before, before, last)
+
+
+def _step(paths: Sequence[Path], times: Floats) -> float:
+    """Give the median time between pictures [s]."""
+    steps = np.diff(times)
+    if not steps.all():
+        twice = paths[int(np.argmin(steps)) + 1]
+        raise BadInput(f"{twice}: another picture has the same time; keep one")
+    return float(np.median(steps))
+
+
+def _check_near(paths: Sequence[Path], away_s: Floats, most_s: float) -> None:
+    is_far = away_s > most_s + 1e-6  # names have no more decimals
+    if not is_far.any():
+        return
+    first = int(np.argmax(is_far))
+    raise BadInput(
+        f"{paths[first]}: has no depth picture within {most_s:.3f} s, half a picture's time; the nearest is "
+        f"{away_s[first]:.3f} s away; take out what has none (without depth: {is_far.sum()} of {len(paths)} "
+        "pictures)"
+    )
