@@ -98,6 +98,13 @@ def test_who_is_seen_by_both_is_one_track_with_both_boxes():
     assert one.place == around(9).place
 
 
+def test_of_two_places_the_surer_is_taken():
+    both = Both()
+    ahead = warm(4, deviation_m=0.05)
+    (one,) = both.see([ahead], [around(9)], times=NEEDED_VOTES).values()
+    assert one.place == ahead.place
+
+
 def test_those_who_stand_apart_are_two():
     assert len(Both().see([warm(1, SEEN_M)], [around(1, BEHIND_M)], times=9)) == 2
 
