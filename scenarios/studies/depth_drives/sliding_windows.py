@@ -153,7 +153,7 @@ def slide(image: Image, how: Slide) -> Floats:
     # Grouping by OpenCV takes minutes for the thousands of hits of near windows.
     boxes, scores = hog.detectMultiScale(
         image,
-        hitThreshold=0.0 if how.is_opencv else OURS.least_far_score,
+        hitThreshold=0.0 if how.is_opencv else OURS.least_score(how.kind),
         winStride=(how.shift_px, how.shift_px),
         padding=(8, 8),
         scale=how.scale,
