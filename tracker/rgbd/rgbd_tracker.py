@@ -105,7 +105,7 @@ class RgbdTracker:
         if self.config.has_verification:
             window = window_of(found, kind, layout.floor, geometry)
             score = self._model.score(features(view.colour, window, kind), kind)
-        is_verified = not self.config.has_verification or score > self.config.least_score
+        is_verified = not self.config.has_verification or score > self.config.least_score(kind)
         if not is_verified and self._is_human is not None:
             is_verified = self._is_human(found, frame)
         ground = layout.floor.slope * found.z_m + layout.floor.offset_m
