@@ -86,6 +86,4 @@ if __name__ == "__main__":
     told = rgbd_times()
     print(f"HOG: {told.hog_ms:.1f} ms; shift {SHIFT_PX} px, scale {SCALE}: {told.sliding_ms:.0f} ms")
     share, times = told.tracker_ms / told.hog_ms, told.sliding_ms / told.tracker_ms
-    print(
-        f"rgbd, {told.tracks:.1f} people: {told.tracker_ms:.1f} ms, {share:.2f} of HOG; slid: {times:.0f}x"
-    )
+    print(f"rgbd, {told.tracks:.1f} people: {told.tracker_ms:.1f} ms, {share:.2f} of HOG; slid: {times:.0f}x")

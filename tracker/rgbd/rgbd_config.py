@@ -7,6 +7,7 @@ from typing import Final
 
 from peopleboy.tracker.rgbd.detection.human_size import PRINTED_SIZE, HumanSize
 from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.verification.windows import Range
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +72,7 @@ class HypothesesConfig:
     has_see_through: bool = True
     looks_weight: float = 0.5
     uses_odometry: bool = True
-    body_m: float = 0.1
+    body_m: float = 0.115
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,7 +86,7 @@ class RgbdConfig:
         hypotheses: of their management.
         has_verification: whether what is found must look like a human, too.
         has_own_detector: whether far windows are judged by the machine learned here, or by OpenCV's.
-        least_score: of a window that is taken for a human.
+        least_far_score, least_near_score: of a window that is taken for a human.
     """
 
     size: HumanSize = field(default_factory=HumanSize)
@@ -94,12 +95,18 @@ class RgbdConfig:
     hypotheses: HypothesesConfig = field(default_factory=HypothesesConfig)
     has_verification: bool = True
     has_own_detector: bool = True
-    least_score: float = 0.4
+    least_far_score: float = 0.5
+    least_near_score: float = 0.2
+
+    def least_score(self, kind: Range) -> float:
+        """Tell above which score a window of a range is a human's."""
+        return self.least_far_score if kind is Range.FAR else self.least_near_score
 
 
 PRINTED: Final = RgbdConfig(
     size=PRINTED_SIZE,
-    least_score=0.0,
+    least_far_score=0.0,
+    least_near_score=0.0,
     above=UDepthConfig(row_m=0.01, bridged_steps=0.0),
     filter=FloorFilterConfig(sharpness=0.0, foreground_m=0.0, has_hold=False),
     hypotheses=HypothesesConfig(

@@ -97,7 +97,7 @@ class RgbdTracker:
         if self.config.has_verification:
             window = window_of(found, kind, layout.floor, geometry)
             score = self._model.score(features(view.colour, window, kind), kind)
-        is_verified = not self.config.has_verification or score > self.config.least_score
+        is_verified = not self.config.has_verification or score > self.config.least_score(kind)
         ground = layout.floor.slope * found.z_m + layout.floor.offset_m
         top = (found.box[1] - geometry.centre_v) * found.z_m / geometry.focal_px
         head = ground - top

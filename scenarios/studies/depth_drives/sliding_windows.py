@@ -153,7 +153,7 @@ def slide(image: Image, how: Slide) -> Floats:
     # Grouping by OpenCV takes minutes for the thousands of hits of near windows.
     boxes, scores = hog.detectMultiScale(
         image,
-        hitThreshold=0.0 if how.is_opencv else OURS.least_score,
+        hitThreshold=0.0 if how.is_opencv else OURS.least_score(how.kind),
         winStride=(how.shift_px, how.shift_px),
         padding=(8, 8),
         scale=how.scale,
@@ -219,7 +219,7 @@ def _verified(
     for found in detections:
         kind = range_of(found.z_m, floor, view, image.shape[0])
         window = window_of(found, kind, floor, view)
-        if model.score(features(image, window, kind), kind) > OURS.least_score:
+        if model.score(features(image, window, kind), kind) > OURS.least_score(kind):
             yield kind, window
 
 
