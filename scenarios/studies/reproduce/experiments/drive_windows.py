@@ -121,7 +121,7 @@ class Parameters:
         """Give the number of settings, switches left out."""
         counts = {
             "pre-detection": _numbers(HumanSize) + _numbers(UDepthConfig),
-            "classification": 1,
+            "classification": 2,  # a score for either range
             "hypotheses": _numbers(HypothesesConfig),
             "tracking": _numbers(FloorFilterConfig),
         }

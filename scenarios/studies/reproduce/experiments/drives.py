@@ -24,7 +24,7 @@ from peopleboy.scenarios.studies.reproduce.measuring.drive_units import DriveUni
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 
-ALL: Final = "all"
+ALL, MEASURED = "all", "measured"
 MAIN: Final = (DEFAULT, LITERAL)
 ABLATED: Final = (4, 6, 7, 10, 11, 12)
 """Numbers of the sets on which trackers are compared that differ in one thing."""
@@ -119,7 +119,7 @@ class Ablations:
         """Give the figures by seed."""
         units = noisy_drives(plan, 1.0)
         return {
-            Line(name, DEFAULT): columns(compared(one) for one in _seeds(units, done, name))
+            Line(name, MEASURED): columns(compared(one) for one in _seeds(units, done, name))
             for name in CHOICES
         }
 
@@ -139,7 +139,7 @@ class Noise:
     def samples(self, plan: Plan, done: Done) -> Samples:
         """Give the figures by seed."""
         return {
-            Line(f"noise x {scale:g}{name}", DEFAULT): columns(
+            Line(f"noise x {scale:g}{name}", MEASURED): columns(
                 compared(one) for one in _seeds(noisy_drives(plan, scale), done, who)
             )
             for scale in SCALES
@@ -163,7 +163,7 @@ class Turning:
         """Give the figures by seed."""
         names = {"with odometry": DEFAULT, "without odometry": NO_ODOMETRY}
         return {
-            Line(group, DEFAULT): columns(compared(one) for one in _seeds(turning_drives(plan), done, who))
+            Line(group, MEASURED): columns(compared(one) for one in _seeds(turning_drives(plan), done, who))
             for group, who in names.items()
         }
 

@@ -30,7 +30,7 @@ HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"
 MAIN = {
     "literal": ("literal", "as printed", "room_long, random split", "room_long"),
-    "default": ("default", "held out"),
+    "default": ("default", "held out", "measured"),
 }
 FINE = (
     "m",
