@@ -52,6 +52,7 @@ class HypothesesConfig:
         pre_share, verified_share, filter_share: of a measurement in the merged place (SA eq. 4.22).
         unverified_s: [s] without a verification after which a hypothesis is deleted.
         missing_s: [s] for which somebody is claimed who should be seen and is not.
+        outside_s: [s] the same for who is outside the image.
         hidden_s: [s] the same for who is hidden or outside the image; claimed for `unverified_s` only.
         has_see_through: whether a hypothesis is deleted when the camera sees through it.
         looks_weight: how much unlike looks count in association, in gates.
@@ -68,6 +69,7 @@ class HypothesesConfig:
     filter_share: float = 0.5
     unverified_s: float = 2.0
     missing_s: float = 0.4
+    outside_s: float = 1.0
     hidden_s: float = 6.0
     has_see_through: bool = True
     looks_weight: float = 0.5
@@ -85,7 +87,6 @@ class RgbdConfig:
         filter: of the particle filters.
         hypotheses: of their management.
         has_verification: whether what is found must look like a human, too.
-        has_own_detector: whether far windows are judged by the machine learned here, or by OpenCV's.
         least_far_score, least_near_score: of a window that is taken for a human.
     """
 
@@ -94,7 +95,6 @@ class RgbdConfig:
     filter: FloorFilterConfig = field(default_factory=FloorFilterConfig)
     hypotheses: HypothesesConfig = field(default_factory=HypothesesConfig)
     has_verification: bool = True
-    has_own_detector: bool = True
     least_far_score: float = 0.5
     least_near_score: float = 0.2
 
@@ -113,6 +113,7 @@ PRINTED: Final = RgbdConfig(
         gate_per_m=0.0,
         gate_m_s=0.0,
         missing_s=2.0,
+        outside_s=2.0,
         hidden_s=2.0,
         has_see_through=False,
         looks_weight=0.0,

@@ -100,19 +100,20 @@ class Management:
             return self.time_s - person.verified_s > _TENTATIVE_S
         if rules.has_see_through and person.seen_through >= _SEEN_THROUGH_FRAMES:
             return True
-        limit_s = rules.hidden_s if self._is_excused(person) else rules.unverified_s
-        return self.time_s - person.verified_s > limit_s
+        is_excused = person.status in _HIDDEN_ONES or self._is_outside(person)
+        return self.time_s - person.verified_s > (rules.hidden_s if is_excused else rules.unverified_s)
 
     def is_claimed(self, person: Hypothesis) -> bool:
         """Tell whether somebody is said to be there: believed in, and seen not long ago."""
         rules = self.config.hypotheses
-        limit_s = rules.unverified_s if self._is_excused(person) else rules.missing_s
+        if self._is_outside(person):
+            limit_s = rules.outside_s
+        else:
+            limit_s = rules.unverified_s if person.status in _HIDDEN_ONES else rules.missing_s
         return person.id > 0 and self.time_s - person.seen_s <= limit_s
 
-    def _is_excused(self, person: Hypothesis) -> bool:
-        """Tell whether a person need not be seen, being hidden or outside the image."""
-        if person.status in _HIDDEN_ONES:
-            return True
+    def _is_outside(self, person: Hypothesis) -> bool:
+        """Tell whether the middle of a person is outside the image."""
         left, _, width, _ = box_at(self.view.geometry, person.place_m, person.body)
         return width <= 0.0 or not 0.0 <= left + width / 2.0 < self.view.depth.shape[1]
 
