@@ -32,7 +32,8 @@ class Stander:
         place_m: forward, left of the robot [m], of the body's middle.
         surface_m: the same of the surface that the camera sees in the middle of the person; None for none.
         distance_m: on the floor, from the camera.
-        hidden: share of what is inside the image that others hide.
+        inside: share of the whole body that is inside the image.
+        hidden: share of that which others hide.
         is_counted: whether a tracker has to find the person.
         box: of the visible pixels, and of the whole body; None for none.
         whole_box: likewise.
@@ -42,6 +43,7 @@ class Stander:
     place_m: tuple[float, float]
     surface_m: tuple[float, float] | None
     distance_m: float
+    inside: float
     hidden: float
     is_counted: bool
     box: Box | None
@@ -106,6 +108,7 @@ def _standers(truth: Truth, view: DepthView) -> Iterator[Stander]:
             place_m=truth.robot.locate(person.position_m),
             surface_m=_surface(person, truth, view) if is_counted else None,
             distance_m=person.distance_m,
+            inside=person.inside_fraction,
             hidden=person.occluded_fraction,
             is_counted=is_counted,
             box=person.visible_box,

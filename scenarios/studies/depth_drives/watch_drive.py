@@ -20,6 +20,7 @@ from peopleboy.tracker.track import Status, Track
 BANDS: Final = (0.1, 0.4, 0.7, 1.0)
 """Shares of somebody that others hide, up to which recall of the pre-detection is told."""
 
+_HALF: Final = 0.5
 _NEAR_M: Final = 0.5
 
 
@@ -55,13 +56,16 @@ class Watcher:
         return self._score.plain() | {"ms": ms, "pre": pre, "told": self._told}
 
     def _count_pre_detections(self, people: Sequence[Stander]) -> None:
-        """Count who is found by size alone, by how much of them is hidden, and what is nobody."""
+        """Count who is found by size alone, by how much of them is hidden, and what is nobody.
+
+        Of whom the border cuts off half has not the size of a human.
+        """
         explanation = self.tracker.explanation
         assert explanation is not None  # it has seen a frame
         places = np.array([one.place_m for one in explanation.detections]).reshape(-1, 2)
         found = match(people, places, _NEAR_M)
         for number, person in enumerate(people):
-            if person.is_counted:
+            if person.is_counted and person.inside > _HALF:
                 self._found[int(np.searchsorted(BANDS, person.hidden))] += (1, number in found)
         self._false += sum(_is_nobody(place, people) for place in places)
 

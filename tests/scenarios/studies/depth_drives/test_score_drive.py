@@ -18,6 +18,7 @@ def person(number: int, x: float, y: float, *, counts: bool = True) -> Stander:
         place_m=(x, y),
         surface_m=(x - 0.1, y),
         distance_m=x,
+        inside=1.0,
         hidden=0.0,
         is_counted=counts,
         box=None,
