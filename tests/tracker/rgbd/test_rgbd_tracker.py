@@ -76,6 +76,21 @@ def test_who_was_there_is_gone_once_the_camera_sees_through() -> None:
     assert watch(tracker, gone)[-1] == ()
 
 
+def test_who_leaves_the_image_is_told_of_for_a_second_and_known_for_longer() -> None:
+    tracker, turn, still = make_tracker(), Odometry(turn_rad=0.7), Odometry()
+    watch(tracker, (make_frame(k, {"anna": Block(0.0, 4.0)}) for k in range(10)))
+    away = (make_frame(10 + k, {}, still if k else turn) for k in range(40))
+    shown = [len(tracks) for tracks in watch(tracker, away)]
+    assert shown[10] == 1
+    assert shown[-1] == 0
+    back = (
+        make_frame(50 + k, {"anna": Block(0.0, 4.0)}, still if k else Odometry(turn_rad=-0.7))
+        for k in range(4)
+    )
+    again = watch(tracker, back)
+    assert [track.id for track in again[-1]] == [1]
+
+
 def test_a_turn_of_the_robot_is_not_taken_for_a_step() -> None:
     def seen_from(turn_rad: float) -> dict[str, Block]:
         return {"anna": Block(5.0 * math.sin(turn_rad), 5.0 * math.cos(turn_rad))}
