@@ -32,12 +32,12 @@ def in_processes(tasks: Sequence[Task[Any]], count: int) -> Outcomes:
     while waiting:
         begun: list[int] = []
         try:
-            with closing(_begin(waiting, count, begun)) as outcomes:
+            with closing(_begin(_next_turn(waiting, deaths), count, begun)) as outcomes:
                 for number, outcome in outcomes:
                     del waiting[number]
                     yield number, outcome
         except BrokenProcessPool:
-            # One of these killed its process, nobody knows which: they come last from now on.
+            # One of these killed its process, nobody knows which: each is tried by itself from now on.
             for number in [number for number in begun if number in waiting]:
                 task = waiting.pop(number)
                 deaths[number] += 1
@@ -45,6 +45,12 @@ def in_processes(tasks: Sequence[Task[Any]], count: int) -> Outcomes:
                     waiting[number] = task
                 else:
                     yield number, Failure(task.name, _KILLED)
+
+
+def _next_turn(waiting: Mapping[int, Task[Any]], deaths: Counter[int]) -> Mapping[int, Task[Any]]:
+    """Give what is done together next: all that was never cut off, then the others one by one."""
+    never = {number: task for number, task in waiting.items() if not deaths[number]}
+    return never or dict([next(iter(waiting.items()))])
 
 
 _KILLED = f"its process was killed {ATTEMPTS} times, perhaps for want of memory; give fewer --workers"
