@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Calibration, Frame, PinholeCalibration
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Calibration, Floats, Frame, PinholeCalibration
 from peopleboy.tracker.rgbd.detection.depth_view import DepthView
 from peopleboy.tracker.rgbd.detection.pre_detection import Layout, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.people.associate import associate
@@ -164,7 +164,7 @@ class RgbdTracker:
         )
 
 
-def _place(found: PreDetection, view: RgbdView) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _place(found: PreDetection, view: RgbdView) -> Floats:
     """Give the place (2,) of a body's middle, which is behind the surface that is seen."""
     deeper = 1.0 + view.body_m / math.hypot(found.x_m, found.z_m)
     at = np.array([found.x_m * deeper]), np.array([found.z_m * deeper])

@@ -39,11 +39,6 @@ class FloorFilter:
         """(2,) mean place."""
         return np.asarray(self.state[:, :2].mean(axis=0))
 
-    @property
-    def velocity_m_s(self) -> Floats:
-        """(2,) mean velocity."""
-        return np.asarray(self.state[:, 2:].mean(axis=0))
-
     def carried(self, odometry: Odometry) -> FloorFilter:
         """Give the same particles in the robot's frame after it moved."""
         return FloorFilter(
