@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -15,15 +13,10 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView
+from peopleboy.tracker.weights_archive import opened_archive
 
 VIEW: Final = "camera"
 ABOUT: Final = "about"
-
-# An encrypted member, or one that is compressed in an unknown way, makes zipfile raise RuntimeError.
-NO_ARCHIVE: Final = (
-    ValueError, KeyError, TypeError, EOFError, RuntimeError, SyntaxError, zipfile.BadZipFile, zlib.error
-)  # fmt: skip
-"""What is raised by reading a file that is no archive of arrays, or not the one that is looked for."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,16 +48,10 @@ class Weights:
         Raises:
             BadInput: a file that is missing, or is none, or holds what is no finite float32.
         """
-        try:
-            with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-                found = {name: archive[name] for name in archive.files}
+        with opened_archive(path, command) as archive:
+            found = {name: archive[name] for name in archive}
             view = PanoramaView.of_plain(json.loads(str(found.pop(VIEW))))
             about = json.loads(str(found.pop(ABOUT)))
-        except OSError as error:
-            why = error.strerror or str(error)
-            raise BadInput(f"cannot be read: {why}; `{command}` makes one", file=str(path)) from None
-        except NO_ARCHIVE:
-            raise BadInput(f"is no file of weights; `{command}` makes one", file=str(path)) from None
         for name, array in found.items():
             if array.dtype != np.float32 or not np.isfinite(array).all():
                 raise BadInput(f"{name} must be finite float32, got {array.dtype}", file=str(path))

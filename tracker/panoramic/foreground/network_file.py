@@ -20,7 +20,7 @@ from peopleboy.tracker.panoramic.foreground.mask_network import (
     MaskNetwork,
 )
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView
-from peopleboy.tracker.panoramic.weights_file import NO_ARCHIVE
+from peopleboy.tracker.weights_archive import NO_ARCHIVE
 
 SHIPPED: Final = Path(__file__).parent / "networks" / "foreground.npz"
 """The network that comes with the tracker."""

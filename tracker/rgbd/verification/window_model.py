@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -16,15 +14,13 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.rgbd.verification.windows import SIZES, Features, Range
+from peopleboy.tracker.weights_archive import opened_archive
 
 COMMAND: Final = "peopleboy train-windows"
 SHIPPED: Final = Path(__file__).parent / "weights" / "windows.npz"
 """The model that comes with the tracker."""
 
 _ABOUT: Final = "about"
-_NO_ARCHIVE: Final = (
-    ValueError, KeyError, TypeError, EOFError, RuntimeError, SyntaxError, zipfile.BadZipFile, zlib.error
-)  # fmt: skip
 
 
 def feature_length(kind: Range) -> int:
@@ -64,15 +60,9 @@ class WindowModel:
         Raises:
             BadInput: a file that is missing, is none, or holds machines for other windows.
         """
-        try:
-            with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-                about = json.loads(str(archive[_ABOUT]))
-                weights = {kind: np.asarray(archive[str(kind)]) for kind in Range}
-        except OSError as error:
-            why = error.strerror or str(error)
-            raise BadInput(f"cannot be read: {why}; `{COMMAND}` makes one", file=str(path)) from None
-        except _NO_ARCHIVE:
-            raise BadInput(f"is no file of weights; `{COMMAND}` makes one", file=str(path)) from None
+        with opened_archive(path, COMMAND) as archive:
+            about = json.loads(str(archive[_ABOUT]))
+            weights = {kind: np.asarray(archive[str(kind)]) for kind in Range}
         for kind, found in weights.items():
             _check(found, kind, path)
         return cls(weights, about)
