@@ -83,10 +83,11 @@ class SetTable:
 
 
 @dataclass(frozen=True, slots=True)
-class Truths:
-    """Rates and errors by what is called found, and by what is called the truth."""
+class AllSets:
+    """Figures of all sets together, one for each seed, by what is measured."""
 
-    id: str = "situation-positions"
+    id: str
+    measures: Mapping[str, Measure]
     chart: Chart = "none"
     plotted: tuple[str, ...] = ()
 
@@ -98,7 +99,7 @@ class Truths:
         """Give the figures of all sets together, by seed."""
         return {
             Line(group, who): columns(measure(one) for one in by_seed(plan, done, who, plan.sets))
-            for group, measure in _TRUTHS.items()
+            for group, measure in self.measures.items()
             for who in MAIN
         }
 
@@ -165,27 +166,6 @@ class Turning:
         return {
             Line(group, MEASURED): columns(compared(one) for one in _seeds(turning_drives(plan), done, who))
             for group, who in names.items()
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class SizeRecall:
-    """Who is found by size alone, by how much of them others hide."""
-
-    id: str = "situation-pre-detection"
-    chart: Chart = "none"
-    plotted: tuple[str, ...] = ()
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """Every drive."""
-        return missing(all_drives(plan), done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give the figures of all sets together, by seed."""
-        return {
-            Line(name, who): columns(measure(one) for one in by_seed(plan, done, who, plan.sets))
-            for name, measure in _BY_SIZE.items()
-            for who in MAIN
         }
 
 
@@ -348,11 +328,11 @@ def _gain(pairs: Sequence[tuple[DriveRecord, DriveRecord]]) -> float:
 DRIVES = (
     SetTable("situation-table-4.1", tracked),
     SetTable("situation-table-B.1", errors_along),
-    Truths(),
+    AllSets("situation-positions", _TRUTHS),
     Ablations(),
     Noise(),
     Turning(),
-    SizeRecall(),
+    AllSets("situation-pre-detection", _BY_SIZE),
     Goals(),
 )
 """Experiments of chapter 4 and appendix B of that thesis."""
