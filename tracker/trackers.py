@@ -107,13 +107,13 @@ def _handover_tracker(rng: np.random.Generator) -> HandoverTracker:
 
 
 def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:
-    return RgbdTracker(config, shipped_windows(), rng)
+    return RgbdTracker(config, shipped_windows(sees_depth=config.sees_depth), rng)
 
 
 def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
     by_heat, by_depth = rng.spawn(2)
     thermal = _contour_tracker(DEFAULT_TRACKER, by_heat)
-    rgbd = RgbdTracker(RgbdConfig(), shipped_windows(), by_depth, is_warm)
+    rgbd = RgbdTracker(RgbdConfig(), shipped_windows(sees_depth=True), by_depth, is_warm)
     return FusedTracker(AheadTracker(thermal, rgbd, FusionConfig()), _panoramic_tracker(rng))
 
 

@@ -63,7 +63,7 @@ class HypothesesConfig:
     gate_m: float = 0.5
     gate_per_m: float = 0.003
     gate_m_s: float = 0.4
-    births: int = 2
+    births: int = 1
     pre_share: float = 0.3
     verified_share: float = 0.6
     filter_share: float = 0.5
@@ -87,6 +87,7 @@ class RgbdConfig:
         filter: of the particle filters.
         hypotheses: of their management.
         has_verification: whether what is found must look like a human, too.
+        sees_depth: whether windows are judged by depth as well as by colour.
         least_far_score, least_near_score: of a window that is taken for a human.
     """
 
@@ -95,8 +96,9 @@ class RgbdConfig:
     filter: FloorFilterConfig = field(default_factory=FloorFilterConfig)
     hypotheses: HypothesesConfig = field(default_factory=HypothesesConfig)
     has_verification: bool = True
-    least_far_score: float = 0.5
-    least_near_score: float = 0.2
+    sees_depth: bool = True
+    least_far_score: float = 0.9
+    least_near_score: float = 0.5
 
     def least_score(self, kind: Range) -> float:
         """Tell above which score a window of a range is a human's."""
@@ -105,11 +107,13 @@ class RgbdConfig:
 
 PRINTED: Final = RgbdConfig(
     size=PRINTED_SIZE,
+    sees_depth=False,
     least_far_score=0.0,
     least_near_score=0.0,
     above=UDepthConfig(row_m=0.01, bridged_steps=0.0),
     filter=FloorFilterConfig(sharpness=0.0, foreground_m=0.0, has_hold=False),
     hypotheses=HypothesesConfig(
+        births=2,
         gate_per_m=0.0,
         gate_m_s=0.0,
         missing_s=2.0,

@@ -20,7 +20,7 @@ from peopleboy.tracker.rgbd.people.management import Management, occluder_of
 from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
 from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
 from peopleboy.tracker.rgbd.verification.window_model import WindowModel
-from peopleboy.tracker.rgbd.verification.windows import features, range_of, window_of
+from peopleboy.tracker.rgbd.verification.windows import range_of, window_of
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 _LONGEST_STEP_S = 0.5
@@ -104,7 +104,7 @@ class RgbdTracker:
         score = 0.0
         if self.config.has_verification:
             window = window_of(found, kind, layout.floor, geometry)
-            score = self._model.score(features(view.colour, window, kind), kind)
+            score = self._model.look(view.colour, view.depth, found.z_m, window, kind)
         is_verified = not self.config.has_verification or score > self.config.least_score(kind)
         if not is_verified and self._is_human is not None:
             is_verified = self._is_human(found, frame)

@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.studies.depth_drives.play_drive import DriveMoment, Stander, play_drive
-from peopleboy.scenarios.studies.depth_drives.tracker_choices import DEFAULT, OURS, make_choice
+from peopleboy.scenarios.studies.depth_drives.tracker_choices import COLOUR_ONLY, DEFAULT, OURS, make_choice
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
 from peopleboy.tracker.rgbd.detection.depth_view import DepthView
 from peopleboy.tracker.rgbd.detection.human_size import HumanSize
-from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection, PreDetector
+from peopleboy.tracker.rgbd.detection.pre_detection import Layout, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine
 from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
@@ -28,7 +28,6 @@ from peopleboy.tracker.rgbd.verification.windows import (
     SIZES,
     Image,
     Range,
-    features,
     range_of,
     window_of,
 )
@@ -148,12 +147,12 @@ def compare_windows(drives: Sequence[tuple[Scenario, int]], every: int) -> dict[
 def slide(image: Image, how: Slide) -> Floats:
     """Find windows (N, 4) with people in an image; of those that overlap the best ones are kept."""
     hog = cv2.HOGDescriptor(SIZES[how.kind], (16, 16), (8, 8), (8, 8), 9)
-    machines = people_detector(shipped_windows()) if how.is_opencv else shipped_windows()
+    machines = people_detector() if how.is_opencv else shipped_windows(sees_depth=False)
     hog.setSVMDetector(machines.weights[how.kind])
     # Grouping by OpenCV takes minutes for the thousands of hits of near windows.
     boxes, scores = hog.detectMultiScale(
         image,
-        hitThreshold=0.0 if how.is_opencv else OURS.least_score(how.kind),
+        hitThreshold=0.0 if how.is_opencv else COLOUR_ONLY.least_score(how.kind),
         winStride=(how.shift_px, how.shift_px),
         padding=(8, 8),
         scale=how.scale,
@@ -194,11 +193,10 @@ class _Comparison:
     def _look_by_size(
         self, moment: DriveMoment, people: Sequence[_Sought], view: DepthView
     ) -> tuple[float, float]:
-        image = moment.frame.rgb(DEPTH_COLOUR)
         with _timed() as sizes:
             layout = self.detector(moment.frame.depth(DEPTH), view)
         with _timed() as looks:
-            windows = list(_verified(image, layout.detections, layout.floor, view))
+            windows = list(_verified(moment.frame, layout, view))
         for kinds, tally in self.by_size.items():
             tally.times_ms.append(sizes[0] + looks[0])
             tally.add(windows, people, kinds)
@@ -212,14 +210,12 @@ class _Comparison:
             tally.add([(how.kind, _box(row)) for row in found.tolist()], people, (how.kind,))
 
 
-def _verified(
-    image: Image, detections: Sequence[PreDetection], floor: HeightLine, view: DepthView
-) -> Iterator[_Window]:
-    model = shipped_windows()
-    for found in detections:
-        kind = range_of(found.z_m, floor, view, image.shape[0])
-        window = window_of(found, kind, floor, view)
-        if model.score(features(image, window, kind), kind) > OURS.least_score(kind):
+def _verified(frame: Frame, layout: Layout, view: DepthView) -> Iterator[_Window]:
+    model, depth, colour = shipped_windows(sees_depth=True), frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
+    for found in layout.detections:
+        kind = range_of(found.z_m, layout.floor, view, len(depth))
+        window = window_of(found, kind, layout.floor, view)
+        if model.look(colour, depth, found.z_m, window, kind) > OURS.least_score(kind):
             yield kind, window
 
 

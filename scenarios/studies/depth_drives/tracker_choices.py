@@ -18,14 +18,23 @@ DEFAULT, LITERAL = "default", "as printed"
 NO_CONNECTOR, NO_ODOMETRY = "no connector", "no odometry"
 NO_DEPTH: Final = "no depth in the filters"
 OPENCV: Final = "OpenCV's far detector"
+COLOUR_ONLY: Final = replace(
+    OURS,
+    sees_depth=False,
+    least_far_score=0.5,
+    least_near_score=0.2,
+    hypotheses=replace(OURS.hypotheses, births=2),
+)
+"""Judges windows by colour alone, which needs a second look."""
 
 CHOICES: Final[Mapping[str, RgbdConfig]] = {
     DEFAULT: OURS,
     LITERAL: PRINTED,
     "printed size": replace(OURS, size=PRINTED_SIZE),
     NO_CONNECTOR: replace(OURS, above=replace(OURS.above, has_connector=False)),
+    "windows of colour alone": COLOUR_ONLY,
     "no verification": replace(OURS, has_verification=False),
-    OPENCV: OURS,
+    OPENCV: COLOUR_ONLY,
     "no sharpening": replace(OURS, filter=replace(OURS.filter, sharpness=0.0)),
     "no hold": replace(OURS, filter=replace(OURS.filter, has_hold=False)),
     "no see-through": replace(OURS, hypotheses=replace(OURS.hypotheses, has_see_through=False)),
@@ -37,5 +46,6 @@ CHOICES: Final[Mapping[str, RgbdConfig]] = {
 
 def make_choice(name: str, rng: np.random.Generator) -> RgbdTracker:
     """Make one of `CHOICES`."""
-    windows = shipped_windows()
-    return RgbdTracker(CHOICES[name], people_detector(windows) if name == OPENCV else windows, rng)
+    config = CHOICES[name]
+    model = people_detector() if name == OPENCV else shipped_windows(sees_depth=config.sees_depth)
+    return RgbdTracker(config, model, rng)

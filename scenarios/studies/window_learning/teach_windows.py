@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.window_learning.window_examples import WindowExamples
-from peopleboy.tracker.rgbd.verification.window_model import WindowModel
+from peopleboy.tracker.rgbd.verification.window_model import WindowModel, feature_length
 from peopleboy.tracker.rgbd.verification.windows import Features, Range
 
 COST: Final = {Range.FAR: 0.01, Range.NEAR: 0.01}
@@ -18,16 +18,16 @@ FALSE_ALARMS: Final = 0.01
 """Share of windows without people at which the share of people found is told."""
 
 
-def teach_windows(examples: WindowExamples) -> WindowModel:
-    """Teach a machine for either range.
+def teach_windows(examples: WindowExamples, *, sees_depth: bool) -> WindowModel:
+    """Teach a machine for either range, by colour alone or with depth.
 
     Raises:
         BadInput: scikit-learn is missing, or there are no people or nothing else in one range.
     """
-    return WindowModel({kind: _taught(examples, kind) for kind in Range})
+    return WindowModel({kind: _taught(examples, kind, sees_depth=sees_depth) for kind in Range})
 
 
-def _taught(examples: WindowExamples, kind: Range) -> Features:
+def _taught(examples: WindowExamples, kind: Range, *, sees_depth: bool) -> Features:
     try:
         from sklearn.svm import LinearSVC  # here, as it comes with the package's extra `train`
     except ImportError as error:
@@ -35,10 +35,11 @@ def _taught(examples: WindowExamples, kind: Range) -> Features:
     is_person = examples.is_person[kind]
     if is_person.all() or not is_person.any():
         raise BadInput(f"{kind} windows: {len(is_person)} with {is_person.sum()} people; take more scenes")
+    count = (1 + sees_depth) * feature_length(kind)
     machine = LinearSVC(C=COST[kind], class_weight="balanced", random_state=0, max_iter=4000)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that it did not converge to the last digit
-        machine.fit(examples.features[kind].astype(np.float32), is_person)
+        machine.fit(examples.features[kind][:, :count].astype(np.float32), is_person)
     return np.concatenate([machine.coef_[0], machine.intercept_]).astype(np.float32)
 
 
@@ -56,7 +57,8 @@ def recall_at(scores: NDArray[np.float64], is_person: NDArray[np.bool_], false_a
 def scores_of(model: WindowModel, examples: WindowExamples, kind: Range) -> NDArray[np.float64]:
     """Rate all windows (N,) of a range."""
     weights = model.weights[kind]
-    return np.asarray(examples.features[kind].astype(np.float64) @ weights[:-1] + weights[-1])
+    features = examples.features[kind][:, : len(weights) - 1].astype(np.float64)
+    return np.asarray(features @ weights[:-1] + weights[-1])
 
 
 def _judged(model: WindowModel, examples: WindowExamples, kind: Range) -> str:

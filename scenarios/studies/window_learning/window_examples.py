@@ -17,12 +17,12 @@ from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.studies.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
+from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
 from peopleboy.tracker.rgbd.detection.human_size import HumanSize
 from peopleboy.tracker.rgbd.detection.pre_detection import Layout, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.verification.window_model import feature_length
-from peopleboy.tracker.rgbd.verification.windows import Image, Range, cut, hog, range_of, window_of
+from peopleboy.tracker.rgbd.verification.windows import Image, Range, cut, cut_depth, hog, range_of, window_of
 from peopleboy.tracker.track import Box
 
 APART_S: Final = 0.4
@@ -32,6 +32,7 @@ _SIZE: Final = HumanSize(least=0.005)  # what is less like a human is no good ex
 _NEAR_M: Final = 0.5
 _APART_M: Final = 0.9
 _LEAST_VISIBLE: Final = 0.6
+_MOST_SHOWN: Final = 0.15  # share of a window that may show people if it is to be a good example of none
 _JITTERS: Final = 3
 _SHIFT: Final = 0.04  # deviation of a window's place, in its sizes
 _SCALE: Final = 0.06  # deviation of the logarithm of its size
@@ -43,7 +44,7 @@ class WindowExamples:
     """Windows by range.
 
     Attributes:
-        features: (N, F) float16 histograms of oriented gradients.
+        features: (N, 2 F) float16 histograms of oriented gradients, of colour and then of depth.
         is_person: (N,) whether a person is there.
     """
 
@@ -80,6 +81,8 @@ class _Example:
     """A window of an image, and whether a person is in it."""
 
     image: Image
+    depth: Depth
+    z_m: float
     window: Box
     kind: Range
     is_person: bool
@@ -103,24 +106,31 @@ def collect_windows(scenario: Scenario, seed: int, *, has_jitter: bool) -> Windo
         next_s = observation.time_s + APART_S
         depth, image = observation.images[DEPTH], observation.images[DEPTH_COLOUR]
         layout = detector(depth, view)
-        for example in _examples(image, layout, view, world.truth(DEPTH), rng):
+        for example in _examples(image, depth, layout, view, world.truth(DEPTH), rng):
             for window in _looks(example, rng, has_jitter=has_jitter):
                 rows[example.kind].append(window)
                 labels[example.kind].append(example.is_person)
     return WindowExamples(
-        {kind: np.array(rows[kind], np.float16).reshape(-1, feature_length(kind)) for kind in Range},
+        {kind: np.array(rows[kind], np.float16).reshape(-1, 2 * feature_length(kind)) for kind in Range},
         {kind: np.array(labels[kind], np.bool_) for kind in Range},
     )
 
 
 def _examples(
-    image: Image, layout: Layout, view: DepthView, truth: Truth, rng: np.random.Generator
+    image: Image,
+    depth: Depth,
+    layout: Layout,
+    view: DepthView,
+    truth: Truth,
+    rng: np.random.Generator,
 ) -> Iterator[_Example]:
     for found in (*layout.detections, *_anywhere(layout, view, image.shape[:2], rng)):
         kind = range_of(found.z_m, layout.floor, view, image.shape[0])
         is_person = _is_person(found, truth, view)
         if is_person is not None:
-            yield _Example(image, window_of(found, kind, layout.floor, view), kind, is_person)
+            yield _Example(
+                image, depth, found.z_m, window_of(found, kind, layout.floor, view), kind, is_person
+            )
 
 
 def _is_person(found: PreDetection, truth: Truth, view: DepthView) -> bool | None:
@@ -144,7 +154,8 @@ def _has_head(person: PersonTruth) -> bool:
 
 def _shows_somebody(found: PreDetection, truth: Truth) -> bool:
     left, top, width, height = (max(round(x), 0) for x in found.box)
-    return bool(truth.instance[top : top + height, left : left + width].any())
+    inside = truth.instance[top : top + height, left : left + width]
+    return inside.size > 0 and float((inside > 0).mean()) > _MOST_SHOWN
 
 
 def _anywhere(
@@ -171,10 +182,17 @@ def _looks(example: _Example, rng: np.random.Generator, *, has_jitter: bool) -> 
     if has_jitter and example.is_person:
         windows += [_jittered(example.window, rng) for _ in range(_JITTERS)]
     for window in windows:
-        patch = cut(example.image, window, example.kind)
-        yield hog(patch, example.kind).astype(np.float16)
+        patches = (
+            cut(example.image, window, example.kind),
+            cut_depth(example.depth, example.z_m, window, example.kind),
+        )
+        yield _described(patches, example.kind)
         if has_jitter:
-            yield hog(np.ascontiguousarray(patch[:, ::-1]), example.kind).astype(np.float16)
+            yield _described([np.ascontiguousarray(patch[:, ::-1]) for patch in patches], example.kind)
+
+
+def _described(patches: Sequence[Image], kind: Range) -> NDArray[np.float16]:
+    return np.concatenate([hog(patch, kind) for patch in patches]).astype(np.float16)
 
 
 def _jittered(window: Box, rng: np.random.Generator) -> Box:

@@ -16,7 +16,7 @@ from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.window_learning.teach_windows import judgement, teach_windows
 from peopleboy.scenarios.studies.window_learning.window_examples import WindowExamples
 from peopleboy.scenarios.studies.window_learning.window_task import WindowTask
-from peopleboy.tracker.rgbd.verification.window_model import SHIPPED
+from peopleboy.tracker.rgbd.verification.window_model import WEIGHTS, file_name
 
 FIRST_SEED: Final = 100
 """Of scenes to learn from; those below are for judging."""
@@ -31,7 +31,7 @@ TESTS: Final[Mapping[str, int]] = {
 """How many scenes judge: drawn at random, and of the library, whose places nobody learned from."""
 
 
-def give_window_lesson(out: Path, workers: Workers, *, scenes: int, ship: bool) -> Path:
+def give_window_lesson(out: Path, workers: Workers, *, scenes: int, ship: bool) -> tuple[Path, ...]:
     """Learn what people look like, and leave examples and machines in a folder.
 
     Examples that are there are used.
@@ -43,7 +43,7 @@ def give_window_lesson(out: Path, workers: Workers, *, scenes: int, ship: bool) 
         ship: whether to put the machines in the place of the tracker's own.
 
     Returns:
-        The machines' file.
+        The machines' files: of colour alone, and with depth.
 
     Raises:
         BadInput: a path that cannot be used, scikit-learn is missing, or too few examples.
@@ -58,17 +58,24 @@ def give_window_lesson(out: Path, workers: Workers, *, scenes: int, ship: bool) 
     ]
     tasks = [task(seed=seed) for seed in range(FIRST_SEED, FIRST_SEED + scenes)]
     work_through([one for one in (*tests, *tasks) if not one.path.is_file()], workers, "examples")
-    learned = _load(tasks)
-    model = teach_windows(learned)
-    words = judgement(model, _load(tests))
+    learned, others = _load(tasks), _load(tests)
+    source = f"{scenes} scenes drawn at random, seeds from {FIRST_SEED}"
+    goal = WEIGHTS if ship else out
+    with writing_to(goal):
+        goal.mkdir(parents=True, exist_ok=True)
+    return tuple(_taught(learned, others, goal, source, sees_depth=sees) for sees in (False, True))
+
+
+def _taught(
+    learned: WindowExamples, others: WindowExamples, goal: Path, source: str, *, sees_depth: bool
+) -> Path:
+    model = teach_windows(learned, sees_depth=sees_depth)
+    path = goal / file_name(sees_depth=sees_depth)
+    words = judgement(model, others)
     for kind, said in words.items():
-        Console(stderr=True).print(f"{kind}, other scenes: {said}", highlight=False)
-    path = SHIPPED if ship else out / SHIPPED.name
-    with writing_to(path.parent):
-        path.parent.mkdir(parents=True, exist_ok=True)
+        Console(stderr=True).print(f"{path.stem}, {kind}, other scenes: {said}", highlight=False)
     about = {f"{kind}, on other scenes": said for kind, said in words.items()}
-    about["trained on"] = f"{scenes} scenes drawn at random, seeds from {FIRST_SEED}"
-    replace(model, about=about).save(path)
+    replace(model, about=about | {"trained on": source}).save(path)
     return path
 
 

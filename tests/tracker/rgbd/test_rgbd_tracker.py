@@ -10,7 +10,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame, Odometry
-from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
+from peopleboy.tracker.rgbd.rgbd_config import HypothesesConfig, RgbdConfig
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
 from peopleboy.tracker.track import Status, Track
@@ -19,9 +19,10 @@ from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 COLOURS = {"anna": (200, 30, 30), "bert": (30, 30, 200)}
 
 
-def make_tracker(seed: int = 0) -> RgbdTracker:
+def make_tracker(seed: int = 0, births: int = 1) -> RgbdTracker:
     """Everything of the size of a human is taken for one: blocks have no heads."""
-    return RgbdTracker(RgbdConfig(has_verification=False), shipped_windows(), np.random.default_rng(seed))
+    config = RgbdConfig(has_verification=False, hypotheses=HypothesesConfig(births=births))
+    return RgbdTracker(config, shipped_windows(sees_depth=True), np.random.default_rng(seed))
 
 
 def make_frame(k: int, people: dict[str, Block], odometry: Odometry | None = None) -> Frame:
@@ -41,9 +42,11 @@ def watch(tracker: RgbdTracker, frames: Iterable[Frame]) -> list[tuple[Track, ..
     return [tracker.update(frame) for frame in frames]
 
 
-def test_somebody_is_believed_in_after_two_frames_and_keeps_the_number() -> None:
-    told = watch(make_tracker(), (make_frame(k, {"anna": Block(0.04 * k - 0.6, 4.0)}) for k in range(30)))
-    assert told[0] == ()
+@pytest.mark.parametrize("births", [1, 2])
+def test_somebody_is_believed_in_when_verified_so_often_and_keeps_the_number(births: int) -> None:
+    tracker = make_tracker(births=births)
+    told = watch(tracker, (make_frame(k, {"anna": Block(0.04 * k - 0.6, 4.0)}) for k in range(30)))
+    assert [len(tracks) for tracks in told[:3]] == ([1, 1, 1] if births == 1 else [0, 1, 1])
     assert {track.id for tracks in told[2:] for track in tracks} == {1}
     x, y = told[-1][0].place.position_m  # type: ignore[union-attr]
     assert (x, y) == pytest.approx((4.1, -0.56), abs=0.1)

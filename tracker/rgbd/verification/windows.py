@@ -1,4 +1,4 @@
-"""Windows of the colour image that a detector of humans looks at, near and far."""
+"""Windows of colour and depth images that a detector of humans looks at, near and far."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
+from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
 from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection
 from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine
 from peopleboy.tracker.track import Box
 
 Image = NDArray[np.uint8]
 Features = NDArray[np.float32]
+_Borders = tuple[int, int, int, int]  # above, below, left, right
 
 
 class Range(StrEnum):
@@ -34,6 +35,7 @@ _SAFETY_M: Final = 0.1
 _BODY: Final = 104.0 / 128.0  # of a far window's height is body
 _SHOULDERS_M: Final = 0.7  # side of a near window
 _ABOVE: Final = 0.12  # of a near window is above the head
+_RELIEF_M: Final = 0.6  # before and behind a body, that its window shows of the depth
 
 
 def range_of(z_m: float, floor: HeightLine, view: DepthView, rows: int) -> Range:
@@ -64,6 +66,20 @@ def features(image: Image, window: Box, kind: Range) -> Features:
     return hog(cut(image, window, kind), kind)
 
 
+def depth_features(depth: Depth, z_m: float, window: Box, kind: Range) -> Features:
+    """Describe a window of a depth image by numbers (N,).
+
+    They are histograms of oriented depths (Spinello & Arras, IROS 2011): those of gradients, of depth.
+
+    Args:
+        depth: (H, W) [mm], 0 for unknown.
+        z_m: depth of what the window is about [m].
+        window: [px].
+        kind: of window.
+    """
+    return hog(cut_depth(depth, z_m, window, kind), kind)
+
+
 def hog(patch: Image, kind: Range) -> Features:
     """Give the histograms of oriented gradients (N,) of what was cut out."""
     return np.asarray(_hog(kind).compute(patch), np.float32).ravel()
@@ -71,15 +87,33 @@ def hog(patch: Image, kind: Range) -> Features:
 
 def cut(image: Image, window: Box, kind: Range) -> Image:
     """Cut a window out of an image and bring it to its size; beyond the border it goes on as it ends."""
+    inside, borders = _inside(window, image.shape[:2])
+    return _sized(image[inside], borders, kind)
+
+
+def cut_depth(depth: Depth, z_m: float, window: Box, kind: Range) -> Image:
+    """Cut a window out of a depth image [mm] as grey: the farther the brighter; what is unknown is white."""
+    inside, borders = _inside(window, depth.shape[:2])
+    inner = depth[inside]
+    nearest_mm = 1000.0 * (z_m - _RELIEF_M)
+    grey = np.clip((inner - nearest_mm) * (255.0 / (2000.0 * _RELIEF_M)), 0.0, 255.0)
+    return _sized(np.where(inner == 0, 255.0, grey).astype(np.uint8), borders, kind)
+
+
+def _inside(window: Box, shape: tuple[int, ...]) -> tuple[tuple[slice, slice], _Borders]:
+    """Tell which rows and columns of an image a window has, and how many it lacks at each border."""
     left, top, width, height = window
     first_u, first_v = math.floor(left), math.floor(top)
     last_u, last_v = max(math.ceil(left + width), first_u + 2), max(math.ceil(top + height), first_v + 2)
-    rows, columns = image.shape[:2]
-    inner = image[
-        min(max(first_v, 0), rows - 1) : max(min(last_v, rows), 1),
-        min(max(first_u, 0), columns - 1) : max(min(last_u, columns), 1),
-    ]
-    borders = max(-first_v, 0), max(last_v - rows, 0), max(-first_u, 0), max(last_u - columns, 0)
+    rows, columns = shape
+    inside = (
+        slice(min(max(first_v, 0), rows - 1), max(min(last_v, rows), 1)),
+        slice(min(max(first_u, 0), columns - 1), max(min(last_u, columns), 1)),
+    )
+    return inside, (max(-first_v, 0), max(last_v - rows, 0), max(-first_u, 0), max(last_u - columns, 0))
+
+
+def _sized(inner: Image, borders: _Borders, kind: Range) -> Image:
     if any(borders):
         inner = cv2.copyMakeBorder(inner, *borders, cv2.BORDER_REPLICATE).astype(np.uint8, copy=False)
     # Mean of the pixels that fall together: as if blurred before it is made smaller.

@@ -13,9 +13,9 @@ from peopleboy.scenarios.studies.window_learning.window_examples import collect_
 from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
 from peopleboy.tracker.rgbd.verification.windows import Range
 
-OWN, OPENCV = "own machine", "OpenCV's detector"
+OWN, COLOUR, OPENCV = "own machine", "own machine, colour alone", "OpenCV's detector"
 NEAR, FAR = str(Range.NEAR), str(Range.FAR)
-MACHINES: Final = ((FAR, OWN), (FAR, OPENCV), (NEAR, OWN))
+MACHINES: Final = ((FAR, OWN), (FAR, COLOUR), (FAR, OPENCV), (NEAR, OWN), (NEAR, COLOUR))
 """Ranges, and who judges windows there."""
 
 
@@ -62,7 +62,11 @@ class WindowUnit:
     def run(self) -> Result:
         """Give the scores of people and of all else by range and machine."""
         examples = collect_windows(load_scenario(self.scenario), self.seed, has_jitter=False)
-        models = {OWN: shipped_windows(), OPENCV: people_detector(shipped_windows())}
+        models = {
+            OWN: shipped_windows(sees_depth=True),
+            COLOUR: shipped_windows(sees_depth=False),
+            OPENCV: people_detector(),
+        }
         result: Result = {}
         for kind, who in MACHINES:
             scores = scores_of(models[who], examples, Range(kind)).round(3)

@@ -9,7 +9,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.rgbd.verification.window_model import WindowModel, feature_length, shipped_windows
-from peopleboy.tracker.rgbd.verification.windows import Range
+from peopleboy.tracker.rgbd.verification.windows import Range, depth_features, features
 
 
 def make_model(extra: int = 0) -> WindowModel:
@@ -60,5 +60,22 @@ def test_numbers_that_are_not_finite_are_refused(tmp_path: Path) -> None:
         WindowModel.load(tmp_path / "nan.npz")
 
 
-def test_the_model_that_is_shipped_says_what_it_was_trained_on() -> None:
-    assert "seeds from 100" in shipped_windows().about["trained on"]
+@pytest.mark.parametrize("sees_depth", [False, True])
+def test_the_models_that_are_shipped_say_what_they_were_trained_on(sees_depth: bool) -> None:
+    model = shipped_windows(sees_depth=sees_depth)
+    assert "seeds from 100" in model.about["trained on"]
+    assert model.sees_depth is sees_depth
+
+
+@pytest.mark.parametrize("sees_depth", [False, True])
+@pytest.mark.parametrize("kind", list(Range))
+def test_a_look_adds_what_colour_and_depth_say(kind: Range, sees_depth: bool) -> None:
+    rng, window = np.random.default_rng(1), (30.0, 20.0, 60.0, 120.0)
+    colour = rng.integers(0, 255, (240, 320, 3)).astype(np.uint8)
+    depth = rng.integers(2500, 3500, (240, 320)).astype(np.uint16)
+    model, count = shipped_windows(sees_depth=sees_depth), feature_length(kind)
+    weights = model.weights[kind].astype(float)
+    expected = weights[:count] @ features(colour, window, kind) + weights[-1]
+    if sees_depth:
+        expected += weights[count:-1] @ depth_features(depth, 3.0, window, kind)
+    assert model.look(colour, depth, 3.0, window, kind) == pytest.approx(expected, abs=1e-4)

@@ -10,7 +10,16 @@ import pytest
 from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection
 from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine
 from peopleboy.tracker.rgbd.verification.window_model import feature_length
-from peopleboy.tracker.rgbd.verification.windows import SIZES, Range, cut, features, range_of, window_of
+from peopleboy.tracker.rgbd.verification.windows import (
+    SIZES,
+    Range,
+    cut,
+    cut_depth,
+    depth_features,
+    features,
+    range_of,
+    window_of,
+)
 from tests.helpers.depth_scene import HEIGHT, make_view
 
 FLOOR = HeightLine(0.0, 1.2)
@@ -51,6 +60,26 @@ def test_windows_beyond_the_border_go_on_as_the_image_ends(kind: Range, window: 
     left, top, width, height = window
     patch = cut(image, (left, top, width, height), kind)
     assert patch.shape == (*SIZES[kind][::-1], 3)
+
+
+@pytest.mark.parametrize("kind", list(Range))
+def test_a_depth_window_shows_a_body_grey_before_a_white_wall_and_a_white_hole(kind: Range) -> None:
+    depth = np.full((240, 320), 5000, np.uint16)
+    depth[60:200, 140:180] = 3000
+    depth[100:110, 150:160] = 0
+    wide, tall = SIZES[kind]
+    patch = cut_depth(depth, 3.0, (160.0 - wide / 2, 60.0, float(wide), float(tall)), kind)
+    assert patch.shape == (tall, wide)
+    body = np.zeros_like(depth, dtype=bool)
+    body[60:200, 140:180], body[100:110, 150:160] = True, False
+    shown = body[60 : 60 + tall, 160 - wide // 2 : 160 + wide // 2]
+    assert (patch[shown] == 127).all()  # in the middle of what is shown
+    assert (patch[~shown] == 255).all()
+
+
+def test_what_is_a_wall_all_over_has_no_gradients_in_depth() -> None:
+    depth = np.full((240, 320), 5000, np.uint16)
+    assert not depth_features(depth, 5.0, (100.0, 50.0, 64.0, 128.0), Range.FAR).any()
 
 
 @pytest.mark.parametrize("kind", list(Range))
