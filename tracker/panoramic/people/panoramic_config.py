@@ -105,6 +105,6 @@ class PeopleConfig:
     sighting: SightingConfig = field(default_factory=SightingConfig)
     life: LifespanConfig = field(default_factory=LifespanConfig)
     identity: IdentityConfig = field(default_factory=IdentityConfig)
-    restlessness: float = 0.4
+    restlessness: float = 0.2
     fading_s: float = 1.0
     lasting_share: float = 0.6
