@@ -88,9 +88,13 @@ def _neural_network() -> Any:
 
 
 def _fit(network: Any, inputs: Map, told: NDArray[Any]) -> Any:
+    """Let a network learn, and again for a quarter of the epochs in steps of a tenth of the size."""
+    rate, epochs = network.learning_rate_init, network.max_iter
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # it is meant to end after so many epochs
-        return network.fit(inputs, told)
+        network.set_params(warm_start=True).fit(inputs, told)
+        finer = network.set_params(learning_rate_init=rate / 10.0, max_iter=max(epochs // 4, 1))
+        return finer.fit(inputs, told)
 
 
 def _network(taught: Any) -> Network:

@@ -21,7 +21,7 @@ long it has been seen [s], and by how many columns it may lie wrong if it is no 
 
 FIRST_VARIANCE: Final = 16.0
 LEAST_VARIANCE: Final = 2.0
-_TAU_S: Final = 4.0  # a background that is seen adapts within this time,
+_TAU_S: Final = 2.0  # a background that is seen adapts within this time,
 _VARIANCE_TAU_S: Final = 8.0
 _ABSORB_TAU_S: Final = 40.0  # and one that people seem to hide within this.
 
@@ -89,7 +89,8 @@ def compare(image: NDArray[np.uint8], memory: Linear, block: int) -> Linear:
 
     These are its colour, by how many standard deviations it differs from the memory (their logarithm), and
     the memory's age and doubt. To a pixel's own variance is added what its background's slope makes of a
-    third of a pixel, and of its doubt.
+    third of a pixel. Its doubt does not widen that: floor lies right, and whether it is floor the network
+    tells.
 
     Returns:
         (block * block * 6, H / block, W / block) the features by squares of pixels, a square's row by row.
@@ -111,9 +112,7 @@ def compare(image: NDArray[np.uint8], memory: Linear, block: int) -> Linear:
                 along = memory[below, u, c] - memory[above, u, c]
                 steep += across * across + along * along
             age, doubt = memory[v, u, AGE], memory[v, u, DOUBT]
-            spread = np.float32(3.0) * memory[v, u, VARIANCE] + np.float32(0.25) * steep * (
-                np.float32(0.1) + doubt * doubt
-            )
+            spread = np.float32(3.0) * memory[v, u, VARIANCE] + np.float32(0.025) * steep
             pixel[3] = np.float32(0.5) * np.log(np.float32(1.0) + square / spread)
             pixel[4] = age / (np.float32(1.0) + age)
             pixel[5] = doubt / (np.float32(1.0) + doubt)
@@ -124,8 +123,7 @@ def compare(image: NDArray[np.uint8], memory: Linear, block: int) -> Linear:
 def novelty(squares: Linear) -> Linear:
     """Tell by the features that `compare` gives how unlike its background each pixel (H, W) is, 0..1.
 
-    It is 0 within two standard deviations, and 1 from eight on, or less where the background is young or may
-    lie wrong.
+    It is 0 within two standard deviations, and 1 from eight on, or less where the background is young.
     """
     block = round(math.sqrt(squares.shape[0] // 6))
     _, rows, columns = squares.shape
@@ -134,9 +132,8 @@ def novelty(squares: Linear) -> Linear:
     for v in range(rows * block):
         for u in range(columns * block):
             first = ((v % block) * block + u % block) * 6
-            unlike, age, doubt = squares[first + 3 : first + 6, v // block, u // block]
-            share = min(max((unlike - low) / (high - low), np.float32(0.0)), np.float32(1.0))
-            told[v, u] = share * age * (np.float32(1.0) - doubt)
+            unlike, age = squares[first + 3 : first + 5, v // block, u // block]
+            told[v, u] = age * min(max((unlike - low) / (high - low), np.float32(0.0)), np.float32(1.0))
     return told
 
 
@@ -151,7 +148,7 @@ def learn(memory: Linear, image: NDArray[np.uint8], foreground: Linear, passed_s
     absorbed = 1.0 - math.exp(-passed_s / _ABSORB_TAU_S)
     for v in range(height):
         for u in range(width):
-            clear = (1.0 - foreground[v, u]) ** 2
+            clear = (1.0 - foreground[v, u]) ** 4
             age = memory[v, u, AGE]
             rate = max(passed_s / (age + passed_s), 1.0 - math.exp(-passed_s / _TAU_S))
             if age > 0.0:

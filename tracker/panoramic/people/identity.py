@@ -35,9 +35,7 @@ class Register:
             self._newest += 1
             return replace(person, id=self._newest, strange_s=0.0)
         self._gone = tuple(one for one in self._gone if one is not known)
-        return replace(
-            person, id=known.id, born_s=min(known.born_s, person.born_s), strange_s=0.0, looks=known.looks
-        )
+        return person.known_as(known)
 
     def put_right(self, persons: Sequence[PanoramicPerson], time_s: float) -> tuple[PanoramicPerson, ...]:
         """Give people who have looked like somebody else for long the number of that one, or a new one."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from peopleboy.tracker.panoramic.people.floor_motion import Motion
+from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
 from peopleboy.tracker.panoramic.people.looks import Looks
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_person import PanoramicPerson
@@ -87,11 +87,11 @@ class Life:
         has_stayed = person.sightings > 1 and self.time_s - person.born_s >= life.birth_s - _ROUNDING_S
         return person.is_seen and (has_stayed or person.sightings >= life.birth_sightings)
 
-    def may_be(self, person: PanoramicPerson, seen: Sighting, looks: Looks) -> bool:
-        """Tell whether somebody who is out of sight may be who is seen: by the way, and by the looks."""
+    def may_be(self, person: PanoramicPerson, place_m: Floats, looks: Looks) -> bool:
+        """Tell whether somebody who is out of sight may be who is seen here: by the way, and by the looks."""
         identity = self.config.identity
         reach = identity.reach_m + identity.fastest_m_s * (self.time_s - person.seen_s)
-        way = math.dist(person.motion.place_m, seen.place_m)
+        way = math.dist(person.motion.place_m, place_m)
         return not person.is_seen and way < reach and person.looks.unlikeness(looks) < identity.alike
 
     def _patience_s(self, person: PanoramicPerson) -> float:

@@ -21,8 +21,8 @@ class SightingConfig:
         blind_share: likewise from which nothing is to be seen.
     """
 
-    least_evidence: float = 0.0
-    error_share: float = 0.7
+    least_evidence: float = -1.0
+    error_share: float = 0.8
     gate: float = 16.0
     wide_m: float = 0.15
     reach_m: float = 0.3
@@ -55,14 +55,14 @@ class LifespanConfig:
 
     birth_sightings: int = 3
     birth_s: float = 0.3
-    birth_trust: float = 4.0
+    birth_trust: float = 6.0
     return_trust: float = 2.0
     death_trust: float = 0.0
     most_trust: float = 8.0
     miss: float = -3.0
     trust_s: float = 0.4
     newcomers: int = 3
-    farthest_m: float = 7.5
+    farthest_m: float = 7.0
     newcomer_s: float = 0.35
     unseen_s: float = 0.7
     hidden_s: float = 5.0
@@ -84,7 +84,7 @@ class IdentityConfig:
 
     alike: float = 2.5
     strange: float = 3.5
-    strange_s: float = 0.8
+    strange_s: float = 1.5
     reach_m: float = 0.8
     fastest_m_s: float = 1.4
     forget_s: float = 20.0
@@ -105,6 +105,6 @@ class PeopleConfig:
     sighting: SightingConfig = field(default_factory=SightingConfig)
     life: LifespanConfig = field(default_factory=LifespanConfig)
     identity: IdentityConfig = field(default_factory=IdentityConfig)
-    restlessness: float = 0.6
+    restlessness: float = 0.2
     fading_s: float = 1.0
     lasting_share: float = 0.6

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
 from peopleboy.tracker.panoramic.people.looks import NO_LOOKS, Looks
@@ -50,3 +50,8 @@ class PanoramicPerson:
     def is_seen(self) -> bool:
         """Whether it was seen in the newest image."""
         return self.status is not Status.TOTALLY_OCCLUDED
+
+    def known_as(self, known: PanoramicPerson) -> PanoramicPerson:
+        """Take somebody new for one who is known: the number, the age and the looks are that one's."""
+        born_s = min(known.born_s, self.born_s)
+        return replace(self, id=known.id, born_s=born_s, strange_s=0.0, looks=known.looks)

@@ -140,7 +140,7 @@ class PanoramicTracker:
             if any(one.is_seen and _way(one, seen) < config.apart_m for one in everybody):
                 continue
             looks = _taken(seen, scene)
-            lost = [one for one in everybody if life.may_be(one, seen, looks)]
+            lost = [one for one in everybody if life.may_be(one, seen.place_m, looks)]
             if lost:
                 back = min(lost, key=lambda one: _way(one, seen))
                 motion = Motion.begin(seen.place_m, seen.error_m2)
@@ -160,12 +160,18 @@ class PanoramicTracker:
         return kept
 
     def _named(self, persons: Sequence[PanoramicPerson], life: Life) -> tuple[PanoramicPerson, ...]:
-        """Give numbers to those who are believed in."""
-        named = [
-            self._register.named(one, life.time_s) if one.id == 0 and self._is_believed(one, life) else one
-            for one in self._register.put_right(persons, life.time_s)
-        ]
-        return tuple(sorted(named, key=lambda one: (one.id == 0, one.id)))
+        """Give numbers to those who are believed in: of who is hidden and may have come out, or new ones."""
+        known = list(self._register.put_right(persons, life.time_s))
+        for one in [one for one in known if one.id == 0 and self._is_believed(one, life)]:
+            known.remove(one)
+            place_m = one.motion.place_m
+            hidden = [other for other in known if other.id and life.may_be(other, place_m, one.newest)]
+            if hidden:
+                back = min(hidden, key=lambda other: _apart(other, one))
+                known[known.index(back)] = one.known_as(back)
+            else:
+                known.append(self._register.named(one, life.time_s))
+        return tuple(sorted(known, key=lambda one: (one.id == 0, one.id)))
 
     def _is_believed(self, person: PanoramicPerson, life: Life) -> bool:
         """Tell whether somebody has been seen for long and surely enough; less will do for who returns."""

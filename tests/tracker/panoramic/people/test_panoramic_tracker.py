@@ -120,6 +120,19 @@ def test_who_is_hidden_stays_in_mind_and_is_told_who_hides_it(rate_hz):
 
 
 @RATES
+def test_who_comes_out_elsewhere_and_looks_strange_at_first_has_its_old_number(rate_hz):
+    """At the border of who hid it, somebody's first image shows that one's colours, too."""
+    stage = Stage(rate_hz)
+    front, back = Cardboard(1.8, 2.0, shirt=GREEN), Cardboard(3.5, 2.0, shirt=RED)
+    out = replace(back, bearing_rad=2.4)
+    number = number_at(stage.play(1.5, still(replace(front, bearing_rad=1.6), back))[-1], back)
+    stage.play(2.0, still(front, back))
+    assert number_at(stage.show(front, replace(out, shirt=BLUE)), out) is None
+    assert number_at(stage.play(1.0, still(front, out))[-1], out) == number
+    assert stage.ever == {1, 2}
+
+
+@RATES
 def test_two_who_pass_each_other_keep_their_numbers(rate_hz):
     stage = Stage(rate_hz)
 
