@@ -84,6 +84,7 @@ class MovedThings:
             BadInput: with the key of the action.
         """
         for mover in self.place.movers:
+            self._check_robot(mover, 0.0, robot, robot_m, self.keys[mover.name])
             for index, action in enumerate(mover.actions):
                 key: Key = (*self.keys[mover.name], "actions", index)
                 for time_s in _times(action):
@@ -109,7 +110,11 @@ class MovedThings:
         state = mover.at(time_s)
         boxes = self._boxes[mover.name].moved(state.stance).between(STEP_M, HEAD_M)
         if state.is_there and boxes.distance(robot) < robot_m:
-            raise BadInput(f"{mover.name!r} would sweep through the robot at {time_s:.1f} s", key=key)
+            x, y = robot
+            raise BadInput(
+                f"{mover.name!r} would be in the robot at {time_s:.1f} s, which starts at ({x:g}, {y:g})",
+                key=key,
+            )
 
     def _check_things(self, mover: Mover, time_s: float, key: Key) -> None:
         state = mover.at(time_s)

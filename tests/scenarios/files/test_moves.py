@@ -85,6 +85,10 @@ MISTAKES: dict[str, tuple[Data, tuple[str, ...]]] = {
         with_action(to_m=[0.5, 0.0], takes_s=3.0, by=None),
         ("actions[0]", "box", "robot"),
     ),
+    "in the robot": (
+        with_box(at_m=[1.2, 0.0], actions=[{"at_s": 2.0, "kind": "vanish"}]),
+        ("things[1]", "box", "robot", "0.0 s", "(1, 0)"),
+    ),
     "through a table": (
         with_action(to_m=[7.0, -1.5], takes_s=3.0, by=None),
         ("actions[0]", "box", "'table'"),
