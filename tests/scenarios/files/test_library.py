@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from peopleboy.scenarios.drawing.plan import draw_plan
+from peopleboy.scenarios.drawing.plan.plan import draw_plan
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
 from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import json_schema
@@ -86,7 +86,7 @@ def test_every_seed_keeps_people_clear_of_walls_and_things(name: str) -> None:
     scenario = load_scenario(name)
     for seed in range(10):
         for person in scenario.people(seed):
-            assert scenario.ground.fault(person.path) is None
+            assert scenario.ground.fault(person) is None
 
 
 @pytest.mark.parametrize("name", NAMES[::4])
