@@ -91,9 +91,10 @@ def column(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 
 def plant(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """Balls of leaves in a pot."""
+    """Balls of leaves on a stem, in a pot."""
     depth, width, height = size
     pot = tube(0.3 + SINK_M, 0.3 * depth, (0.0, 0.0, (0.3 - SINK_M) / 2.0))
+    stem = tube(height - 0.3, 0.03, (0.0, 0.0, 0.3 + (height - 0.3) / 2.0))
     radius = (depth + width) / 6.0
     leaves = tuple(
         ball(radius * share, (radius * x, radius * y, 0.3 + (height - 0.3 - radius) * z))
@@ -105,6 +106,6 @@ def plant(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         )
     )
     return (
-        Piece(name="leaves", shapes=leaves, temperature_c=temperature, rgb=rgb),
+        Piece(name="leaves", shapes=(*leaves, stem), temperature_c=temperature, rgb=rgb),
         Piece(name="pot", shapes=(pot,), temperature_c=temperature + 0.5, rgb=(0.45, 0.2, 0.1)),
     )
