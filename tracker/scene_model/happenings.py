@@ -1,0 +1,132 @@
+"""What happened to things: what vanished here and appeared there was moved, by who was at it."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from peopleboy.tracker.scene_model.scene import Change, Happening, SeenPerson
+from peopleboy.tracker.scene_model.scene_config import ThingsConfig
+from peopleboy.tracker.scene_model.things import Thing
+
+_REMEMBERED_S: Final = 40.0
+_SLACK_S: Final = 1.0  # by which a thing may seem to appear before it vanished
+_BESIDE_S: Final = 0.7  # before and after a change in which who did it is near
+
+
+@dataclass(slots=True, eq=False)
+class _Half:
+    """A thing that vanished or appeared, until its other half is found."""
+
+    thing: Thing
+    since_s: float
+    is_told: bool = False
+    is_paired: bool = False
+
+
+class Ledger:
+    """Holds back what vanished and appeared until it is clear what belongs together.
+
+    Args:
+        config: settings.
+    """
+
+    def __init__(self, config: ThingsConfig) -> None:
+        self._config = config
+        self._gone: list[_Half] = []
+        self._come: list[_Half] = []
+        self._people: deque[tuple[float, tuple[SeenPerson, ...]]] = deque()
+
+    def note(self, time_s: float, persons: tuple[SeenPerson, ...]) -> None:
+        """Remember who is where."""
+        self._people.append((time_s, persons))
+        while self._people and self._people[0][0] < time_s - _REMEMBERED_S:
+            self._people.popleft()
+
+    def told(self, time_s: float, come: Sequence[Thing], gone: Sequence[Thing]) -> list[Happening]:
+        """Take in what settled and what left, and tell what is clear by now."""
+        self._come += [_Half(one, time_s) for one in come]
+        self._gone += [_Half(one, time_s) for one in gone]
+        happenings = []
+        for half in self._come:
+            origin = self._origin(half.thing)
+            if origin is not None:
+                half.is_paired = origin.is_paired = True
+                happenings.append(self._moved(origin.thing, half.thing, time_s))
+            elif time_s - half.since_s >= self._config.wait_s:
+                half.is_told = True
+                happenings.append(self._single(Change.APPEARED, half.thing, time_s))
+        for half in self._gone:
+            if not half.is_told and not half.is_paired and time_s - half.since_s >= self._config.wait_s:
+                half.is_told = True
+                happenings.append(self._single(Change.VANISHED, half.thing, time_s))
+        self._come = [one for one in self._come if not (one.is_told or one.is_paired)]
+        limit = time_s - self._config.pair_s - self._config.wait_s
+        self._gone = [one for one in self._gone if not one.is_paired and one.since_s > limit]
+        return happenings
+
+    def _origin(self, thing: Thing) -> _Half | None:
+        """Find what vanished and may be what appeared: the most alike."""
+        likeness = {k: self._alike(one.thing, thing) for k, one in enumerate(self._gone) if not one.is_paired}
+        likely = {k: value for k, value in likeness.items() if value > 0.0}
+        return self._gone[max(likely, key=lambda k: likely[k])] if likely else None
+
+    def _alike(self, gone: Thing, come: Thing) -> float:
+        config = self._config
+        wait = come.span_s[1] - gone.span_s[0]
+        if wait < -_SLACK_S or come.span_s[0] - gone.span_s[1] > config.pair_s:
+            return 0.0
+        ratios = (come.size_m2 / gone.size_m2, (come.height_m + 0.05) / (gone.height_m + 0.05))
+        unlike = max(abs(math.log(ratio)) for ratio in ratios) / math.log(config.size_ratio)
+        if unlike > 1.0:
+            return 0.0
+        apart = 0.0
+        if gone.colour is not None and come.colour is not None:
+            apart = float(np.linalg.norm(gone.colour - come.colour)) / config.colour
+        return math.exp(-unlike - apart) if apart < 2.0 else 0.0
+
+    def _moved(self, gone: Thing, come: Thing, time_s: float) -> Happening:
+        span = min(gone.span_s[0], come.span_s[0]), max(gone.span_s[1], come.span_s[1])
+        return Happening(
+            time_s=_middle(gone),
+            told_s=time_s,
+            change=Change.MOVED,
+            object=gone.id,
+            from_m=gone.place_m,
+            to_m=come.place_m,
+            person=self._who((gone, come), span),
+        )
+
+    def _single(self, change: Change, thing: Thing, time_s: float) -> Happening:
+        place = thing.place_m
+        return Happening(
+            time_s=_middle(thing),
+            told_s=time_s,
+            change=change,
+            object=thing.id,
+            from_m=place if change is Change.VANISHED else None,
+            to_m=place if change is Change.APPEARED else None,
+            person=self._who((thing,), thing.span_s),
+        )
+
+    def _who(self, things: Sequence[Thing], span_s: tuple[float, float]) -> int | None:
+        """Find who came nearest to a thing about the time of its change."""
+        near: dict[int, float] = {}
+        for time_s, persons in self._people:
+            if not span_s[0] - _BESIDE_S <= time_s <= span_s[1] + _BESIDE_S:
+                continue
+            for person in persons:
+                way = min(math.dist(person.place_m, thing.place_m[:2]) for thing in things)
+                near[person.id] = min(way, near.get(person.id, math.inf))
+        likely = {number: way for number, way in near.items() if way < self._config.hand_m}
+        return min(likely, key=lambda number: likely[number], default=None)
+
+
+def _middle(thing: Thing) -> float:
+    first, last = thing.span_s
+    return (first + last) / 2.0 if last - first < _REMEMBERED_S else last

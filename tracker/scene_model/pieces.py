@@ -1,0 +1,93 @@
+"""Connected pieces of an image, by depth and by the time at which their pixels changed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.scene_model.scene import Labels, Metres
+
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Span:
+    """When each pixel changed: (H, W) after `first_s` and before `last_s` [s]."""
+
+    first_s: Metres
+    last_s: Metres
+    slack_s: float
+
+
+def pieces_of(mask: Bools, depth_m: Metres, gap_m: float, span: Span | None = None) -> tuple[Labels, int]:
+    """Number the connected pieces of a mask (H, W).
+
+    Neighbours, of which a pixel has eight, belong together if their depths differ by less than `gap_m`, and
+    if they can have changed at the same time.
+
+    Returns:
+        (H, W) numbers from 1 on, 0 outside; and how many there are.
+    """
+    nothing = np.zeros((1, 1), np.float32)
+    first, last, slack = (nothing, nothing, -1.0) if span is None else (span.first_s, span.last_s, span.slack_s)
+    labels, count = _label(mask, depth_m, np.float32(gap_m), first, last, np.float32(slack))
+    return labels, int(count)
+
+
+@njit(cache=True, nogil=True)
+def _root(parent, k):  # type: ignore[no-untyped-def]
+    while parent[k] != k:
+        parent[k] = parent[parent[k]]
+        k = parent[k]
+    return k
+
+
+@njit(cache=True, nogil=True)
+def _label(mask, depth, gap, first, last, slack):  # type: ignore[no-untyped-def]
+    height, width = mask.shape
+    labels = np.zeros((height, width), np.int32)
+    parent = np.zeros(height * width // 2 + 2, np.int32)
+    count = 0
+    for v in range(height):
+        for u in range(width):
+            if not mask[v, u]:
+                continue
+            own = 0
+            for k in range(4):
+                row = v if k == 0 else v - 1
+                column = u - 1 if k == 0 else u + k - 2
+                if row < 0 or column < 0 or column >= width or not mask[row, column]:
+                    continue
+                z = depth[v, u]
+                if abs(z - depth[row, column]) > gap * max(1.0, z / 4.0):
+                    continue
+                if slack >= 0.0 and (
+                    max(first[v, u], first[row, column]) > min(last[v, u], last[row, column]) + slack
+                ):
+                    continue
+                other = _root(parent, labels[row, column])
+                if own == 0:
+                    own = other
+                elif own != other:
+                    low, high = min(own, other), max(own, other)
+                    parent[high] = low
+                    own = low
+            if own == 0:
+                count += 1
+                parent[count] = count
+                own = count
+            labels[v, u] = own
+    number = np.zeros(count + 1, np.int32)
+    found = 0
+    for k in range(1, count + 1):
+        if _root(parent, k) == k:
+            found += 1
+            number[k] = found
+    for v in range(height):
+        for u in range(width):
+            if labels[v, u]:
+                labels[v, u] = number[_root(parent, labels[v, u])]
+    return labels, found
