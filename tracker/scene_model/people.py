@@ -113,23 +113,25 @@ class People:
         smooth = readings.smooth_m
         background = layers.background_m
         is_known = layers.back_count > 0.0
-        is_out = (smooth > 0.0) & (~is_known | (smooth < background - reach_m))
+        is_off = (smooth > 0.0) & (~is_known | (np.abs(smooth - background) > reach_m))
         heat = geometry.warmth(smooth, frame, self._config.warm) if self._config.has_heat else None
         warmth = np.full(geometry.shape, UNSEEN, np.int8) if heat is None else heat
         pieces = [
-            *self._warm_pieces(is_out, is_known, warmth, geometry, smooth),
-            *self._shapes(is_out & is_known & (warmth == UNSEEN), layers, geometry, smooth, reach_m),
+            *self._warm_pieces(is_off, is_known, warmth, geometry, smooth),
+            *self._shapes(
+                is_off & is_known & (smooth < background) & (warmth == UNSEEN), layers, geometry, smooth, reach_m
+            ),
         ]
         return self._followed(pieces, geometry, frame.time_s)
 
     def _warm_pieces(
-        self, is_out: Bools, is_known: Bools, warmth: NDArray[np.int8], geometry: Geometry, smooth: NDArray[np.float32]
+        self, is_off: Bools, is_known: Bools, warmth: NDArray[np.int8], geometry: Geometry, smooth: NDArray[np.float32]
     ) -> Iterable[Piece]:
         """Find what is warm; before the background is known, only if it has a human's size."""
-        seeds = is_out & (warmth == WARM)
+        seeds = is_off & (warmth == WARM)
         if not seeds.any():
             return
-        grown = _grown(seeds, is_out & is_known & (warmth == COLD), smooth, self._config)
+        grown = _grown(seeds, is_off & is_known & (warmth == COLD), smooth, self._config)
         labels, count = pieces_of(grown, smooth, self._config.gap_m)
         for pixels in _pixels_by_label(labels, count):
             piece = self._piece(pixels, geometry, smooth, is_warm=True)

@@ -6,13 +6,16 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
 
 from peopleboy.tracker.rgbd.detection.depth_view import Depth
 from peopleboy.tracker.scene_model.scene import Metres
 
 _PATCH_PX = 7
-_SD_OF_MEAN = 1.2533  # standard deviation over mean absolute deviation of a Gaussian
-_OWN_SHARE = 1.1  # noise over what is left of it beside its own median
+_SD_OF_MEAN = np.float32(1.2533)  # standard deviation over mean absolute deviation of a Gaussian
+_FEWEST = 4  # of 8 neighbours that a reading must agree with; at edges light of two surfaces mixes
+_NEAR_M, _NEAR_SHARE, _NEAR_DEVIATIONS = 0.05, 0.03, 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,41 +25,72 @@ class Readings:
     Attributes:
         raw_m: (H, W) as read [m]; 0 for none.
         smooth_m: (H, W) median of the neighbours; 0 where nothing is read.
+        is_mixed: (H, W) where light of several surfaces mixes, at edges.
         noise: (H, W) standard deviation of inverse depth [1/m].
     """
 
     raw_m: Metres
     smooth_m: Metres
+    is_mixed: NDArray[np.bool_]
     noise: Metres
 
     @classmethod
-    def of(cls, depth: Depth, before: Metres | None, memory: float) -> Readings:
+    def of(cls, depth: Depth, before: Readings | None, memory: float) -> Readings:
         """Read an (H, W) depth image [mm].
 
         Args:
             depth: the image.
-            before: the noise as estimated until now; None at the start.
-            memory: share of it that is kept.
+            before: the image before of the same place; None at the start.
+            memory: share of its noise that is kept.
         """
         raw = depth.astype(np.float32) / np.float32(1000.0)
         middle = cv2.medianBlur(depth, 3).astype(np.float32) / np.float32(1000.0)
         smooth = np.where((raw > 0.0) & (middle > 0.0), middle, raw)
         noise = _noise(raw, cv2.medianBlur(depth, 5).astype(np.float32) / np.float32(1000.0))
-        return cls(raw, smooth, noise if before is None else memory * before + (1.0 - memory) * noise)
+        if before is not None:
+            noise = np.maximum(noise, _noise(raw, before.raw_m) / np.float32(np.sqrt(2.0)))
+            noise = memory * before.noise + (1.0 - memory) * noise
+        return cls(raw, smooth, _mixed(raw, noise), noise)
 
     def reach_m(self, least_m: float, deviations: float, most_m: float) -> Metres:
         """Give (H, W) how far two readings of one surface may be apart [m]."""
         return np.clip(deviations * self.noise * self.smooth_m**2, least_m, most_m).astype(np.float32)
 
 
-def _noise(raw_m: Metres, middle_m: Metres) -> Metres:
-    """Estimate the noise (H, W) [1/m] by what the median takes away; edges, which it keeps, hardly count."""
-    is_read = (raw_m > 0.0) & (middle_m > 0.0)
-    safe_raw, safe_middle = np.where(is_read, raw_m, 1.0), np.where(is_read, middle_m, 1.0)
-    apart = np.abs(safe_raw - safe_middle) / (safe_raw * safe_middle)
-    level = float(np.median(apart[is_read])) if is_read.any() else 0.0
-    apart = np.minimum(apart, 12.0 * level + 1e-4)
+def _noise(raw_m: Metres, other_m: Metres) -> Metres:
+    """Estimate the noise (H, W) [1/m] by how readings differ from their median, or from those before.
+
+    What moves, and edges, hardly count: differences are limited to what most of the image has.
+    """
+    is_read = (raw_m > 0.0) & (other_m > 0.0)
+    safe_raw, safe_other = np.where(is_read, raw_m, np.float32(1.0)), np.where(is_read, other_m, np.float32(1.0))
+    apart = np.abs(safe_raw - safe_other) / (safe_raw * safe_other)
+    apart[~is_read] = 0.0
+    sample = apart[::3, ::3][is_read[::3, ::3]]
+    usual = float(np.quantile(sample, 0.7)) if sample.size else 0.0
+    np.minimum(apart, np.float32(8.0 * usual + 1e-4), out=apart)
+    level = float(np.minimum(sample, 3.0 * usual).mean()) if sample.size else 0.0
     size = (_PATCH_PX, _PATCH_PX)
     share = cv2.blur(is_read.astype(np.float32), size)
-    mean = cv2.blur(apart * is_read, size) / np.maximum(share, 1e-3)
-    return np.asarray(_SD_OF_MEAN * _OWN_SHARE * np.maximum(mean, level), np.float32)
+    mean = cv2.blur(apart, size) / np.maximum(share, np.float32(1e-3))
+    return np.asarray(_SD_OF_MEAN * np.maximum(mean, np.float32(level)), np.float32)
+
+
+@njit(cache=True, nogil=True)
+def _mixed(raw, noise):  # type: ignore[no-untyped-def]
+    """Find readings with which too few of the neighbours agree."""
+    height, width = raw.shape
+    found = np.zeros((height, width), np.bool_)
+    for v in range(height):
+        for u in range(width):
+            z = raw[v, u]
+            if z <= 0.0:
+                continue
+            near = max(_NEAR_M, _NEAR_SHARE * z, _NEAR_DEVIATIONS * noise[v, u] * z * z)
+            agreeing, there = 0, 0
+            for row in range(max(v - 1, 0), min(v + 2, height)):
+                for column in range(max(u - 1, 0), min(u + 2, width)):
+                    there += 1
+                    agreeing += abs(raw[row, column] - z) < near
+            found[v, u] = agreeing - 1 < min(_FEWEST, (there - 1) // 2)
+    return found

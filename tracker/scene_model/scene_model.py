@@ -33,7 +33,7 @@ class SceneModel:
         self._ledger = Ledger(config.things)
         self._ids = itertools.count(1)
         self._geometry: Geometry | None = None
-        self._noise: NDArray[np.float32] | None = None
+        self._readings: Readings | None = None
         self._vista = -1
 
     def update(self, frame: Frame) -> Scene:
@@ -46,12 +46,12 @@ class SceneModel:
         if self._vista < 0:
             self._begin(geometry.shape)
         config, layers = self.config, self._layers
-        readings = Readings.of(frame.depth(DEPTH), self._noise, config.layers.memory)
-        self._noise = readings.noise
+        readings = Readings.of(frame.depth(DEPTH), self._readings, config.layers.memory)
+        self._readings = readings
         reach = readings.reach_m(config.layers.least_m, config.layers.deviations, config.layers.most_m)
         people = self._people.update(frame, geometry, readings, layers, reach)
         take_in(
-            layers, readings.raw_m, readings.smooth_m, reach, people.ignored, frame.time_s, config.layers.confirm
+            layers, readings, reach, people.ignored, frame.time_s, config.layers.confirm
         )
         happenings = self._happenings(frame, geometry, people)
         return self._scene(frame.time_s, readings, reach, people, happenings)
@@ -72,7 +72,7 @@ class SceneModel:
         self._layers = Layers.of_size(*shape)
         self._standing = Pieces(self.config.things, shape)
         self._opened = Pieces(self.config.things, shape)
-        self._noise = None
+        self._readings = None
         self._people.forget_places()
 
     def _happenings(self, frame: Frame, geometry: Geometry, people: PeopleSeen) -> tuple[Happening, ...]:
@@ -109,7 +109,7 @@ class SceneModel:
         things = np.where(is_seen, self._standing.owner, 0)
         return Scene(
             time_s=time_s,
-            background_m=layers.background_m,
+            background_m=layers.surface_m,
             people=people.labels,
             things=things,
             persons=people.persons,
