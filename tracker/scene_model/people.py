@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.tracker.frame import Floats, Frame
 from peopleboy.tracker.scene_model.geometry import COLD, UNSEEN, WARM, Geometry
 from peopleboy.tracker.scene_model.layers import Layers
-from peopleboy.tracker.scene_model.pieces import Bools, pieces_of
+from peopleboy.tracker.scene_model.pieces import Bools, Pixels, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.readings import Readings
 from peopleboy.tracker.scene_model.scene import Labels, SeenPerson
 from peopleboy.tracker.scene_model.scene_config import PeopleConfig
@@ -36,7 +36,7 @@ class Piece:
         is_warm: whether the thermal image says that it is a person.
     """
 
-    pixels: NDArray[np.intp]
+    pixels: Pixels
     points_m: Floats
     is_warm: bool
 
@@ -133,7 +133,7 @@ class People:
             return
         grown = _grown(seeds, is_off & is_known & (warmth == COLD), smooth, self._config)
         labels, count = pieces_of(grown, smooth, self._config.gap_m)
-        for pixels in _pixels_by_label(labels, count):
+        for _, pixels in pixels_by_label(labels, count):
             piece = self._piece(pixels, geometry, smooth, is_warm=True)
             if piece is not None and (is_known.ravel()[pixels].mean() > 0.5 or _is_human(piece)):
                 yield piece
@@ -145,13 +145,13 @@ class People:
         front = np.where(layers.front_count > 0.0, layers.front, 1e9)
         is_thing = np.abs(smooth - 1.0 / front) < reach_m
         labels, count = pieces_of(is_out & ~is_thing, smooth, self._config.gap_m)
-        for pixels in _pixels_by_label(labels, count):
+        for _, pixels in pixels_by_label(labels, count):
             piece = self._piece(pixels, geometry, smooth, is_warm=False)
             if piece is not None:
                 yield from self._split(piece)
 
     def _piece(
-        self, pixels: NDArray[np.intp], geometry: Geometry, smooth: NDArray[np.float32], *, is_warm: bool
+        self, pixels: Pixels, geometry: Geometry, smooth: NDArray[np.float32], *, is_warm: bool
     ) -> Piece | None:
         depth = smooth.ravel()[pixels]
         if float((depth**2).sum()) / geometry.focal_px**2 < self._config.least_m2:
@@ -238,11 +238,3 @@ def _grown(seeds: Bools, cold: Bools, depth_m: NDArray[np.float32], config: Peop
         grown |= (cold & (nearest > 0.0) & (np.abs(nearest - depth_m) < config.gap_m)).astype(np.uint8)
     return np.asarray(grown > 0)
 
-
-def _pixels_by_label(labels: Labels, count: int) -> list[NDArray[np.intp]]:
-    """List the flat indices of each label from 1 on."""
-    flat = labels.ravel()
-    inside = np.flatnonzero(flat)
-    order = inside[np.argsort(flat[inside], kind="stable")]
-    ends = np.cumsum(np.bincount(flat[inside], minlength=count + 1))
-    return np.split(order, ends[:-1])[1:]

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from peopleboy.tracker.scene_model.scene import Labels, Metres
 
 Bools = NDArray[np.bool_]
+Pixels = NDArray[np.intp]
+"""(N,) flat indices."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,6 +37,15 @@ def pieces_of(mask: Bools, depth_m: Metres, gap_m: float, span: Span | None = No
     first, last, slack = (nothing, nothing, -1.0) if span is None else (span.first_s, span.last_s, span.slack_s)
     labels, count = _label(mask, depth_m, np.float32(gap_m), first, last, np.float32(slack))
     return labels, int(count)
+
+
+def pixels_by_label(labels: Labels, count: int) -> list[tuple[int, Pixels]]:
+    """Give the pixels of each label from 1 on."""
+    flat = labels.ravel()
+    inside = np.flatnonzero(flat)
+    order = inside[np.argsort(flat[inside], kind="stable")]
+    ends = np.cumsum(np.bincount(flat[inside], minlength=count + 1))
+    return list(enumerate(np.split(order, ends[:-1])))[1:]
 
 
 @njit(cache=True, nogil=True)

@@ -66,6 +66,8 @@ class ThingsConfig:
         slack_s: [s] between the times in which two neighbouring pixels may have changed together.
         least_px: [px] of the smallest thing.
         least_m2: [m^2] of the smallest thing.
+        beside_m, beside_s: [m] on the floor, and [s], between parts of one thing that are not connected in the
+            image.
         settled_s: [s] for which a thing must stay as it is before it is told.
         growth: share by which it may grow meanwhile.
         left: share of a thing's largest area below which it is gone.
@@ -81,6 +83,8 @@ class ThingsConfig:
     slack_s: float = 0.35
     least_px: int = 40
     least_m2: float = 0.01
+    beside_m: float = 0.55
+    beside_s: float = 1.0
     settled_s: float = 0.8
     growth: float = 0.15
     left: float = 0.3

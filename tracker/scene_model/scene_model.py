@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
 from peopleboy.tracker.scene_model.geometry import Geometry
+from peopleboy.tracker.scene_model.past_colours import PastColours
 from peopleboy.tracker.scene_model.happenings import Ledger
 from peopleboy.tracker.scene_model.layers import Layers, take_in
 from peopleboy.tracker.scene_model.people import People, PeopleSeen
@@ -73,6 +74,7 @@ class SceneModel:
         self._standing = Pieces(self.config.things, shape)
         self._opened = Pieces(self.config.things, shape)
         self._readings = None
+        self._colours = PastColours()
         self._people.forget_places()
 
     def _happenings(self, frame: Frame, geometry: Geometry, people: PeopleSeen) -> tuple[Happening, ...]:
@@ -81,7 +83,8 @@ class SceneModel:
         moment = Moment(frame.time_s, geometry, colour)
         self._ledger.note(frame.time_s, people.persons)
         come, left = self._standing.update(*standing(self._layers, config), moment, self._ids)
-        through, _ = self._opened.update(*opened(self._layers, config), Moment(frame.time_s, geometry, None), self._ids)
+        behind = Moment(frame.time_s, geometry, self._colours.update(colour, self._layers, frame.time_s))
+        through, _ = self._opened.update(*opened(self._layers, config), behind, self._ids)
         happenings = self._ledger.told(frame.time_s, come, [*left, *through])
         for one in happenings:
             if one.change is Change.MOVED:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.layers import NEVER, Layers, inverted
-from peopleboy.tracker.scene_model.pieces import Bools, Span, pieces_of
+from peopleboy.tracker.scene_model.pieces import Bools, Pixels, Span, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.scene import Labels, Metres, Place
 from peopleboy.tracker.scene_model.scene_config import ThingsConfig
 from peopleboy.tracker.track import Box
@@ -22,7 +22,8 @@ Colours = NDArray[np.uint8]
 
 _AROUND = np.ones((3, 3), np.uint8)
 _COMPACT: Final = 0.2  # share of a thing's pixels that are not at its edge; edges of walls are only that
-_OWN: Final = 0.5  # share of a piece that a thing must have had to keep it
+_FEWEST_PX: Final = 8  # of a part of a thing that is known
+_OWN: Final = 0.3  # share of a piece that a thing must have had to keep it
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -101,55 +102,82 @@ class Pieces:
             return [], self._left(set(), moment)
         labels, count = pieces_of(mask, depth_m, config.gap_m, span)
         inner = cv2.erode(mask.astype(np.uint8), _AROUND) > 0
-        sizes = np.bincount(labels.ravel(), minlength=count + 1)
         cores = np.bincount(labels[inner], minlength=count + 1)
-        likely = np.flatnonzero((sizes >= config.least_px // 2) & (cores >= _COMPACT * sizes))
-        settled, present = [], set()
-        for label in likely[likely > 0].tolist():
-            pixels = np.flatnonzero(labels.ravel() == label)
-            thing = self._of_piece(pixels, depth_m, span, moment, next_id)
-            if thing is None:
-                continue
-            present.add(thing.id)
-            if thing.is_settled and not self._was_settled(thing.id):
+        parts: dict[int, list[Pixels]] = {}
+        for label, pixels in sorted(pixels_by_label(labels, count), key=lambda one: -len(one[1])):
+            number = self._owner_of(pixels)
+            if number is None and len(pixels) >= _FEWEST_PX:
+                number = self._beside(pixels, depth_m, span, moment, parts)
+            if number is None and self._is_big(pixels, depth_m, cores[label], moment):
+                number = next(next_id)
+            if number is not None:
+                parts.setdefault(number, []).append(pixels)
+        return self._followed(parts, depth_m, span, moment)
+
+    def _followed(
+        self, parts: Mapping[int, Sequence[Pixels]], depth_m: Metres, span: Span, moment: Moment
+    ) -> tuple[list[Thing], list[Thing]]:
+        settled = []
+        for number, pieces in parts.items():
+            pixels = np.concatenate(pieces)
+            self.owner.ravel()[pixels] = number
+            known = self.things.get(number)
+            self.things[number] = thing = self._measured(number, pixels, depth_m, span, moment, known)
+            if thing.is_settled and not (known is not None and known.is_settled):
                 settled.append(thing)
-            self.things[thing.id] = thing
-        return settled, self._left(present, moment)
+        return settled, self._left(set(parts), moment)
 
     def rename(self, old: int, new: int) -> None:
         """Call a thing by the id of the object that it turned out to be."""
         self.owner[self.owner == old] = new
         self.things[new] = replace(self.things.pop(old), id=new)
 
-    def _was_settled(self, number: int) -> bool:
-        return number in self.things and self.things[number].is_settled
-
-    def _of_piece(
-        self, pixels: NDArray[np.intp], depth_m: Metres, span: Span, moment: Moment, next_id: Iterator[int]
-    ) -> Thing | None:
-        config = self._config
+    def _owner_of(self, pixels: Pixels) -> int | None:
+        """Find the thing that a piece was part of until now."""
         owners = np.bincount(self.owner.ravel()[pixels])
-        best = int(owners[1:].argmax()) + 1 if len(owners) > 1 else 0
-        known = self.things.get(best) if best and owners[best] > _OWN * self._most(best) * config.left else None
-        if known is None and len(pixels) < config.least_px:
+        if len(owners) < 2:
             return None
-        depth = depth_m.ravel()[pixels]
-        size = float((depth**2).sum()) / moment.geometry.focal_px**2
-        if known is None and size < config.least_m2:
-            return None
-        number = next(next_id) if known is None else known.id
-        self.owner.ravel()[pixels] = number
-        return self._measured(number, pixels, depth_m, size, span, moment, known)
+        best = int(owners[1:].argmax()) + 1
+        is_own = best in self.things and owners[best] >= _OWN * min(len(pixels), self.things[best].most)
+        return best if is_own and not self.things[best].is_gone else None
 
-    def _most(self, number: int) -> int:
-        return self.things[number].most if number in self.things else 0
+    def _beside(
+        self,
+        pixels: Pixels,
+        depth_m: Metres,
+        span: Span,
+        moment: Moment,
+        parts: Mapping[int, Sequence[Pixels]],
+    ) -> int | None:
+        """Find the thing beside which a piece appeared at the same time: its leg, or its other half."""
+        points = moment.geometry.points(pixels, depth_m)
+        first, last = (float(np.median(times.ravel()[pixels])) for times in (span.first_s, span.last_s))
+        for number in {*self.things, *parts}:
+            if number in parts:
+                others = np.concatenate(parts[number])
+                place = np.median(moment.geometry.points(others, depth_m)[:, :2], axis=0)
+                spans = [float(np.median(times.ravel()[others])) for times in (span.first_s, span.last_s)]
+            else:
+                thing = self.things[number]
+                if thing.is_gone:
+                    continue
+                place, spans = np.array(thing.place_m[:2]), list(thing.span_s)
+            is_together = max(first, spans[0]) <= min(last, spans[1]) + self._config.beside_s
+            if is_together and np.hypot(*(np.median(points[:, :2], axis=0) - place)) < self._config.beside_m:
+                return number
+        return None
+
+    def _is_big(self, pixels: Pixels, depth_m: Metres, core: int, moment: Moment) -> bool:
+        config, count = self._config, len(pixels)
+        if count < config.least_px or core < _COMPACT * count:
+            return False
+        return float((depth_m.ravel()[pixels] ** 2).sum()) / moment.geometry.focal_px**2 >= config.least_m2
 
     def _measured(
         self,
         number: int,
-        pixels: NDArray[np.intp],
+        pixels: Pixels,
         depth_m: Metres,
-        size_m2: float,
         span: Span,
         moment: Moment,
         known: Thing | None,
@@ -171,7 +199,7 @@ class Pieces:
             pixels=count,
             most=max(count, known.most if known is not None else 0),
             place_m=(x, y, z),
-            size_m2=size_m2,
+            size_m2=float((depth_m.ravel()[pixels] ** 2).sum()) / moment.geometry.focal_px**2,
             height_m=high - low,
             top_m=high,
             colour=None if moment.colour is None else moment.colour.reshape(-1, 3)[pixels].mean(axis=0),
