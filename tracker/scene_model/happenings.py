@@ -15,6 +15,9 @@ from peopleboy.tracker.scene_model.scene_config import ThingsConfig
 from peopleboy.tracker.scene_model.things import Thing
 
 _REMEMBERED_S: Final = 40.0
+_TALL_M: Final = 1.1
+_BODY_M: Final = 0.7
+_LEAVES_S: Final = 2.5
 _SLACK_S: Final = 1.0  # by which a thing may seem to appear before it vanished
 _BESIDE_S: Final = 0.7  # before and after a change in which who did it is near
 
@@ -40,6 +43,7 @@ class Ledger:
         self._config = config
         self._gone: list[_Half] = []
         self._come: list[_Half] = []
+        self._first: dict[int, tuple[float, tuple[float, float]]] = {}
         self._people: deque[tuple[float, tuple[SeenPerson, ...]]] = deque()
 
     def note(self, time_s: float, persons: tuple[SeenPerson, ...]) -> None:
@@ -47,11 +51,13 @@ class Ledger:
         self._people.append((time_s, persons))
         while self._people and self._people[0][0] < time_s - _REMEMBERED_S:
             self._people.popleft()
+        for person in persons:
+            self._first.setdefault(person.id, (time_s, person.place_m))
 
     def told(self, time_s: float, come: Sequence[Thing], gone: Sequence[Thing]) -> list[Happening]:
         """Take in what settled and what left, and tell what is clear by now."""
         self._come += [_Half(one, time_s) for one in come]
-        self._gone += [_Half(one, time_s) for one in gone]
+        self._gone += [_Half(one, time_s) for one in gone if not self._was_person(one)]
         happenings = []
         for half in self._come:
             origin = self._origin(half.thing)
@@ -69,6 +75,13 @@ class Ledger:
         limit = time_s - self._config.pair_s - self._config.wait_s
         self._gone = [one for one in self._gone if not one.is_paired and one.since_s > limit]
         return happenings
+
+    def _was_person(self, gone: Thing) -> bool:
+        """Tell whether what vanished was somebody who stood there until the model knew them."""
+        return gone.top_m > _TALL_M and any(
+            math.dist(place, gone.place_m[:2]) < _BODY_M and abs(time_s - gone.span_s[1]) < _LEAVES_S
+            for time_s, place in self._first.values()
+        )
 
     def _origin(self, thing: Thing) -> _Half | None:
         """Find what vanished and may be what appeared: the most alike."""
@@ -88,7 +101,7 @@ class Ledger:
         apart = 0.0
         if gone.colour is not None and come.colour is not None:
             apart = float(np.linalg.norm(gone.colour - come.colour)) / config.colour
-        return math.exp(-unlike - apart) if apart < 2.0 else 0.0
+        return math.exp(-unlike - apart) if apart < 1.0 else 0.0
 
     def _moved(self, gone: Thing, come: Thing, time_s: float) -> Happening:
         span = min(gone.span_s[0], come.span_s[0]), max(gone.span_s[1], come.span_s[1])

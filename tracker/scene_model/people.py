@@ -15,7 +15,7 @@ from peopleboy.tracker.scene_model.geometry import COLD, UNSEEN, WARM, Geometry
 from peopleboy.tracker.scene_model.layers import Layers
 from peopleboy.tracker.scene_model.pieces import Bools, Pixels, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.readings import Readings
-from peopleboy.tracker.scene_model.scene import Labels, SeenPerson
+from peopleboy.tracker.scene_model.scene import Labels, Metres, SeenPerson
 from peopleboy.tracker.scene_model.scene_config import PeopleConfig
 
 _CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
@@ -24,6 +24,9 @@ _SAME_M = 0.45  # between pieces of one body that something hides in part
 _LOWEST_HUMAN_M = 0.9  # height of the top of what is warm before the background is known
 _HIGHEST_FOOT_M = 1.6
 _WIDEST_M = 1.1
+_HEAD_M = 0.35
+_HALF = 0.5
+_FEWEST_PX = 10
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,7 +110,7 @@ class People:
         self._known = ()
 
     def update(
-        self, frame: Frame, geometry: Geometry, readings: Readings, layers: Layers, reach_m: NDArray[np.float32]
+        self, frame: Frame, geometry: Geometry, readings: Readings, layers: Layers, reach_m: Metres
     ) -> PeopleSeen:
         """Find the people of a frame, before it is learned from."""
         smooth = readings.smooth_m
@@ -118,14 +121,12 @@ class People:
         warmth = np.full(geometry.shape, UNSEEN, np.int8) if heat is None else heat
         pieces = [
             *self._warm_pieces(is_off, is_known, warmth, geometry, smooth),
-            *self._shapes(
-                is_off & is_known & (smooth < background) & (warmth == UNSEEN), layers, geometry, smooth, reach_m
-            ),
+            *self._shapes(is_off & is_known & (warmth == UNSEEN), layers, geometry, smooth, reach_m),
         ]
         return self._followed(pieces, geometry, frame.time_s)
 
     def _warm_pieces(
-        self, is_off: Bools, is_known: Bools, warmth: NDArray[np.int8], geometry: Geometry, smooth: NDArray[np.float32]
+        self, is_off: Bools, is_known: Bools, warmth: NDArray[np.int8], geometry: Geometry, smooth: Metres
     ) -> Iterable[Piece]:
         """Find what is warm; before the background is known, only if it has a human's size."""
         seeds = is_off & (warmth == WARM)
@@ -139,40 +140,48 @@ class People:
                 yield piece
 
     def _shapes(
-        self, is_out: Bools, layers: Layers, geometry: Geometry, smooth: NDArray[np.float32], reach_m: NDArray[np.float32]
+        self, is_off: Bools, layers: Layers, geometry: Geometry, smooth: Metres, reach_m: Metres
     ) -> Iterable[Piece]:
         """Find what may be a person by its shape; known things are none."""
-        front = np.where(layers.front_count > 0.0, layers.front, 1e9)
+        front = np.where(layers.front_count > 0.0, layers.front, np.float32(1e9))
         is_thing = np.abs(smooth - 1.0 / front) < reach_m
-        labels, count = pieces_of(is_out & ~is_thing, smooth, self._config.gap_m)
+        is_nearer = smooth < layers.background_m
+        labels, count = pieces_of(is_off & ~is_thing, smooth, self._config.gap_m)
         for _, pixels in pixels_by_label(labels, count):
             piece = self._piece(pixels, geometry, smooth, is_warm=False)
             if piece is not None:
-                yield from self._split(piece)
+                yield from self._people_in(piece, has_opened=bool(is_nearer.ravel()[pixels].mean() < _HALF))
 
     def _piece(
-        self, pixels: Pixels, geometry: Geometry, smooth: NDArray[np.float32], *, is_warm: bool
+        self, pixels: Pixels, geometry: Geometry, smooth: Metres, *, is_warm: bool
     ) -> Piece | None:
         depth = smooth.ravel()[pixels]
         if float((depth**2).sum()) / geometry.focal_px**2 < self._config.least_m2:
             return None
         return Piece(pixels, geometry.points(pixels, smooth), is_warm)
 
-    def _split(self, piece: Piece) -> Iterable[Piece]:
-        """Give the columns of known people in a piece that is too wide; nothing of what has not their shape."""
-        config = self._config
-        near = [
-            one.place_m
-            for one in self._known
-            if np.hypot(*(piece.points_m[:, :2] - one.place_m).T).min() < config.gate_m
-        ]
-        if piece.width_m <= config.wide_m and (near or piece.top_m >= config.top_m):
-            yield piece
+    def _people_in(self, piece: Piece, *, has_opened: bool) -> Iterable[Piece]:
+        """Give the columns of people in a piece, below their heads: a thing that they touch is none of them.
+
+        Where something farther is seen than before, only people who are known can be.
+        """
+        config, across = self._config, piece.points_m[:, :2]
+        if piece.top_m >= config.top_m and piece.width_m <= config.wide_m and not has_opened:
+            is_head = piece.points_m[:, 2] > piece.top_m - _HEAD_M
+            axis = np.median(across[is_head], axis=0)
+            yield _within(piece, np.hypot(*(across - axis).T) < config.wide_m / 2.0)
             return
-        for place in near:
-            is_own = np.hypot(*(piece.points_m[:, :2] - place).T) < config.column_m
-            if is_own.sum() > 10:
-                yield Piece(piece.pixels[is_own], piece.points_m[is_own], is_warm=False)
+        for one in self._known:
+            way = np.hypot(*(across - one.place_m).T)
+            is_own = way < config.gate_m
+            if is_own.sum() < _FEWEST_PX:
+                continue
+            is_high = is_own & (piece.points_m[:, 2] > config.top_m - _HEAD_M)
+            if is_high.sum() >= _FEWEST_PX:
+                way = np.hypot(*(across - np.median(across[is_high], axis=0)).T)
+            is_own = way < config.column_m
+            if is_own.sum() >= _FEWEST_PX:
+                yield _within(piece, is_own)
 
     def _followed(self, pieces: Sequence[Piece], geometry: Geometry, time_s: float) -> PeopleSeen:
         """Give every piece to somebody."""
@@ -224,13 +233,17 @@ class People:
         return replace(one, place_m=place, seen_s=time_s)
 
 
+def _within(piece: Piece, is_own: Bools) -> Piece:
+    return Piece(piece.pixels[is_own], piece.points_m[is_own], piece.is_warm)
+
+
 def _is_human(piece: Piece) -> bool:
     """Tell of something warm whether it can be a human: radiators, lamps and windows are none."""
     foot = float(np.quantile(piece.points_m[:, 2], 0.02))
     return piece.top_m > _LOWEST_HUMAN_M and foot < _HIGHEST_FOOT_M and piece.width_m < _WIDEST_M
 
 
-def _grown(seeds: Bools, cold: Bools, depth_m: NDArray[np.float32], config: PeopleConfig) -> Bools:
+def _grown(seeds: Bools, cold: Bools, depth_m: Metres, config: PeopleConfig) -> Bools:
     """Let what is warm grow over cold pixels that are connected with it."""
     grown = seeds.astype(np.uint8)
     for _ in range(config.grown_px):
