@@ -147,10 +147,20 @@ class People:
         is_thing = np.abs(smooth - 1.0 / front) < reach_m
         is_nearer = smooth < layers.background_m
         labels, count = pieces_of(is_off & ~is_thing, smooth, self._config.gap_m)
+        rest, people = [], []
         for _, pixels in pixels_by_label(labels, count):
             piece = self._piece(pixels, geometry, smooth, is_warm=False)
-            if piece is not None:
-                yield from self._people_in(piece, has_opened=bool(is_nearer.ravel()[pixels].mean() < _HALF))
+            if piece is None:
+                continue
+            has_opened = bool(is_nearer.ravel()[pixels].mean() < _HALF)
+            person = None if has_opened else self._human(piece)
+            if person is None:
+                rest.append(piece)
+            else:
+                people.append(person)
+        yield from people
+        for piece in rest:
+            yield from self._columns(piece, people)
 
     def _piece(
         self, pixels: Pixels, geometry: Geometry, smooth: Metres, *, is_warm: bool
@@ -160,26 +170,32 @@ class People:
             return None
         return Piece(pixels, geometry.points(pixels, smooth), is_warm)
 
-    def _people_in(self, piece: Piece, *, has_opened: bool) -> Iterable[Piece]:
-        """Give the columns of people in a piece, below their heads: a thing that they touch is none of them.
+    def _human(self, piece: Piece) -> Piece | None:
+        """Give what is below the head of a piece of a human's size: a thing that somebody touches is not."""
+        config, across = self._config, piece.points_m[:, :2]
+        if piece.top_m < config.top_m or piece.width_m > config.wide_m:
+            return None
+        axis = np.median(across[piece.points_m[:, 2] > piece.top_m - _HEAD_M], axis=0)
+        return _within(piece, np.hypot(*(across - axis).T) < config.wide_m / 2.0)
 
-        Where something farther is seen than before, only people who are known can be.
+    def _columns(self, piece: Piece, people: Sequence[Piece]) -> Iterable[Piece]:
+        """Give the columns of known people in a piece that has not the size of a human.
+
+        Of those who are found already only what is below them is theirs.
         """
         config, across = self._config, piece.points_m[:, :2]
-        if piece.top_m >= config.top_m and piece.width_m <= config.wide_m and not has_opened:
-            is_head = piece.points_m[:, 2] > piece.top_m - _HEAD_M
-            axis = np.median(across[is_head], axis=0)
-            yield _within(piece, np.hypot(*(across - axis).T) < config.wide_m / 2.0)
-            return
+        found = [person.place_m for person in people]
         for one in self._known:
             way = np.hypot(*(across - one.place_m).T)
-            is_own = way < config.gate_m
-            if is_own.sum() < _FEWEST_PX:
-                continue
-            is_high = is_own & (piece.points_m[:, 2] > config.top_m - _HEAD_M)
-            if is_high.sum() >= _FEWEST_PX:
-                way = np.hypot(*(across - np.median(across[is_high], axis=0)).T)
-            is_own = way < config.column_m
+            axis, radius = one.place_m, config.column_m
+            own = min(found, key=lambda place: math.dist(place, one.place_m), default=None)
+            if own is not None and math.dist(own, one.place_m) < config.gate_m:
+                axis, radius = own, config.below_m
+            else:
+                is_high = (way < config.gate_m) & (piece.points_m[:, 2] > config.top_m - _HEAD_M)
+                if is_high.sum() >= _FEWEST_PX:
+                    axis = np.median(across[is_high], axis=0)
+            is_own = np.hypot(*(across - axis).T) < radius
             if is_own.sum() >= _FEWEST_PX:
                 yield _within(piece, is_own)
 

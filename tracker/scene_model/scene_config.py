@@ -35,6 +35,7 @@ class PeopleConfig:
         gap_m: [m] of depth between neighbouring pixels of one body.
         top_m, wide_m: [m] a person's head is above, and how wide a person is at most; by shape.
         column_m: [m] radius in which a known person's pixels lie where a thing is connected with it.
+        below_m: [m] the same below somebody who is found.
         moved_m: [m] way after which something of a person's shape is believed to be one.
         doubt_s: [s] after which it is taken for a thing if it has not moved.
         gate_m, gate_m_s: [m] from one frame to the next, and [m/s] for each second without a sight.
@@ -49,6 +50,7 @@ class PeopleConfig:
     top_m: float = 1.15
     wide_m: float = 0.95
     column_m: float = 0.3
+    below_m: float = 0.2
     moved_m: float = 0.25
     doubt_s: float = 2.0
     gate_m: float = 0.5
