@@ -11,7 +11,7 @@ Colours = NDArray[np.uint8]
 
 
 class PastColours:
-    """Remembers the colours of the background, and those of what was taken for it until it was seen through."""
+    """Remembers the colours of the background, and of what was taken for it until it was seen through."""
 
     def __init__(self) -> None:
         self._now: Colours | None = None
@@ -28,11 +28,7 @@ class PastColours:
         if self._now is None or self._past is None:
             self._now, self._past = colour.copy(), colour.copy()
             return self._past
-        is_seen = layers.back_seen_s == np.float32(time_s)
-        has_opened = is_seen & (layers.kind == _NEITHER)
+        has_opened = layers.is_opened(time_s)
         self._past[has_opened] = self._now[has_opened]
-        np.copyto(self._now, colour, where=is_seen[:, :, None])
+        np.copyto(self._now, colour, where=(layers.back_seen_s == np.float32(time_s))[:, :, None])
         return self._past
-
-
-_NEITHER = 2.0

@@ -1,4 +1,4 @@
-"""Who is in a depth image: what is warm, or, where no thermal camera sees, what has a human's shape and moved."""
+"""Who is in a depth image: what is warm; where no thermal camera sees, what has a human's shape and moved."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from peopleboy.tracker.scene_model.layers import Layers
 from peopleboy.tracker.scene_model.pieces import Bools, Pixels, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.readings import Readings
 from peopleboy.tracker.scene_model.scene import Labels, Metres, SeenPerson
-from peopleboy.tracker.scene_model.scene_config import PeopleConfig
+from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig
 
 _CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 _AROUND = np.ones((3, 3), np.uint8)
@@ -30,7 +30,7 @@ _FEWEST_PX = 10
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Piece:
+class BodyPiece:
     """A connected piece of the image that may be of a person.
 
     Attributes:
@@ -100,7 +100,7 @@ class People:
         config: settings.
     """
 
-    def __init__(self, config: PeopleConfig) -> None:
+    def __init__(self, config: PeopleMaskConfig) -> None:
         self._config = config
         self._known: tuple[Follower, ...] = ()
         self._last_id = 0
@@ -115,7 +115,7 @@ class People:
         """Find the people of a frame, before it is learned from."""
         smooth = readings.smooth_m
         background = layers.background_m
-        is_known = layers.back_count > 0.0
+        is_known = layers.is_known
         is_off = (smooth > 0.0) & (~is_known | (np.abs(smooth - background) > reach_m))
         heat = geometry.warmth(smooth, frame, self._config.warm) if self._config.has_heat else None
         warmth = np.full(geometry.shape, UNSEEN, np.int8) if heat is None else heat
@@ -127,7 +127,7 @@ class People:
 
     def _warm_pieces(
         self, is_off: Bools, is_known: Bools, warmth: NDArray[np.int8], geometry: Geometry, smooth: Metres
-    ) -> Iterable[Piece]:
+    ) -> Iterable[BodyPiece]:
         """Find what is warm; before the background is known, only if it has a human's size."""
         seeds = is_off & (warmth == WARM)
         if not seeds.any():
@@ -141,10 +141,9 @@ class People:
 
     def _shapes(
         self, is_off: Bools, layers: Layers, geometry: Geometry, smooth: Metres, reach_m: Metres
-    ) -> Iterable[Piece]:
+    ) -> Iterable[BodyPiece]:
         """Find what may be a person by its shape; known things are none."""
-        front = np.where(layers.front_count > 0.0, layers.front, np.float32(1e9))
-        is_thing = np.abs(smooth - 1.0 / front) < reach_m
+        is_thing = np.abs(smooth - layers.front_m) < reach_m
         is_nearer = smooth < layers.background_m
         labels, count = pieces_of(is_off & ~is_thing, smooth, self._config.gap_m)
         rest, people = [], []
@@ -164,13 +163,13 @@ class People:
 
     def _piece(
         self, pixels: Pixels, geometry: Geometry, smooth: Metres, *, is_warm: bool
-    ) -> Piece | None:
+    ) -> BodyPiece | None:
         depth = smooth.ravel()[pixels]
         if float((depth**2).sum()) / geometry.focal_px**2 < self._config.least_m2:
             return None
-        return Piece(pixels, geometry.points(pixels, smooth), is_warm)
+        return BodyPiece(pixels, geometry.points(pixels, smooth), is_warm)
 
-    def _human(self, piece: Piece) -> Piece | None:
+    def _human(self, piece: BodyPiece) -> BodyPiece | None:
         """Give what is below the head of a piece of a human's size: a thing that somebody touches is not."""
         config, across = self._config, piece.points_m[:, :2]
         if piece.top_m < config.top_m or piece.width_m > config.wide_m:
@@ -178,7 +177,7 @@ class People:
         axis = np.median(across[piece.points_m[:, 2] > piece.top_m - _HEAD_M], axis=0)
         return _within(piece, np.hypot(*(across - axis).T) < config.wide_m / 2.0)
 
-    def _columns(self, piece: Piece, people: Sequence[Piece]) -> Iterable[Piece]:
+    def _columns(self, piece: BodyPiece, people: Sequence[BodyPiece]) -> Iterable[BodyPiece]:
         """Give the columns of known people in a piece that has not the size of a human.
 
         Of those who are found already only what is below them is theirs.
@@ -199,12 +198,12 @@ class People:
             if is_own.sum() >= _FEWEST_PX:
                 yield _within(piece, is_own)
 
-    def _followed(self, pieces: Sequence[Piece], geometry: Geometry, time_s: float) -> PeopleSeen:
+    def _followed(self, pieces: Sequence[BodyPiece], geometry: Geometry, time_s: float) -> PeopleSeen:
         """Give every piece to somebody."""
         config = self._config
         labels, ignored = np.zeros(geometry.shape, np.int32), np.zeros(geometry.shape, np.uint8)
         known = [one for one in self._known if time_s - one.seen_s < config.kept_s]
-        seen: dict[int, list[Piece]] = {}
+        seen: dict[int, list[BodyPiece]] = {}
         for piece in sorted(pieces, key=lambda one: -len(one.pixels)):
             owner = self._owner(piece, known, seen, time_s)
             if owner is None:
@@ -226,7 +225,7 @@ class People:
         return PeopleSeen(labels, cv2.dilate(ignored, _AROUND) > 0, tuple(persons))
 
     def _owner(
-        self, piece: Piece, known: Sequence[Follower], seen: dict[int, list[Piece]], time_s: float
+        self, piece: BodyPiece, known: Sequence[Follower], seen: dict[int, list[BodyPiece]], time_s: float
     ) -> int | None:
         config, place = self._config, piece.place_m
         ways = {}
@@ -239,31 +238,32 @@ class People:
                 ways[k] = way
         return min(ways, key=lambda k: ways[k], default=None)
 
-    def _moved(self, one: Follower, pieces: Sequence[Piece], time_s: float) -> Follower:
+    def _moved(self, one: Follower, pieces: Sequence[BodyPiece], time_s: float) -> Follower:
         points = np.concatenate([piece.points_m for piece in pieces])
         place = np.asarray(np.median(points[:, :2], axis=0))
-        is_person = any(piece.is_warm for piece in pieces) or math.dist(place, one.first_m) > self._config.moved_m
+        is_person = (
+            any(piece.is_warm for piece in pieces) or math.dist(place, one.first_m) > self._config.moved_m
+        )
         if not one.id and is_person:
             self._last_id += 1
             return replace(one, id=self._last_id, place_m=place, seen_s=time_s)
         return replace(one, place_m=place, seen_s=time_s)
 
 
-def _within(piece: Piece, is_own: Bools) -> Piece:
-    return Piece(piece.pixels[is_own], piece.points_m[is_own], piece.is_warm)
+def _within(piece: BodyPiece, is_own: Bools) -> BodyPiece:
+    return BodyPiece(piece.pixels[is_own], piece.points_m[is_own], piece.is_warm)
 
 
-def _is_human(piece: Piece) -> bool:
+def _is_human(piece: BodyPiece) -> bool:
     """Tell of something warm whether it can be a human: radiators, lamps and windows are none."""
     foot = float(np.quantile(piece.points_m[:, 2], 0.02))
     return piece.top_m > _LOWEST_HUMAN_M and foot < _HIGHEST_FOOT_M and piece.width_m < _WIDEST_M
 
 
-def _grown(seeds: Bools, cold: Bools, depth_m: Metres, config: PeopleConfig) -> Bools:
+def _grown(seeds: Bools, cold: Bools, depth_m: Metres, config: PeopleMaskConfig) -> Bools:
     """Let what is warm grow over cold pixels that are connected with it."""
     grown = seeds.astype(np.uint8)
     for _ in range(config.grown_px):
         nearest = cv2.dilate(np.where(grown > 0, depth_m, np.float32(0.0)), _CROSS)
         grown |= (cold & (nearest > 0.0) & (np.abs(nearest - depth_m) < config.gap_m)).astype(np.uint8)
     return np.asarray(grown > 0)
-

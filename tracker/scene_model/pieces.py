@@ -34,7 +34,9 @@ def pieces_of(mask: Bools, depth_m: Metres, gap_m: float, span: Span | None = No
         (H, W) numbers from 1 on, 0 outside; and how many there are.
     """
     nothing = np.zeros((1, 1), np.float32)
-    first, last, slack = (nothing, nothing, -1.0) if span is None else (span.first_s, span.last_s, span.slack_s)
+    first, last, slack = (
+        (nothing, nothing, -1.0) if span is None else (span.first_s, span.last_s, span.slack_s)
+    )
     labels, count = _label(mask, depth_m, np.float32(gap_m), first, last, np.float32(slack))
     return labels, int(count)
 
@@ -57,6 +59,14 @@ def _root(parent, k):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
+def _belongs(depth, gap, first, last, slack, a, b):  # type: ignore[no-untyped-def]
+    """Tell whether two neighbouring pixels belong together."""
+    if abs(depth[a] - depth[b]) > gap * max(1.0, depth[a] / 4.0):
+        return False
+    return slack < 0.0 or max(first[a], first[b]) <= min(last[a], last[b]) + slack
+
+
+@njit(cache=True, nogil=True)
 def _label(mask, depth, gap, first, last, slack):  # type: ignore[no-untyped-def]
     height, width = mask.shape
     labels = np.zeros((height, width), np.int32)
@@ -67,38 +77,36 @@ def _label(mask, depth, gap, first, last, slack):  # type: ignore[no-untyped-def
             if not mask[v, u]:
                 continue
             own = 0
-            for k in range(4):
-                row = v if k == 0 else v - 1
-                column = u - 1 if k == 0 else u + k - 2
+            for k in range(4):  # left, and the three above
+                row, column = (v, u - 1) if k == 0 else (v - 1, u + k - 2)
                 if row < 0 or column < 0 or column >= width or not mask[row, column]:
                     continue
-                z = depth[v, u]
-                if abs(z - depth[row, column]) > gap * max(1.0, z / 4.0):
-                    continue
-                if slack >= 0.0 and (
-                    max(first[v, u], first[row, column]) > min(last[v, u], last[row, column]) + slack
-                ):
-                    continue
-                other = _root(parent, labels[row, column])
-                if own == 0:
-                    own = other
-                elif own != other:
-                    low, high = min(own, other), max(own, other)
-                    parent[high] = low
-                    own = low
+                if _belongs(depth, gap, first, last, slack, (v, u), (row, column)):
+                    other = _root(parent, labels[row, column])
+                    own = other if own == 0 else min(own, other)
+                    parent[max(own, other)] = own
+                    parent[_root(parent, labels[row, column])] = own
+                    if labels[v, u]:
+                        parent[_root(parent, labels[v, u])] = own
+                    labels[v, u] = own
             if own == 0:
                 count += 1
                 parent[count] = count
-                own = count
-            labels[v, u] = own
+                labels[v, u] = count
+    return _numbered(labels, parent, count)
+
+
+@njit(cache=True, nogil=True)
+def _numbered(labels, parent, count):  # type: ignore[no-untyped-def]
+    """Number the roots from 1 on, and give every pixel the number of its root."""
     number = np.zeros(count + 1, np.int32)
     found = 0
     for k in range(1, count + 1):
         if _root(parent, k) == k:
             found += 1
             number[k] = found
-    for v in range(height):
-        for u in range(width):
+    for v in range(labels.shape[0]):
+        for u in range(labels.shape[1]):
             if labels[v, u]:
                 labels[v, u] = number[_root(parent, labels[v, u])]
     return labels, found

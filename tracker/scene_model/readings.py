@@ -63,7 +63,10 @@ def _noise(raw_m: Metres, other_m: Metres) -> Metres:
     What moves, and edges, hardly count: differences are limited to what most of the image has.
     """
     is_read = (raw_m > 0.0) & (other_m > 0.0)
-    safe_raw, safe_other = np.where(is_read, raw_m, np.float32(1.0)), np.where(is_read, other_m, np.float32(1.0))
+    safe_raw, safe_other = (
+        np.where(is_read, raw_m, np.float32(1.0)),
+        np.where(is_read, other_m, np.float32(1.0)),
+    )
     apart = np.abs(safe_raw - safe_other) / (safe_raw * safe_other)
     apart[~is_read] = 0.0
     sample = apart[::3, ::3][is_read[::3, ::3]]

@@ -24,7 +24,7 @@ class LayersConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PeopleConfig:
+class PeopleMaskConfig:
     """How people are told from things.
 
     Attributes:
@@ -68,8 +68,8 @@ class ThingsConfig:
         slack_s: [s] between the times in which two neighbouring pixels may have changed together.
         least_px: [px] of the smallest thing.
         least_m2: [m^2] of the smallest thing.
-        beside_m, beside_s: [m] on the floor, and [s], between parts of one thing that are not connected in the
-            image.
+        beside_m, beside_s: [m] on the floor, and [s], between parts of one thing that are not connected in
+            the image.
         settled_s: [s] for which a thing must stay as it is before it is told.
         growth: share by which it may grow meanwhile.
         left: share of a thing's largest area below which it is gone.
@@ -111,7 +111,7 @@ class SceneConfig:
     """
 
     layers: LayersConfig = field(default_factory=LayersConfig)
-    people: PeopleConfig = field(default_factory=PeopleConfig)
+    people: PeopleMaskConfig = field(default_factory=PeopleMaskConfig)
     things: ThingsConfig = field(default_factory=ThingsConfig)
     still_m: float = 0.004
     still_rad: float = 0.004

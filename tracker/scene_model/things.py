@@ -1,4 +1,4 @@
-"""Movable things: pieces of what stands before the background, and of what stood there until it was seen through."""
+"""Movable things: pieces of what stands before the background, or stood there until it was seen through."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.scene_model.geometry import Geometry
-from peopleboy.tracker.scene_model.layers import NEVER, Layers, inverted
+from peopleboy.tracker.scene_model.layers import NEVER, Layers
 from peopleboy.tracker.scene_model.pieces import Bools, Pixels, Span, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.scene import Labels, Metres, Place
 from peopleboy.tracker.scene_model.scene_config import ThingsConfig
@@ -63,7 +63,7 @@ class Thing:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Moment:
+class ThingMoment:
     """What both kinds of pieces are found in.
 
     Attributes:
@@ -77,7 +77,7 @@ class Moment:
     colour: Colours | None
 
 
-class Pieces:
+class ThingPieces:
     """Things of one kind, followed from frame to frame by the pixels that they share.
 
     Args:
@@ -92,7 +92,7 @@ class Pieces:
         self._changed: Metres = np.full(shape, NEVER, np.float32)
 
     def update(
-        self, mask: Bools, depth_m: Metres, span: Span, moment: Moment, next_id: Iterator[int]
+        self, mask: Bools, depth_m: Metres, span: Span, moment: ThingMoment, next_id: Iterator[int]
     ) -> tuple[list[Thing], list[Thing]]:
         """Take in a mask (H, W), depths [m] and times; give the things that settled and those that left."""
         config = self._config
@@ -115,7 +115,7 @@ class Pieces:
         return self._followed(parts, depth_m, span, moment)
 
     def _followed(
-        self, parts: Mapping[int, Sequence[Pixels]], depth_m: Metres, span: Span, moment: Moment
+        self, parts: Mapping[int, Sequence[Pixels]], depth_m: Metres, span: Span, moment: ThingMoment
     ) -> tuple[list[Thing], list[Thing]]:
         settled = []
         for number, pieces in parts.items():
@@ -146,7 +146,7 @@ class Pieces:
         pixels: Pixels,
         depth_m: Metres,
         span: Span,
-        moment: Moment,
+        moment: ThingMoment,
         parts: Mapping[int, Sequence[Pixels]],
     ) -> int | None:
         """Find the thing beside which a piece appeared at the same time: its leg, or its other half."""
@@ -167,7 +167,7 @@ class Pieces:
                 return number
         return None
 
-    def _is_big(self, pixels: Pixels, depth_m: Metres, core: int, moment: Moment) -> bool:
+    def _is_big(self, pixels: Pixels, depth_m: Metres, core: int, moment: ThingMoment) -> bool:
         config, count = self._config, len(pixels)
         if count < config.least_px or core < _COMPACT * count:
             return False
@@ -179,7 +179,7 @@ class Pieces:
         pixels: Pixels,
         depth_m: Metres,
         span: Span,
-        moment: Moment,
+        moment: ThingMoment,
         known: Thing | None,
     ) -> Thing:
         config, time_s, count = self._config, moment.time_s, len(pixels)
@@ -192,7 +192,10 @@ class Pieces:
         rows, columns = np.divmod(pixels, depth_m.shape[1])
         left, top = int(columns.min()), int(rows.min())
         x, y, z = np.median(points, axis=0).tolist()
-        first, last = float(np.median(span.first_s.ravel()[pixels])), float(np.median(span.last_s.ravel()[pixels]))
+        first, last = (
+            float(np.median(span.first_s.ravel()[pixels])),
+            float(np.median(span.last_s.ravel()[pixels])),
+        )
         return Thing(
             id=number,
             box=(float(left), float(top), float(columns.max() - left + 1), float(rows.max() - top + 1)),
@@ -209,7 +212,7 @@ class Pieces:
             is_settled=(known is not None and known.is_settled) or time_s - steady_s >= config.settled_s,
         )
 
-    def _left(self, present: set[int], moment: Moment) -> list[Thing]:
+    def _left(self, present: set[int], moment: ThingMoment) -> list[Thing]:
         """Find the things of which too little is left; forget those that never settled."""
         left = []
         for number, thing in list(self.things.items()):
@@ -227,14 +230,13 @@ class Pieces:
 
 def standing(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Span]:
     """Find what stands before the background: where, at which depth [m], and since when."""
-    front, back = inverted(layers.front), layers.background_m
-    mask = (layers.front_count > 0.0) & (back - front > config.off_m)
-    first = np.minimum(layers.back_seen_s, layers.front_since_s)
-    return mask, front, Span(first, layers.front_since_s, config.slack_s)
+    front, since = layers.front_m, layers.front_since_s
+    mask = layers.is_covered & (layers.background_m - front > config.off_m)
+    return mask, front, Span(np.minimum(layers.back_seen_s, since), since, config.slack_s)
 
 
 def opened(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Span]:
     """Find what stood where something farther is seen since: where, at which depth [m], and until when."""
-    past = inverted(layers.past)
+    past, gone = layers.past_m, layers.past_gone_s
     mask = (past > 0.0) & (layers.background_m - past > config.off_m)
-    return mask, past, Span(np.minimum(layers.past_seen_s, layers.past_gone_s), layers.past_gone_s, config.slack_s)
+    return mask, past, Span(np.minimum(layers.past_seen_s, gone), gone, config.slack_s)

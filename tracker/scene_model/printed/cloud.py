@@ -57,20 +57,20 @@ class CloudMaker:
         Raises:
             BadInput: no colours of the same pixels.
         """
-        grey = cv2.cvtColor(frame.rgb(DEPTH_COLOUR), cv2.COLOR_RGB2GRAY)
+        grey = np.asarray(cv2.cvtColor(frame.rgb(DEPTH_COLOUR), cv2.COLOR_RGB2GRAY), np.uint8)
         depth = _cleaned(frame.depth(DEPTH), grey, self._config)
         origin = geometry.calibration.robot_from_camera[:3, 3].astype(np.float32)
         points = origin + geometry.rays * depth[:, :, None]
         velocity = np.zeros_like(points)
         if self._before is not None:
-            flow = self._flow.calc(grey, self._before.grey, None)
+            flow = self._flow.calc(grey, self._before.grey, np.zeros((*grey.shape, 2), np.float32))
             velocity = _smoothed(_ways(points, depth, self._before.points_m, self._before.depth_m, flow))
         self._before = Cloud(depth, points, velocity, grey)
         return self._before
 
 
 def _cleaned(depth: NDArray[np.uint16], grey: Grey, config: PrintedConfig) -> Metres:
-    """Smooth (H, W) depths [mm], the nearer the more; drop what is dark, and pixels between surfaces (SA 3.3)."""
+    """Smooth (H, W) depths [mm], the nearer the more; drop what is dark or mixed (SA 3.3)."""
     fine, coarse = (cv2.medianBlur(depth, size) for size in (3, 5))
     smooth = np.where(fine < 1000.0 * config.near_m, coarse, fine).astype(np.float32) / np.float32(1000.0)
     smooth[(depth == 0) | (grey < config.dark * float(grey.mean()))] = 0.0

@@ -15,7 +15,7 @@ from peopleboy.tracker.scene_model.printed.printed_config import EllipseConfig, 
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Ellipse:
+class MovingEllipse:
     """A hypothesis of something that moves, or did.
 
     Attributes:
@@ -40,16 +40,16 @@ class Ellipses:
     def __init__(self, config: PrintedConfig, rng: np.random.Generator) -> None:
         self._config, self._rng = config, rng
         self._last_id = 0
-        self.known: tuple[Ellipse, ...] = ()
+        self.known: tuple[MovingEllipse, ...] = ()
 
-    def update(self, clusters: Clusters) -> tuple[Ellipse, ...]:
+    def update(self, clusters: Clusters) -> tuple[MovingEllipse, ...]:
         """Follow what is known, and detect what is new."""
         followed = [self._followed(one, clusters) for one in self.known]
         kept = [one for one in _without_doubles(followed) if one.unseen <= self._config.ellipse.lost]
         self.known = (*kept, *self._detected(clusters, kept))
         return self.known
 
-    def _followed(self, one: Ellipse, clusters: Clusters) -> Ellipse:
+    def _followed(self, one: MovingEllipse, clusters: Clusters) -> MovingEllipse:
         config = self._config.ellipse
         particles = propagated(one.state, config, self._rng)
         ratings = _rate(
@@ -61,7 +61,7 @@ class Ellipses:
             return replace(one, unseen=one.unseen + 1)
         return replace(one, state=particles[best], unseen=0)
 
-    def _detected(self, clusters: Clusters, known: Sequence[Ellipse]) -> list[Ellipse]:
+    def _detected(self, clusters: Clusters, known: Sequence[MovingEllipse]) -> list[MovingEllipse]:
         """Slide an ellipse over clusters that move; 20 points that are near and move alike suffice."""
         config = self._config
         is_free = clusters.is_moving.copy()
@@ -77,11 +77,13 @@ class Ellipses:
             weight = clusters.weight * own
             if weight.sum() < config.detect_points:
                 continue
-            (x, y), (vx, vy) = (weight @ values / weight.sum() for values in (clusters.place_m, clusters.velocity_m))
+            (x, y), (vx, vy) = (
+                weight @ values / weight.sum() for values in (clusters.place_m, clusters.velocity_m)
+            )
             radius = config.ellipse.radius_m
             self._last_id += 1
             state = np.array([x, y, np.arctan2(vy, vx), np.hypot(vx, vy), radius, radius])
-            found.append(Ellipse(id=self._last_id, state=state))
+            found.append(MovingEllipse(id=self._last_id, state=state))
             is_free &= ~inside(state, clusters.place_m, 1.0)
         return found
 
@@ -89,8 +91,8 @@ class Ellipses:
 def propagated(state: Floats, config: EllipseConfig, rng: np.random.Generator) -> Floats:
     """Draw particles (N, 6): a share moves on as before, the others at random (SA eq. 3.7-3.22).
 
-    Corrected: the source blends both motions in every particle, its noise has the old value as its mean, which
-    would double the state, and its arc lacks the division by the turn, so that nobody would walk straight on.
+    Corrected: the source blends both motions in every particle; its noise has the old value as its mean,
+    which would double the state; its arc is not divided by the turn, so that nobody would walk straight on.
     """
     count = config.particles
     ordered = round(config.first_order * count)
@@ -132,7 +134,9 @@ def _rate(particles, place, weight, velocity, shifts, near, alike, thin, wide): 
                 if (dx / one[4]) ** 2 + (dy / one[5]) ** 2 >= 1.0:
                     continue
                 apart = (velocity[k, 0] - vx) ** 2 + (velocity[k, 1] - vy) ** 2
-                share = weight[k] * np.exp(-(dx * dx + dy * dy) / (2.0 * near * near) - apart / (2.0 * alike * alike))
+                share = weight[k] * np.exp(
+                    -(dx * dx + dy * dy) / (2.0 * near * near) - apart / (2.0 * alike * alike)
+                )
                 total, x, y = total + share, x + share * place[k, 0], y + share * place[k, 1]
             if total <= 0.0:
                 break
@@ -150,9 +154,9 @@ def _cosines(velocities: Floats, one: Floats) -> Floats:
     return np.asarray(velocities @ one / np.maximum(lengths, 1e-9))
 
 
-def _without_doubles(ellipses: Sequence[Ellipse]) -> list[Ellipse]:
+def _without_doubles(ellipses: Sequence[MovingEllipse]) -> list[MovingEllipse]:
     """Keep the oldest of those that came to the same place."""
-    kept: list[Ellipse] = []
+    kept: list[MovingEllipse] = []
     for one in ellipses:
         if all(np.hypot(*(one.state[:2] - other.state[:2])) > 0.2 for other in kept):
             kept.append(one)

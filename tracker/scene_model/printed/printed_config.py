@@ -1,4 +1,4 @@
-"""Settings of the printed scene model, and its four variants; most numbers are not printed and were chosen."""
+"""Settings of the printed scene model, and its four variants; most numbers are not printed but chosen."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import Final
 
 
-class Background(StrEnum):
+class PrintedBackground(StrEnum):
     """How the background is learned (SA 3.7)."""
 
     MEAN = "mean"
@@ -72,7 +72,7 @@ class PrintedConfig:
             [s] neighbouring points belong together.
     """
 
-    background: Background = Background.ADAPT
+    background: PrintedBackground = PrintedBackground.ADAPT
     same_m: float = 0.1
     moving_m: float = 0.03
     near_m: float = 2.5
@@ -91,5 +91,5 @@ class PrintedConfig:
     thing_s: float = 1.0
 
 
-VARIANTS: Final = {one.value: replace(PrintedConfig(), background=one) for one in Background}
+VARIANTS: Final = {one.value: replace(PrintedConfig(), background=one) for one in PrintedBackground}
 """The source's four models, by name."""

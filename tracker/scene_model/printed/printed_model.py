@@ -13,9 +13,9 @@ from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.pieces import Bools, Span, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.printed.cloud import Cloud, CloudMaker
 from peopleboy.tracker.scene_model.printed.clusters import Clusters, find_clusters
-from peopleboy.tracker.scene_model.printed.ellipses import Ellipse, Ellipses, inside
-from peopleboy.tracker.scene_model.printed.printed_config import Background, PrintedConfig
-from peopleboy.tracker.scene_model.scene import Labels, Metres, Scene, SceneObject, SeenPerson, State
+from peopleboy.tracker.scene_model.printed.ellipses import Ellipses, MovingEllipse, inside
+from peopleboy.tracker.scene_model.printed.printed_config import PrintedBackground, PrintedConfig
+from peopleboy.tracker.scene_model.scene import Labels, Scene, SceneObject, SeenPerson, State
 
 _FEWEST_POINTS = 3  # of a hull
 
@@ -48,7 +48,7 @@ class PrintedSceneModel:
         config, cloud = self._config, self._cloud(frame, self._geometry)
         people = np.zeros(self._geometry.shape, np.int32)
         persons: tuple[SeenPerson, ...] = ()
-        if config.background in (Background.TRACK, Background.ADAPT):
+        if config.background in (PrintedBackground.TRACK, PrintedBackground.ADAPT):
             clusters = find_clusters(cloud, self._candidates(cloud), config)
             ellipses = self._ellipses.update(clusters)
             people = _hulls(ellipses, clusters, people)
@@ -69,7 +69,7 @@ class PrintedSceneModel:
 
         What is behind it is no object, but a background that was hidden.
         """
-        if self._config.background is not Background.ADAPT:
+        if self._config.background is not PrintedBackground.ADAPT:
             return np.asarray(cloud.depth_m > 0.0)
         return np.asarray((self._count == 0.0) | (self._static - cloud.depth_m > self._config.same_m))
 
@@ -77,11 +77,11 @@ class PrintedSceneModel:
         """Learn the background, and find what is nearer (SA fig. 3.7)."""
         config = self._config
         is_used = cloud.depth_m > 0.0
-        if config.background in (Background.TRACK, Background.ADAPT):
+        if config.background in (PrintedBackground.TRACK, PrintedBackground.ADAPT):
             is_used &= ~dynamic
-        if config.background in (Background.MPIX, Background.ADAPT):
+        if config.background in (PrintedBackground.MPIX, PrintedBackground.ADAPT):
             is_used &= cloud.speed_m < config.moving_m
-        limit = config.same_m if config.background is Background.ADAPT else np.inf
+        limit = config.same_m if config.background is PrintedBackground.ADAPT else np.inf
         movable = np.zeros(is_used.shape, np.bool_)
         _learn(self._static, self._count, cloud.depth_m, is_used, np.float32(limit), movable)
         return movable
@@ -91,8 +91,11 @@ class PrintedSceneModel:
         config, geometry = self._config, self._geometry
         assert geometry is not None  # there was a frame
         self._since = np.where(movable, np.minimum(self._since, np.float32(time_s)), self._since)
-        self._since[(self._count > 0.0) & ~movable & (np.abs(cloud.depth_m - self._static) < config.same_m)] = np.inf
-        things, objects = np.zeros(movable.shape, np.int32), []
+        self._since[
+            (self._count > 0.0) & ~movable & (np.abs(cloud.depth_m - self._static) < config.same_m)
+        ] = np.inf
+        things = np.zeros(movable.shape, np.int32)
+        objects: list[SceneObject] = []
         labels, count = pieces_of(
             movable, cloud.depth_m, config.thing_m, Span(self._since, self._since, config.thing_s)
         )
@@ -106,7 +109,12 @@ class PrintedSceneModel:
             objects.append(
                 SceneObject(
                     id=number,
-                    box=(float(left), float(top), float(columns.max() - left + 1), float(rows.max() - top + 1)),
+                    box=(
+                        float(left),
+                        float(top),
+                        float(columns.max() - left + 1),
+                        float(rows.max() - top + 1),
+                    ),
                     place_m=(x, y, z),
                     size_m2=float((cloud.depth_m.ravel()[pixels] ** 2).sum()) / geometry.focal_px**2,
                     first_seen_s=float(np.median(self._since.ravel()[pixels])),
@@ -137,7 +145,7 @@ def _learn(static, count, depth, used, limit, movable):  # type: ignore[no-untyp
                 movable[v, u] = True
 
 
-def _hulls(ellipses: Sequence[Ellipse], clusters: Clusters, labels: Labels) -> Labels:
+def _hulls(ellipses: Sequence[MovingEllipse], clusters: Clusters, labels: Labels) -> Labels:
     """Mark all pixels within the convex hull of each object's points in the image."""
     for one in ellipses:
         own = clusters.pixels[inside(one.state, clusters.points_m, 1.0)]
@@ -148,6 +156,6 @@ def _hulls(ellipses: Sequence[Ellipse], clusters: Clusters, labels: Labels) -> L
     return labels
 
 
-def _person(one: Ellipse) -> SeenPerson:
+def _person(one: MovingEllipse) -> SeenPerson:
     x, y = one.state[:2].tolist()
     return SeenPerson(id=one.id, place_m=(x, y))
