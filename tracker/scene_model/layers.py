@@ -19,8 +19,8 @@ NEVER: Final = -1e6
 # What is kept of each pixel. Of the background: mean of its readings [1/m], their number, how many had
 # neighbours that agree, when it was seen last.
 _BACK, _BACK_COUNT, _BACK_SURE, _BACK_SEEN = 0, 1, 2, 3
-# Of the thing before it: the same; when it was seen first and last; how often readings changed from background
-# to thing since; how many of the background there were before.
+# Of the thing before it: the same; when it was seen first and last; how often readings changed from the
+# background to it; how many of the background there were before.
 _FRONT, _FRONT_COUNT, _FRONT_SINCE, _FRONT_SEEN, _FLIPS, _BEFORE = 4, 5, 6, 7, 8, 9
 # Of readings in a row that fit neither: the same.
 _OTHER, _OTHER_COUNT, _OTHER_SINCE = 10, 11, 12

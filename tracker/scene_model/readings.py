@@ -54,7 +54,8 @@ class Readings:
 
     def reach_m(self, least_m: float, deviations: float, most_m: float) -> Metres:
         """Give (H, W) how far two readings of one surface may be apart [m]."""
-        return np.clip(deviations * self.noise * self.smooth_m**2, least_m, most_m).astype(np.float32)
+        reach = deviations * self.noise * self.smooth_m**2
+        return np.asarray(np.clip(reach, least_m, most_m), np.float32)
 
 
 def _noise(raw_m: Metres, other_m: Metres) -> Metres:

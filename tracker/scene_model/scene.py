@@ -96,7 +96,7 @@ class Happening:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Scene:
+class VistaScene:
     """A place after one more frame.
 
     Attributes:

@@ -22,10 +22,10 @@ from peopleboy.tracker.scene_model.scene import (
     Happening,
     Labels,
     Place,
-    Scene,
     SceneObject,
     SeenPerson,
     State,
+    VistaScene,
 )
 from peopleboy.tracker.scene_model.scene_config import SceneConfig
 from peopleboy.tracker.scene_model.things import Thing, ThingMoment, ThingPieces, opened, standing
@@ -49,10 +49,10 @@ class SceneModel:
         self._pose = Pose()
         self._vista = -1
         self._stopped_s = -math.inf
-        self._newest: Scene | None = None
+        self._newest: VistaScene | None = None
         self._readings: Readings | None = None
 
-    def update(self, frame: Frame) -> Scene:
+    def update(self, frame: Frame) -> VistaScene:
         """Take in the next frame.
 
         While the robot moves, and for a moment after, nothing is learned; then a new place begins.
@@ -115,7 +115,7 @@ class SceneModel:
         assert self._geometry is not None  # there was a frame
         return self._map.add(Surface.of(self._layers.surface_m, self._geometry), self._pose)
 
-    def _learned(self, frame: Frame, geometry: Geometry) -> Scene:
+    def _learned(self, frame: Frame, geometry: Geometry) -> VistaScene:
         config, layers = self.config, self._layers
         readings = Readings.of(frame.depth(DEPTH), self._readings, config.layers.memory)
         self._readings = readings
@@ -172,12 +172,12 @@ class SceneModel:
         reach: NDArray[np.float32],
         people: PeopleSeen,
         happenings: tuple[Happening, ...],
-    ) -> Scene:
+    ) -> VistaScene:
         layers = self._layers
         is_seen = layers.is_covered & (np.abs(readings.smooth_m - layers.front_m) < reach)
         is_seen &= people.labels == 0
         things = np.where(is_seen, self._standing.owner, 0)
-        return Scene(
+        return VistaScene(
             time_s=time_s,
             background_m=layers.surface_m,
             people=people.labels,

@@ -15,7 +15,7 @@ from peopleboy.tracker.scene_model.printed.cloud import Cloud, CloudMaker
 from peopleboy.tracker.scene_model.printed.clusters import Clusters, find_clusters
 from peopleboy.tracker.scene_model.printed.ellipses import Ellipses, MovingEllipse, inside
 from peopleboy.tracker.scene_model.printed.printed_config import PrintedBackground, PrintedConfig
-from peopleboy.tracker.scene_model.scene import Labels, Scene, SceneObject, SeenPerson, State
+from peopleboy.tracker.scene_model.scene import Labels, SceneObject, SeenPerson, State, VistaScene
 
 _FEWEST_POINTS = 3  # of a hull
 
@@ -34,7 +34,7 @@ class PrintedSceneModel:
         self._ellipses = Ellipses(config, rng)
         self._geometry: Geometry | None = None
 
-    def update(self, frame: Frame) -> Scene:
+    def update(self, frame: Frame) -> VistaScene:
         """Take in the next frame.
 
         Raises:
@@ -55,7 +55,7 @@ class PrintedSceneModel:
             persons = tuple(_person(one) for one in ellipses)
         movable = self._learned(cloud, people > 0)
         things, objects = self._things(movable, cloud, frame.time_s)
-        return Scene(
+        return VistaScene(
             time_s=frame.time_s,
             background_m=self._static.copy(),
             people=people,
