@@ -19,6 +19,7 @@ from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.people.crowd import Crowd
+from peopleboy.sim.people.handling import Handling
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.places.place import Place
@@ -31,9 +32,10 @@ from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.robot.robot_materials import robot_material
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import make_shape_table
+from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.bystanders import bystanders
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
-from peopleboy.sim.truth.truth import BORDER, Box, Truth
+from peopleboy.sim.truth.truth import BORDER, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 
 _MOST_PEOPLE = 64  # a view's cover has a bit for each
@@ -206,6 +208,7 @@ class World:
         self._crowd = Crowd(
             bullet, config.people, config.place, config.seed, is_visible=config.renderer != BLIND
         )
+        self._handling = Handling(bullet, config.place, self._crowd.people)
         self._robot = PeopleBot(bullet, config.robot, config.seed)
         if config.renderer != BLIND:
             self._open_eyes(materials | self._crowd.materials)
@@ -220,11 +223,12 @@ class World:
         ]
         self._table = make_shape_table(bullet.visual_shapes())
         self._materials = make_material_table(part_materials, stream(config.seed, "surface.variation"))
-        self._truth_maker = TruthMaker(keys, self._crowd, part_materials)
+        self._truth_maker = TruthMaker(keys, self._crowd, part_materials, config.place.movers)
         self._rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._glimpse)
 
     def _settle(self) -> None:
         """Take over the poses of a new instant; what was seen before is forgotten."""
+        self._handling.show(self.time_s)
         self._crowd.show(self._robot.gap_to)
         if self.config.renderer == BLIND:
             return

@@ -9,8 +9,8 @@ from peopleboy.scenarios.scores.corridor_score import CorridorLog
 from peopleboy.scenarios.scores.following_metrics import FollowingTask
 from peopleboy.scenarios.scores.following_score import TARGET, FollowingLog, Spot, track_on
 from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
-from peopleboy.sim.truth.truth import Box
 from peopleboy.tracker.track import Track
 
 Figures = dict[str, dict[str, float]]

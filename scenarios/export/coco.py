@@ -36,7 +36,8 @@ from peopleboy.sim.cameras.kinds import image_folders, with_boxes
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.people.body.joints import JOINT_NAMES
-from peopleboy.sim.truth.truth import Box, PersonTruth
+from peopleboy.sim.truth.boxes import Box
+from peopleboy.sim.truth.truth import PersonTruth
 
 CORNER_PX = 0.5
 

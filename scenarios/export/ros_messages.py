@@ -27,7 +27,8 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.truth.truth import Box, Truth
+from peopleboy.sim.truth.boxes import Box
+from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import FloorPlace, Status, Track, confirmed
 

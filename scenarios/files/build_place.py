@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput, Key, found_in
+from peopleboy.scenarios.files.moves.move_things import make_movers
 from peopleboy.scenarios.files.place_things import make_things, resolve_colour
 from peopleboy.scenarios.files.schema.place import CorridorSpec, DoorSpec, LCorridorSpec, PlaceSpec, RoomSpec
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
@@ -49,13 +50,15 @@ def make_place(spec: ScenarioSpec, folder: Path) -> Place:
         BadInput: something does not fit; with its key.
     """
     plan = make_floor_plan(spec.place)
+    built = make_things(spec, plan, folder)
     return build_place(
         plan,
         height_m=spec.place.height_m,
         surfaces=_surfaces(spec.place, plan),
-        things=tuple(f for fixtures in make_things(spec, plan, folder).values() for f in fixtures),
+        things=tuple(f for fixtures in built.values() for f in fixtures),
         surroundings_c=spec.place.temperatures.surroundings_c,
         light=tuple((step.at_s, step.level) for step in spec.lights) or ((0.0, 1.0),),
+        movers=make_movers(spec, plan, built),
     )
 
 

@@ -26,7 +26,7 @@ _TRIES = 50
 Path = tuple[WaypointSpec, ...]
 
 
-def cast(person: PersonSpec, seed: int, is_walkable: Callable[[Path], bool]) -> PersonSpec:
+def cast(person: PersonSpec, seed: int, can_walk: Callable[[PersonSpec], bool]) -> PersonSpec:
     """Decide everything about a person that the file leaves to the seed.
 
     Each person has random streams of its own, so that another person in the file changes nothing for it.
@@ -35,18 +35,22 @@ def cast(person: PersonSpec, seed: int, is_walkable: Callable[[Path], bool]) -> 
     Args:
         person: as in the file.
         seed: of the run.
-        is_walkable: whether people can walk a path; one that the seed moves into a wall is drawn again,
-            and after many tries the file's own path is kept.
+        can_walk: whether somebody can walk the way that it has; one that the seed moves into a wall is drawn
+            again, and after many tries the file's own path is kept.
     """
     looks = _draw_looks(stream(seed, f"scenario.{person.name}.looks"), person)
     rng = stream(seed, f"scenario.{person.name}.walk")
     delay = float(rng.uniform(0.0, person.enter_jitter_s)) if person.enter_jitter_s > 0.0 else 0.0
-    return person.model_copy(
+    later = person.model_copy(
         update={
-            **looks,
-            "path": _vary_path(person, rng, is_walkable),
             "enter_s": _rounded(person.enter_s + delay),
             "leave_s": None if person.leave_s is None else _rounded(person.leave_s + delay),
+        }
+    )
+    return later.model_copy(
+        update={
+            **looks,
+            "path": _vary_path(later, rng, can_walk),
             "jitter_m": 0.0,
             "speed_jitter": 0.0,
             "enter_jitter_s": 0.0,
@@ -62,7 +66,7 @@ def make_config(person: PersonSpec) -> PersonConfig:
     clothes = ClothesSpec() if person.clothes is None else person.clothes
     return PersonConfig(
         name=person.name,
-        path=tuple(_waypoint(waypoint) for waypoint in person.path),
+        path=make_way(person.path),
         height_m=person.height_m,
         sex=person.sex,
         build=person.build,
@@ -72,6 +76,20 @@ def make_config(person: PersonSpec) -> PersonConfig:
         yields=person.yields,
         bag=person.bag,
         arms=person.arms,
+    )
+
+
+def make_way(path: Path) -> tuple[Waypoint, ...]:
+    """Turn a path into waypoints of the simulator."""
+    return tuple(
+        Waypoint(
+            at_m=spec.at_m,
+            speed_m_s=spec.speed_m_s,
+            pause_s=spec.pause_s,
+            face=spec.face,
+            posture=Posture(spec.posture),
+        )
+        for spec in path
     )
 
 
@@ -87,16 +105,6 @@ def members(group: GroupSpec) -> tuple[PersonSpec, ...]:
             update={"path": _moved(group.path, abreast(points, (index - middle) * group.spacing_m))}
         )
         for index, name in enumerate(group.names)
-    )
-
-
-def _waypoint(spec: WaypointSpec) -> Waypoint:
-    return Waypoint(
-        at_m=spec.at_m,
-        speed_m_s=spec.speed_m_s,
-        pause_s=spec.pause_s,
-        face=spec.face,
-        posture=Posture(spec.posture),
     )
 
 
@@ -125,7 +133,7 @@ def _draw_looks(rng: np.random.Generator, person: PersonSpec) -> dict[str, objec
     }
 
 
-def _vary_path(person: PersonSpec, rng: np.random.Generator, is_walkable: Callable[[Path], bool]) -> Path:
+def _vary_path(person: PersonSpec, rng: np.random.Generator, can_walk: Callable[[PersonSpec], bool]) -> Path:
     faster = 1.0 + float(rng.uniform(-person.speed_jitter, person.speed_jitter))
     path = person.path
     if person.speed_jitter > 0.0:
@@ -137,7 +145,7 @@ def _vary_path(person: PersonSpec, rng: np.random.Generator, is_walkable: Callab
         return path
     for _ in range(_TRIES):
         varied = _moved(path, [_near(waypoint.at_m, person.jitter_m, rng) for waypoint in path])
-        if is_walkable(varied):
+        if can_walk(person.model_copy(update={"path": varied})):
             return varied
     return path
 

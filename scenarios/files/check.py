@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput, Key, dotted, found_in
 from peopleboy.scenarios.files.equip_robot import equip_robot
+from peopleboy.scenarios.files.moves.check_moves import MovedThings
 from peopleboy.scenarios.files.place_things import describe_floor, name_things
 from peopleboy.scenarios.files.schema.people import PersonSpec, WaypointSpec
 from peopleboy.scenarios.files.schema.robot import ORACLE, CameraSpec, RobotSpec
@@ -43,15 +44,20 @@ class Ground:
         boxes: walls and things, grown by half a person.
         names: theirs.
         seats: names of things that one may sit on.
+        moved: things that are not always where they are at first.
     """
 
     plan: FloorPlan
     boxes: tuple[Rectangle, ...]
     names: tuple[str, ...]
     seats: frozenset[str]
+    moved: MovedThings
 
-    def fault(self, path: Sequence[WaypointSpec]) -> BadInput | None:
-        """Give what is wrong with a path, below the key of its person; None if people can walk it."""
+    def fault(self, person: PersonSpec) -> BadInput | None:
+        """Give what is wrong with a person's path, below its key; None if it can be walked."""
+        return self._path_fault(person.path) or self.moved.fault(person, BODY_M)
+
+    def _path_fault(self, path: Sequence[WaypointSpec]) -> BadInput | None:
         for index, waypoint in enumerate(path):
             fault = self._point_fault(waypoint)
             if fault is None and index > 0:
@@ -89,12 +95,20 @@ class Ground:
 
 def make_ground(spec: ScenarioSpec, plan: FloorPlan, place: Place) -> Ground:
     """Collect what people must walk around."""
-    named = zip(name_things(spec.things), spec.things, strict=True)
+    names = name_things(spec.things)
+    named = zip(names, spec.things, strict=True)
+    seats = frozenset(name for name, thing in named if thing.kind in KINDS and KINDS[thing.kind].is_seat)
     return Ground(
         plan=plan,
         boxes=tuple(_rectangle(row).grown(BODY_M) for row in place.obstacles),
         names=place.obstacle_names,
-        seats=frozenset(name for name, thing in named if thing.kind in KINDS and KINDS[thing.kind].is_seat),
+        seats=seats,
+        moved=MovedThings(
+            place=place,
+            seats=seats,
+            keys={name: ("things", index) for index, name in enumerate(names)},
+            duration_s=spec.duration_s,
+        ),
     )
 
 
@@ -117,10 +131,11 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]],
         with found_in(*key):
             _check_times(person, spec.duration_s)
             _check_faces(person, [other.name for _, other in people])
-            fault = ground.fault(person.path)
+            fault = ground.fault(person)
             if fault is not None:
                 raise fault
             _check_distance(person, spec.robot)
+    ground.moved.check(people, spec.robot.at_m, ROBOT_M)
 
 
 def crosses(box: Rectangle, start: tuple[float, float], end: tuple[float, float]) -> bool:

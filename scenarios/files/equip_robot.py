@@ -9,6 +9,7 @@ from typing import Any
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.schema.robot import CameraSpec, RobotSpec
 from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS
 from peopleboy.sim.cameras.kinds import KINDS
 from peopleboy.sim.geometry.mirror import MIRRORS, Mirror
 from peopleboy.sim.robot.robot_config import RobotConfig
@@ -38,7 +39,8 @@ def _camera(name: str, spec: CameraSpec) -> CameraConfig:
     """A camera as usual for its kind, but for what the file says."""
     given: dict[str, Any] = spec.model_dump(exclude_none=True)
     kind, mirror = given.pop("kind"), given.pop("mirror", None)
-    usual = KINDS[kind].config()
+    preset = given.pop("preset", None)
+    usual = KINDS[kind].config() if preset is None else DEPTH_PRESETS[preset]
     geometry = {_RENAMED[key]: given.pop(key) for key in _RENAMED if key in given}
     geometry |= {_IN_DEGREES[key]: math.radians(given.pop(key)) for key in _IN_DEGREES if key in given}
     if mirror is not None:

@@ -97,7 +97,7 @@ class Scenario:
         people = tuple(person for _, person in _everybody(self.spec))
         if self.spec.clothes_differ:
             people = tell_apart(people, stream(seed, "scenario.colours"))
-        return tuple(cast(person, seed, lambda path: self.ground.fault(path) is None) for person in people)
+        return tuple(cast(person, seed, lambda one: self.ground.fault(one) is None) for person in people)
 
     def world(self, seed: int, renderer: str = "raycast") -> WorldConfig:
         """Settings of the world; the same seed gives equal settings.

@@ -18,8 +18,9 @@ from peopleboy.scenarios.scores.following_metrics import (
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.robot.robot_body import outline_gap
+from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
-from peopleboy.sim.truth.truth import Box, Truth
+from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.floor import floor_squares
 from peopleboy.tracker.frame import THERMAL

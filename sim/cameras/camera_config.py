@@ -147,9 +147,12 @@ class DepthConfig(LightConfig):
         scale: of the noise: 0 for exact depth without holes, 1 as it usually is.
         nearest_m, farthest_m: [m] depths that it can measure.
         colour: whether it gives colour, too.
+        amplitude: whether it gives the strength of the light that came back, too, as time of flight can.
+        offset_m: [m] largest error of a pixel that is the same in all images.
 
     Raises:
-        BadInput: no such sensor, a negative scale, or no depths that it can measure.
+        BadInput: no such sensor, one that knows no amplitude, a negative scale, or no depths that it can
+            measure.
     """
 
     kind: ClassVar[str] = "depth"
@@ -160,12 +163,16 @@ class DepthConfig(LightConfig):
     nearest_m: float = 0.5
     farthest_m: float = 10.0
     colour: bool = True
+    amplitude: bool = False
+    offset_m: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse what no sensor does."""
         if self.sensor not in get_args(DepthSensorName):
             known = ", ".join(get_args(DepthSensorName))
             raise BadInput(f"no such sensor: {self.sensor!r}; choose from {known}", key=("sensor",))
+        if self.amplitude and self.sensor != "tof":
+            raise BadInput(f"only a sensor 'tof' gives it, not {self.sensor!r}", key=("amplitude",))
         if not 0.0 <= self.scale < math.inf:
             raise BadInput(f"{self.scale} must be 0 or more, and finite", key=("scale",))
         if not 0.0 <= self.nearest_m < self.farthest_m <= FARTHEST_M:

@@ -19,6 +19,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.rendering.view import View
 
 Metres = NDArray[np.float32]
+Amplitude = NDArray[np.uint16]
 
 # Structured light. Noise and steps of its disparity: Khoshelham & Oude Elberink 2012, Sensors 12:1437.
 DISPARITY_SD_PX: Final = 0.062
@@ -31,6 +32,10 @@ _SLACK_PX = 0.5  # within which light still falls beside an edge
 TOF_SD_M: Final = 0.005  # at 2 m, of a surface that is half white
 _FINER = 2  # rays of a pixel, in a row and in a column
 _BLACKEST = 0.02
+AMPLITUDE_AT_1_M: Final = 10_000.0  # of a white surface; it falls with the square of the depth
+# Of one that makes the noise of depth what it is: c / (4 pi f) [m] a share of amplitude, at 15 MHz.
+_METRES_A_SHARE = 299_792_458.0 / (4.0 * math.pi * 15e6)
+AMPLITUDE_SD: Final = AMPLITUDE_AT_1_M * TOF_SD_M * 0.5 / 2.0**2 / _METRES_A_SHARE
 
 
 def hole_share(depth_m: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -160,6 +165,71 @@ def time_of_flight(
         gaussian((camera.height, camera.width), rng), config.scale * TOF_SD_M,
     )  # fmt: skip
     return to_millimetres(depth, config)
+
+
+def amplitude_of(
+    fine: View,
+    config: DepthConfig,
+    materials: MaterialTable,
+    world_from_camera: Matrix,
+    world_from_part: Matrix,
+    rng: np.random.Generator,
+) -> Amplitude:
+    """Measure how much of a time-of-flight sensor's own light comes back: grey that darkens with distance.
+
+    Arguments as of `time_of_flight`. Its noise is that of the depth: an error of the amplitude by a share
+    is one of the phase by as many radians, of which each is c / (4 pi f) of depth.
+
+    Returns:
+        (H, W) uint16: 10000 for a white surface 1 m away.
+    """
+    camera = config.camera
+    matrices = part_from_pixel(rays_of(camera), world_from_camera, world_from_part)
+    light = _light_of_rays(
+        fine.part, fine.depth, matrices, materials.colour, materials.kind, materials.period, materials.phase,
+        camera.height, camera.width,
+    )  # fmt: skip
+    noise = config.scale * AMPLITUDE_SD * gaussian(light.shape, rng)
+    return np.clip(np.rint(AMPLITUDE_AT_1_M * light + noise), 0.0, 65535.0).astype(np.uint16)
+
+
+def draw_offsets(config: DepthConfig, rng: np.random.Generator) -> NDArray[np.int32]:
+    """(H, W) [mm] errors of pixels that stay, all equally likely up to the largest."""
+    largest = 1000.0 * config.offset_m
+    return np.rint(rng.uniform(-largest, largest, (config.camera.height, config.camera.width))).astype(
+        np.int32
+    )
+
+
+def add_offsets(depth: Millimetres, offsets: NDArray[np.int32]) -> Millimetres:
+    """Add the errors that stay, where there is depth."""
+    return np.where(depth > 0, np.clip(depth + offsets, 1, 65535), 0).astype(np.uint16)
+
+
+@njit(cache=True, fastmath=True)
+def _light_of_rays(
+    part: NDArray[np.int32],
+    depth: Metres,
+    matrices: Matrix,
+    colour: Matrix,
+    kind: NDArray[np.int64],
+    period: Matrix,
+    phase: Matrix,
+    height: int,
+    width: int,
+) -> Metres:
+    image = np.zeros((height, width), np.float32)
+    for row in range(_FINER * height):
+        for column in range(_FINER * width):
+            p = part[row, column]
+            if p < 0:
+                continue
+            z = depth[row, column]
+            x, y, up = surface_point(matrices, p, column, row, z)
+            second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, up, phase, p)
+            grey = (colour[p, second] + colour[p, second + 1] + colour[p, second + 2]) / 3.0
+            image[row // _FINER, column // _FINER] += max(grey, _BLACKEST) / (z * z) / _FINER**2
+    return image
 
 
 def rays_of(camera: Pinhole) -> Pinhole:

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from peopleboy.sim.cameras.camera_config import DepthConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 
+_BRIGHT_AMPLITUDE = 2500.0
+
 Metres = NDArray[np.float32]
 Millimetres = NDArray[np.uint16]
 
@@ -44,6 +46,12 @@ def show_depth(depth: Millimetres) -> NDArray[np.uint8]:
     as the logarithm goes between them.
     """
     return _SHADES[depth]
+
+
+def show_amplitude(amplitude: NDArray[np.uint16]) -> NDArray[np.uint8]:
+    """Turn an (H, W) amplitude image into a grey one: the root, white from that of a white wall at 2 m on."""
+    share = np.minimum(amplitude / np.float32(_BRIGHT_AMPLITUDE), 1.0)
+    return np.rint(255.0 * np.sqrt(share)).astype(np.uint8)
 
 
 def _shades() -> NDArray[np.uint8]:

@@ -18,7 +18,7 @@ from peopleboy.sim.cameras.camera_config import (
     PanoramaConfig,
     ThermalConfig,
 )
-from peopleboy.sim.cameras.depth_image import show_depth
+from peopleboy.sim.cameras.depth_image import show_amplitude, show_depth
 from peopleboy.sim.cameras.sensors import (
     ColourSensor,
     DepthSensor,
@@ -63,9 +63,15 @@ def _round_image(config: PanoramaConfig) -> tuple[Layer, ...]:
     return (Layer(what=what, suffix="_raw", folder="_raw"),) if config.raw else ()
 
 
-def _colour_of_depth(config: DepthConfig) -> tuple[Layer, ...]:
-    what = "8-bit colour, of the same pixels as the depth"
-    return (Layer(what=what, suffix="_colour", folder="_colour"),) if config.colour else ()
+def _beside_depth(config: DepthConfig) -> tuple[Layer, ...]:
+    colour = Layer(what="8-bit colour, of the same pixels as the depth", suffix="_colour", folder="_colour")
+    amplitude = Layer(
+        what="16-bit, strength of the sensor's own light, 10000 for white 1 m away",
+        suffix="_amplitude",
+        folder="_amplitude",
+        show=show_amplitude,
+    )
+    return (*((colour,) if config.colour else ()), *((amplitude,) if config.amplitude else ()))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,7 +124,7 @@ KINDS: Final[dict[str, CameraKind]] = {
         config=DepthConfig,
         sensor=DepthSensor,
         layers=(Layer(what="16-bit, depth in millimetres, 0 where none is read", show=show_depth),),
-        more_layers=_colour_of_depth,
+        more_layers=_beside_depth,
         dtype=np.uint16,
         unit="mm",
     ),

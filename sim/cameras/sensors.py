@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, PanoramaConfig, ThermalConfig
 from peopleboy.sim.cameras.colour import colour_image, expose
 from peopleboy.sim.cameras.depth import (
+    add_offsets,
+    amplitude_of,
+    draw_offsets,
     rays_of,
     skip_structured_light,
     structured_light,
@@ -143,17 +146,24 @@ class PanoramaSensor:
 
 
 class DepthSensor:
-    """Gives depth in millimetres; on request 8-bit sRGB of the same pixels."""
+    """Gives depth in millimetres; on request 8-bit sRGB, and amplitude, of the same pixels."""
 
     def __init__(self, config: DepthConfig, name: str, seed: int) -> None:
         self._config = config
         self._noise = stream(seed, f"{name}.noise")
         self._colour_noise = stream(seed, f"{name}.colour.noise")
+        self._amplitude_noise = stream(seed, f"{name}.amplitude.noise")
+        self._offsets = draw_offsets(config, stream(seed, f"{name}.offsets")) if config.offset_m else None
 
     def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
-        """Take the (H, W) uint16, and the (H, W, 3) uint8, images of an instant."""
-        depth = self._depth(glimpse)
-        return (depth, self._colour(glimpse)) if self._config.colour else (depth,)
+        """Take the images of an instant: (H, W) uint16, (H, W, 3) uint8 and (H, W) uint16."""
+        config = self._config
+        depth, amplitude = self._measure(glimpse)
+        return (
+            depth if self._offsets is None else add_offsets(depth, self._offsets),
+            *((self._colour(glimpse),) if config.colour else ()),
+            *((amplitude,) if amplitude is not None else ()),
+        )
 
     def skip(self) -> None:
         """Let the noise of an image go by."""
@@ -164,17 +174,23 @@ class DepthSensor:
             skip_gaussian(shape, self._noise)
         if config.colour:
             skip_gaussian((*shape, 3), self._colour_noise)
+        if config.amplitude:
+            skip_gaussian(shape, self._amplitude_noise)
 
-    def _depth(self, glimpse: Glimpse) -> Image:
-        config = self._config
-        if config.scale == 0.0:
-            return to_millimetres(glimpse.view.depth, config)
-        if config.sensor == "kinect":
-            return structured_light(glimpse.view, config, self._noise)
-        return time_of_flight(
-            glimpse.draw(rays_of(config.camera)), config, glimpse.materials, glimpse.world_from_camera,
-            glimpse.world_from_part, self._noise,
-        )  # fmt: skip
+    def _measure(self, glimpse: Glimpse) -> tuple[Image, Image | None]:
+        """Depth, and amplitude if it is wanted."""
+        config, is_exact = self._config, self._config.scale == 0.0
+        if config.sensor == "kinect" and not is_exact:
+            return structured_light(glimpse.view, config, self._noise), None
+        if is_exact and not config.amplitude:
+            return to_millimetres(glimpse.view.depth, config), None
+        fine = glimpse.draw(rays_of(config.camera))
+        around = (glimpse.materials, glimpse.world_from_camera, glimpse.world_from_part)
+        if is_exact:
+            depth = to_millimetres(glimpse.view.depth, config)
+        else:
+            depth = time_of_flight(fine, config, *around, self._noise)
+        return depth, amplitude_of(fine, config, *around, self._amplitude_noise) if config.amplitude else None
 
     def _colour(self, glimpse: Glimpse) -> Image:
         config = self._config

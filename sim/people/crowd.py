@@ -35,7 +35,7 @@ class Crowd:
     ) -> None:
         self._bullet = bullet
         self._is_visible = is_visible
-        self._obstacles = place.obstacles
+        self._place = place
         self.people = tuple(Person(config, stream(seed, f"person.{config.name}")) for config in configs)
         self.materials: dict[str, Material] = {}
         self._is_shown = dict.fromkeys((person.name for person in self.people), True)
@@ -47,10 +47,11 @@ class Crowd:
     def step(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
         """Let everybody walk on for dt_s from time_s, knowing where the others and the robot are now."""
         states = {person.name: _state(person) for person in self.people if person.present}
+        obstacles = self._place.obstacles_at(time_s)
         for person in self.people:
             self._before[person.name] = person.position.copy()
             others = {name: state for name, state in states.items() if name != person.name}
-            person.step(time_s, dt_s, others, robot, self._obstacles)
+            person.step(time_s, dt_s, others, robot, obstacles)
 
     def move_bodies(self, share: float) -> None:
         """Move the solid capsules to where people are when this share of the control step has passed."""

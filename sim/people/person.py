@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.body.anthropometry import BodySize, measure
+from peopleboy.sim.people.body.anthropometry import HAND_LENGTH, BodySize, measure
 from peopleboy.sim.people.body.body_shapes import ARM_PARTS as _LIMBS
 from peopleboy.sim.people.body.body_shapes import (
     BAG_PART,
@@ -24,6 +25,7 @@ from peopleboy.sim.people.body.clothes import dress
 from peopleboy.sim.people.body.gait import Gait, lowest_sole
 from peopleboy.sim.people.body.joints import joint_points
 from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations
+from peopleboy.sim.people.body.reaching import arm_length, least_bend, turn_arm
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
 from peopleboy.sim.people.person_config import Arms, PersonConfig
 from peopleboy.sim.people.timetable import timetable
@@ -50,10 +52,21 @@ _ARM_POSTURES: dict[Arms, Posture | None] = {
 _BAG_LOOK = Material(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
 _BAG_HAND = "right"
 _BAG_SWING = 0.25
+_ARM = ("upper_arm", "forearm", "hand")
+_AHEAD_M = 0.1  # so far to the left the right hand reaches as well
 _SWAY_RAD, _SWAY_HZ = 0.006, 0.23
 # Who turns on the spot takes small steps: as if the feet went round a circle, and so many cycles a turn.
 _TURNING_RADIUS_M = 0.04
 _CYCLES_PER_RAD = 0.4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Grasp:
+    """Where a hand is to be: a point (3,) [m] of the world, how far it has got there, and which hand."""
+
+    point: Array
+    share: float
+    side: str
 
 
 class Person:
@@ -89,6 +102,7 @@ class Person:
         self._blend[self._walker.posture] = 1.0
         self._arms = _ARM_POSTURES[config.arms]
         self._bones: Array | None = None
+        self._grasp: _Grasp | None = None
 
     @property
     def position(self) -> Array:
@@ -146,6 +160,29 @@ class Person:
             self._walker.enter(around)
             self._bones = None
 
+    def reach_for(self, point: Array, share: float) -> None:
+        """Have a hand at a point (3,) [m] of the world; by less than a share of 1, on the way there."""
+        side = self._near_side(point) if self._grasp is None else self._grasp.side
+        self._grasp = _Grasp(point, share, side)
+        self._bones = None
+
+    def let_go(self) -> None:
+        """Have both hands free again."""
+        if self._grasp is not None:
+            self._grasp = self._bones = None
+
+    def palm(self, side: str) -> Array:
+        """(3,) [m] the middle of a hand, world frame."""
+        hand = self._world_bones()[BONE_INDEX[f"{side}_hand"]]
+        palm: Array = hand[:3, 3] - 0.5 * HAND_LENGTH * self.config.height_m * hand[:3, 2]
+        return palm
+
+    def _near_side(self, point: Array) -> str:
+        """The side on which a point is; right if it is ahead, and left of one who carries a bag."""
+        dx, dy = point[:2] - self.position
+        aside = math.cos(self.heading) * dy - math.sin(self.heading) * dx
+        return "left" if self.config.bag or aside > _AHEAD_M else "right"
+
     def _move_limbs(self, dt_s: float) -> None:
         """Advance gait and postures by a time step."""
         walker = self._walker
@@ -182,9 +219,14 @@ class Person:
 
     def _place(self) -> Array:
         """Put the bones above the floor, at the person's place and heading."""
-        rotations, (front, left) = self._pose()
+        rotations, shift = self._pose()
+        if self._grasp is not None:
+            rotations, shift = self._reach(self._grasp, rotations, shift)
+        return self._on_the_floor(rotations, shift)
+
+    def _on_the_floor(self, rotations: Array, shift: tuple[float, float]) -> Array:
         offsets = self._offsets.copy()
-        offsets[0] = front, left, 0.0
+        offsets[0] = *shift, 0.0
         bones = place_bones(rotations, offsets)
         bones[:, 2, 3] -= lowest_sole(bones, self._soles)
         heading = self._walker.heading
@@ -194,6 +236,31 @@ class Person:
         world[:2, 3] = self._walker.position
         placed: Array = world @ bones
         return placed
+
+    def _reach(
+        self, grasp: _Grasp, rotations: Array, shift: tuple[float, float]
+    ) -> tuple[Array, tuple[float, float]]:
+        """Bend as far as the arm is too short, and turn the arm."""
+        shoulder, chest = BONE_INDEX[f"{grasp.side}_upper_arm"], BONE_INDEX["chest"]
+
+        def bent(share: float) -> tuple[Array, tuple[float, float]]:
+            bow = _POSTURES[Posture.BENDING] - _POSTURES[Posture.STANDING]
+            front = shift[0] + share * pelvis_shift(Posture.BENDING) * self.config.height_m
+            return rotations + share * bow, (front, shift[1])
+
+        def gap_m(share: float) -> float:
+            return float(np.linalg.norm(self._on_the_floor(*bent(share))[shoulder, :3, 3] - grasp.point))
+
+        bend = 0.0
+        if self._blend[Posture.BENDING] == self._blend[Posture.SITTING] == 0.0:
+            bend = grasp.share * least_bend(gap_m, arm_length(self.config.height_m))
+        bowed, shift = bent(bend)
+        bones = self._on_the_floor(bowed, shift)
+        target = bones[chest, :3, :3].T @ (grasp.point - bones[shoulder, :3, 3])
+        turned = turn_arm(bowed, grasp.side, target, self.config.height_m)
+        arm = [BONE_INDEX[f"{grasp.side}_{bone}"] for bone in _ARM]
+        bowed[arm] += grasp.share * (turned - bowed)[arm]
+        return bowed, shift
 
     def _pose(self) -> tuple[Array, tuple[float, float]]:
         """(17, 3) [rad] rotation vectors and the pelvis' offset [m] to the front and to the left."""
@@ -217,7 +284,7 @@ class Person:
         return rotations, (front, float(sway[1]))
 
     def _steady_bag_arm(self, rotations: Array, standing: Array) -> None:
-        arm = [BONE_INDEX[f"{_BAG_HAND}_{bone}"] for bone in ("upper_arm", "forearm", "hand")]
+        arm = [BONE_INDEX[f"{_BAG_HAND}_{bone}"] for bone in _ARM]
         rotations[arm] = standing[arm] + _BAG_SWING * (rotations - standing)[arm]
 
     def _sway(self, rotations: Array) -> None:

@@ -27,12 +27,19 @@ def fixture_extent(fixture: Fixture) -> Extent:
     Raises:
         BadInput: a URDF or a mesh cannot be read.
     """
-    if fixture.part is not None:
-        local = [_moved(shape_extent(s), s.position, s.orientation) for s in fixture.part.shapes]
-    else:
-        local = [urdf_extent(find_urdf(str(fixture.urdf))) * fixture.scale]
-    world = [_moved(extent, fixture.position, fixture.orientation) for extent in local]
+    world = [_moved(extent, fixture.position, fixture.orientation) for extent in shape_extents(fixture)]
     return np.round(_around(np.concatenate(world)), 9)
+
+
+def shape_extents(fixture: Fixture) -> list[Extent]:
+    """The boxes around each shape of a fixture, in the fixture's own frame; a URDF is a single one.
+
+    Raises:
+        BadInput: a URDF or a mesh cannot be read.
+    """
+    if fixture.part is not None:
+        return [_moved(shape_extent(s), s.position, s.orientation) for s in fixture.part.shapes]
+    return [urdf_extent(find_urdf(str(fixture.urdf))) * fixture.scale]
 
 
 def shape_extent(shape: Shape) -> Extent:

@@ -1,4 +1,4 @@
-"""What stands still in a world: walls, floor, ceiling, and the things between them."""
+"""What stands in a world: walls, floor, ceiling, and the things between them."""
 
 from __future__ import annotations
 
@@ -7,13 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Quaternion, Vector
+
+# What is lower than a step or higher than a head is in nobody's way.
+STEP_M = 0.03
+HEAD_M = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fixture:
-    """One thing that stands still: a wall, a radiator, one part of a desk, or furniture from a URDF file.
+    """One thing that stands there: a wall, a radiator, one part of a desk, or furniture from a URDF file.
 
     Attributes:
         name: unique; what comes before a "/" names the thing that it is part of ("monitor_1/screen").
@@ -38,15 +43,17 @@ class Fixture:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Place:
-    """A room or corridor with everything that stands in it.
+    """A room or corridor with everything that stands in it, or is moved there.
 
     Attributes:
-        fixtures: all of it, drawn in this order.
-        obstacles: (K, 4) [m] min x, min y, max x, max y of everything solid that stands on the floor.
+        fixtures: all of it, drawn in this order; of what is moved, where it is at first.
+        obstacles: (K, 4) [m] min x, min y, max x, max y of everything solid that stands on the floor and
+            that nobody moves.
         obstacle_names: the K names, for messages.
         bounds: [m] min x, min y, max x, max y of the floor and the walls around it.
         surroundings_c: [degC] what surfaces of low emissivity mirror.
         light: (time [s], level) steps of the room's light; level 1 is full, 0 is dark.
+        movers: the things to which something happens.
     """
 
     fixtures: tuple[Fixture, ...]
@@ -55,3 +62,24 @@ class Place:
     bounds: tuple[float, float, float, float]
     surroundings_c: float = 21.0
     light: tuple[tuple[float, float], ...] = ((0.0, 1.0),)
+    movers: tuple[Mover, ...] = ()
+
+    def obstacles_at(self, time_s: float) -> NDArray[np.float64]:
+        """(K, 4) [m] as `obstacles`, with what is moved where it is at a time."""
+        boxes = [box for mover in self.movers if (box := _ground_box(mover, time_s)) is not None]
+        return np.concatenate([self.obstacles, boxes]) if boxes else self.obstacles
+
+
+def _ground_box(mover: Mover, time_s: float) -> NDArray[np.float64] | None:
+    """The rectangle (4,) around a thing at a time; None if it is in nobody's way."""
+    state = mover.at(time_s)
+    corners = state.stance.place(mover.corners())
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    if not state.is_there or not is_in_the_way(low[2], high[2]):
+        return None
+    return np.concatenate([low[:2], high[:2]])
+
+
+def is_in_the_way(low_m: float, high_m: float) -> bool:
+    """Whether people bump into what reaches from one height to another: no step, and not overhead."""
+    return low_m < HEAD_M and high_m > STEP_M

@@ -11,17 +11,14 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.places.extent import fixture_extent
 from peopleboy.sim.places.floor_plan import Door, FloorPlan, Wall, check_doors
-from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.places.moving import Mover
+from peopleboy.sim.places.place import Fixture, Place, is_in_the_way
 from peopleboy.sim.places.rectangle import Rectangle
 from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
 # Blocks that meet run this far into each other, so that no two faces lie in one plane.
 SINK_M = 0.05
-
-# What is lower than a step or higher than a head is in nobody's way.
-_STEP_M = 0.03
-_HEAD_M = 2.0
 
 _LEAF_M = 0.03  # how far a closed door's leaf stands out of its wall
 
@@ -121,8 +118,9 @@ def build_place(
     things: tuple[Fixture, ...] = (),
     surroundings_c: float = 21.0,
     light: tuple[tuple[float, float], ...] = ((0.0, 1.0),),
+    movers: tuple[Mover, ...] = (),
 ) -> Place:
-    """Build the shell of a place and put things into it.
+    """Build the shell of a place and put things into it, some of which are moved.
 
     No two visible faces of the shell lie in one plane and overlap, and the inside is closed all around:
     a ray from any point of the floor plan meets a surface.
@@ -133,7 +131,8 @@ def build_place(
     check_doors(plan)
     materials = Surfaces() if surfaces is None else surfaces
     fixtures = (*_shell(plan, height_m, materials), *things)
-    names, boxes = obstacles(fixtures)
+    moved = {mover.name for mover in movers}
+    names, boxes = obstacles(tuple(f for f in fixtures if f.name.split("/")[0] not in moved))
     bounds = plan.bounds()
     return Place(
         fixtures=fixtures,
@@ -142,6 +141,7 @@ def build_place(
         bounds=(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y),
         surroundings_c=surroundings_c,
         light=light,
+        movers=movers,
     )
 
 
@@ -156,7 +156,7 @@ def obstacles(fixtures: tuple[Fixture, ...]) -> tuple[tuple[str, ...], NDArray[n
         for fixture in fixtures
         if fixture.is_solid
         for extent in [fixture_extent(fixture)]
-        if extent[0, 2] < _HEAD_M and extent[1, 2] > _STEP_M
+        if is_in_the_way(extent[0, 2], extent[1, 2])
     ]
     boxes = np.array([box for _, box in blocking], float).reshape(-1, 4)
     boxes.setflags(write=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from peopleboy.sim.places import furniture_pieces, warm_pieces
+from peopleboy.sim.places import furniture_pieces, household_pieces, warm_pieces
 from peopleboy.sim.places.pieces import WHITE, WOOD, Piece
 from peopleboy.sim.shapes.materials import Rgb
 from peopleboy.sim.shapes.shapes import Vector
@@ -114,5 +114,20 @@ KINDS: dict[str, Kind] = {
     ),
     "plant": Kind(
         build=furniture_pieces.plant, size_m=(0.6, 0.6, 1.4), temperature_c=20.5, rgb=(0.05, 0.22, 0.06)
+    ),
+    "bear": Kind(
+        build=household_pieces.bear, size_m=(0.42, 0.42, 0.5), temperature_c=21.5, rgb=(0.32, 0.17, 0.07)
+    ),
+    "can": Kind(
+        build=household_pieces.can, size_m=(0.6, 0.26, 0.4), temperature_c=20.5, rgb=(0.05, 0.18, 0.35)
+    ),
+    "door_leaf": Kind(
+        build=household_pieces.door_leaf, size_m=(0.04, 0.93, 2.03), temperature_c=21.0, rgb=(0.45, 0.3, 0.16)
+    ),
+    "cupboard": Kind(
+        build=household_pieces.cupboard, size_m=(0.45, 0.9, 1.8), temperature_c=21.2, rgb=(0.55, 0.45, 0.33)
+    ),
+    "drawer": Kind(
+        build=household_pieces.drawer, size_m=(0.42, 0.8, 0.2), temperature_c=21.2, rgb=(0.6, 0.5, 0.38)
     ),
 }

@@ -10,7 +10,8 @@ import math
 
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.rendering.sight import Edges
-from peopleboy.sim.truth.truth import Box
+
+Box = tuple[float, float, float, float]
 
 
 def box_between(bounds: Edges) -> Box | None:

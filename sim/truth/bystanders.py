@@ -11,9 +11,8 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transfo
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.robot.robot_body import NAME
-from peopleboy.sim.truth.boxes import reaches_into
+from peopleboy.sim.truth.boxes import Box, reaches_into
 from peopleboy.sim.truth.image_free_truth import Bystander
-from peopleboy.sim.truth.truth import Box
 
 # Heights at which a person's middle is looked for, in shares of the stature.
 _LOOKED_AT = np.array([0.1, 0.3, 0.5, 0.7, 0.9])

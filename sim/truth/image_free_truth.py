@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.seen import is_seen
-from peopleboy.sim.truth.truth import Box
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

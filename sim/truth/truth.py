@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.planar import Planar
-
-Box = tuple[float, float, float, float]
+from peopleboy.sim.truth.boxes import Box
+from peopleboy.sim.truth.things import Owners, ThingTruth
 
 # Persons nearer than 3 m or farther than 10 m are not counted (T 3.3).
 COUNTED_NEAREST_M = 3.0
@@ -112,6 +112,10 @@ class Truth:
         robot: true pose of the robot.
         robot_velocity: true forward speed [m/s] and turn rate [rad/s].
         contacts: names of what the robot touches, the floor aside.
+        things: all that somebody or something moves in this place, there or not.
+        owners: who or what is seen at each pixel.
+        background_m: draws (H, W) [m] the depth without people and without what is moved; what it costs is
+            a rendering.
     """
 
     time_s: float
@@ -124,6 +128,9 @@ class Truth:
     robot: Planar
     robot_velocity: tuple[float, float]
     contacts: tuple[str, ...]
+    things: tuple[ThingTruth, ...]
+    owners: Owners
+    background_m: Callable[[], NDArray[np.float32]]
 
 
 def is_counted(distance_m: float) -> bool:

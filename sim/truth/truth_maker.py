@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
@@ -13,19 +15,16 @@ from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
 from peopleboy.sim.physics.bodies import PartKey
+from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.rendering.cover import Cover
 from peopleboy.sim.rendering.sight import Edges, Seen
 from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.truth.boxes import box_between, box_of_pixels, is_cut_off
-from peopleboy.sim.truth.truth import (
-    BORDER,
-    Box,
-    PersonTruth,
-    Truth,
-    is_counted,
-)
+from peopleboy.sim.truth.boxes import Box, box_between, box_of_pixels, is_cut_off
+from peopleboy.sim.truth.things import NOTHING, Owners, things_truth
+from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
 
 A = TypeVar("A", bound=NDArray[Any])
+Depth = NDArray[np.float32]
 
 
 class TruthMaker:
@@ -36,6 +35,7 @@ class TruthMaker:
         keys: Sequence[PartKey],
         crowd: Crowd,
         materials: Sequence[Material],
+        movers: Sequence[Mover],
     ) -> None:
         self._people = crowd.people
         owners = [key.name.split("/")[0] for key in keys]
@@ -43,6 +43,9 @@ class TruthMaker:
         self._owner_names = names + sorted(set(owners) - set(names))
         number = {name: k for k, name in enumerate(self._owner_names)}
         self._owner_of_part = np.array([number[owner] for owner in owners], np.int64)
+        self._owner_or_nothing = np.array([*self._owner_of_part, NOTHING], np.int16)
+        self._movers = movers
+        self._is_moved = np.isin(owners, [mover.name for mover in movers])
         self.person_of_part = np.where(self._owner_of_part < len(names), self._owner_of_part, -1)
         parts = [key.name.split("/")[-1] for key in keys]
         is_person = self.person_of_part >= 0
@@ -68,6 +71,7 @@ class TruthMaker:
         """Make the truth of the instant that a camera sees."""
         view, people, owners = seen.view, len(self._people), len(self._owner_names)
         cover = seen.sight.cover(view, self._owner_of_part, people, owners)
+        whose = Owners(tuple(self._owner_names), self._owner_or_nothing, view.part)
         return Truth(
             time_s=time_s,
             people=tuple(
@@ -81,7 +85,16 @@ class TruthMaker:
             robot=robot,
             robot_velocity=robot_velocity,
             contacts=contacts,
+            things=things_truth(self._movers, time_s, whose),
+            owners=whose,
+            background_m=partial(self._background, seen),
         )
+
+    def _background(self, seen: Seen) -> Depth:
+        """Draw what a camera would see if nobody were there, nor anything that is moved."""
+        hidden = seen.scene.hidden | self._is_moved | (self.person_of_part >= 0)
+        bare = replace(seen.scene, renderer="raycast", hidden=hidden)
+        return seen.sight.view(bare, seen.camera, seen.world_from_camera).depth
 
     def box(self, person: int, seen: Seen) -> Box | None:
         """Tell the truth box of one person alone, by its number from 1; None as in `PersonTruth`."""

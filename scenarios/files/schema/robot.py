@@ -23,6 +23,7 @@ from peopleboy.scenarios.files.schema.values import (
     Share,
     Strict,
 )
+from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS
 from peopleboy.sim.cameras.kinds import KINDS
 
 Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
@@ -145,6 +146,12 @@ class DepthCameraSpec(_Camera):
     """A camera that measures depth, and sees colours by the same lens."""
 
     kind: Literal["depth"] = Field(description="what it sees: how far everything is, and light")
+    preset: Literal[*DEPTH_PRESETS] | None = Field(  # type: ignore[valid-type]
+        default=None,
+        description="what stands in for the keys that are left out: `tof`, 176x144 by time of flight, "
+        "pitched down by 12 degrees, with amplitude instead of colour; `kinect`, 320x240; `kinect_rough`, "
+        "that with four times the noise",
+    )
     sensor: Literal["kinect", "tof"] | None = Field(
         default=None,
         description="how it measures: `kinect`, the usual one, by a pattern of light, with noise and steps "
@@ -167,6 +174,17 @@ class DepthCameraSpec(_Camera):
     colour: bool | None = Field(
         default=None,
         description="whether it gives colour, pixel for pixel beside the depth; usually true",
+    )
+    amplitude: bool | None = Field(
+        default=None,
+        description="of sensor `tof`: whether it gives the strength of its light that comes back, too; "
+        "usually false",
+    )
+    offset_m: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=0.1,
+        description="largest error of a pixel that is the same in all images; usually 0",
     )
 
 

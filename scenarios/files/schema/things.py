@@ -17,6 +17,7 @@ from peopleboy.scenarios.files.schema.values import (
     Size,
     Strict,
 )
+from peopleboy.sim.places.moving import ActionKind
 from peopleboy.sim.places.thing_kinds import KINDS
 
 
@@ -31,6 +32,33 @@ class PatternSpec(Strict):
         ge=0.01,
         le=10.0,
         description="width of a pair of stripes, of two checks, or size of a patch",
+    )
+
+
+class ActionSpec(Strict):
+    """Something that happens to a thing, alone or by somebody's hand."""
+
+    at_s: float = Field(le=36000.0, description="when it begins")
+    kind: Literal[*ActionKind] = Field(  # type: ignore[valid-type]
+        description="`appear` and `vanish` at once; `glide` to another place, also up and down; `turn` about "
+        "a hinge, as a door; `slide` forth or back along its own front, as a drawer"
+    )
+    to_m: Point | None = Field(
+        default=None, description="where it is then; left out of `appear` and `glide`, where it was"
+    )
+    base_m: float | None = Field(
+        default=None, ge=0.0, le=8.0, description="height of its foot then; left out, as it was"
+    )
+    facing_deg: Degrees | None = Field(
+        default=None, description="where its front looks then, the shorter way round; left out, as it was"
+    )
+    takes_s: float | None = Field(
+        default=None, le=600.0, description="how long a `glide`, `turn` or `slide` lasts"
+    )
+    hinge_m: Point | None = Field(default=None, description="what it turns about")
+    by: Name | None = Field(
+        default=None,
+        description="name of the person whose hand is at the thing meanwhile, and who must be near enough",
     )
 
 
@@ -73,5 +101,12 @@ class ThingSpec(Strict):
         min_length=1,
         max_length=200,
         description="of kind urdf: a file of pybullet_data, or one in the scenario file's own folder",
+    )
+    hidden_at_start: bool = Field(default=False, description="whether it is not there until it appears")
+    actions: tuple[ActionSpec, ...] = Field(
+        default=(),
+        strict=False,
+        max_length=100,
+        description="what happens to it, in the order of time; it needs a name",
     )
     scale: float = Field(default=1.0, ge=0.001, le=1000.0, description="factor on the size of a `urdf`")

@@ -19,6 +19,7 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.truth.things import Owners
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
@@ -128,7 +129,9 @@ def make_tick(frame: int, track: Track | None = TRACK, hidden: float = 0.0, mode
         time_s=time_s, people=people, instance=np.zeros((240, 320), np.uint8),
         body_part=np.zeros((240, 320), np.uint8), depth_m=np.ones((240, 320), np.float32), camera=CAMERA,
         world_from_camera=np.eye(4), robot=Planar(0.01 * frame, 0.0, 0.1),
-        robot_velocity=(0.2, 0.1), contacts=(),
+        robot_velocity=(0.2, 0.1), contacts=(), things=(),
+        owners=Owners((), np.array([-1], np.int16), np.full((240, 320), -1, np.int32)),
+        background_m=lambda: np.ones((240, 320), np.float32),
     )  # fmt: skip
     return Tick(
         frame=frame, observation=observation, truths={"thermal": truth, "colour": truth},

@@ -86,7 +86,7 @@ def test_every_seed_keeps_people_clear_of_walls_and_things(name: str) -> None:
     scenario = load_scenario(name)
     for seed in range(10):
         for person in scenario.people(seed):
-            assert scenario.ground.fault(person.path) is None
+            assert scenario.ground.fault(person) is None
 
 
 @pytest.mark.parametrize("name", NAMES[::4])

@@ -114,7 +114,7 @@ def test_any_scenario_survives_being_resolved_written_and_read(
 def test_the_seed_moves_people_no_farther_than_the_file_allows(data: dict[str, Any], seed: int) -> None:
     scenario = parse_scenario(data, source="random.yaml", folder=NOWHERE)
     for given_person, person in zip(scenario.spec.people, scenario.people(seed), strict=True):
-        assert scenario.ground.fault(person.path) is None
+        assert scenario.ground.fault(person) is None
         for a, b in zip(given_person.path, person.path, strict=True):
             assert math.dist(a.at_m, b.at_m) <= given_person.jitter_m + 2e-4
             assert 0.1 <= b.speed_m_s <= 2.5

@@ -1,0 +1,184 @@
+"""What moved things may not do: sweep through people, the robot or each other, or be out of reach."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from peopleboy.bad_input import BadInput, Key
+from peopleboy.scenarios.files.cast_people import make_way
+from peopleboy.scenarios.files.schema.people import PersonSpec
+from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.walking.walk import ALONE, Walker
+from peopleboy.sim.places.moving import Action, Mover
+from peopleboy.sim.places.place import HEAD_M, STEP_M, Place
+from peopleboy.sim.places.solid_boxes import Boxes, boxes_of, overlaps
+
+REACH_M = 0.8  # from a person's middle, on the floor, to what the hand holds, leaning included
+_HOLDS_M = 0.08  # to what one moves
+_STEP_S = 0.1
+_DEEP_M = 0.03  # how far things may reach into each other: feet sink in, and boxes stand for round shapes
+
+
+@dataclass(frozen=True, slots=True)
+class _Spot:
+    """A person at an instant: x, y [m], and whether it sits, or is about to."""
+
+    at: tuple[float, float]
+    sits: bool
+
+
+@dataclass(frozen=True)
+class MovedThings:
+    """The things of a place that are moved, and how much room they take at a time.
+
+    Attributes:
+        place: in which they are.
+        seats: names of things that one may sit on.
+        keys: of each thing in the scenario file.
+        duration_s: of a run.
+    """
+
+    place: Place
+    seats: frozenset[str]
+    keys: Mapping[str, Key]
+    duration_s: float
+    _boxes: dict[str, Boxes] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Measure the things once."""
+        for mover in self.place.movers:
+            own = [f for f in self.place.fixtures if f.name.split("/")[0] == mover.name]
+            self._boxes[mover.name] = boxes_of(own, mover.start)
+
+    def fault(self, person: PersonSpec, clearance_m: float) -> BadInput | None:
+        """Give what is wrong with a person's way, below its key, because of what is moved; else None."""
+        if not self.place.movers:
+            return None
+        for time_s, standing in _walk(person, self.duration_s):
+            for mover in self.place.movers:
+                if self._is_in_the_way(mover, person.name, standing, time_s, clearance_m):
+                    x, y = standing.at
+                    return BadInput(
+                        f"at {time_s:.1f} s {person.name!r} is at ({x:.2f}, {y:.2f}), in or within "
+                        f"{clearance_m:g} m of {mover.name!r}, which is there then; move one of them",
+                        key=("path",),
+                    )
+        return None
+
+    def check(
+        self, people: Sequence[tuple[Key, PersonSpec]], robot: tuple[float, float], robot_m: float
+    ) -> None:
+        """Refuse what sweeps through the robot where it starts, or through things, and hands out of reach.
+
+        Args:
+            people: everybody, groups included, each with its key in the file.
+            robot: where its middle starts [m].
+            robot_m: its radius.
+
+        Raises:
+            BadInput: with the key of the action.
+        """
+        for mover in self.place.movers:
+            for index, action in enumerate(mover.actions):
+                key: Key = (*self.keys[mover.name], "actions", index)
+                for time_s in _times(action):
+                    self._check_robot(mover, time_s, robot, robot_m, key)
+                    self._check_things(mover, time_s, key)
+                if action.by is not None:
+                    actor = next(person for _, person in people if person.name == action.by)
+                    _check_hand(mover, action, actor, key)
+
+    def _is_in_the_way(
+        self, mover: Mover, name: str, standing: _Spot, time_s: float, clearance_m: float
+    ) -> bool:
+        state = mover.at(time_s)
+        if not state.is_there or (standing.sits and mover.name in self.seats):
+            return False
+        near = _HOLDS_M if name in {action.by for action in mover.actions} else clearance_m
+        boxes = self._boxes[mover.name].moved(state.stance).between(STEP_M, HEAD_M)
+        return boxes.distance(standing.at) < near
+
+    def _check_robot(
+        self, mover: Mover, time_s: float, robot: tuple[float, float], robot_m: float, key: Key
+    ) -> None:
+        state = mover.at(time_s)
+        boxes = self._boxes[mover.name].moved(state.stance).between(STEP_M, HEAD_M)
+        if state.is_there and boxes.distance(robot) < robot_m:
+            raise BadInput(f"{mover.name!r} would sweep through the robot at {time_s:.1f} s", key=key)
+
+    def _check_things(self, mover: Mover, time_s: float, key: Key) -> None:
+        state = mover.at(time_s)
+        if not state.is_there:
+            return
+        own = self._boxes[mover.name].moved(state.stance)
+        names, still = self._still
+        others = [(np.array(names), still)]
+        for other in self.place.movers:
+            its = other.at(time_s)
+            if other is not mover and its.is_there:
+                boxes = self._boxes[other.name].moved(its.stance)
+                others.append((np.array([other.name] * len(boxes.centre)), boxes))
+        for called, boxes in others:
+            hit = overlaps(own, boxes, _DEEP_M).any(axis=0)
+            if hit.any():
+                what = str(called[hit][0])
+                raise BadInput(f"{mover.name!r} would sweep through {what!r} at {time_s:.1f} s", key=key)
+
+    @cached_property
+    def _still(self) -> tuple[list[str], Boxes]:
+        """Names and boxes of all solid shapes that nobody moves, floor and ceiling aside."""
+        moved = {mover.name for mover in self.place.movers} | {"floor", "ceiling"}
+        fixtures = [f for f in self.place.fixtures if f.is_solid and f.name.split("/")[0] not in moved]
+        names = [f.name.split("/")[0] for f in fixtures for _ in boxes_of([f]).heading]
+        return names, boxes_of(fixtures)
+
+
+def _check_hand(mover: Mover, action: Action, person: PersonSpec, key: Key) -> None:
+    if person.yields or person.jitter_m or person.speed_jitter or person.enter_jitter_s:
+        raise BadInput(
+            f"{person.name!r} must be where the file says, to the moment, to move {mover.name!r}: "
+            "without yields, jitter_m, speed_jitter and enter_jitter_s",
+            key=(*key, "by"),
+        )
+    ways = dict(_walk(person, action.ends_s + 2.0 * _STEP_S))
+    for time_s in _times(action):
+        nearest = min(ways, key=lambda t: abs(t - time_s), default=None)
+        if nearest is None or abs(nearest - time_s) > _STEP_S:
+            raise BadInput(f"{person.name!r} is not there at {time_s:.1f} s", key=(*key, "by"))
+        at = ways[nearest].at
+        grip = mover.grip(action, time_s, at)
+        gap = math.dist(at, grip[:2].tolist())
+        if gap > REACH_M:
+            raise BadInput(
+                f"{person.name!r} is {gap:.2f} m from {mover.name!r} at {time_s:.1f} s, at ({at[0]:.2f}, "
+                f"{at[1]:.2f}); it must be {REACH_M:g} m or nearer",
+                key=(*key, "by"),
+            )
+
+
+def _times(action: Action) -> list[float]:
+    steps = max(math.ceil(action.takes_s / _STEP_S), 1)
+    return [action.at_s + action.takes_s * step / steps for step in range(steps + 1)]
+
+
+def _walk(person: PersonSpec, until_s: float) -> list[tuple[float, _Spot]]:
+    """Where a person whom nobody disturbs is, every tenth of a second."""
+    path = make_way(person.path)
+    walker = Walker(path, yields=False, radius_m=0.0)
+    end = until_s if person.leave_s is None else min(until_s, person.leave_s)
+    found, time_s = [], person.enter_s
+    while time_s < end:
+        ahead = path[walker.reached : walker.reached + 2]
+        sits = any(
+            w.posture is Posture.SITTING and math.dist(w.at_m, walker.position.tolist()) < 1.0 for w in ahead
+        )
+        x, y = walker.position.tolist()
+        found.append((time_s, _Spot((x, y), sits)))
+        walker.step(_STEP_S, ALONE)
+        time_s += _STEP_S
+    return found

@@ -1,0 +1,173 @@
+"""Movers from the actions of a scenario file; actions that cannot be are refused."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from peopleboy.bad_input import BadInput, found_in
+from peopleboy.scenarios.files.place_things import Built, describe_floor, name_things
+from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
+from peopleboy.scenarios.files.schema.things import ActionSpec, ThingSpec
+from peopleboy.scenarios.files.schema_errors import hint
+from peopleboy.sim.places.extent import fixture_extent
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.moving import LASTING, Action, ActionKind, Mover, Stance
+from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.shapes.shapes import UPRIGHT
+
+_OFF_LINE_M = 0.02  # how far what slides may get off its own line
+_AFTER_S = 1e-6
+_WANTS: Mapping[ActionKind, tuple[str, ...]] = {
+    ActionKind.TURN: ("facing_deg", "hinge_m"),
+    ActionKind.SLIDE: ("to_m",),
+}
+_TAKES: Mapping[ActionKind, tuple[str, ...]] = {
+    ActionKind.APPEAR: ("to_m", "base_m", "facing_deg"),
+    ActionKind.VANISH: (),
+    ActionKind.GLIDE: ("to_m", "base_m", "facing_deg", "takes_s"),
+    ActionKind.TURN: ("facing_deg", "hinge_m", "takes_s"),
+    ActionKind.SLIDE: ("to_m", "takes_s"),
+}
+
+
+def make_movers(spec: ScenarioSpec, plan: FloorPlan, built: Built) -> tuple[Mover, ...]:
+    """Collect the things to which something happens.
+
+    Args:
+        spec: the scenario.
+        plan: the floor.
+        built: its things, by name.
+
+    Raises:
+        BadInput: something cannot happen; with its key.
+    """
+    people = [person.name for person in spec.people] + [name for group in spec.groups for name in group.names]
+    movers = []
+    for index, (name, thing) in enumerate(zip(name_things(spec.things), spec.things, strict=True)):
+        if thing.actions or thing.hidden_at_start:
+            with found_in("things", index):
+                _check_thing(thing)
+                movers.append(_mover(name, thing, built[name], plan, people, spec.duration_s))
+    return tuple(movers)
+
+
+def _check_thing(thing: ThingSpec) -> None:
+    if thing.name is None:
+        raise BadInput("missing key 'name': a thing to which something happens needs one")
+    if not thing.actions:
+        raise BadInput("it never appears; give it an action of kind 'appear'", key=("hidden_at_start",))
+
+
+def _mover(
+    name: str,
+    thing: ThingSpec,
+    fixtures: Sequence[Fixture],
+    plan: FloorPlan,
+    people: Sequence[str],
+    duration_s: float,
+) -> Mover:
+    start = _stance(fixtures[0])
+    low, high = _own_box(fixtures)
+    mover = Mover(name=name, start=start, low_m=low, high_m=high, is_hidden_at_start=thing.hidden_at_start)
+    for index, action in enumerate(thing.actions):
+        with found_in("actions", index):
+            _check_keys(action)
+            _check_time(action, mover, duration_s)
+            _check_presence(action, mover)
+            if action.by is not None and action.by not in people:
+                raise BadInput(f"unknown person {action.by!r}; {hint(action.by, people)}", key=("by",))
+            made = _action(action, mover.at(action.at_s).stance)
+            _check_target(action, made, mover, plan)
+        mover = replace(mover, actions=(*mover.actions, made))
+    return mover
+
+
+def _stance(fixture: Fixture) -> Stance:
+    _, _, z, w = fixture.orientation
+    return Stance(fixture.position, 2.0 * math.atan2(z, w))
+
+
+def _own_box(fixtures: Sequence[Fixture]) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """The corners of the box around a thing, in its own frame."""
+    here = [replace(fixture, position=(0.0, 0.0, 0.0), orientation=UPRIGHT) for fixture in fixtures]
+    extents = np.array([fixture_extent(fixture) for fixture in here])
+    (x0, y0, z0), (x1, y1, z1) = extents[:, 0].min(axis=0).tolist(), extents[:, 1].max(axis=0).tolist()
+    return (x0, y0, z0), (x1, y1, z1)
+
+
+def _check_keys(action: ActionSpec) -> None:
+    kind = ActionKind(action.kind)
+    for key in ("to_m", "base_m", "facing_deg", "takes_s", "hinge_m"):
+        if getattr(action, key) is not None and key not in _TAKES[kind]:
+            raise BadInput(f"what is to {kind} takes none; leave it out", key=(key,))
+    for key in _WANTS.get(kind, ()):
+        if getattr(action, key) is None:
+            raise BadInput(f"missing key {key!r}: what is to {kind} needs it")
+    wherever = (action.to_m, action.base_m, action.facing_deg)
+    if kind is ActionKind.GLIDE and all(value is None for value in wherever):
+        raise BadInput("missing key 'to_m', 'base_m' or 'facing_deg': what is to glide needs one of them")
+    if kind in LASTING and action.takes_s is None:
+        raise BadInput(f"missing key 'takes_s': what is to {kind} takes some time")
+    if action.takes_s is not None and action.takes_s <= 0.0:
+        raise BadInput(f"{action.takes_s:g} must be more than 0", key=("takes_s",))
+
+
+def _check_time(action: ActionSpec, mover: Mover, duration_s: float) -> None:
+    if action.at_s < 0.0:
+        raise BadInput(f"{action.at_s:g} is before the run starts; it must be 0 or more", key=("at_s",))
+    if action.at_s >= duration_s:
+        raise BadInput(f"{action.at_s:g} must be before the end, duration_s {duration_s:g}", key=("at_s",))
+    if not mover.actions:
+        return
+    before = mover.actions[-1]
+    if action.at_s < before.at_s - _AFTER_S:
+        raise BadInput(f"{action.at_s:g} must be after {before.at_s:g} before it", key=("at_s",))
+    if action.at_s < before.ends_s - _AFTER_S or action.at_s <= before.at_s:
+        raise BadInput(
+            f"{action.at_s:g} is before the action before it is over, at {before.ends_s:g}", key=("at_s",)
+        )
+
+
+def _check_presence(action: ActionSpec, mover: Mover) -> None:
+    is_there = mover.at(action.at_s).is_there
+    if (action.kind == ActionKind.APPEAR) == is_there:
+        now = "there already" if is_there else "not there"
+        raise BadInput(f"{action.kind!r}: {mover.name!r} is {now} at {action.at_s:g} s", key=("kind",))
+
+
+def _action(spec: ActionSpec, before: Stance) -> Action:
+    x, y, z = before.position_m
+    heading = before.heading_rad if spec.facing_deg is None else math.radians(spec.facing_deg)
+    x, y = (x, y) if spec.to_m is None else spec.to_m
+    target = Stance((x, y, z if spec.base_m is None else spec.base_m), heading)
+    if spec.hinge_m is not None:
+        turn = math.remainder(heading - before.heading_rad, math.tau)
+        target = before.turned_about(spec.hinge_m, turn)
+    return Action(
+        kind=ActionKind(spec.kind),
+        at_s=spec.at_s,
+        takes_s=0.0 if spec.takes_s is None else spec.takes_s,
+        target=target,
+        hinge_m=spec.hinge_m,
+        by=spec.by,
+    )
+
+
+def _check_target(spec: ActionSpec, action: Action, mover: Mover, plan: FloorPlan) -> None:
+    before = mover.at(action.at_s).stance
+    x, y, _ = action.target.position_m
+    if not any(area.contains(x, y) for area in plan.walkable()):
+        key = "hinge_m" if spec.to_m is None else "to_m"
+        raise BadInput(f"({x:g}, {y:g}) is outside the floor; {describe_floor(plan)}", key=(key,))
+    if action.kind is ActionKind.SLIDE:
+        aside = abs(float(before.locate(np.array(action.target.position_m))[1]))
+        if aside > _OFF_LINE_M:
+            raise BadInput(
+                f"({x:g}, {y:g}) is {aside:.2g} m beside the line along which {mover.name!r} slides; "
+                "or let it glide",
+                key=("to_m",),
+            )
