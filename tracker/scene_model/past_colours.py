@@ -18,10 +18,10 @@ class PastColours:
         self._past: Colours | None = None
 
     def update(self, colour: Colours | None, layers: Layers, time_s: float) -> Colours | None:
-        """Take in the (H, W, 3) colours of a frame, once its readings are sorted; give those of the past.
+        """Take in the (H, W, C) colours of a frame, once its readings are sorted; give those of the past.
 
         Returns:
-            (H, W, 3); None without colours.
+            (H, W, C); None without colours.
         """
         if colour is None:
             return None

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
+from peopleboy.tracker.frame import DEPTH, Frame
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.happenings import Ledger
 from peopleboy.tracker.scene_model.layers import Layers
@@ -28,6 +28,7 @@ from peopleboy.tracker.scene_model.scene import (
     VistaScene,
 )
 from peopleboy.tracker.scene_model.scene_config import SceneConfig
+from peopleboy.tracker.scene_model.shades import shades_of
 from peopleboy.tracker.scene_model.things import Thing, ThingMoment, ThingPieces, opened, standing
 from peopleboy.tracker.scene_model.vista_spaces import Pose, StaticMap, Surface
 
@@ -146,7 +147,7 @@ class SceneModel:
 
     def _happenings(self, frame: Frame, geometry: Geometry, people: PeopleSeen) -> tuple[Happening, ...]:
         config = self.config.things
-        colour = frame.rgb(DEPTH_COLOUR) if DEPTH_COLOUR in frame.images else None
+        colour = shades_of(frame)
         moment = ThingMoment(frame.time_s, geometry, colour)
         self._ledger.note(frame.time_s, people.persons)
         come, left = self._standing.update(*standing(self._layers, config), moment, self._ids)

@@ -39,7 +39,7 @@ class Thing:
         size_m2: its area before the camera [m^2].
         height_m: from its lowest to its highest point [m].
         top_m: its highest point above the floor [m].
-        colour: (3,) mean RGB; None without colours.
+        colour: (3,) mean RGB, or (1,) mean reflectance; None without either.
         span_s: between which times it changed [s].
         steady_s, steady_px: since when it has not grown, and its pixels then.
         is_settled: whether it stayed as it is for long enough.
@@ -69,7 +69,7 @@ class ThingMoment:
     Attributes:
         time_s: of the frame [s].
         geometry: of the camera.
-        colour: (H, W, 3) image of the same pixels; None without one.
+        colour: (H, W, 3) or (H, W, 1) image of the same pixels; None without one.
     """
 
     time_s: float
@@ -205,7 +205,9 @@ class ThingPieces:
             size_m2=float((depth_m.ravel()[pixels] ** 2).sum()) / moment.geometry.focal_px**2,
             height_m=high - low,
             top_m=high,
-            colour=None if moment.colour is None else moment.colour.reshape(-1, 3)[pixels].mean(axis=0),
+            colour=None
+            if moment.colour is None
+            else moment.colour.reshape(-1, moment.colour.shape[2])[pixels].mean(axis=0),
             span_s=(min(first, last), last),
             steady_s=steady_s,
             steady_px=count if has_changed or known is None else known.steady_px,

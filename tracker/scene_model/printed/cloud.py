@@ -9,10 +9,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
+from peopleboy.tracker.frame import DEPTH, Frame
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.printed.printed_config import PrintedConfig
 from peopleboy.tracker.scene_model.scene import Metres
+from peopleboy.tracker.scene_model.shades import grey_of
 
 Grey = NDArray[np.uint8]
 
@@ -25,7 +26,7 @@ class Cloud:
         depth_m: (H, W) depth [m]; 0 where a reading was dropped.
         points_m: (H, W, 3) in the robot's frame.
         velocity_m: (H, W, 3) way since the frame before [m]; 0 where it is not known.
-        grey: (H, W) amplitude.
+        grey: (H, W) what the flow is found in.
     """
 
     depth_m: Metres
@@ -55,10 +56,10 @@ class CloudMaker:
         """Clean a frame's readings, and find how each point moved.
 
         Raises:
-            BadInput: no colours of the same pixels.
+            BadInput: neither colours nor amplitude of the same pixels.
         """
-        grey = np.asarray(cv2.cvtColor(frame.rgb(DEPTH_COLOUR), cv2.COLOR_RGB2GRAY), np.uint8)
-        depth = _cleaned(frame.depth(DEPTH), grey, self._config)
+        grey, amplitude = grey_of(frame)
+        depth = _cleaned(frame.depth(DEPTH), amplitude, self._config)
         origin = geometry.calibration.robot_from_camera[:3, 3].astype(np.float32)
         points = origin + geometry.rays * depth[:, :, None]
         velocity = np.zeros_like(points)
@@ -69,11 +70,11 @@ class CloudMaker:
         return self._before
 
 
-def _cleaned(depth: NDArray[np.uint16], grey: Grey, config: PrintedConfig) -> Metres:
+def _cleaned(depth: NDArray[np.uint16], amplitude: Metres, config: PrintedConfig) -> Metres:
     """Smooth (H, W) depths [mm], the nearer the more; drop what is dark or mixed (SA 3.3)."""
     fine, coarse = (cv2.medianBlur(depth, size) for size in (3, 5))
     smooth = np.where(fine < 1000.0 * config.near_m, coarse, fine).astype(np.float32) / np.float32(1000.0)
-    smooth[(depth == 0) | (grey < config.dark * float(grey.mean()))] = 0.0
+    smooth[(depth == 0) | (amplitude < config.dark * float(amplitude.mean()))] = 0.0
     return np.asarray(
         _without_flying(smooth, config.neighbours, np.float32(config.edge_m), np.float32(config.edge_share)),
         np.float32,

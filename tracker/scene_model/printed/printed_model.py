@@ -38,7 +38,7 @@ class PrintedSceneModel:
         """Take in the next frame.
 
         Raises:
-            BadInput: no depth image with colours, or no calibration.
+            BadInput: no depth image with colours or amplitude, or no calibration.
         """
         if self._geometry is None:
             self._geometry = Geometry.of(frame)
