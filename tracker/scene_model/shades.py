@@ -21,10 +21,13 @@ def shades_of(frame: Frame) -> Shades | None:
         BadInput: its size is not that of the depth image.
     """
     if DEPTH_COLOUR in frame.images:
-        return _fitting(frame.rgb(DEPTH_COLOUR), frame)
+        colour = frame.rgb(DEPTH_COLOUR)
+        _check_size(colour.shape, frame)
+        return colour
     if DEPTH_AMPLITUDE not in frame.images:
         return None
-    amplitude = _fitting(frame.depth(DEPTH_AMPLITUDE), frame)
+    amplitude = frame.depth(DEPTH_AMPLITUDE)
+    _check_size(amplitude.shape, frame)
     reflectance = amplitude * (frame.depth(DEPTH).astype(np.float32) / 1000.0) ** 2 / _WHITE_AT_1_M
     return np.asarray(255.0 * np.sqrt(np.minimum(reflectance, 1.0)), np.uint8)[:, :, None]
 
@@ -46,10 +49,7 @@ def grey_of(frame: Frame) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     return grey, grey.astype(np.float32)
 
 
-def _fitting[T: np.generic](image: NDArray[T], frame: Frame) -> NDArray[T]:
-    shape = frame.depth(DEPTH).shape
-    if image.shape[:2] != shape:
-        raise BadInput(
-            f"{DEPTH} and what is seen beside it must have one size, got {shape} and {image.shape[:2]}"
-        )
-    return image
+def _check_size(shape: tuple[int, ...], frame: Frame) -> None:
+    depth = frame.depth(DEPTH).shape
+    if shape[:2] != depth:
+        raise BadInput(f"{DEPTH} and what is seen beside it must have one size: {depth} and {shape[:2]}")
