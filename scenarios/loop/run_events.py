@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Self
 
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.track_events import TrackEvents
 from peopleboy.sim.truth.events import EventLog
+from peopleboy.sim.truth.thing_events import Move, ThingLog
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,10 +19,12 @@ class LogLine:
     Attributes:
         frame: 1, 2, ...
         time_s: [s] since the start.
-        kind: what happened; those of `peopleboy.sim.truth.events.Event` and `TrackEvent`, and "mode".
-        who: a person, "robot", or "track 3".
-        other: who or what else takes part: an occluder, what is touched, or the new mode.
+        kind: what happened; those of `peopleboy.sim.truth.events.Event`, `ThingEvent` and `TrackEvent`, and
+            "mode".
+        who: a person, a thing, "robot", or "track 3".
+        other: who or what else takes part: an occluder, what is touched, who moves it, or the new mode.
         why: of a change of mode and of a lost track, the reason; of a re-identified one, since when.
+        move: of a thing that was moved, from where to where.
     """
 
     frame: int
@@ -29,13 +33,26 @@ class LogLine:
     who: str
     other: str = ""
     why: str = ""
+    move: Move | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """Give the line as a JSON object; `why` is left out where there is none."""
+        """Give the line as a JSON object; `why` and `move` are left out where there is none."""
         line = asdict(self)
         if not self.why:
             del line["why"]
+        if self.move is None:
+            del line["move"]
         return line
+
+    @classmethod
+    def from_json(cls, line: Mapping[str, Any]) -> Self:
+        """Read back what `to_json` gave.
+
+        Raises:
+            TypeError: it is no such object.
+        """
+        move = line.get("move")
+        return cls(**{**line, "move": None if move is None else Move(**move)})
 
 
 class RunEvents:
@@ -43,6 +60,7 @@ class RunEvents:
 
     def __init__(self) -> None:
         self._world = EventLog()
+        self._things = ThingLog()
         self._tracks = TrackEvents()
         self._mode = ""
 
@@ -56,7 +74,18 @@ class RunEvents:
         if tick.mode != self._mode:
             found.append(("mode", "robot", tick.mode, tick.reason))
         self._mode = tick.mode
-        return [
+        told = [
             LogLine(frame=tick.frame, time_s=time_s, kind=kind, who=who, other=other, why=why)
             for kind, who, other, why in found
+        ]
+        return told + [
+            LogLine(
+                frame=tick.frame,
+                time_s=time_s,
+                kind=event.kind,
+                who=event.thing,
+                other=event.by,
+                move=event.move,
+            )
+            for event in self._things.update(tick.truth)
         ]

@@ -125,8 +125,8 @@ class FinishedRun:
         path = self.folder / "events.jsonl"
         try:
             lines = path.read_text(encoding="utf-8").splitlines()
-            return tuple(LogLine(**json.loads(line)) for line in lines)
-        except (OSError, ValueError, TypeError) as error:
+            return tuple(LogLine.from_json(json.loads(line)) for line in lines)
+        except (OSError, ValueError, TypeError, AttributeError) as error:
             raise BadInput(f"{path}: cannot be read as an event log; run the scenario again") from error
 
     def files(self, people: Sequence[str] = TRUTH.names, robot: Sequence[str] = ROBOT.names) -> RunFiles:

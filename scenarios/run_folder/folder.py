@@ -27,6 +27,7 @@ from peopleboy.scenarios.run_folder.tables import (
     truth_rows,
     write_table,
 )
+from peopleboy.scenarios.run_folder.thing_files import ThingFiles
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.tracker.evaluation.mot_files import track_line
 from peopleboy.tracker.frame import THERMAL
@@ -68,6 +69,7 @@ class RunFolder:
         if frames:
             make_image_folders(path, cameras)
         self._gt = self._open("truth/gt.txt")
+        self._things = ThingFiles(path / "truth", cameras, frames=frames)
         self._further = {name: CameraTruth(path / "truth", name) for name in further_cameras(cameras)}
         self._results = {THERMAL: self._open("tracks.txt")}
         self._events = self._open("events.jsonl")
@@ -95,6 +97,7 @@ class RunFolder:
         self._gt.writelines(gt_lines(tick))
         for camera in self._further.values():
             camera.write(tick)
+        self._things.write(tick)
         self._write_boxes(tick)
         self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
         if self._writes_frames:
@@ -128,6 +131,7 @@ class RunFolder:
         write_table(self.path / "truth.parquet", self._truth, TRUTH)
         write_table(self.path / "tracks.parquet", self._tracks, TRACKS)
         write_table(self.path / "robot.parquet", self._robot, ROBOT)
+        self._things.flush()
 
     def _open(self, name: str) -> TextIO:
         return open_text(self.path / name)

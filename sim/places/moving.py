@@ -113,7 +113,7 @@ class ThingState:
         stance: where it is, or was last.
         is_there: whether it is to be seen.
         is_moving: whether something moves it.
-        by: the person who does; None for nobody.
+        by: the person who moves it, or did last; None for nobody.
     """
 
     stance: Stance
@@ -147,15 +147,15 @@ class Mover:
 
     def at(self, time_s: float) -> ThingState:
         """Tell where the thing is at a time [s]; it depends on nothing else."""
-        stance, is_there = self.start, not self.is_hidden_at_start
+        stance, is_there, by = self.start, not self.is_hidden_at_start, None
         for action in self.actions:
             if time_s < action.at_s - _SAME_S:
                 break
-            is_there = action.kind is not ActionKind.VANISH
+            is_there, by = action.kind is not ActionKind.VANISH, action.by
             if time_s < action.ends_s - _SAME_S:
-                return ThingState(action.stance(stance, time_s), is_there, is_moving=True, by=action.by)
+                return ThingState(action.stance(stance, time_s), is_there, is_moving=True, by=by)
             stance = action.target
-        return ThingState(stance, is_there, is_moving=False, by=None)
+        return ThingState(stance, is_there, is_moving=False, by=by)
 
     def grip(self, action: Action, time_s: float, person: tuple[float, float]) -> Array:
         """Where a person holds the thing at a time: (3,) [m] in the world frame.

@@ -49,7 +49,7 @@ class ThingTruth:
         heading_rad: [rad] where its front looks.
         is_there: whether it is in the place.
         is_moving: whether something moves it.
-        moved_by: name of the person who does; None for nobody.
+        moved_by: name of the person who does, or did last; None for nobody.
         visible_px: pixels in which it is what the camera sees.
         visible_box: left, top, width, height [px] of those pixels; None without any.
     """
