@@ -31,7 +31,7 @@ def check_frames(run: FinishedRun) -> None:
     """
     if DEPTH not in run.robot.cameras:
         known = ", ".join(run.robot.cameras)
-        raise BadInput(f"{run.folder}: its robot has no camera {DEPTH!r}, only {known}; give it one, run again")
+        raise BadInput(f"{run.folder}: its robot has no camera {DEPTH!r}, only {known}; give it one")
     if not (run.folder / DEPTH / image_file(1)).is_file():
         raise BadInput(f"{run.folder}: has no images; run the scenario with --frames")
 

@@ -71,11 +71,24 @@ class SceneModel:
         self._newest = self._learned(frame, geometry)
         return self._newest
 
-    def static_map(self) -> Surface | None:
-        """Give what stands, seen from every place until now; None before the first frame."""
-        if self._geometry is not None and self._vista >= 0:
+    def static_map(self) -> Surface:
+        """Give what stands, seen from every place until now.
+
+        Raises:
+            BadInput: there was no frame yet.
+        """
+        if self._vista < 0:
+            raise BadInput("the scene model has seen nothing yet")
+        if self._stopped_s == -math.inf:
             self._pose = self._added()
+        assert self._map.surface is not None  # something was added
         return self._map.surface
+
+    @property
+    def geometry(self) -> Geometry:
+        """Of the depth camera; there must have been a frame."""
+        assert self._geometry is not None
+        return self._geometry
 
     @property
     def pose(self) -> Pose:
