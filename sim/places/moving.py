@@ -15,6 +15,8 @@ from peopleboy.sim.shapes.shapes import Quaternion, Vector
 Array = NDArray[np.float64]
 
 _HANDLE_M = 1.0  # above the floor, as near as the thing has it
+_BESIDE_M = 0.1  # from a thing to its hinge
+_NOWHERE = (1e6, 1e6)
 _SAME_S = 1e-9
 
 
@@ -160,8 +162,9 @@ class Mover:
     def grip(self, action: Action, time_s: float, person: tuple[float, float]) -> Array:
         """Where a person holds the thing at a time: (3,) [m] in the world frame.
 
-        It is the edge farthest from the hinge of what turns, the middle of the front of what slides, and
-        of anything else the point nearest to the person, as far up as a hand is.
+        It is the edge farthest from the hinge of what has one, the middle of the front of what slides, and
+        of anything else the point nearest to the person, as far up as a hand is. A thing that is turned about
+        an axis beside it, as about who carries it, has no hinge.
 
         Args:
             action: for which it is held.
@@ -172,8 +175,8 @@ class Mover:
         low, high = np.array(self.low_m), np.array(self.high_m)
         height = min(max(_HANDLE_M, stance.position_m[2] + low[2]), stance.position_m[2] + high[2])
         hand = stance.locate(np.array([*person, height]))
-        if action.hinge_m is not None:
-            hinge = stance.locate(np.array([*action.hinge_m, height]))
+        hinge = stance.locate(np.array([*(action.hinge_m or _NOWHERE), height]))
+        if np.all((hinge[:2] > low[:2] - _BESIDE_M) & (hinge[:2] < high[:2] + _BESIDE_M)):
             hand = np.where(np.abs(low - hinge) > np.abs(high - hinge), low, high) * (0.94, 0.94, 0.0) + (
                 0.0, 0.0, hand[2],
             )  # fmt: skip
