@@ -76,6 +76,11 @@ class Layers:
         return np.asarray(self._state[_BACK_COUNT] > 0.0)
 
     @property
+    def is_settled(self) -> Bools:
+        """(H, W) where the background was read often enough to be relied on."""
+        return np.asarray(self._state[_BACK_COUNT] >= _LEAST)
+
+    @property
     def is_covered(self) -> Bools:
         """(H, W) where a thing stands before the background."""
         return np.asarray(self._state[_FRONT_COUNT] > 0.0)

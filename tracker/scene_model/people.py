@@ -121,7 +121,7 @@ class People:
         warmth = np.full(geometry.shape, UNSEEN, np.int8) if heat is None else heat
         pieces = [
             *self._warm_pieces(is_off, is_known, warmth, geometry, smooth),
-            *self._shapes(is_off & is_known & (warmth == UNSEEN), layers, geometry, smooth, reach_m),
+            *self._shapes((warmth == UNSEEN) & (smooth > 0.0), layers, geometry, smooth, reach_m),
         ]
         return self._followed(pieces, geometry, frame.time_s)
 
@@ -140,11 +140,14 @@ class People:
                 yield piece
 
     def _shapes(
-        self, is_off: Bools, layers: Layers, geometry: Geometry, smooth: Metres, reach_m: Metres
+        self, is_unseen: Bools, layers: Layers, geometry: Geometry, smooth: Metres, reach_m: Metres
     ) -> Iterable[BodyPiece]:
         """Find what may be a person by its shape; known things are none."""
         is_thing = np.abs(smooth - layers.front_m) < reach_m
-        is_nearer = smooth < layers.background_m
+        background = layers.background_m
+        is_off = np.abs(smooth - background) > np.maximum(reach_m, self._config.clear_m)
+        is_off &= is_unseen & layers.is_settled
+        is_nearer = smooth < background
         labels, count = pieces_of(is_off & ~is_thing, smooth, self._config.gap_m)
         rest, people = [], []
         for _, pixels in pixels_by_label(labels, count):

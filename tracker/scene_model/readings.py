@@ -27,12 +27,14 @@ class Readings:
         smooth_m: (H, W) median of the neighbours; 0 where nothing is read.
         is_mixed: (H, W) where light of several surfaces mixes, at edges.
         noise: (H, W) standard deviation of inverse depth [1/m].
+        count: images that the noise was estimated from.
     """
 
     raw_m: Metres
     smooth_m: Metres
     is_mixed: NDArray[np.bool_]
     noise: Metres
+    count: int
 
     @classmethod
     def of(cls, depth: Depth, before: Readings | None, memory: float) -> Readings:
@@ -49,8 +51,9 @@ class Readings:
         noise = _noise(raw, cv2.medianBlur(depth, 5).astype(np.float32) / np.float32(1000.0))
         if before is not None:
             noise = np.maximum(noise, _noise(raw, before.raw_m) / np.float32(np.sqrt(2.0)))
-            noise = memory * before.noise + (1.0 - memory) * noise
-        return cls(raw, smooth, _mixed(raw, noise), noise)
+            kept = min(memory, 1.0 - 1.0 / before.count)  # the first knows nothing of time
+            noise = kept * before.noise + (1.0 - kept) * noise
+        return cls(raw, smooth, _mixed(raw, noise), noise, 1 if before is None else before.count + 1)
 
     def reach_m(self, least_m: float, deviations: float, most_m: float) -> Metres:
         """Give (H, W) how far two readings of one surface may be apart [m]."""

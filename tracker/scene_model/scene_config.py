@@ -33,6 +33,7 @@ class PeopleMaskConfig:
         grown_px: [px] by which what is warm grows over what is connected with it.
         least_m2: [m^2] area of the smallest piece of a person.
         gap_m: [m] of depth between neighbouring pixels of one body.
+        clear_m: [m] that somebody stands before the background at least; by shape.
         top_m, wide_m: [m] a person's head is above, and how wide a person is at most; by shape.
         column_m: [m] radius in which a known person's pixels lie where a thing is connected with it.
         below_m: [m] the same below somebody who is found.
@@ -47,6 +48,7 @@ class PeopleMaskConfig:
     grown_px: int = 3
     least_m2: float = 0.02
     gap_m: float = 0.12
+    clear_m: float = 0.12
     top_m: float = 1.15
     wide_m: float = 0.95
     column_m: float = 0.3

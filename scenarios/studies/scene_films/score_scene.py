@@ -96,7 +96,7 @@ def event_counts(
     happening. Who did it counts where somebody did, and it was told.
     """
     found = matching(happenings, events, first)
-    told = {n: k for k, numbers in reversed(found.items()) for n in numbers}
+    told = {n: k for k, numbers in sorted(found.items(), reverse=True) for n in numbers}
     asked = {n: k for n, k in told.items() if events[n].by}
     named = sum(who.name(happenings[k].person) == events[n].by for n, k in asked.items())
     return {
