@@ -18,6 +18,7 @@ _REMEMBERED_S: Final = 40.0
 _TALL_M: Final = 1.1
 _BODY_M: Final = 0.7
 _LEAVES_S: Final = 2.5
+_HELD_M: Final = 0.9
 _SLACK_S: Final = 1.0  # by which a thing may seem to appear before it vanished
 _BESIDE_S: Final = 0.7  # before and after a change in which who did it is near
 
@@ -55,11 +56,19 @@ class Ledger:
             self._first.setdefault(person.id, (time_s, person.place_m))
 
     def told(self, time_s: float, come: Sequence[Thing], gone: Sequence[Thing]) -> list[Happening]:
-        """Take in what settled and what left, and tell what is clear by now."""
+        """Take in what settled and what left, and tell what is clear by now.
+
+        What left before it was told was only held still by somebody who carries it.
+        """
+        halted = {one.thing.id for one in self._come} & {one.id for one in gone}
+        self._come = [one for one in self._come if one.thing.id not in halted]
         self._come += [_Half(one, time_s) for one in come]
-        self._gone += [_Half(one, time_s) for one in gone if not self._was_person(one)]
+        news = [one for one in gone if one.id not in halted and not self._was_person(one)]
+        self._gone += [_Half(one, time_s) for one in news]
         happenings = []
         for half in self._come:
+            if time_s - half.since_s < self._config.hold_s and self._is_held(half.thing):
+                continue
             origin = self._origin(half.thing)
             if origin is not None:
                 half.is_paired = origin.is_paired = True
@@ -75,6 +84,17 @@ class Ledger:
         limit = time_s - self._config.pair_s - self._config.wait_s
         self._gone = [one for one in self._gone if not one.is_paired and one.since_s > limit]
         return happenings
+
+    def missing(self) -> Thing | None:
+        """Give what vanished last and has not appeared elsewhere; None for nothing."""
+        return self._gone[-1].thing if self._gone else None
+
+    def _is_held(self, thing: Thing) -> bool:
+        """Tell whether somebody is near enough now to have a thing in their hands."""
+        if not self._people:
+            return False
+        _, persons = self._people[-1]
+        return any(math.dist(one.place_m, thing.place_m[:2]) < _HELD_M for one in persons)
 
     def _was_person(self, gone: Thing) -> bool:
         """Tell whether what vanished was somebody who stood there until the model knew them."""

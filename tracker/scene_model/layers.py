@@ -96,6 +96,11 @@ class Layers:
         return np.asarray(self._state[_FRONT_SINCE])
 
     @property
+    def front_seen_s(self) -> Metres:
+        """(H, W) when that thing was seen last [s]."""
+        return np.asarray(self._state[_FRONT_SEEN])
+
+    @property
     def back_seen_s(self) -> Metres:
         """(H, W) when the background was seen last [s]."""
         return np.asarray(self._state[_BACK_SEEN])
@@ -114,6 +119,11 @@ class Layers:
     def past_gone_s(self) -> Metres:
         """(H, W) when what is farther was seen first [s]."""
         return np.asarray(self._state[_PAST_GONE])
+
+    def is_before(self, smooth_m: Metres, least_m: Metres) -> Bools:
+        """(H, W) where a reading fits nothing known, and is so much nearer than the background [m]."""
+        state = self._state
+        return np.asarray((state[_KIND] == _IS_NEITHER) & (self.background_m - smooth_m > least_m))
 
     def is_opened(self, time_s: float) -> Bools:
         """(H, W) where something farther became the background with the frame of a time [s]."""

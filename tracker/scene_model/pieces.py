@@ -17,10 +17,15 @@ Pixels = NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Span:
-    """When each pixel changed: (H, W) after `first_s` and before `last_s` [s]."""
+    """When each pixel changed: (H, W) after `first_s` and before `last_s` [s].
+
+    `seen_s` is when what is there, or was, was seen last, and `slack_s` how far changes of neighbours that belong
+    together may be apart.
+    """
 
     first_s: Metres
     last_s: Metres
+    seen_s: Metres
     slack_s: float
 
 

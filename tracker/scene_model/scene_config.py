@@ -12,14 +12,15 @@ class LayersConfig:
     Attributes:
         confirm: agreeing readings in a row that are believed.
         least_m, most_m: [m] within which two readings of one surface agree, at least and at most.
-        deviations: the same in standard deviations of the noise.
+        deviations: the same in standard deviations of the noise of raw readings, of which smoothing leaves
+            half.
         memory: share of the estimated noise that is kept from frame to frame.
     """
 
     confirm: int = 5
     least_m: float = 0.03
-    deviations: float = 4.0
-    most_m: float = 0.4
+    deviations: float = 2.5
+    most_m: float = 0.25
     memory: float = 0.9
 
 
@@ -77,6 +78,7 @@ class ThingsConfig:
         left: share of a thing's largest area below which it is gone.
         pair_s: [s] from a thing's vanishing until it appears elsewhere, at most.
         wait_s: [s] for which a change is held back for its other half.
+        hold_s: [s] for which what appears beside somebody may still be in their hands.
         size_ratio: of areas and heights of what may be the same thing.
         colour: distance of mean colours, of 255, that halves how alike two things are.
         hand_m: [m] from a person on the floor to what they move.
@@ -94,6 +96,7 @@ class ThingsConfig:
     left: float = 0.3
     pair_s: float = 15.0
     wait_s: float = 2.0
+    hold_s: float = 4.0
     size_ratio: float = 2.5
     colour: float = 40.0
     hand_m: float = 1.3

@@ -21,6 +21,7 @@ from peopleboy.tracker.scene_model.scene import (
     Change,
     Happening,
     Labels,
+    Metres,
     Place,
     SceneObject,
     SeenPerson,
@@ -29,7 +30,14 @@ from peopleboy.tracker.scene_model.scene import (
 )
 from peopleboy.tracker.scene_model.scene_config import SceneConfig
 from peopleboy.tracker.scene_model.shades import shades_of
-from peopleboy.tracker.scene_model.things import Thing, ThingMoment, ThingPieces, opened, standing
+from peopleboy.tracker.scene_model.things import (
+    Thing,
+    ThingMoment,
+    ThingPieces,
+    opened,
+    pieces_like,
+    standing,
+)
 from peopleboy.tracker.scene_model.vista_spaces import Pose, StaticMap, Surface
 
 
@@ -191,6 +199,7 @@ class SceneModel:
         is_seen = layers.is_covered & (np.abs(readings.smooth_m - layers.front_m) < reach)
         is_seen &= people.labels == 0
         things = np.where(is_seen, self._standing.owner, 0)
+        self._label_carried(things, readings, reach, people)
         return VistaScene(
             time_s=time_s,
             background_m=layers.surface_m,
@@ -201,6 +210,18 @@ class SceneModel:
             happenings=tuple(self._told(one) for one in happenings),
             vista=self._vista,
         )
+
+    def _label_carried(self, things: Labels, readings: Readings, reach: Metres, people: PeopleSeen) -> None:
+        """Find what vanished last in somebody's hands, and label it."""
+        config = self.config.things
+        missing = self._opened.newest() or self._ledger.missing()
+        if missing is None or not people.persons:
+            return
+        mask = self._layers.is_before(readings.smooth_m, np.maximum(reach, np.float32(config.off_m)))
+        mask &= (readings.smooth_m > 0.0) & ~people.ignored & (things == 0)
+        for points, pixels in pieces_like(missing, mask, readings.smooth_m, self.geometry, config):
+            if any(math.dist(one.place_m, points) < config.hand_m for one in people.persons):
+                things.ravel()[pixels] = missing.id
 
     def _placed(self, person: SeenPerson) -> SeenPerson:
         return replace(person, place_m=self._pose.place(person.place_m))

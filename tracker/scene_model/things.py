@@ -41,6 +41,7 @@ class Thing:
         top_m: its highest point above the floor [m].
         colour: (3,) mean RGB, or (1,) mean reflectance; None without either.
         span_s: between which times it changed [s].
+        seen_s: when it was seen last [s].
         steady_s, steady_px: since when it has not grown, and its pixels then.
         is_settled: whether it stayed as it is for long enough.
         is_gone: whether it left.
@@ -56,6 +57,7 @@ class Thing:
     top_m: float
     colour: Floats | None
     span_s: tuple[float, float]
+    seen_s: float
     steady_s: float
     steady_px: int
     is_settled: bool = False
@@ -132,6 +134,11 @@ class ThingPieces:
         self.owner[self.owner == old] = new
         self.things[new] = replace(self.things.pop(old), id=new)
 
+    def newest(self) -> Thing | None:
+        """Give the newest thing that has not settled; None for none."""
+        open_ones = [one for one in self.things.values() if not one.is_settled]
+        return max(open_ones, key=lambda one: one.id, default=None)
+
     def _owner_of(self, pixels: Pixels) -> int | None:
         """Find the thing that a piece was part of until now."""
         owners = np.bincount(self.owner.ravel()[pixels])
@@ -186,7 +193,7 @@ class ThingPieces:
         has_changed = known is None or abs(count - known.steady_px) > config.growth * known.steady_px
         steady_s = time_s if has_changed or known is None else known.steady_s
         if known is not None and known.is_settled and count <= known.most:
-            return replace(known, pixels=count)
+            return replace(known, pixels=count, seen_s=float(np.median(span.seen_s.ravel()[pixels])))
         points = moment.geometry.points(pixels, depth_m)
         low, high = np.quantile(points[:, 2], [0.02, 0.98]).tolist()
         rows, columns = np.divmod(pixels, depth_m.shape[1])
@@ -209,6 +216,7 @@ class ThingPieces:
             if moment.colour is None
             else moment.colour.reshape(-1, moment.colour.shape[2])[pixels].mean(axis=0),
             span_s=(min(first, last), last),
+            seen_s=float(np.median(span.seen_s.ravel()[pixels])),
             steady_s=steady_s,
             steady_px=count if has_changed or known is None else known.steady_px,
             is_settled=(known is not None and known.is_settled) or time_s - steady_s >= config.settled_s,
@@ -225,7 +233,7 @@ class ThingPieces:
                 del self.things[number]
                 continue
             self.things[number] = replace(thing, is_gone=True, pixels=0)
-            left.append(replace(thing, span_s=(thing.span_s[1], moment.time_s)))
+            left.append(replace(thing, span_s=(thing.seen_s, moment.time_s)))
             self.owner[self.owner == number] = 0
         return left
 
@@ -234,11 +242,29 @@ def standing(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Span]
     """Find what stands before the background: where, at which depth [m], and since when."""
     front, since = layers.front_m, layers.front_since_s
     mask = layers.is_covered & (layers.background_m - front > config.off_m)
-    return mask, front, Span(np.minimum(layers.back_seen_s, since), since, config.slack_s)
+    return (
+        mask,
+        front,
+        Span(np.minimum(layers.back_seen_s, since), since, layers.front_seen_s, config.slack_s),
+    )
 
 
 def opened(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Span]:
     """Find what stood where something farther is seen since: where, at which depth [m], and until when."""
     past, gone = layers.past_m, layers.past_gone_s
     mask = (past > 0.0) & (layers.background_m - past > config.off_m)
-    return mask, past, Span(np.minimum(layers.past_seen_s, gone), gone, config.slack_s)
+    return mask, past, Span(np.minimum(layers.past_seen_s, gone), gone, layers.past_seen_s, config.slack_s)
+
+
+def pieces_like(
+    thing: Thing, mask: Bools, depth_m: Metres, geometry: Geometry, config: ThingsConfig
+) -> Iterator[tuple[tuple[float, float], Pixels]]:
+    """Find the compact pieces of a mask (H, W) that may be a thing: their places on the floor, and pixels."""
+    labels, count = pieces_of(mask, depth_m, config.gap_m)
+    cores = np.bincount(labels[cv2.erode(mask.astype(np.uint8), _AROUND) > 0], minlength=count + 1)
+    for label, pixels in pixels_by_label(labels, count):
+        size = float((depth_m.ravel()[pixels] ** 2).sum()) / geometry.focal_px**2 / thing.size_m2
+        is_like = 1.0 / config.size_ratio < size < config.size_ratio
+        if is_like and len(pixels) >= config.least_px // 2 and cores[label] >= _COMPACT * len(pixels):
+            x, y, _ = np.median(geometry.points(pixels, depth_m), axis=0).tolist()
+            yield (x, y), pixels

@@ -97,7 +97,10 @@ class PrintedSceneModel:
         things = np.zeros(movable.shape, np.int32)
         objects: list[SceneObject] = []
         labels, count = pieces_of(
-            movable, cloud.depth_m, config.thing_m, Span(self._since, self._since, config.thing_s)
+            movable,
+            cloud.depth_m,
+            config.thing_m,
+            Span(self._since, self._since, self._since, config.thing_s),
         )
         for _, pixels in pixels_by_label(labels, count):
             if len(pixels) < config.thing_px:

@@ -94,9 +94,7 @@ class Maps:
 
     def picture(self, plan: Plan, done: Done) -> str | None:
         """Draw them; None where a plan leaves out all of them."""
-        maps = {
-            name: done[_film(plan, TOF, name, 0).key]["maps"] for name in plan.scenes if name in _SHOWN
-        }
+        maps = {name: done[_film(plan, TOF, name, 0).key]["maps"] for name in plan.scenes if name in _SHOWN}
         return png_address(draw_maps(maps)) if maps else None
 
 

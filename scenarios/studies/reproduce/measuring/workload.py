@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from peopleboy.scenarios.studies.scene_films.scene_sets import PRESETS, SEQUENCES
 from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
+from peopleboy.scenarios.studies.scene_films.scene_sets import PRESETS, SEQUENCES
 
 DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
 
