@@ -25,7 +25,7 @@ from peopleboy.sim.people.body.clothes import dress
 from peopleboy.sim.people.body.gait import Gait, lowest_sole
 from peopleboy.sim.people.body.joints import joint_points
 from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations
-from peopleboy.sim.people.body.reaching import arm_length, least_bend, turn_arm
+from peopleboy.sim.people.body.reaching import arm_length, least_stoop, stoop, turn_arm
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
 from peopleboy.sim.people.person_config import Arms, PersonConfig
 from peopleboy.sim.people.timetable import timetable
@@ -240,20 +240,19 @@ class Person:
     def _reach(
         self, grasp: _Grasp, rotations: Array, shift: tuple[float, float]
     ) -> tuple[Array, tuple[float, float]]:
-        """Bend as far as the arm is too short, and turn the arm."""
+        """Stoop as far as the arm is too short, and turn the arm."""
         shoulder, chest = BONE_INDEX[f"{grasp.side}_upper_arm"], BONE_INDEX["chest"]
 
         def bent(share: float) -> tuple[Array, tuple[float, float]]:
-            bow = _POSTURES[Posture.BENDING] - _POSTURES[Posture.STANDING]
-            front = shift[0] + share * pelvis_shift(Posture.BENDING) * self.config.height_m
-            return rotations + share * bow, (front, shift[1])
+            turns, front = stoop(share)
+            return rotations + turns, (shift[0] + front * self.config.height_m, shift[1])
 
         def gap_m(share: float) -> float:
             return float(np.linalg.norm(self._on_the_floor(*bent(share))[shoulder, :3, 3] - grasp.point))
 
         bend = 0.0
         if self._blend[Posture.BENDING] == self._blend[Posture.SITTING] == 0.0:
-            bend = grasp.share * least_bend(gap_m, arm_length(self.config.height_m))
+            bend = grasp.share * least_stoop(gap_m, arm_length(self.config.height_m))
         bowed, shift = bent(bend)
         bones = self._on_the_floor(bowed, shift)
         target = bones[chest, :3, :3].T @ (grasp.point - bones[shoulder, :3, 3])

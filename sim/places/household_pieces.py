@@ -57,6 +57,25 @@ def can(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     return (Piece(name="body", shapes=(pot, neck, *bow), temperature_c=temperature, rgb=rgb),)
 
 
+def flower(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A bush on a stem, in a pot that one can carry."""
+    _, width, height = size
+    radius, pot = 0.3 * width, 0.26 * height
+    bush = (
+        ball(1.15 * radius, (0.0, 0.0, height - 1.15 * radius)),
+        *(
+            ball(radius, ((0.5 * width - radius) * x, (0.5 * width - radius) * y, z * height))
+            for x, y, z in ((1.0, 0.3, 0.6), (-1.0, 0.8, 0.65), (-0.2, -1.0, 0.55), (0.2, 1.0, 0.5))
+        ),
+    )
+    stem = tube(0.5 * height, 0.025, (0.0, 0.0, 0.45 * height))
+    bowl = tube(pot + SINK_M, 0.3 * width, (0.0, 0.0, (pot - SINK_M) / 2.0))
+    return (
+        Piece(name="leaves", shapes=(*bush, stem), temperature_c=temperature, rgb=rgb),
+        Piece(name="pot", shapes=(bowl,), temperature_c=temperature + 0.5, rgb=(0.45, 0.2, 0.1)),
+    )
+
+
 def door_leaf(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A leaf of a door, with a handle on both sides near the edge that is on the left, looking along x."""
     depth, width, height = size

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 _HANDLE_M = 1.0  # above the floor, as near as the thing has it
 _BESIDE_M = 0.1  # from a thing to its hinge
 _NOWHERE = (1e6, 1e6)
+_FROM_EDGE = 0.94  # of the way from the middle of a leaf to its edge is its handle
 _SAME_S = 1e-9
 
 
@@ -177,9 +178,10 @@ class Mover:
         hand = stance.locate(np.array([*person, height]))
         hinge = stance.locate(np.array([*(action.hinge_m or _NOWHERE), height]))
         if np.all((hinge[:2] > low[:2] - _BESIDE_M) & (hinge[:2] < high[:2] + _BESIDE_M)):
-            hand = np.where(np.abs(low - hinge) > np.abs(high - hinge), low, high) * (0.94, 0.94, 0.0) + (
-                0.0, 0.0, hand[2],
-            )  # fmt: skip
+            hand[:2] = (low[:2] + high[:2]) / 2.0
+            wide = int(np.argmax(high[:2] - low[:2]))
+            far = low if abs(low[wide] - hinge[wide]) > abs(high[wide] - hinge[wide]) else high
+            hand[wide] = _FROM_EDGE * far[wide]
         elif action.kind is ActionKind.SLIDE:
             hand = np.array([high[0], (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0])
         return stance.place(np.clip(hand, low, high))

@@ -121,6 +121,9 @@ KINDS: dict[str, Kind] = {
     "can": Kind(
         build=household_pieces.can, size_m=(0.6, 0.26, 0.4), temperature_c=20.5, rgb=(0.05, 0.18, 0.35)
     ),
+    "flower": Kind(
+        build=household_pieces.flower, size_m=(0.5, 0.5, 1.0), temperature_c=20.5, rgb=(0.05, 0.22, 0.06)
+    ),
     "door_leaf": Kind(
         build=household_pieces.door_leaf, size_m=(0.04, 0.93, 2.03), temperature_c=21.0, rgb=(0.45, 0.3, 0.16)
     ),

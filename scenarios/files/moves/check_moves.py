@@ -18,7 +18,7 @@ from peopleboy.sim.places.moving import Action, Mover
 from peopleboy.sim.places.place import HEAD_M, STEP_M, Place
 from peopleboy.sim.places.solid_boxes import Boxes, boxes_of, overlaps
 
-REACH_M = 0.8  # from a person's middle, on the floor, to what the hand holds, leaning included
+REACH_M = 0.75  # from a person's middle, on the floor, to what the hand holds, leaning included
 _HOLDS_M = 0.08  # to what one moves
 _STEP_S = 0.1
 _DEEP_M = 0.03  # how far things may reach into each other: feet sink in, and boxes stand for round shapes

@@ -1,4 +1,4 @@
-"""Reaching for something: how far the trunk bends, and how the arm is turned, so that a hand is there."""
+"""Reaching for something: how far one stoops, and how the arm is turned, so that a hand is there."""
 
 from __future__ import annotations
 
@@ -10,14 +10,28 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.people.body.anthropometry import FOREARM_LENGTH, HAND_LENGTH, UPPER_ARM_LENGTH
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, lateral, point_along
+from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, lateral, point_along
 
 Array = NDArray[np.float64]
 
 _PALM = 0.5  # of the hand's length, from the wrist
-_STRETCHED = 0.97  # of the arm's length, beyond which the trunk bends
+_STRETCHED = 0.97  # of the arm's length, beyond which one stoops
+_DEEPEST = 2.0
 _HALVINGS = 8
 _ELBOW = (-0.35, 0.45, -1.0)  # where elbows point: back, outwards and down
+
+
+def _bent_knees() -> Array:
+    """(17, 3) [rad] turns of the legs that lower the pelvis above the feet."""
+    turns = np.zeros((len(BONES), 3))
+    for bone, degrees in {"thigh": -55.0, "shin": 95.0, "foot": -40.0}.items():
+        turns[[BONE_INDEX[f"{side}_{bone}"] for side in ("left", "right")], 1] = math.radians(degrees)
+    return turns
+
+
+_BOW = posture_rotations(Posture.BENDING) - posture_rotations(Posture.STANDING)
+_KNEES = _bent_knees()
 
 
 def arm_length(stature_m: float) -> float:
@@ -25,16 +39,29 @@ def arm_length(stature_m: float) -> float:
     return (UPPER_ARM_LENGTH + FOREARM_LENGTH + _PALM * HAND_LENGTH) * stature_m
 
 
-def least_bend(gap_m: Callable[[float], float], arm_m: float) -> float:
-    """How far the trunk must bend, from 0 to 1, so that the arm is long enough; 1 if it never is.
+def stoop(share: float) -> tuple[Array, float]:
+    """Bend the trunk, from 0 to 1, and then the knees, too, from 1 to 2.
+
+    Returns:
+        (17, 3) [rad] to be added to the bones' rotation vectors; feet stay level. And how far the pelvis goes
+        to the front [fractions of stature].
+    """
+    bow = min(share, 1.0)
+    return bow * _BOW + max(share - 1.0, 0.0) * _KNEES, bow * pelvis_shift(Posture.BENDING)
+
+
+def least_stoop(gap_m: Callable[[float], float], arm_m: float) -> float:
+    """How far one must stoop so that the arm is long enough; where it never is, so far as gets nearest.
 
     Args:
-        gap_m: from the shoulder to the target [m], when the trunk is bent so far.
+        gap_m: from the shoulder to the target [m], of one who stoops so far.
         arm_m: length of the arm.
     """
-    low, high = 0.0, 1.0
+    low, high = 0.0, _DEEPEST
     if gap_m(low) <= _STRETCHED * arm_m:
         return low
+    if gap_m(high) > _STRETCHED * arm_m:
+        return min(np.linspace(low, high, 2**_HALVINGS // 16 + 1).tolist(), key=gap_m)
     for _ in range(_HALVINGS):
         middle = (low + high) / 2.0
         low, high = (low, middle) if gap_m(middle) <= _STRETCHED * arm_m else (middle, high)
