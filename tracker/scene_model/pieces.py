@@ -19,8 +19,8 @@ Pixels = NDArray[np.intp]
 class Span:
     """When each pixel changed: (H, W) after `first_s` and before `last_s` [s].
 
-    `seen_s` is when what is there, or was, was seen last, and `slack_s` how far changes of neighbours that belong
-    together may be apart.
+    `seen_s` is when what is there, or was, was seen last, and `slack_s` how far changes of neighbours that
+    belong together may be apart.
     """
 
     first_s: Metres

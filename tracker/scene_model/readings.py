@@ -9,8 +9,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.rgbd.detection.depth_view import Depth
 from peopleboy.tracker.scene_model.scene import Metres
+
+Depth = NDArray[np.uint16]
 
 _PATCH_PX = 7
 _SD_OF_MEAN = np.float32(1.2533)  # standard deviation over mean absolute deviation of a Gaussian

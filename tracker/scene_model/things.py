@@ -253,7 +253,8 @@ def opened(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Span]:
     """Find what stood where something farther is seen since: where, at which depth [m], and until when."""
     past, gone = layers.past_m, layers.past_gone_s
     mask = (past > 0.0) & (layers.background_m - past > config.off_m)
-    return mask, past, Span(np.minimum(layers.past_seen_s, gone), gone, layers.past_seen_s, config.slack_s)
+    first = np.minimum(layers.past_seen_s, gone)
+    return mask, past, Span(first, gone, layers.past_seen_s, config.slack_s)
 
 
 def pieces_like(
