@@ -98,6 +98,7 @@ def _watched(
                 depth = (frame.depth(DEPTH) / 1000.0).astype(np.float32)
                 layer.log(number, scene, depth, model.geometry, model.pose)
             report(number, run.frames)
+        happenings += model.finish()
         write_map(model.static_map(), folder / MAP)
         write_background(scene.background_m, folder / BACKGROUND)
         told = _told(happenings, who, true_events(run), first)

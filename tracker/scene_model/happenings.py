@@ -44,6 +44,7 @@ class Ledger:
         self._config = config
         self._gone: list[_Half] = []
         self._come: list[_Half] = []
+        self._told: list[_Half] = []
         self._first: dict[int, tuple[float, tuple[float, float]]] = {}
         self._people: deque[tuple[float, tuple[SeenPerson, ...]]] = deque()
 
@@ -55,6 +56,10 @@ class Ledger:
         for person in persons:
             self._first.setdefault(person.id, (time_s, person.place_m))
 
+    def finished(self, time_s: float) -> list[Happening]:
+        """Tell what is left, as nothing will follow."""
+        return self._news(time_s, is_over=True)
+
     def told(self, time_s: float, come: Sequence[Thing], gone: Sequence[Thing]) -> list[Happening]:
         """Take in what settled and what left, and tell what is clear by now.
 
@@ -65,23 +70,34 @@ class Ledger:
         self._come += [_Half(one, time_s) for one in come]
         news = [one for one in gone if one.id not in halted and not self._was_person(one)]
         self._gone += [_Half(one, time_s) for one in news]
-        happenings = []
+        return self._news(time_s, is_over=False)
+
+    def _news(self, time_s: float, *, is_over: bool) -> list[Happening]:
+        config, happenings = self._config, list[Happening]()
         for half in self._come:
-            if time_s - half.since_s < self._config.hold_s and self._is_held(half.thing):
+            waited_s = math.inf if is_over else time_s - half.since_s
+            if waited_s < config.hold_s and self._is_held(half.thing):
                 continue
             origin = self._origin(half.thing)
             if origin is not None:
                 half.is_paired = origin.is_paired = True
                 happenings.append(self._moved(origin.thing, half.thing, time_s))
-            elif time_s - half.since_s >= self._config.wait_s:
+            elif waited_s >= config.wait_s:
                 half.is_told = True
                 happenings.append(self._single(Change.APPEARED, half.thing, time_s))
         for half in self._gone:
-            if not half.is_told and not half.is_paired and time_s - half.since_s >= self._config.wait_s:
+            arrived = None if half.is_paired or half.is_told else self._arrived(half.thing)
+            if arrived is not None:
+                half.is_paired = arrived.is_paired = True
+                happenings.append(self._moved(half.thing, arrived.thing, time_s))
+            waited_s = math.inf if is_over else time_s - half.since_s
+            if not half.is_told and not half.is_paired and waited_s >= config.wait_s:
                 half.is_told = True
                 happenings.append(self._single(Change.VANISHED, half.thing, time_s))
-        self._come = [one for one in self._come if not (one.is_told or one.is_paired)]
         limit = time_s - self._config.pair_s - self._config.wait_s
+        self._told = [one for one in (*self._told, *self._come) if one.is_told and one.since_s > limit]
+        self._told = [one for one in self._told if not one.is_paired]
+        self._come = [one for one in self._come if not (one.is_told or one.is_paired)]
         self._gone = [one for one in self._gone if not one.is_paired and one.since_s > limit]
         return happenings
 
@@ -109,6 +125,12 @@ class Ledger:
         likely = {k: value for k, value in likeness.items() if value > 0.0}
         return self._gone[max(likely, key=lambda k: likely[k])] if likely else None
 
+    def _arrived(self, thing: Thing) -> _Half | None:
+        """Find what appeared and may be what vanished, as somebody hid that it did: the most alike."""
+        likeness = {k: self._alike(thing, one.thing) for k, one in enumerate(self._told)}
+        likely = {k: value for k, value in likeness.items() if value > 0.0 and not self._told[k].is_paired}
+        return self._told[max(likely, key=lambda k: likely[k])] if likely else None
+
     def _alike(self, gone: Thing, come: Thing) -> float:
         config = self._config
         wait = come.span_s[1] - gone.span_s[0]
@@ -121,7 +143,7 @@ class Ledger:
         apart = 0.0
         if gone.colour is not None and come.colour is not None:
             apart = float(np.linalg.norm(gone.colour - come.colour)) / config.colour
-        return math.exp(-unlike - apart) if apart < 1.0 else 0.0
+        return math.exp(-unlike - apart - abs(wait) / config.pair_s) if apart < 1.0 else 0.0
 
     def _moved(self, gone: Thing, come: Thing, time_s: float) -> Happening:
         span = min(gone.span_s[0], come.span_s[0]), max(gone.span_s[1], come.span_s[1])

@@ -95,8 +95,8 @@ class ThingsConfig:
     growth: float = 0.15
     left: float = 0.3
     pair_s: float = 15.0
-    wait_s: float = 2.0
-    hold_s: float = 4.0
+    wait_s: float = 1.5
+    hold_s: float = 2.5
     size_ratio: float = 2.5
     colour: float = 40.0
     hand_m: float = 1.3

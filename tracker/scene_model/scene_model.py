@@ -79,6 +79,12 @@ class SceneModel:
         self._newest = self._learned(frame, geometry)
         return self._newest
 
+    def finish(self) -> tuple[Happening, ...]:
+        """Tell what was held back, as no frame will follow."""
+        if self._newest is None:
+            return ()
+        return tuple(self._told(one) for one in self._ledger.finished(self._newest.time_s))
+
     def static_map(self) -> Surface:
         """Give what stands, seen from every place until now.
 

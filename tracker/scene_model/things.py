@@ -23,6 +23,7 @@ Colours = NDArray[np.uint8]
 _AROUND = np.ones((3, 3), np.uint8)
 _COMPACT: Final = 0.2  # share of a thing's pixels that are not at its edge; edges of walls are only that
 _FEWEST_PX: Final = 8  # of a part of a thing that is known
+_COVERED: Final = 0.5  # share of a thing's pixels
 _OWN: Final = 0.3  # share of a piece that a thing must have had to keep it
 
 
@@ -35,6 +36,8 @@ class Thing:
         box: left, top, width, height [px].
         pixels: how many it has now.
         most: the most it had.
+        where: (N,) their flat indices when it was measured.
+        depth_m: middle of their depths then [m].
         place_m: its middle in the robot's frame [m].
         size_m2: its area before the camera [m^2].
         height_m: from its lowest to its highest point [m].
@@ -51,6 +54,8 @@ class Thing:
     box: Box
     pixels: int
     most: int
+    where: Pixels
+    depth_m: float
     place_m: Place
     size_m2: float
     height_m: float
@@ -101,23 +106,30 @@ class ThingPieces:
         self.owner[~mask | (span.last_s > self._changed)] = 0
         self._changed = span.last_s.copy()
         if not mask.any():
-            return [], self._left(set(), moment)
+            return [], self._left(set(), mask, moment)
         labels, count = pieces_of(mask, depth_m, config.gap_m, span)
         inner = cv2.erode(mask.astype(np.uint8), _AROUND) > 0
         cores = np.bincount(labels[inner], minlength=count + 1)
         parts: dict[int, list[Pixels]] = {}
         for label, pixels in sorted(pixels_by_label(labels, count), key=lambda one: -len(one[1])):
             number = self._owner_of(pixels)
+            if number is None:
+                number = self._shown_again(pixels, depth_m)
             if number is None and len(pixels) >= _FEWEST_PX:
                 number = self._beside(pixels, depth_m, span, moment, parts)
             if number is None and self._is_big(pixels, depth_m, cores[label], moment):
                 number = next(next_id)
             if number is not None:
                 parts.setdefault(number, []).append(pixels)
-        return self._followed(parts, depth_m, span, moment)
+        return self._followed(parts, mask, depth_m, span, moment)
 
     def _followed(
-        self, parts: Mapping[int, Sequence[Pixels]], depth_m: Metres, span: Span, moment: ThingMoment
+        self,
+        parts: Mapping[int, Sequence[Pixels]],
+        mask: Bools,
+        depth_m: Metres,
+        span: Span,
+        moment: ThingMoment,
     ) -> tuple[list[Thing], list[Thing]]:
         settled = []
         for number, pieces in parts.items():
@@ -127,7 +139,7 @@ class ThingPieces:
             self.things[number] = thing = self._measured(number, pixels, depth_m, span, moment, known)
             if thing.is_settled and not (known is not None and known.is_settled):
                 settled.append(thing)
-        return settled, self._left(set(parts), moment)
+        return settled, self._left(set(parts), mask, moment)
 
     def rename(self, old: int, new: int) -> None:
         """Call a thing by the id of the object that it turned out to be."""
@@ -147,6 +159,16 @@ class ThingPieces:
         best = int(owners[1:].argmax()) + 1
         is_own = best in self.things and owners[best] >= _OWN * min(len(pixels), self.things[best].most)
         return best if is_own and not self.things[best].is_gone else None
+
+    def _shown_again(self, pixels: Pixels, depth_m: Metres) -> int | None:
+        """Find the thing that something else stood before until now."""
+        depth = float(np.median(depth_m.ravel()[pixels]))
+        for number, thing in self.things.items():
+            if thing.is_gone or not thing.is_settled or abs(thing.depth_m - depth) > self._config.gap_m:
+                continue
+            if np.isin(pixels, thing.where).mean() > _COVERED:
+                return number
+        return None
 
     def _beside(
         self,
@@ -208,6 +230,8 @@ class ThingPieces:
             box=(float(left), float(top), float(columns.max() - left + 1), float(rows.max() - top + 1)),
             pixels=count,
             most=max(count, known.most if known is not None else 0),
+            where=pixels,
+            depth_m=float(np.median(depth_m.ravel()[pixels])),
             place_m=(x, y, z),
             size_m2=float((depth_m.ravel()[pixels] ** 2).sum()) / moment.geometry.focal_px**2,
             height_m=high - low,
@@ -222,13 +246,15 @@ class ThingPieces:
             is_settled=(known is not None and known.is_settled) or time_s - steady_s >= config.settled_s,
         )
 
-    def _left(self, present: set[int], moment: ThingMoment) -> list[Thing]:
+    def _left(self, present: set[int], mask: Bools, moment: ThingMoment) -> list[Thing]:
         """Find the things of which too little is left; forget those that never settled."""
         left = []
         for number, thing in list(self.things.items()):
             is_less = number not in present or thing.pixels < self._config.left * thing.most
             if thing.is_gone or not is_less:
                 continue
+            if thing.is_settled and mask.ravel()[thing.where].mean() > _COVERED:
+                continue  # something else stands before it
             if not thing.is_settled:
                 del self.things[number]
                 continue

@@ -10,7 +10,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.scene_model.printed.printed_config import VARIANTS, PrintedConfig
 from peopleboy.tracker.scene_model.printed.printed_model import PrintedSceneModel
-from peopleboy.tracker.scene_model.scene import VistaScene
+from peopleboy.tracker.scene_model.scene import Happening, VistaScene
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneConfig
 from peopleboy.tracker.scene_model.scene_model import SceneModel
 
@@ -29,6 +29,10 @@ class Watches(Protocol):
 
     def update(self, frame: Frame) -> VistaScene:
         """Take in the next frame."""
+        ...
+
+    def finish(self) -> tuple[Happening, ...]:
+        """Tell what was held back."""
         ...
 
 

@@ -60,6 +60,9 @@ class _Watcher:
         else:
             self.score.add(self.scene, masks)
 
+    def finish(self) -> None:
+        self.score.happenings += self._model.finish()
+
 
 def with_preset(scenario: Scenario, preset: str) -> Scenario:
     """Give the robot a depth camera by the name of its preset."""
@@ -108,6 +111,7 @@ def watch_scene(
 def _plain(
     one: _Watcher, true: dict[str, Metres], lengths: Metres, events: list[TrueEvent], robot: Planar
 ) -> dict[str, Any]:
+    one.finish()
     assert one.scene is not None  # there was a frame
     background = one.scene.background_m
     return {

@@ -15,7 +15,7 @@ from peopleboy.tracker.scene_model.printed.cloud import Cloud, CloudMaker
 from peopleboy.tracker.scene_model.printed.clusters import Clusters, find_clusters
 from peopleboy.tracker.scene_model.printed.ellipses import Ellipses, MovingEllipse, inside
 from peopleboy.tracker.scene_model.printed.printed_config import PrintedBackground, PrintedConfig
-from peopleboy.tracker.scene_model.scene import Labels, SceneObject, SeenPerson, State, VistaScene
+from peopleboy.tracker.scene_model.scene import Happening, Labels, SceneObject, SeenPerson, State, VistaScene
 
 _FEWEST_POINTS = 3  # of a hull
 
@@ -63,6 +63,10 @@ class PrintedSceneModel:
             persons=persons,
             objects=objects,
         )
+
+    def finish(self) -> tuple[Happening, ...]:
+        """Tell nothing: the source only marks what is movable."""
+        return ()
 
     def _candidates(self, cloud: Cloud) -> Bools:
         """Find what is before the background (SA eq. 3.3); without one all of it.
