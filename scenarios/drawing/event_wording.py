@@ -26,7 +26,8 @@ def _describe_thing(line: LogLine) -> str:
     """Say what became of a thing, such as "chair_1: moved 1.10 m by anna"."""
     what = line.kind.removeprefix("thing ")
     how = "" if line.move is None else f" {describe_move(line.move)}"
-    return f"{line.who}: {what}{how}{f' by {line.other}' if line.other else ''}"
+    by = {"appeared": ", brought by", "vanished": ", taken by"}.get(what, " by")
+    return f"{line.who}: {what}{how}{f'{by} {line.other}' if line.other else ''}"
 
 
 def describe_move(move: Move) -> str:

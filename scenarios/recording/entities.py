@@ -1,6 +1,7 @@
 """Where things are in a recording, and what is drawn on the cameras' images.
 
 world/place/...             floor, walls and things; the ceiling is there, but not shown at first
+world/place/moved/NAME      a thing that is moved, in a frame that goes with it
 world/robot                 its pose; below it body and cameras, with what is drawn on their images:
 world/robot/thermal/...     image, tracks with evidence, particles, truth
 world/robot/colour/...      image, tracks, truth
@@ -52,6 +53,11 @@ def camera_path(name: str) -> str:
 def points_path(camera: str) -> str:
     """Give the entity of the points that a depth camera sees."""
     return f"world/points/{camera}"
+
+
+def thing_path(name: str) -> str:
+    """A thing that is moved."""
+    return f"world/place/moved/{rr.escape_entity_path_part(name)}"
 
 
 def person_path(name: str) -> str:

@@ -30,6 +30,7 @@ from peopleboy.scenarios.recording.entities import (
     camera_path,
     person_path,
     points_path,
+    thing_path,
 )
 from peopleboy.scenarios.recording.explanations import explained_lines, explained_points
 from peopleboy.scenarios.recording.layout import lay_out
@@ -45,6 +46,8 @@ from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Matrix, transform
 from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.shapes.shapes import Vector
+from peopleboy.sim.truth.things import ThingTruth
 
 APPLICATION = "peopleboy"
 
@@ -52,6 +55,7 @@ _FRAMES_SENT_TOGETHER = 15
 _JPEG_QUALITY = {1: 60, 3: 45}  # by channels
 _POINTS = 10_000  # about, of a depth image
 _NAME_HEIGHT = 1.0 / 15.0  # [image heights] of names above boxes
+_GONE = 1e-4  # of its size is what is not there
 _GRAVE = ("contact", "lost")
 
 
@@ -92,6 +96,7 @@ class Recorder:
         self._names = [person.name for person in config.people]
         self._path = path
         self._trails = marks.Trails()
+        self._things: dict[str, tuple[Vector, float, bool]] = {}
         self._sightings = marks.Sightings(self._boxed)
         self._tracks_named: set[int] = set()
         self._tracked = {"thermal"}
@@ -247,9 +252,25 @@ class Recorder:
             OCCLUSIONS, rr.Arrows3D, origins=arrows.start, vectors=arrows.vector, colors=arrows.colour,
             labels=arrows.label,
         )  # fmt: skip
+        for thing in tick.truth.things:
+            self._log_thing(thing)
         joints = {person.name: person.joints_m for person in tick.truth.people}
         for name in self._names:
             self._log_person(person_path(name), joints.get(name))
+
+    def _log_thing(self, thing: ThingTruth) -> None:
+        """Log where a thing is, if that is new; what is not there is too small to be seen."""
+        place = (thing.position_m, thing.heading_rad, thing.is_there)
+        if self._things.get(thing.name) == place:
+            return
+        self._things[thing.name] = place
+        x, y, z = thing.position_m
+        half = thing.heading_rad / 2.0
+        self._rows.add(
+            thing_path(thing.name), rr.Transform3D, translation=np.array([(x, y, z)]),
+            quaternion=np.array([(0.0, 0.0, np.sin(half), np.cos(half))]),
+            scale=np.full((1, 3), 1.0 if thing.is_there else _GONE),
+        )  # fmt: skip
 
     def _log_person(self, path: str, joints: Matrix | None) -> None:
         body = NOBODY if joints is None else body_capsules(joints)

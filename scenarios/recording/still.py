@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,13 +21,15 @@ from peopleboy.scenarios.recording.entities import (
     camera_path,
     person_path,
     points_path,
+    thing_path,
 )
 from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_body import URDF
-from peopleboy.sim.shapes.shapes import ShapeKind
+from peopleboy.sim.shapes.shapes import UPRIGHT, ShapeKind
 
 _ROBOT_CURVES = {
     "curves/motion/speed": (("speed [m/s]", "speed asked for"), ((86, 180, 233), (52, 108, 140))),
@@ -44,7 +47,10 @@ class Still:
     def log_world(self, config: WorldConfig) -> None:
         """Log the place, the robot and who will be there."""
         self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        for group, fixtures in group_fixtures(config.place.fixtures).items():
+        moved = {mover.name for mover in config.place.movers}
+        self._log_moved([f for f in config.place.fixtures if f.name.split("/")[0] in moved])
+        still = [f for f in config.place.fixtures if f.name.split("/")[0] not in moved]
+        for group, fixtures in group_fixtures(still).items():
             # Whoever looks in from outside looks through the walls.
             fill = FillMode.TransparentFillMajorWireframe if group == "walls" else FillMode.Solid
             self._log_solids(f"world/place/{group}", [s for f in fixtures for s in fixture_solids(f)], fill)
@@ -69,6 +75,15 @@ class Still:
         line = rr.SeriesLines(names=[f"track {number}"], colors=[track_colour(number)])
         for kind in ("confidence", "offset"):
             self._log(f"curves/{kind}/track_{number}", line)
+
+    def _log_moved(self, fixtures: Sequence[Fixture]) -> None:
+        """Log things that are moved, each in its own frame, which goes with it."""
+        own: dict[str, list[Solid]] = {}
+        for fixture in fixtures:
+            here = replace(fixture, position=(0.0, 0.0, 0.0), orientation=UPRIGHT)
+            own.setdefault(fixture.name.split("/")[0], []).extend(fixture_solids(here))
+        for name, solids in own.items():
+            self._log_solids(thing_path(name), solids, FillMode.Solid)
 
     def _log_people(self, names: Sequence[str]) -> None:
         colours = [person_colour(number) for number, _ in enumerate(names, start=1)]

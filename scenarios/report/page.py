@@ -77,6 +77,7 @@ def render(columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: 
         drives={title: tables.drive_figures(columns, name) for name, title in _DRIVES.items()},
         curves=draw_error_curves(columns),
         plans=[(column.label, draw_ways(column.found, column.label)) for column in singles],
+        has_moves=any(tables.moves(column.found).rows for column in singles),
         has_modes=any(len(tables.modes(column.found).rows) > 1 for column in singles),
         sheets=[(column.label, contact_sheet(column.found.run)) for column in singles],
         settings=[(column.label, _settings(column)) for column in columns],

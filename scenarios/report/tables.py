@@ -11,6 +11,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.event_wording import describe_move
 from peopleboy.scenarios.report.columns import Column
 from peopleboy.scenarios.report.findings.sentences import seconds, spoken
 from peopleboy.scenarios.report.findings.summary import RunFindings, headline
@@ -18,9 +19,11 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
+from peopleboy.sim.truth.thing_events import Move
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
 from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, Figure
 
+THING = "thing "  # how the kinds of their events begin
 LONGEST = 40  # runs that are listed one by one
 _FEWEST_PAIRS = 3  # runs of the same scenario and seed, for an interval of their differences
 
@@ -126,6 +129,37 @@ def modes(found: RunFindings) -> PageTable:
     lines = [line for line in found.run.events if line.kind == "mode"]
     rows = tuple((seconds(line.time_s), line.other, line.why) for line in lines)
     return PageTable((Head("time", "n"), Head("mode", "row"), Head("why")), rows)
+
+
+def moves(found: RunFindings) -> PageTable:
+    """What became of the things that were moved, and by whom."""
+    lines = [line for line in found.run.events if line.kind.startswith(THING)]
+    rows = [
+        (
+            seconds(line.time_s if line.move is None else line.move.from_s),
+            spoken(line.who),
+            line.kind.removeprefix(THING) if line.move is None else f"moved {describe_move(line.move)}",
+            spoken(line.other) or "nobody",
+            _from_to(line.move),
+        )
+        for line in lines
+    ]
+    heads = (
+        Head("time", "n"),
+        Head("thing", "row"),
+        Head("what"),
+        Head("by", label="by"),
+        Head("from and to"),
+    )
+    return PageTable(heads, rows)
+
+
+def _from_to(move: Move | None) -> str:
+    """Where a thing was and is, in the world: x, y, and the height of its foot."""
+    if move is None:
+        return ""
+    places = (", ".join(f"{value:.2f}" for value in place) for place in (move.from_m, move.to_m))
+    return "({}) to ({}) m".format(*places)
 
 
 def plain_figures(columns: Sequence[Column]) -> PageTable:

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 _PALM = 0.5  # of the hand's length, from the wrist
 _STRETCHED = 0.97  # of the arm's length, beyond which one stoops
 _DEEPEST = 2.0
-_HALVINGS = 8
+_HALVINGS, _TRIED = 8, 17
 _ELBOW = (-0.35, 0.45, -1.0)  # where elbows point: back, outwards and down
 
 
@@ -61,7 +61,8 @@ def least_stoop(gap_m: Callable[[float], float], arm_m: float) -> float:
     if gap_m(low) <= _STRETCHED * arm_m:
         return low
     if gap_m(high) > _STRETCHED * arm_m:
-        return min(np.linspace(low, high, 2**_HALVINGS // 16 + 1).tolist(), key=gap_m)
+        tried: list[float] = np.linspace(low, high, _TRIED).tolist()
+        return min(tried, key=gap_m)
     for _ in range(_HALVINGS):
         middle = (low + high) / 2.0
         low, high = (low, middle) if gap_m(middle) <= _STRETCHED * arm_m else (middle, high)

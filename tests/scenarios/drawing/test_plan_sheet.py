@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from peopleboy.scenarios.drawing.labels import Labels
-from peopleboy.scenarios.drawing.plan import draw_plan
-from peopleboy.scenarios.drawing.plan_sheet import MARGIN_M, lay_out, sections
+from peopleboy.scenarios.drawing.plan.plan import draw_plan
+from peopleboy.scenarios.drawing.plan.sheet import MARGIN_M, lay_out, sections
 from peopleboy.scenarios.files.load import load_scenario
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from peopleboy.scenarios.drawing.plan import draw_plan
+from peopleboy.scenarios.drawing.plan.plan import draw_plan
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
 from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import json_schema

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.drawing.plan import draw_plan
+from peopleboy.scenarios.drawing.plan.plan import draw_plan
 from peopleboy.scenarios.export.dataset.make_dataset import render_set
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.folder import claim_folder

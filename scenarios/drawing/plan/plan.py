@@ -12,9 +12,10 @@ from matplotlib.figure import Figure
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.labels import Labels
-from peopleboy.scenarios.drawing.plan_legend import draw_legend
-from peopleboy.scenarios.drawing.plan_people import draw_person
-from peopleboy.scenarios.drawing.plan_place import (
+from peopleboy.scenarios.drawing.plan.legend import draw_legend
+from peopleboy.scenarios.drawing.plan.moves import draw_moves
+from peopleboy.scenarios.drawing.plan.people import draw_person
+from peopleboy.scenarios.drawing.plan.place import (
     SPAN_C,
     WARMTH,
     draw_floor,
@@ -22,8 +23,8 @@ from peopleboy.scenarios.drawing.plan_place import (
     draw_walls,
     label_things,
 )
-from peopleboy.scenarios.drawing.plan_robot import draw_robot
-from peopleboy.scenarios.drawing.plan_sheet import INK, PAPER, lay_out, sections
+from peopleboy.scenarios.drawing.plan.robot import draw_robot
+from peopleboy.scenarios.drawing.plan.sheet import INK, PAPER, lay_out, sections
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.sim.config import WorldConfig
@@ -56,7 +57,7 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
         _draw_section(axes, scenario, config)
     _caption(figure, scenario, seed)
     _temperatures(figure, found)
-    draw_legend(figure, _SIDE_IN)
+    draw_legend(figure, _SIDE_IN, has_moves=bool(scenario.place.movers))
     with writing_to(path):
         try:
             figure.savefig(path, dpi=_DPI)
@@ -72,6 +73,7 @@ def _draw_section(axes: Axes, scenario: Scenario, config: WorldConfig) -> None:
     draw_walls(axes, labels, scenario.place)
     draw_robot(axes, labels, scenario, config.robot)
     draw_things(axes, labels, scenario.place)
+    draw_moves(axes, labels, scenario.place)
     for index, person in enumerate(config.people):
         draw_person(axes, labels, person, scenario.duration_s, _PEOPLE[index % len(_PEOPLE)])
     label_things(labels, scenario.place)

@@ -88,11 +88,12 @@ def label_things(labels: Labels, place: Place) -> None:
 
 
 def _things(place: Place) -> dict[str, list[Fixture]]:
-    """Fixtures that are not the shell, by the name of their thing."""
+    """Fixtures that are not the shell and are there at first, by the name of their thing."""
     things: dict[str, list[Fixture]] = {}
+    absent = {mover.name for mover in place.movers if mover.is_hidden_at_start}
     for fixture in place.fixtures:
         name = fixture.name.split("/")[0]
-        if name not in ("floor", "ceiling") and not name.startswith(("wall_", "door_")):
+        if name not in ("floor", "ceiling", *absent) and not name.startswith(("wall_", "door_")):
             things.setdefault(name, []).append(fixture)
     return things
 

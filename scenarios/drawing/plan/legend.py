@@ -9,17 +9,18 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from peopleboy.scenarios.drawing.plan_sheet import INK
+from peopleboy.scenarios.drawing.plan.moves import COLOUR
+from peopleboy.scenarios.drawing.plan.sheet import INK
 
 _PERSON, _ROBOT = "#1f6fb4", "#c0392b"
 _TIMES: Final = "Times are those of people whom nobody is in the way of; those who make way are later."
 
 
-def draw_legend(figure: Figure, side_in: float) -> None:
-    """Write at the foot of a plan what its signs mean."""
+def draw_legend(figure: Figure, side_in: float, *, has_moves: bool) -> None:
+    """Write at the foot of a plan what its signs mean; those of moved things where there are any."""
     width, height = figure.get_size_inches()
     figure.legend(
-        handles=_signs(),
+        handles=[*_signs(), *([_ghost()] if has_moves else [])],
         loc="lower left",
         bbox_to_anchor=(side_in / width, 0.24 / height),
         ncols=3,
@@ -31,6 +32,11 @@ def draw_legend(figure: Figure, side_in: float) -> None:
         columnspacing=1.6,
     )
     figure.text(side_in / width, 0.12 / height, _TIMES, size=7.5, color=INK, va="center")
+
+
+def _ghost() -> Artist:
+    label = "where a thing is moved to, from when on, and by whom"
+    return Patch(facecolor="none", edgecolor=COLOUR, ls=(0, (2, 1.5)), label=label)
 
 
 def _signs() -> list[Artist]:
