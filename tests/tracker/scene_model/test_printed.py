@@ -26,9 +26,9 @@ def last(name: str, films: list[list[Screen]], rng: np.random.Generator) -> Vist
 
 def test_the_mean_is_that_of_all_frames(rng: np.random.Generator) -> None:
     scene = last("mean", [[]] * 10 + [[BOX]] * 30, rng)
-    wall, owner = true_depth([])[0][80, 80], true_depth([BOX])[1][80, 80]
+    wall, owner = true_depth([])[0][100, 80], true_depth([BOX])[1][100, 80]
     assert owner == 1
-    assert scene.background_m[80, 80] == pytest.approx((10 * wall + 30 * 3.0) / 40, abs=0.01)
+    assert scene.background_m[100, 80] == pytest.approx((10 * wall + 30 * 3.0) / 40, abs=0.01)
 
 
 def test_adapt_keeps_the_farther_and_calls_the_nearer_movable(rng: np.random.Generator) -> None:
