@@ -292,6 +292,9 @@ def _check_names(config: WorldConfig) -> None:
     for k, name in enumerate(names):
         if "/" in name or name in {ROBOT, BORDER, *things, *names[:k]}:
             raise BadInput(f"person {name!r}: the name is taken or has a '/' in it; choose another")
+    for mover in config.place.movers:
+        for by in {action.by for action in mover.actions} - {None, *names}:
+            raise BadInput(f"thing {mover.name!r}: {by!r} is to move it, but there is nobody of that name")
     if len(names) > _MOST_PEOPLE:
         raise BadInput(f"{len(names)} people are too many: a world holds {_MOST_PEOPLE}")
 

@@ -9,7 +9,18 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL.Image import Image
 
-from docs.generate.pictures import all_round, depth, occlusion, panorama, rays, rgbd, runs, thermal, tracker
+from docs.generate.pictures import (
+    all_round,
+    depth,
+    moved,
+    occlusion,
+    panorama,
+    rays,
+    rgbd,
+    runs,
+    thermal,
+    tracker,
+)
 from docs.generate.pictures.paper import save
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
@@ -25,6 +36,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,
     "depth": depth.scales,
+    "moved": moved.moved,
     "rgbd": rgbd.steps,
     "panoramic_features": draw_features,
     "panoramic_errors": panorama.errors_over_distance,
