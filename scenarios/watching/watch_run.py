@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 
+from peopleboy.scenarios.recording.scene.scene_layer import SceneRecording
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.watching.run_frames import check_frames, run_frames
@@ -22,12 +23,11 @@ from peopleboy.scenarios.watching.scene_files import (
     write_background,
     write_map,
 )
-from peopleboy.scenarios.watching.scene_recording import SceneRecording
 from peopleboy.scenarios.watching.tell import sentence
 from peopleboy.scenarios.watching.true_events import KINDS, TrueEvent, WhoIsWho, matching
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.frame import DEPTH
-from peopleboy.tracker.scene_model.scene import Happening
+from peopleboy.tracker.scene_model.scene import Change, Happening
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneConfig
 from peopleboy.tracker.scene_model.scene_model import SceneModel
 
@@ -125,12 +125,24 @@ def _told(
     happenings: Sequence[Happening], who: WhoIsWho, events: Sequence[TrueEvent], first: Planar
 ) -> list[tuple[Happening, str]]:
     """Put what happened into words, with the names of the things that it truly happened to."""
+    happenings = _without_halves(happenings)
     found = matching(happenings, events, first)
     names: dict[int, str] = {}
     for k, happening in enumerate(happenings):
         if k in found:
             names.setdefault(happening.object, events[found[k][0]].thing)
     return [(one, sentence(one, who.name, names.get(one.object))) for one in happenings]
+
+
+def _without_halves(happenings: Sequence[Happening]) -> list[Happening]:
+    """Leave out what was told to vanish or appear until it was clear that it was moved."""
+    moved = [one for one in happenings if one.change is Change.MOVED]
+    ends = {end for one in moved for end in (one.from_m, one.to_m)}
+    return [
+        one
+        for one in happenings
+        if one.change is Change.MOVED or not {one.from_m, one.to_m} & (ends - {None})
+    ]
 
 
 def _title(run: FinishedRun) -> str:

@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.scene_model.scene import Change, Happening, SeenPerson
 from peopleboy.tracker.scene_model.scene_config import ThingsConfig
 from peopleboy.tracker.scene_model.things import Thing
@@ -19,6 +20,7 @@ _TALL_M: Final = 1.1
 _BODY_M: Final = 0.7
 _LEAVES_S: Final = 2.5
 _HELD_M: Final = 0.9
+_SHADE: Final = 0.5
 _SLACK_S: Final = 1.0  # by which a thing may seem to appear before it vanished
 _BESIDE_S: Final = 0.7  # before and after a change in which who did it is near
 
@@ -142,7 +144,7 @@ class Ledger:
             return 0.0
         apart = 0.0
         if gone.colour is not None and come.colour is not None:
-            apart = float(np.linalg.norm(gone.colour - come.colour)) / config.colour
+            apart = _colours_apart(gone.colour, come.colour) / config.colour
         return math.exp(-unlike - apart - abs(wait) / config.pair_s) if apart < 1.0 else 0.0
 
     def _moved(self, gone: Thing, come: Thing, time_s: float) -> Happening:
@@ -185,3 +187,12 @@ class Ledger:
 def _middle(thing: Thing) -> float:
     first, last = thing.span_s
     return (first + last) / 2.0 if last - first < _REMEMBERED_S else last
+
+
+def _colours_apart(one: Floats, other: Floats) -> float:
+    """Give the distance of two mean colours (C,); light and shade change brightness more than hue."""
+    apart = one - other
+    brightness = float(apart.mean())
+    if len(apart) == 1:
+        return abs(brightness)
+    return float(np.linalg.norm(apart - brightness)) + _SHADE * abs(brightness)
