@@ -138,11 +138,8 @@ def _without_halves(happenings: Sequence[Happening]) -> list[Happening]:
     """Leave out what was told to vanish or appear until it was clear that it was moved."""
     moved = [one for one in happenings if one.change is Change.MOVED]
     ends = {end for one in moved for end in (one.from_m, one.to_m)}
-    return [
-        one
-        for one in happenings
-        if one.change is Change.MOVED or not {one.from_m, one.to_m} & (ends - {None})
-    ]
+    others = [one for one in happenings if one.change is not Change.MOVED]
+    return [*moved, *(one for one in others if (one.from_m or one.to_m) not in ends)]
 
 
 def _title(run: FinishedRun) -> str:

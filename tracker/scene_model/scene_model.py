@@ -126,7 +126,8 @@ class SceneModel:
         )
         if is_moving and self._stopped_s == -math.inf:
             self._pose = self._added()
-        self._pose = self._pose.moved(way)
+        if is_moving or self._stopped_s != -math.inf:  # what wheels tell of a robot that stands is noise
+            self._pose = self._pose.moved(way)
         if is_moving:
             self._stopped_s = math.inf
         elif self._stopped_s == math.inf:
