@@ -57,7 +57,8 @@ class Handling:
             person.let_go()
             return
         x, y = person.position.tolist()
-        person.reach_for(mover.grip(action, time_s, (x, y)), ease(share))
+        halfway = mover.grip(action, (action.at_s + action.ends_s) / 2.0, (x, y))
+        person.reach_for(mover.grip(action, time_s, (x, y)), ease(share), halfway)
 
 
 def _share(action: Action, time_s: float) -> float:

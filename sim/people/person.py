@@ -53,6 +53,7 @@ _BAG_LOOK = Material(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02)
 _BAG_HAND = "right"
 _BAG_SWING = 0.25
 _ARM = ("upper_arm", "forearm", "hand")
+_FREE = 0.3  # share up to which the other hand may still take over, as who has just come yet turns
 _AHEAD_M = 0.1  # so far to the left the right hand reaches as well
 _SWAY_RAD, _SWAY_HZ = 0.006, 0.23
 # Who turns on the spot takes small steps: as if the feet went round a circle, and so many cycles a turn.
@@ -160,9 +161,13 @@ class Person:
             self._walker.enter(around)
             self._bones = None
 
-    def reach_for(self, point: Array, share: float) -> None:
-        """Have a hand at a point (3,) [m] of the world; by less than a share of 1, on the way there."""
-        side = self._near_side(point) if self._grasp is None else self._grasp.side
+    def reach_for(self, point: Array, share: float, halfway: Array) -> None:
+        """Have a hand at a point (3,) [m] of the world; by less than a share of 1, on the way there.
+
+        It is the hand on whose side the point halfway of what it is about to do is.
+        """
+        held = self._grasp
+        side = self._near_side(halfway) if held is None or held.share < _FREE else held.side
         self._grasp = _Grasp(point, share, side)
         self._bones = None
 

@@ -16,7 +16,6 @@ Array = NDArray[np.float64]
 
 _HANDLE_M = 1.0  # above the floor, as near as the thing has it
 _BESIDE_M = 0.1  # from a thing to its hinge
-_NOWHERE = (1e6, 1e6)
 _FROM_EDGE = 0.94  # of the way from the middle of a leaf to its edge is its handle
 _SAME_S = 1e-9
 
@@ -176,15 +175,21 @@ class Mover:
         low, high = np.array(self.low_m), np.array(self.high_m)
         height = min(max(_HANDLE_M, stance.position_m[2] + low[2]), stance.position_m[2] + high[2])
         hand = stance.locate(np.array([*person, height]))
-        hinge = stance.locate(np.array([*(action.hinge_m or _NOWHERE), height]))
-        if np.all((hinge[:2] > low[:2] - _BESIDE_M) & (hinge[:2] < high[:2] + _BESIDE_M)):
-            hand[:2] = (low[:2] + high[:2]) / 2.0
-            wide = int(np.argmax(high[:2] - low[:2]))
-            far = low if abs(low[wide] - hinge[wide]) > abs(high[wide] - hinge[wide]) else high
-            hand[wide] = _FROM_EDGE * far[wide]
-        elif action.kind is ActionKind.SLIDE:
+        if action.kind is ActionKind.SLIDE:
             hand = np.array([high[0], (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0])
+        elif action.hinge_m is not None:
+            hinge = stance.locate(np.array([*action.hinge_m, height]))[:2]
+            if np.all((hinge > low[:2] - _BESIDE_M) & (hinge < high[:2] + _BESIDE_M)):
+                hand[:2] = _handle(low[:2], high[:2], hinge)
         return stance.place(np.clip(hand, low, high))
+
+
+def _handle(low: Array, high: Array, hinge: Array) -> Array:
+    """(2,) near the end of the longer side of a rectangle, far from the hinge."""
+    middle, longer = (low + high) / 2.0, int(np.argmax(high - low))
+    far = low if abs(low[longer] - hinge[longer]) > abs(high[longer] - hinge[longer]) else high
+    middle[longer] += _FROM_EDGE * (far[longer] - middle[longer])
+    return np.asarray(middle)
 
 
 def ease(share: float) -> float:

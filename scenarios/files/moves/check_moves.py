@@ -61,11 +61,13 @@ class MovedThings:
             return None
         for time_s, standing in _walk(person, self.duration_s):
             for mover in self.place.movers:
-                if self._is_in_the_way(mover, person.name, standing, time_s, clearance_m):
+                is_own = person.name in {action.by for action in mover.actions}
+                near_m = _HOLDS_M if is_own else clearance_m
+                if self._is_in_the_way(mover, standing, time_s, near_m):
                     x, y = standing.at
                     return BadInput(
                         f"at {time_s:.1f} s {person.name!r} is at ({x:.2f}, {y:.2f}), in or within "
-                        f"{clearance_m:g} m of {mover.name!r}, which is there then; move one of them",
+                        f"{near_m:g} m of {mover.name!r}, which is there then; move one of them",
                         key=("path",),
                     )
         return None
@@ -73,7 +75,7 @@ class MovedThings:
     def check(
         self, people: Sequence[tuple[Key, PersonSpec]], robot: tuple[float, float], robot_m: float
     ) -> None:
-        """Refuse what sweeps through the robot where it starts, or through things, and hands out of reach.
+        """Refuse what sweeps through the robot where it starts, or through things, and hands that cannot be.
 
         Args:
             people: everybody, groups included, each with its key in the file.
@@ -83,7 +85,9 @@ class MovedThings:
         Raises:
             BadInput: with the key of the action.
         """
+        held: dict[str, list[tuple[Mover, Action]]] = {}
         for mover in self.place.movers:
+            self._check_robot(mover, 0.0, robot, robot_m, self.keys[mover.name])
             for index, action in enumerate(mover.actions):
                 key: Key = (*self.keys[mover.name], "actions", index)
                 for time_s in _times(action):
@@ -92,16 +96,14 @@ class MovedThings:
                 if action.by is not None:
                     actor = next(person for _, person in people if person.name == action.by)
                     _check_hand(mover, action, actor, key)
+                    _check_free(mover, action, held.setdefault(action.by, []), key)
 
-    def _is_in_the_way(
-        self, mover: Mover, name: str, standing: _Spot, time_s: float, clearance_m: float
-    ) -> bool:
+    def _is_in_the_way(self, mover: Mover, standing: _Spot, time_s: float, near_m: float) -> bool:
         state = mover.at(time_s)
         if not state.is_there or (standing.sits and mover.name in self.seats):
             return False
-        near = _HOLDS_M if name in {action.by for action in mover.actions} else clearance_m
         boxes = self._boxes[mover.name].moved(state.stance).between(STEP_M, HEAD_M)
-        return boxes.distance(standing.at) < near
+        return boxes.distance(standing.at) < near_m
 
     def _check_robot(
         self, mover: Mover, time_s: float, robot: tuple[float, float], robot_m: float, key: Key
@@ -109,7 +111,11 @@ class MovedThings:
         state = mover.at(time_s)
         boxes = self._boxes[mover.name].moved(state.stance).between(STEP_M, HEAD_M)
         if state.is_there and boxes.distance(robot) < robot_m:
-            raise BadInput(f"{mover.name!r} would sweep through the robot at {time_s:.1f} s", key=key)
+            x, y = robot
+            raise BadInput(
+                f"{mover.name!r} would be in the robot at {time_s:.1f} s, which starts at ({x:g}, {y:g})",
+                key=key,
+            )
 
     def _check_things(self, mover: Mover, time_s: float, key: Key) -> None:
         state = mover.at(time_s)
@@ -159,6 +165,18 @@ def _check_hand(mover: Mover, action: Action, person: PersonSpec, key: Key) -> N
                 f"{at[1]:.2f}); it must be {REACH_M:g} m or nearer",
                 key=(*key, "by"),
             )
+
+
+def _check_free(mover: Mover, action: Action, before: list[tuple[Mover, Action]], key: Key) -> None:
+    """Refuse an action by somebody who moves another thing at that time."""
+    for other, busy in before:
+        if other is not mover and action.at_s < busy.ends_s and busy.at_s < action.ends_s:
+            raise BadInput(
+                f"{action.by!r} moves {other.name!r} from {busy.at_s:g} to {busy.ends_s:g} s; "
+                "one thing at a time",
+                key=(*key, "by"),
+            )
+    before.append((mover, action))
 
 
 def _times(action: Action) -> list[float]:

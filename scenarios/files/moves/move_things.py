@@ -21,6 +21,7 @@ from peopleboy.sim.shapes.shapes import UPRIGHT
 
 _OFF_LINE_M = 0.02  # how far what slides may get off its own line
 _AFTER_S = 1e-6
+FASTEST_M_S = 2.5  # on the whole way, so that nothing jumps over what it would sweep through
 _WANTS: Mapping[ActionKind, tuple[str, ...]] = {
     ActionKind.TURN: ("facing_deg", "hinge_m"),
     ActionKind.SLIDE: ("to_m",),
@@ -163,6 +164,12 @@ def _check_target(spec: ActionSpec, action: Action, mover: Mover, plan: FloorPla
     if not any(area.contains(x, y) for area in plan.walkable()):
         key = "hinge_m" if spec.to_m is None else "to_m"
         raise BadInput(f"({x:g}, {y:g}) is outside the floor; {describe_floor(plan)}", key=(key,))
+    way_m = math.dist(before.position_m, action.target.position_m)
+    if action.takes_s and way_m > FASTEST_M_S * action.takes_s:
+        raise BadInput(
+            f"{action.takes_s:g} is too short for {way_m:.2g} m; things go at {FASTEST_M_S:g} m/s at most",
+            key=("takes_s",),
+        )
     if action.kind is ActionKind.SLIDE:
         aside = abs(float(before.locate(np.array(action.target.position_m))[1]))
         if aside > _OFF_LINE_M:

@@ -55,7 +55,9 @@ class ActionSpec(Strict):
     takes_s: float | None = Field(
         default=None, le=600.0, description="how long a `glide`, `turn` or `slide` lasts"
     )
-    hinge_m: Point | None = Field(default=None, description="what it turns about")
+    hinge_m: Point | None = Field(
+        default=None, description="where the upright axis is that it turns about, which does not go along"
+    )
     by: Name | None = Field(
         default=None,
         description="name of the person whose hand is at the thing meanwhile, and who must be near enough",

@@ -85,6 +85,27 @@ MISTAKES: dict[str, tuple[Data, tuple[str, ...]]] = {
         with_action(to_m=[0.5, 0.0], takes_s=3.0, by=None),
         ("actions[0]", "box", "robot"),
     ),
+    "too fast": (with_action(takes_s=0.1), ("actions[0].takes_s", "0.1", "0.5 m", "2.5 m/s")),
+    "two things in one hand": (
+        GOOD
+        | {
+            "things": [
+                *GOOD["things"],
+                BOX
+                | {
+                    "name": "other",
+                    "at_m": [4.0, -0.6],
+                    "actions": [{"at_s": 2.5, "kind": "glide", "base_m": 0.5, "takes_s": 1.0, "by": "anna"}],
+                },
+            ],
+            "people": [{"name": "anna", "path": [{"at_m": [4.5, -0.1]}]}],
+        },
+        ("things[2].actions[0].by", "anna", "'box'", "2 to 3 s"),
+    ),
+    "in the robot": (
+        with_box(at_m=[1.2, 0.0], actions=[{"at_s": 2.0, "kind": "vanish"}]),
+        ("things[1]", "box", "robot", "0.0 s", "(1, 0)"),
+    ),
     "through a table": (
         with_action(to_m=[7.0, -1.5], takes_s=3.0, by=None),
         ("actions[0]", "box", "'table'"),

@@ -16,6 +16,7 @@ from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.thing_events import STANDS_S, ThingLog
 from peopleboy.sim.world import World
+from tests.helpers.calls.refused import refused
 
 AT = (3.5, 0.8)
 ROBOT = RobotConfig(at_m=(1.0, 0.0))
@@ -130,3 +131,11 @@ def test_a_moved_thing_stops_the_sonar_where_it_is_and_the_bullet_renderer_sees_
     assert sonar[0][:2] == sonar[1][:2]
     assert sonar[0][1] < 0.65 < sonar[0][0]
     assert sonar[0][2] == pytest.approx(sonar[1][2], rel=0.02)
+
+
+def test_a_thing_is_not_moved_by_nobody() -> None:
+    with (
+        refused("'box'", "'ana'"),
+        World(WorldConfig(robot=ROBOT, place=hall(box(replace(GLIDE, by="ana"))))),
+    ):
+        pass
