@@ -24,13 +24,13 @@ def draw_maps(films: Mapping[str, Mapping[str, str]]) -> Figure:
     colours = colormaps["viridis_r"].with_extremes(bad=_UNKNOWN)
     grid = figure.subplots(len(films), len(_SHOWN), squeeze=False)
     for row, (title, maps) in zip(grid, films.items(), strict=True):
-        for axes, (name, words) in zip(row, _SHOWN.items(), strict=True):
+        for axes, name in zip(row, _SHOWN, strict=True):
             depth = read_map(maps[name])
             shown = np.ma.masked_equal(depth, 0.0)
             axes.imshow(shown, cmap=colours, vmin=_NEAREST_M, vmax=_FARTHEST_M, interpolation="nearest")
             axes.set_xticks([])
             axes.set_yticks([])
-            if row is grid[0]:
-                axes.set_title(words, fontsize=8)
         row[0].set_ylabel(title, fontsize=8)
+    for axes, words in zip(grid[0], _SHOWN.values(), strict=True):
+        axes.set_title(words, fontsize=8)
     return figure
