@@ -21,7 +21,7 @@ from peopleboy.scenarios.commands.report import report
 from peopleboy.scenarios.commands.run import run
 from peopleboy.scenarios.commands.study import datasets, reproduce, train_distance, train_occlusion
 from peopleboy.scenarios.commands.track import track
-from peopleboy.scenarios.commands.view import view
+from peopleboy.scenarios.commands.view import view, watch
 from peopleboy.scenarios.running.engine.task import TasksFailed
 
 FAILED = 1
@@ -37,6 +37,7 @@ COMMANDS = (
     compare,
     track,
     view,
+    watch,
     report,
     export,
     datasets,

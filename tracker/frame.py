@@ -19,6 +19,7 @@ COLOUR: Final = "colour"
 PANORAMA: Final = "panorama"
 DEPTH: Final = "depth"
 DEPTH_COLOUR: Final = "depth_colour"
+DEPTH_AMPLITUDE: Final = "depth_amplitude"
 
 
 class Calibration(Protocol):

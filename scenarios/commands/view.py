@@ -1,4 +1,4 @@
-"""The command `view`: look into a recording."""
+"""Commands that look into a run: `view` its recording, `watch` what happens to things."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from peopleboy.bad_input import BadInput
 )
 def view(folder: Path, web: bool, port: int | None) -> None:
     """Open the recording of a run in the rerun viewer."""
-    from peopleboy.scenarios.recording.recording_file import is_whole, recording_in
+    from peopleboy.scenarios.recording.recording_file import is_whole, layers_in, recording_in
     from peopleboy.scenarios.recording.viewer import open_viewer, serve
 
     if port is not None and not web:
@@ -28,7 +28,42 @@ def view(folder: Path, web: bool, port: int | None) -> None:
     recording = recording_in(folder)
     if not is_whole(recording):
         click.echo(f"peopleboy: {recording}: was cut off; what it holds is shown", err=True)
+    layers = [recording, *layers_in(folder)]
     if web:
-        serve(recording, lambda address: click.echo(f"{address} shows it; Ctrl-C ends that."), port)
+        serve(layers, lambda address: click.echo(f"{address} shows it; Ctrl-C ends that."), port)
     else:
-        open_viewer(recording)
+        open_viewer(layers)
+
+
+@click.command()
+@click.argument("folder", metavar="RUN", type=click.Path(path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder to leave.  [default: RUN/scene]",
+)
+@click.option("--no-heat", is_flag=True, help="Tell people by their shape alone, not by the thermal image.")
+@click.option("--no-rrd", is_flag=True, help="Write no recording.")
+def watch(folder: Path, out: Path | None, no_heat: bool, no_rrd: bool) -> None:
+    """Tell what was moved in a run, and by whom, as the depth camera of its robot sees it.
+
+    The run needs images: run the scenario with --frames, and a camera `depth`. Leaves scene.jsonl, a line a
+    frame; static_map.ply, what stands, as points; background.png, its depth in the last view; and scene.rrd,
+    which `view` shows over the run's recording.
+    """
+    from peopleboy.scenarios.progress_bar import progress_bar
+    from peopleboy.scenarios.run_folder.finished_run import open_run
+    from peopleboy.scenarios.run_folder.out_folder import check_named, writing_to
+    from peopleboy.scenarios.watching.watch_run import FOLDER, WatchOptions, watch_run
+
+    run = open_run(folder)
+    place = folder / FOLDER if out is None else out
+    check_named(place)
+    if place.exists() and not (place / "scene.jsonl").is_file():
+        raise BadInput(f"{place}: is no folder of this command and will not be replaced; give another --out")
+    options = WatchOptions(has_heat=not no_heat, record=not no_rrd)
+    with writing_to(place), progress_bar(folder.name, unit="frames") as show:
+        lines = watch_run(run, place, options, show)
+    for line in lines or ["Nothing was moved."]:
+        click.echo(line)
+    click.echo(place)

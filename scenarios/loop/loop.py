@@ -154,11 +154,11 @@ def make_frame(
         images=observation.images,
         calibrations=calibrations,
         time_s=observation.time_s,
-        odometry=None if before is None else _moved(before, observation.odometry),
+        odometry=None if before is None else odometry_way(before, observation.odometry),
     )
 
 
-def _moved(before: Planar, now: Planar) -> Odometry | None:
+def odometry_way(before: Planar, now: Planar) -> Odometry | None:
     """Tell how the odometry moved; a jump that no wheels can make is unknown."""
     turn = math.remainder(now.heading - before.heading, math.tau)
     advance, aside = before.locate((now.x, now.y))

@@ -59,6 +59,11 @@ _GONE = 1e-4  # of its size is what is not there
 _GRAVE = ("contact", "lost")
 
 
+def recording_id(title: str) -> str:
+    """Give the id of a recording by its title; viewers take recordings of one id together."""
+    return title.replace(", ", "-").replace(" ", "-")
+
+
 class Recorder:
     """Writes one recording as the run goes; use it as a context manager.
 
@@ -97,9 +102,7 @@ class Recorder:
         self._tracked = {"thermal"}
         self._has_places = False
         self._rows = RowBuffer()
-        self._stream = rr.RecordingStream(
-            APPLICATION, recording_id=title.replace(", ", "-").replace(" ", "-")
-        )
+        self._stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(title))
         sinks = [rr.FileSink(path)] if viewer is None else [rr.FileSink(path), rr.GrpcSink(viewer)]
         self._stream.set_sinks(*sinks, default_blueprint=lay_out(config, watched))
         self._stream.send_recording_name(title)

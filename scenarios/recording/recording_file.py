@@ -28,6 +28,11 @@ def recording_in(folder: Path) -> Path:
     return recording
 
 
+def layers_in(folder: Path) -> list[Path]:
+    """List what lies over the recording of a run: what a scene model believes."""
+    return sorted(folder.glob("scene/scene.rrd"))
+
+
 def is_whole(recording: Path) -> bool:
     """Tell whether a recording was closed; one that was cut off opens too, and lacks its end."""
     with recording.open("rb") as file:

@@ -12,7 +12,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from urllib.parse import quote
@@ -37,31 +37,31 @@ def has_screen() -> bool:
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def open_viewer(recording: Path) -> None:
-    """Show a recording in a window, and wait until it is closed.
+def open_viewer(recordings: Sequence[Path]) -> None:
+    """Show a recording, and what lies over it, in a window, and wait until it is closed.
 
     Raises:
         BadInput: there is no screen, or the viewer fails.
     """
     if not has_screen():
         raise BadInput(NO_SCREEN)
-    with _rerun("--new", str(recording)) as viewer:
+    with _rerun("--new", *map(str, recordings)) as viewer:
         if viewer.wait() != 0:
-            raise BadInput(f"{recording}: {_complaint(viewer)}")
+            raise BadInput(f"{recordings[0]}: {_complaint(viewer)}")
 
 
-def serve(recording: Path, say: Callable[[str], None], port: int | None = None) -> None:
-    """Serve a recording to browsers of this machine, until interrupted.
+def serve(recordings: Sequence[Path], say: Callable[[str], None], port: int | None = None) -> None:
+    """Serve a recording, and what lies over it, to browsers of this machine, until interrupted.
 
     Args:
-        recording: the file.
+        recordings: the files.
         say: is told the page's address once it is there.
         port: of the page; its data comes from the next one. None for any two that are free.
 
     Raises:
         BadInput: a port is taken, or the server fails.
     """
-    with _page(port, str(recording)) as (viewer, address, _):
+    with _page(port, *map(str, recordings)) as (viewer, address, _):
         say(address)
         _wait(viewer)
 

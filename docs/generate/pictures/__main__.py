@@ -18,6 +18,7 @@ from docs.generate.pictures import (
     rays,
     rgbd,
     runs,
+    scene_model,
     thermal,
     tracker,
 )
@@ -38,6 +39,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "depth": depth.scales,
     "moved": moved.moved,
     "rgbd": rgbd.steps,
+    "scene_model": scene_model.scenes,
     "panoramic_features": draw_features,
     "panoramic_errors": panorama.errors_over_distance,
     "all_round": all_round.all_round,

@@ -108,14 +108,17 @@ def _amount(plan: Plan, papers: Set[str]) -> str:
             f"One run per data set and of it {QUICK_S:g} s at most, {plan.repeats} repeats instead of 10, "
             "fewer values of each parameter, figure 6.6 with 200 samples instead of 1000, pairs of people "
             f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room, "
-            f"{plan.drive_s:g} s of {len(plan.sets)} of the 12 drives with a depth camera."
+            f"{plan.drive_s:g} s of {len(plan.sets)} of the 12 drives with a depth camera, "
+            f"{len(plan.scenes)} of the 17 films of things that are moved."
         )
     if papers == {"panoramic"}:
         return f"{plan.walks} films of each room, and {plan.repeats} by webcams."
     if papers == {"situation"}:
         return (
             f"{plan.drives} runs of each of {len(plan.sets)} drives, {plan.ablated} where trackers differ in "
-            f"one thing or the noise is varied, {2 * plan.drives} where odometry is left out."
+            f"one thing or the noise is varied, {2 * plan.drives} where odometry is left out; "
+            f"{plan.scene_seeds} of each of {len(plan.scenes)} films of moved things, by {len(plan.presets)} "
+            "depth cameras."
         )
     total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
     return f"{plan.repeats} repeats of everything with other random numbers in the trackers. {total}."

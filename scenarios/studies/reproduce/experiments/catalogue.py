@@ -14,6 +14,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.drives import DRIVES
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
 from peopleboy.scenarios.studies.reproduce.experiments.pictures import DEPICTIONS
+from peopleboy.scenarios.studies.reproduce.experiments.scene_models import SCENES
 from peopleboy.scenarios.studies.reproduce.experiments.timing import TIMINGS
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, TrackerTrial, Tracking
 from peopleboy.scenarios.studies.reproduce.experiments.webcams import Angles, Webcams
@@ -246,6 +247,7 @@ _ALL: tuple[Experiment, ...] = (
     Correlations(),
     *DISTANCES,
     FloorPath(),
+    *SCENES,
     *DRIVES,
     *WINDOWS,
     *FIGURES,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
+from peopleboy.scenarios.studies.scene_films.scene_sets import PRESETS, SEQUENCES
 
 DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
 
@@ -30,6 +31,9 @@ class Plan:
         drives: seeds of each of them.
         ablated: seeds of those on which trackers are compared that differ in one thing.
         drive_s: [s] after which drives are cut.
+        scenes: names of the sequences in which things are moved.
+        scene_seeds: seeds of each of them.
+        presets: depth cameras that watch them.
     """
 
     cache: Path
@@ -46,6 +50,9 @@ class Plan:
     drives: int = 5
     ablated: int = 2
     drive_s: float = 3600.0
+    scenes: tuple[str, ...] = tuple(SEQUENCES)
+    scene_seeds: int = 5
+    presets: tuple[str, ...] = PRESETS
 
 
 QUICK_S = 20.0
@@ -74,6 +81,9 @@ def quick_plan(cache: Path) -> Plan:
         drives=1,
         ablated=1,
         drive_s=10.0,
+        scenes=("s1r1", "s2r1", "s4r1"),
+        scene_seeds=1,
+        presets=PRESETS[:2],
     )
 
 

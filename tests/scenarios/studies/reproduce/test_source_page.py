@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+import base64
 import json
 import re
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from scipy.stats import t as student
@@ -40,6 +42,8 @@ from peopleboy.scenarios.studies.reproduce.showing.against_source import ClaimSt
 from peopleboy.scenarios.studies.reproduce.showing.print_sections import print_sections
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim, source_tables
 from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, section, write_page
+from peopleboy.scenarios.studies.scene_films.scene_choices import CHOICES as SCENE_MODELS
+from peopleboy.scenarios.studies.scene_films.watch_scene import CLEAN
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
 from tests.helpers.calls.command_line import refusal, run_cli
@@ -54,8 +58,9 @@ PANORAMIC = (
     *("webcams", "angle", "general", "personal", "position", "noise"),
 )
 SITUATION = (
-    *(f"table-{number}" for number in ("4.1", "4.2", "4.3", "4.4", "4.5", "4.7", "B.1")),
+    *(f"table-{number}" for number in ("3.1", "4.1", "4.2", "4.3", "4.4", "4.5", "4.7", "B.1")),
     *(f"figure-{number}" for number in ("4.25", "4.26", "4.28", "4.29", "4.30", "4.33")),
+    *("scene-models", "figures-3.8-3.13"),
     *("positions", "ablations", "noise", "odometry", "pre-detection", "windows", "goals"),
 )
 ALL = {
@@ -71,12 +76,21 @@ ALL = {
 DRIVES = Plan(cache=Path("films"), drives=2)
 
 
+ERRORS = {"mean": 9.0, "deviation": 30.0, "median": 1.0, "known": 0.99}
+EVENTS = {"right": 3, "false": 1, "events": 3, "told": 2, "asked": 2, "named": 1}
+COUNTS = {"people": [9, 1, 1], "things": [8, 1, 2], "events": EVENTS}
+SCENE = {"clean": ERRORS, "ever": ERRORS, "ms": 5.0} | COUNTS
+MAP = base64.b64encode(cv2.imencode(".png", np.full((8, 10), 3000, np.uint16))[1].tobytes()).decode()
+
+
 class MadeUp(dict[str, Result]):
     """Results of drives and windows, all of them invented."""
 
     def __missing__(self, key: str) -> Result:
         if key.startswith("windows "):
             return {f"{kind} {who}": {"people": [1.0, 2.0], "others": [-1.0]} for kind, who in MACHINES}
+        if key.startswith("scene "):
+            return dict.fromkeys(SCENE_MODELS, SCENE) | {"maps": dict.fromkeys((*SCENE_MODELS, CLEAN), MAP)}
         if key.startswith("slide "):
             tally = {"ms": 10.0, "images": 3, "people": 4, "found": 3, "false": 5}
             kinds = (f"{one} {BY_SIZE}" for one in ("near+far", "far", "near"))

@@ -1,0 +1,69 @@
+"""The frames of a finished run as a tracker sees them, read from its folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import odometry_way
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.image_files import image_file
+from peopleboy.sim.cameras.kinds import image_folders
+from peopleboy.sim.geometry.planar import Planar
+from peopleboy.tracker.frame import DEPTH, DEPTH_AMPLITUDE, DEPTH_COLOUR, THERMAL, Frame
+
+IMAGES: Final = (DEPTH, DEPTH_COLOUR, DEPTH_AMPLITUDE, THERMAL)
+"""Those that the scene model looks at, as far as a run has them."""
+
+
+def check_frames(run: FinishedRun) -> None:
+    """Refuse a run without images of a depth camera.
+
+    Raises:
+        BadInput: it has none.
+    """
+    if DEPTH not in run.robot.cameras:
+        known = ", ".join(run.robot.cameras)
+        raise BadInput(f"{run.folder}: its robot has no camera {DEPTH!r}, only {known}; give it one")
+    if not (run.folder / DEPTH / image_file(1)).is_file():
+        raise BadInput(f"{run.folder}: has no images; run the scenario with --frames")
+
+
+def run_frames(run: FinishedRun) -> Iterator[Frame]:
+    """Yield the frames at which the depth camera took an image, with the odometry since the one before.
+
+    Raises:
+        BadInput: an image or the odometry is missing or spoilt.
+    """
+    check_frames(run)
+    calibrations = calibrations_of(run.robot.cameras)
+    folders = {image: folder for folder, image, _ in image_folders(run.robot.cameras) if image in IMAGES}
+    before: Planar | None = None
+    for row in run.files().robot.to_pylist():
+        images = _read(run.folder, folders, row["frame"])
+        if DEPTH not in images:
+            continue
+        now = Planar(*(row[f"odometry_{name}"] for name in ("x_m", "y_m", "heading_rad")))
+        odometry = None if before is None else odometry_way(before, now)
+        yield Frame(images=images, calibrations=calibrations, time_s=row["time_s"], odometry=odometry)
+        before = now
+
+
+def _read(folder: Path, folders: Mapping[str, str], frame: int) -> dict[str, NDArray[Any]]:
+    """Read the images of a frame; a camera that took none then is left out."""
+    paths = {name: folder / place / image_file(frame) for name, place in folders.items()}
+    return {name: _image(path) for name, path in paths.items() if path.is_file()}
+
+
+def _image(path: Path) -> NDArray[Any]:
+    image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    if image is None:
+        raise BadInput(f"{path}: cannot be read as an image; run the scenario again")
+    return np.ascontiguousarray(image[..., ::-1] if image.ndim == 3 else image)

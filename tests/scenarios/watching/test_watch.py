@@ -1,0 +1,119 @@
+"""A run that is watched for what was moved in it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.cli import cli
+from peopleboy.scenarios.watching.tell import sentence
+from peopleboy.scenarios.watching.true_events import TrueEvent, WhoIsWho, matching
+from peopleboy.sim.geometry.planar import Planar
+from peopleboy.tracker.scene_model.scene import Change, Happening
+
+SCENARIO = """
+name: one_box
+description: A box is taken away by somebody who comes for it.
+duration_s: 8.0
+place: {kind: room, length_m: 6.0, width_m: 6.0}
+things:
+  - kind: block
+    name: box
+    at_m: [3.6, 0.0]
+    size_m: [0.3, 0.4, 0.5]
+    actions: [{at_s: 3.5, kind: vanish, by: anna}]
+people:
+  - name: anna
+    path:
+      - {at_m: [4.4, 2.4]}
+      - {at_m: [4.2, 0.1], speed_m_s: 1.0, pause_s: 1.6}
+      - {at_m: [4.4, 2.4], speed_m_s: 1.2}
+robot:
+  at_m: [0.8, 0.0]
+  cameras:
+    depth: {kind: depth, preset: tof}
+"""
+
+GONE = Happening(time_s=3.5, told_s=6.0, change=Change.VANISHED, object=2, from_m=(2.8, 0.0, 0.25), person=1)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run with images."""
+    folder = tmp_path_factory.mktemp("watch")
+    (folder / "one_box.yaml").write_text(SCENARIO)
+    arguments = ["run", str(folder / "one_box.yaml"), "--frames", "--no-rrd", "--out", str(folder / "run")]
+    CliRunner().invoke(cli, arguments, catch_exceptions=False)
+    return folder / "run"
+
+
+def watch(*arguments: str) -> str:
+    return CliRunner().invoke(cli, ["watch", *arguments], catch_exceptions=False).output
+
+
+def test_what_was_moved_is_told_by_names_and_left_in_files(run: Path) -> None:
+    (line,) = [line for line in watch(str(run)).splitlines() if " s: " in line]
+    assert line.endswith("s: anna took away box")
+    scene = run / "scene"
+    frames = [json.loads(line) for line in (scene / "scene.jsonl").read_text().splitlines()]
+    assert len(frames) == 120
+    assert sum(len(frame["persons"]) for frame in frames) > 30
+    background = cv2.imread(str(scene / "background.png"), cv2.IMREAD_UNCHANGED)
+    ever = cv2.imread(str(run / "truth" / "depth_ever.png"), cv2.IMREAD_UNCHANGED)
+    assert background is not None
+    assert ever is not None
+    known = background > 0
+    assert known.mean() > 0.97
+    assert np.abs(background.astype(int) - ever)[known].mean() < 8.0
+    head = (scene / "static_map.ply").read_bytes()[:80]
+    assert head.startswith(b"ply\nformat binary_little_endian 1.0\nelement vertex ")
+    assert (scene / "scene.rrd").stat().st_size > 1000
+
+
+def test_bad_input_is_refused_in_a_line_and_leaves_nothing(run: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(run, tmp_path / "copy")
+    (copy / "depth" / "000020.png").write_bytes(b"no image")
+    with pytest.raises(BadInput, match=r"000020.png: cannot be read as an image"):
+        watch(str(copy), "--out", str(tmp_path / "out"))
+    assert not (tmp_path / "out").exists()
+    shutil.rmtree(copy / "depth")
+    with pytest.raises(BadInput, match="has no images; run the scenario with --frames"):
+        watch(str(copy))
+    (tmp_path / "mine").mkdir()
+    with pytest.raises(BadInput, match="will not be replaced"):
+        watch(str(run), "--out", str(tmp_path / "mine"))
+
+
+def test_a_run_without_a_depth_camera_is_refused(run: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(run, tmp_path / "copy")
+    text = (copy / "scenario.yaml").read_text()
+    (copy / "scenario.yaml").write_text(text.replace("depth:", "deep:"))
+    with pytest.raises(BadInput, match="its robot has no camera 'depth'"):
+        watch(str(copy))
+
+
+def test_sentences_have_names_where_they_are_known() -> None:
+    assert sentence(GONE) == "3.5 s: person 1 took away object 2"
+    assert sentence(GONE, {1: "anna"}.get, "box") == "3.5 s: anna took away box"
+
+
+def test_a_happening_is_of_the_event_that_was_there_then() -> None:
+    first = Planar(0.8, 0.0, 0.0)
+    event = TrueEvent(thing="box", by="anna", from_s=3.5, to_s=3.5, places_m=((3.6, 0.0),))
+    later = TrueEvent(thing="box", by="", from_s=13.5, to_s=13.5, places_m=((3.6, 0.0),))
+    aside = TrueEvent(thing="bag", by="", from_s=3.5, to_s=3.5, places_m=((3.6, 1.0),))
+    assert matching([GONE], [later, aside, event], first) == {0: (2,)}
+
+
+def test_who_is_who_is_told_by_most_instants() -> None:
+    who = WhoIsWho()
+    for place in ((1.0, 0.1), (1.0, 0.0), (1.0, 5.0)):
+        who.look([(1, (1.0, 0.0))], [("anna", place), ("ben", (1.0, 0.5))])
+    assert (who.name(1), who.name(2), who.name(None)) == ("anna", None, None)

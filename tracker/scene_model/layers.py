@@ -1,0 +1,244 @@
+"""The background behind each pixel, what stands before it, and what may become either: confirmed readings."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.scene_model.readings import Readings
+from peopleboy.tracker.scene_model.scene import Metres
+
+Bools = NDArray[np.bool_]
+
+NEVER: Final = -1e6
+"""[s] When something happened that never did."""
+
+# What is kept of each pixel. Of the background: mean of its readings [1/m], their number, how many had
+# neighbours that agree, when it was seen last.
+_BACK, _BACK_COUNT, _BACK_SURE, _BACK_SEEN = 0, 1, 2, 3
+# Of the thing before it: the same; when it was seen first and last; how often readings changed from the
+# background to it; how many of the background there were before.
+_FRONT, _FRONT_COUNT, _FRONT_SINCE, _FRONT_SEEN, _FLIPS, _BEFORE = 4, 5, 6, 7, 8, 9
+# Of readings in a row that fit neither: the same.
+_OTHER, _OTHER_COUNT, _OTHER_SINCE = 10, 11, 12
+# Readings of the background in a row where a thing is remembered; the kind of the newest reading.
+_GONE, _KIND = 13, 14
+# Of what was taken for background until something farther was seen: [1/m], when it was seen last, what is
+# farther first.
+_PAST, _PAST_SEEN, _PAST_GONE = 15, 16, 17
+_ALL = 18
+_TIMES = (_BACK_SEEN, _FRONT_SINCE, _FRONT_SEEN, _OTHER_SINCE, _PAST_SEEN, _PAST_GONE)
+
+_IS_BACK, _IS_FRONT, _IS_NEITHER = 0.0, 1.0, 2.0
+_FORGET: Final = 3000.0  # readings from which on a mean follows the newest ones
+_OUTLIER: Final = 1.5  # reaches from a mean; what smoothing removed does not go into it
+_FEW, _OFTENER, _FLIPPED = 25.0, 2.0, 3.0
+_LEAST: Final = 8.0  # readings of a surface that agree with their neighbours
+_SURE: Final = 0.2  # share of them
+
+
+class Layers:
+    """What is known of every pixel of a standing camera; it changes from frame to frame.
+
+    Depths are kept inverted, as the noise of sensors is alike there and does not move a mean of raw readings.
+
+    Args:
+        height, width: of the image.
+    """
+
+    def __init__(self, height: int, width: int) -> None:
+        self._state = np.zeros((_ALL, height, width), np.float32)
+        self._state[list(_TIMES)] = NEVER
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width of the image."""
+        _, height, width = self._state.shape
+        return height, width
+
+    @property
+    def background_m(self) -> Metres:
+        """(H, W) depth of what is taken for background [m]; 0 where nothing was ever read."""
+        return inverted(self._state[_BACK])
+
+    @property
+    def surface_m(self) -> Metres:
+        """(H, W) the same, 0 also where light of several surfaces mixes, or hardly anything is read."""
+        sure, count = self._state[_BACK_SURE], self._state[_BACK_COUNT]
+        return np.where((sure > _SURE * count) & (sure >= _LEAST), self.background_m, np.float32(0.0))
+
+    @property
+    def is_known(self) -> Bools:
+        """(H, W) where there is a background."""
+        return np.asarray(self._state[_BACK_COUNT] > 0.0)
+
+    @property
+    def is_settled(self) -> Bools:
+        """(H, W) where the background was read often enough to be relied on."""
+        return np.asarray(self._state[_BACK_COUNT] >= _LEAST)
+
+    @property
+    def is_covered(self) -> Bools:
+        """(H, W) where a thing stands before the background."""
+        return np.asarray(self._state[_FRONT_COUNT] > 0.0)
+
+    @property
+    def front_m(self) -> Metres:
+        """(H, W) depth of that thing [m]; 0 where there is none."""
+        return np.where(self.is_covered, inverted(self._state[_FRONT]), np.float32(0.0))
+
+    @property
+    def front_since_s(self) -> Metres:
+        """(H, W) when that thing was seen first [s]."""
+        return np.asarray(self._state[_FRONT_SINCE])
+
+    @property
+    def front_seen_s(self) -> Metres:
+        """(H, W) when that thing was seen last [s]."""
+        return np.asarray(self._state[_FRONT_SEEN])
+
+    @property
+    def back_seen_s(self) -> Metres:
+        """(H, W) when the background was seen last [s]."""
+        return np.asarray(self._state[_BACK_SEEN])
+
+    @property
+    def past_m(self) -> Metres:
+        """(H, W) depth of what was background until something farther was seen [m]; 0 for nothing."""
+        return inverted(self._state[_PAST])
+
+    @property
+    def past_seen_s(self) -> Metres:
+        """(H, W) when that was seen last [s]."""
+        return np.asarray(self._state[_PAST_SEEN])
+
+    @property
+    def past_gone_s(self) -> Metres:
+        """(H, W) when what is farther was seen first [s]."""
+        return np.asarray(self._state[_PAST_GONE])
+
+    def is_before(self, smooth_m: Metres, least_m: Metres) -> Bools:
+        """(H, W) where a reading fits nothing known, and is so much nearer than the background [m]."""
+        state = self._state
+        return np.asarray((state[_KIND] == _IS_NEITHER) & (self.background_m - smooth_m > least_m))
+
+    def is_opened(self, time_s: float) -> Bools:
+        """(H, W) where something farther became the background with the frame of a time [s]."""
+        state = self._state
+        return np.asarray((state[_BACK_SEEN] == np.float32(time_s)) & (state[_KIND] == _IS_NEITHER))
+
+    def take_in(
+        self, readings: Readings, reach_m: Metres, ignored: Bools, time_s: float, confirm: int
+    ) -> None:
+        """Sort the readings of a frame.
+
+        A reading that fits neither background nor thing is believed after some in a row that agree: it
+        becomes the background if it is farther, and a thing before it if it is nearer. What people hide is
+        remembered.
+        The smooth readings are sorted, the raw ones make the means.
+
+        Args:
+            readings: of the frame.
+            reach_m: (H, W) within which two readings agree [m].
+            ignored: (H, W) where people are.
+            time_s: of the frame.
+            confirm: readings in a row that are believed.
+        """
+        raw, smooth, mixed = readings.raw_m, readings.smooth_m, readings.is_mixed
+        _sort(self._state, raw, smooth, mixed, reach_m, ignored, np.float32(time_s), np.float32(confirm))
+
+
+def inverted(values: Metres) -> Metres:
+    """Turn depths [m] into inverse ones and back; 0 stays 0."""
+    return np.asarray(np.divide(1.0, values, out=np.zeros_like(values), where=values > 0.0), np.float32)
+
+
+@njit(cache=True, nogil=True)
+def _sort(state, raw, smooth, mixed, reach, ignored, now, confirm):  # type: ignore[no-untyped-def]
+    height, width = raw.shape
+    for v in range(height):
+        for u in range(width):
+            if smooth[v, u] > 0.0 and not ignored[v, u]:
+                _take(state, v, u, raw[v, u], smooth[v, u], mixed[v, u], reach[v, u], now, confirm)
+
+
+@njit(cache=True, nogil=True)
+def _take(state, v, u, raw, z, is_mixed, near, now, confirm):  # type: ignore[no-untyped-def]
+    reading = 1.0 / raw
+    if state[_BACK_COUNT, v, u] == 0.0:
+        state[_BACK, v, u], state[_BACK_COUNT, v, u], state[_BACK_SEEN, v, u] = reading, 1.0, now
+        return
+    if state[_FRONT_COUNT, v, u] > 0.0 and abs(z - 1.0 / state[_FRONT, v, u]) < near:
+        _see_front(state, v, u, z, reading, near, now)
+    elif abs(z - 1.0 / state[_BACK, v, u]) < near:
+        _see_back(state, v, u, reading, is_mixed, near, now, confirm)
+    else:
+        _see_other(state, v, u, z, reading, near, now)
+        if state[_OTHER_COUNT, v, u] >= confirm:
+            _believe(state, v, u, now)
+
+
+@njit(cache=True, nogil=True)
+def _see_front(state, v, u, z, reading, near, now):  # type: ignore[no-untyped-def]
+    """See a thing; what was background at first may have been an outlier, or the far side of an edge."""
+    _add(state, _FRONT, v, u, reading, near)
+    state[_FLIPS, v, u] += state[_KIND, v, u] == _IS_BACK
+    state[_FRONT_SEEN, v, u], state[_GONE, v, u], state[_OTHER_COUNT, v, u] = now, 0.0, 0.0
+    state[_KIND, v, u] = _IS_FRONT
+    is_oftener = state[_FRONT_COUNT, v, u] > _OFTENER * state[_BACK_COUNT, v, u]
+    is_close = 1.0 / state[_BACK, v, u] - z < 2.0 * near
+    if is_oftener and state[_BEFORE, v, u] < _FEW and (is_close or state[_FLIPS, v, u] >= _FLIPPED):
+        state[_BACK, v, u], state[_BACK_SEEN, v, u] = state[_FRONT, v, u], now
+        state[_BACK_COUNT, v, u] = state[_BACK_SURE, v, u] = state[_FRONT_COUNT, v, u]
+        state[_FRONT_COUNT, v, u] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def _see_back(state, v, u, reading, is_mixed, near, now, confirm):  # type: ignore[no-untyped-def]
+    """See the background; a thing that is remembered there is gone after some readings in a row."""
+    _add(state, _BACK, v, u, reading, near)
+    state[_BACK_SURE, v, u] += not is_mixed
+    state[_KIND, v, u], state[_OTHER_COUNT, v, u] = _IS_BACK, 0.0
+    state[_GONE, v, u] += 1.0
+    if state[_FRONT_COUNT, v, u] == 0.0 or state[_GONE, v, u] >= confirm:
+        state[_BACK_SEEN, v, u], state[_FRONT_COUNT, v, u], state[_GONE, v, u] = now, 0.0, 0.0
+
+
+@njit(cache=True, nogil=True)
+def _see_other(state, v, u, z, reading, near, now):  # type: ignore[no-untyped-def]
+    state[_KIND, v, u] = _IS_NEITHER
+    if state[_OTHER_COUNT, v, u] > 0.0 and abs(z - 1.0 / state[_OTHER, v, u]) < near:
+        _add(state, _OTHER, v, u, reading, near)
+    else:
+        state[_OTHER, v, u], state[_OTHER_COUNT, v, u], state[_OTHER_SINCE, v, u] = reading, 1.0, now
+
+
+@njit(cache=True, nogil=True)
+def _believe(state, v, u, now):  # type: ignore[no-untyped-def]
+    """Take what was read often enough for background if it is farther, and for a thing if it is nearer."""
+    first = state[_OTHER_SINCE, v, u]
+    if state[_OTHER, v, u] < state[_BACK, v, u]:
+        if state[_FRONT_COUNT, v, u] == 0.0:
+            state[_PAST, v, u], state[_PAST_SEEN, v, u] = state[_BACK, v, u], state[_BACK_SEEN, v, u]
+            state[_PAST_GONE, v, u] = first
+        state[_BACK, v, u], state[_BACK_COUNT, v, u] = state[_OTHER, v, u], state[_OTHER_COUNT, v, u]
+        state[_BACK_SEEN, v, u], state[_BACK_SURE, v, u], state[_FRONT_COUNT, v, u] = now, 0.0, 0.0
+    else:
+        if state[_FRONT_COUNT, v, u] > 0.0:
+            state[_BACK_SEEN, v, u] = state[_FRONT_SEEN, v, u]  # until then something else stood here
+        state[_FRONT, v, u], state[_FRONT_COUNT, v, u] = state[_OTHER, v, u], state[_OTHER_COUNT, v, u]
+        state[_FRONT_SINCE, v, u], state[_FRONT_SEEN, v, u], state[_FLIPS, v, u] = first, now, 0.0
+        state[_BEFORE, v, u] = state[_BACK_COUNT, v, u]
+    state[_OTHER_COUNT, v, u], state[_GONE, v, u] = 0.0, 0.0
+
+
+@njit(cache=True, nogil=True)
+def _add(state, mean, v, u, reading, near):  # type: ignore[no-untyped-def]
+    """Take a raw reading into a mean, whose number of readings is beside it."""
+    count = mean + 1
+    if abs(1.0 / reading - 1.0 / state[mean, v, u]) < _OUTLIER * near:
+        state[mean, v, u] += (reading - state[mean, v, u]) / min(state[count, v, u] + 1.0, _FORGET)
+    state[count, v, u] += 1.0

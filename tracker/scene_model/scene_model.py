@@ -1,0 +1,254 @@
+"""The scene model in use: confirmed layers, people by heat or shape, things and what becomes of them."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import DEPTH, Frame
+from peopleboy.tracker.scene_model.geometry import Geometry
+from peopleboy.tracker.scene_model.happenings import Ledger
+from peopleboy.tracker.scene_model.layers import Layers
+from peopleboy.tracker.scene_model.past_colours import PastColours
+from peopleboy.tracker.scene_model.people import People, PeopleSeen
+from peopleboy.tracker.scene_model.readings import Readings
+from peopleboy.tracker.scene_model.scene import (
+    Change,
+    Happening,
+    Labels,
+    Metres,
+    Place,
+    SceneObject,
+    SeenPerson,
+    State,
+    VistaScene,
+)
+from peopleboy.tracker.scene_model.scene_config import SceneConfig
+from peopleboy.tracker.scene_model.shades import shades_of
+from peopleboy.tracker.scene_model.things import (
+    Thing,
+    ThingMoment,
+    ThingPieces,
+    opened,
+    pieces_like,
+    standing,
+)
+from peopleboy.tracker.scene_model.vista_spaces import Pose, StaticMap, Surface
+
+
+class SceneModel:
+    """Learns what stands in a place, what was moved there, and by whom.
+
+    Args:
+        config: settings.
+    """
+
+    def __init__(self, config: SceneConfig) -> None:
+        self.config = config
+        self._people = People(config.people)
+        self._ledger = Ledger(config.things)
+        self._ids = itertools.count(1)
+        self._geometry: Geometry | None = None
+        self._map = StaticMap(joins=config.joins)
+        self._pose = Pose()
+        self._vista = -1
+        self._stopped_s = -math.inf
+        self._newest: VistaScene | None = None
+        self._readings: Readings | None = None
+
+    def update(self, frame: Frame) -> VistaScene:
+        """Take in the next frame.
+
+        While the robot moves, and for a moment after, nothing is learned; then a new place begins.
+
+        Raises:
+            BadInput: no depth image of the size of the ones before, or no calibration, or no odometry.
+        """
+        geometry = self._geometry_of(frame)
+        if not self._stands(frame):
+            assert self._newest is not None  # the first frame stands
+            return replace(
+                self._newest, time_s=frame.time_s, is_frozen=True, happenings=(), persons=(),
+                people=np.zeros_like(self._newest.people), things=np.zeros_like(self._newest.things),
+            )  # fmt: skip
+        self._newest = self._learned(frame, geometry)
+        return self._newest
+
+    def finish(self) -> tuple[Happening, ...]:
+        """Tell what was held back, as no frame will follow."""
+        if self._newest is None:
+            return ()
+        return tuple(self._told(one) for one in self._ledger.finished(self._newest.time_s))
+
+    def static_map(self) -> Surface:
+        """Give what stands, seen from every place until now.
+
+        Raises:
+            BadInput: there was no frame yet.
+        """
+        if self._vista < 0:
+            raise BadInput("the scene model has seen nothing yet")
+        if self._stopped_s == -math.inf:
+            self._pose = self._added()
+        assert self._map.surface is not None  # something was added
+        return self._map.surface
+
+    @property
+    def geometry(self) -> Geometry:
+        """Of the depth camera; there must have been a frame."""
+        assert self._geometry is not None
+        return self._geometry
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot stands, in the frame of the first place."""
+        return self._pose
+
+    def _stands(self, frame: Frame) -> bool:
+        """Take the odometry in, and tell whether the robot has stood for long enough to learn.
+
+        Raises:
+            BadInput: nobody knows how it moved.
+        """
+        config, way = self.config, frame.odometry
+        if self._vista < 0:
+            self._begin(frame.depth(DEPTH).shape)
+            return True
+        if way is None:
+            raise BadInput(f"{frame.time_s:g} s: the scene model wants odometry, to tell if the robot stands")
+        is_moving = (
+            math.hypot(way.advance_m, way.aside_m) > config.still_m or abs(way.turn_rad) > config.still_rad
+        )
+        if is_moving and self._stopped_s == -math.inf:
+            self._pose = self._added()
+        if is_moving or self._stopped_s != -math.inf:  # what wheels tell of a robot that stands is noise
+            self._pose = self._pose.moved(way)
+        if is_moving:
+            self._stopped_s = math.inf
+        elif self._stopped_s == math.inf:
+            self._stopped_s = frame.time_s
+        if self._stopped_s == -math.inf:
+            return True
+        if frame.time_s - self._stopped_s < config.still_s:
+            return False
+        self._begin(frame.depth(DEPTH).shape)
+        return True
+
+    def _added(self) -> Pose:
+        """Put what stands here onto the map."""
+        assert self._geometry is not None  # there was a frame
+        return self._map.add(Surface.of(self._layers.surface_m, self._geometry), self._pose)
+
+    def _learned(self, frame: Frame, geometry: Geometry) -> VistaScene:
+        config, layers = self.config, self._layers
+        readings = Readings.of(frame.depth(DEPTH), self._readings, config.layers.memory)
+        self._readings = readings
+        reach = readings.reach_m(config.layers.least_m, config.layers.deviations, config.layers.most_m)
+        people = self._people.update(frame, geometry, readings, layers, reach)
+        layers.take_in(readings, reach, people.ignored, frame.time_s, config.layers.confirm)
+        happenings = self._happenings(frame, geometry, people)
+        return self._scene(frame.time_s, readings, reach, people, happenings)
+
+    def _geometry_of(self, frame: Frame) -> Geometry:
+        shape = frame.depth(DEPTH).shape
+        if self._geometry is None or self._geometry.calibration is not frame.calibrations.get(DEPTH):
+            self._geometry = Geometry.of(frame)
+        if shape != self._geometry.shape or (self._vista >= 0 and shape != self._layers.shape):
+            raise BadInput(f"{DEPTH} image must be {self._layers.shape} as the ones before, got {shape}")
+        return self._geometry
+
+    def _begin(self, shape: tuple[int, int]) -> None:
+        """Know nothing of a new place."""
+        self._vista += 1
+        self._stopped_s = -math.inf
+        self._layers = Layers(*shape)
+        self._standing = ThingPieces(self.config.things, shape)
+        self._opened = ThingPieces(self.config.things, shape)
+        self._readings = None
+        self._colours = PastColours()
+        self._people.forget_places()
+
+    def _happenings(self, frame: Frame, geometry: Geometry, people: PeopleSeen) -> tuple[Happening, ...]:
+        config = self.config.things
+        colour = shades_of(frame)
+        moment = ThingMoment(frame.time_s, geometry, colour)
+        self._ledger.note(frame.time_s, people.persons)
+        come, left = self._standing.update(*standing(self._layers, config), moment, self._ids)
+        behind = ThingMoment(frame.time_s, geometry, self._colours.update(colour, self._layers, frame.time_s))
+        through, _ = self._opened.update(*opened(self._layers, config), behind, self._ids)
+        happenings = self._ledger.told(frame.time_s, come, [*left, *through])
+        for one in happenings:
+            if one.change is Change.MOVED:
+                self._rename(one)
+        return tuple(happenings)
+
+    def _rename(self, moved: Happening) -> None:
+        """Give a thing that appeared the id of what vanished."""
+        for number, thing in list(self._standing.things.items()):
+            if thing.place_m == moved.to_m and number != moved.object:
+                self._standing.things.pop(moved.object, None)
+                self._standing.rename(number, moved.object)
+
+    def _scene(
+        self,
+        time_s: float,
+        readings: Readings,
+        reach: NDArray[np.float32],
+        people: PeopleSeen,
+        happenings: tuple[Happening, ...],
+    ) -> VistaScene:
+        layers = self._layers
+        is_seen = layers.is_covered & (np.abs(readings.smooth_m - layers.front_m) < reach)
+        is_seen &= people.labels == 0
+        things = np.where(is_seen, self._standing.owner, 0)
+        self._label_carried(things, readings, reach, people)
+        return VistaScene(
+            time_s=time_s,
+            background_m=layers.surface_m,
+            people=people.labels,
+            things=things,
+            persons=tuple(self._placed(one) for one in people.persons),
+            objects=tuple(self._object(one, things) for one in self._standing.things.values()),
+            happenings=tuple(self._told(one) for one in happenings),
+            vista=self._vista,
+        )
+
+    def _label_carried(self, things: Labels, readings: Readings, reach: Metres, people: PeopleSeen) -> None:
+        """Find what vanished last in somebody's hands, and label it."""
+        config = self.config.things
+        missing = self._opened.newest() or self._ledger.missing()
+        if missing is None or not people.persons:
+            return
+        mask = self._layers.is_before(readings.smooth_m, np.maximum(reach, np.float32(config.off_m)))
+        mask &= (readings.smooth_m > 0.0) & ~people.ignored & (things == 0)
+        for points, pixels in pieces_like(missing, mask, readings.smooth_m, self.geometry, config):
+            if any(math.dist(one.place_m, points) < config.hand_m for one in people.persons):
+                things.ravel()[pixels] = missing.id
+
+    def _placed(self, person: SeenPerson) -> SeenPerson:
+        return replace(person, place_m=self._pose.place(person.place_m))
+
+    def _told(self, one: Happening) -> Happening:
+        return replace(one, from_m=self._in_first(one.from_m), to_m=self._in_first(one.to_m))
+
+    def _in_first(self, place_m: Place | None) -> Place | None:
+        return None if place_m is None else (*self._pose.place(place_m[:2]), place_m[2])
+
+    def _object(self, thing: Thing, things: Labels) -> SceneObject:
+        is_seen = bool((things == thing.id).any())
+        state = State.GONE if thing.is_gone else State.STANDS if is_seen else State.HIDDEN
+        place = self._in_first(thing.place_m)
+        assert place is not None  # it has one
+        return SceneObject(
+            id=thing.id,
+            box=thing.box,
+            place_m=place,
+            size_m2=thing.size_m2,
+            first_seen_s=thing.span_s[1],
+            state=state,
+        )

@@ -1,0 +1,297 @@
+"""Movable things: pieces of what stands before the background, or stood there until it was seen through."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.scene_model.geometry import Geometry
+from peopleboy.tracker.scene_model.layers import NEVER, Layers
+from peopleboy.tracker.scene_model.pieces import Bools, Pixels, Span, pieces_of, pixels_by_label
+from peopleboy.tracker.scene_model.scene import Labels, Metres, Place
+from peopleboy.tracker.scene_model.scene_config import ThingsConfig
+from peopleboy.tracker.track import Box
+
+Colours = NDArray[np.uint8]
+
+_AROUND = np.ones((3, 3), np.uint8)
+_COMPACT: Final = 0.2  # share of a thing's pixels that are not at its edge; edges of walls are only that
+_FEWEST_PX: Final = 8  # of a part of a thing that is known
+_COVERED: Final = 0.5  # share of a thing's pixels
+_OWN: Final = 0.3  # share of a piece that a thing must have had to keep it
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Thing:
+    """A piece of the image that changed at one time.
+
+    Attributes:
+        id: of the object that it is.
+        box: left, top, width, height [px].
+        pixels: how many it has now.
+        most: the most it had.
+        where: (N,) their flat indices when it was measured.
+        depth_m: middle of their depths then [m].
+        place_m: its middle in the robot's frame [m].
+        size_m2: its area before the camera [m^2].
+        height_m: from its lowest to its highest point [m].
+        top_m: its highest point above the floor [m].
+        colour: (3,) mean RGB, or (1,) mean reflectance; None without either.
+        span_s: between which times it changed [s].
+        seen_s: when it was seen last [s].
+        steady_s, steady_px: since when it has not grown, and its pixels then.
+        is_settled: whether it stayed as it is for long enough.
+        is_gone: whether it left.
+    """
+
+    id: int
+    box: Box
+    pixels: int
+    most: int
+    where: Pixels
+    depth_m: float
+    place_m: Place
+    size_m2: float
+    height_m: float
+    top_m: float
+    colour: Floats | None
+    span_s: tuple[float, float]
+    seen_s: float
+    steady_s: float
+    steady_px: int
+    is_settled: bool = False
+    is_gone: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ThingMoment:
+    """What both kinds of pieces are found in.
+
+    Attributes:
+        time_s: of the frame [s].
+        geometry: of the camera.
+        colour: (H, W, 3) or (H, W, 1) image of the same pixels; None without one.
+    """
+
+    time_s: float
+    geometry: Geometry
+    colour: Colours | None
+
+
+class ThingPieces:
+    """Things of one kind, followed from frame to frame by the pixels that they share.
+
+    Args:
+        config: settings.
+        shape: of the image.
+    """
+
+    def __init__(self, config: ThingsConfig, shape: tuple[int, int]) -> None:
+        self._config = config
+        self.owner: Labels = np.zeros(shape, np.int32)
+        self.things: dict[int, Thing] = {}
+        self._changed: Metres = np.full(shape, NEVER, np.float32)
+
+    def update(
+        self, mask: Bools, depth_m: Metres, span: Span, moment: ThingMoment, next_id: Iterator[int]
+    ) -> tuple[list[Thing], list[Thing]]:
+        """Take in a mask (H, W), depths [m] and times; give the things that settled and those that left."""
+        config = self._config
+        self.owner[~mask | (span.last_s > self._changed)] = 0
+        self._changed = span.last_s.copy()
+        if not mask.any():
+            return [], self._left(set(), mask, moment)
+        labels, count = pieces_of(mask, depth_m, config.gap_m, span)
+        inner = cv2.erode(mask.astype(np.uint8), _AROUND) > 0
+        cores = np.bincount(labels[inner], minlength=count + 1)
+        parts: dict[int, list[Pixels]] = {}
+        for label, pixels in sorted(pixels_by_label(labels, count), key=lambda one: -len(one[1])):
+            number = self._owner_of(pixels)
+            if number is None:
+                number = self._shown_again(pixels, depth_m)
+            if number is None and len(pixels) >= _FEWEST_PX:
+                number = self._beside(pixels, depth_m, span, moment, parts)
+            if number is None and self._is_big(pixels, depth_m, cores[label], moment):
+                number = next(next_id)
+            if number is not None:
+                parts.setdefault(number, []).append(pixels)
+        return self._followed(parts, mask, depth_m, span, moment)
+
+    def _followed(
+        self,
+        parts: Mapping[int, Sequence[Pixels]],
+        mask: Bools,
+        depth_m: Metres,
+        span: Span,
+        moment: ThingMoment,
+    ) -> tuple[list[Thing], list[Thing]]:
+        settled = []
+        for number, pieces in parts.items():
+            pixels = np.concatenate(pieces)
+            self.owner.ravel()[pixels] = number
+            known = self.things.get(number)
+            self.things[number] = thing = self._measured(number, pixels, depth_m, span, moment, known)
+            if thing.is_settled and not (known is not None and known.is_settled):
+                settled.append(thing)
+        return settled, self._left(set(parts), mask, moment)
+
+    def rename(self, old: int, new: int) -> None:
+        """Call a thing by the id of the object that it turned out to be."""
+        self.owner[self.owner == old] = new
+        self.things[new] = replace(self.things.pop(old), id=new)
+
+    def newest(self) -> Thing | None:
+        """Give the newest thing that has not settled; None for none."""
+        open_ones = [one for one in self.things.values() if not one.is_settled]
+        return max(open_ones, key=lambda one: one.id, default=None)
+
+    def _owner_of(self, pixels: Pixels) -> int | None:
+        """Find the thing that a piece was part of until now."""
+        owners = np.bincount(self.owner.ravel()[pixels])
+        if len(owners) < 2:
+            return None
+        best = int(owners[1:].argmax()) + 1
+        is_own = best in self.things and owners[best] >= _OWN * min(len(pixels), self.things[best].most)
+        return best if is_own and not self.things[best].is_gone else None
+
+    def _shown_again(self, pixels: Pixels, depth_m: Metres) -> int | None:
+        """Find the thing that something else stood before until now."""
+        depth = float(np.median(depth_m.ravel()[pixels]))
+        for number, thing in self.things.items():
+            if thing.is_gone or not thing.is_settled or abs(thing.depth_m - depth) > self._config.gap_m:
+                continue
+            if np.isin(pixels, thing.where).mean() > _COVERED:
+                return number
+        return None
+
+    def _beside(
+        self,
+        pixels: Pixels,
+        depth_m: Metres,
+        span: Span,
+        moment: ThingMoment,
+        parts: Mapping[int, Sequence[Pixels]],
+    ) -> int | None:
+        """Find the thing beside which a piece appeared at the same time: its leg, or its other half."""
+        points = moment.geometry.points(pixels, depth_m)
+        first, last = (float(np.median(times.ravel()[pixels])) for times in (span.first_s, span.last_s))
+        for number in {*self.things, *parts}:
+            if number in parts:
+                others = np.concatenate(parts[number])
+                place = np.median(moment.geometry.points(others, depth_m)[:, :2], axis=0)
+                spans = [float(np.median(times.ravel()[others])) for times in (span.first_s, span.last_s)]
+            else:
+                thing = self.things[number]
+                if thing.is_gone:
+                    continue
+                place, spans = np.array(thing.place_m[:2]), list(thing.span_s)
+            is_together = max(first, spans[0]) <= min(last, spans[1]) + self._config.beside_s
+            if is_together and np.hypot(*(np.median(points[:, :2], axis=0) - place)) < self._config.beside_m:
+                return number
+        return None
+
+    def _is_big(self, pixels: Pixels, depth_m: Metres, core: int, moment: ThingMoment) -> bool:
+        config, count = self._config, len(pixels)
+        if count < config.least_px or core < _COMPACT * count:
+            return False
+        return float((depth_m.ravel()[pixels] ** 2).sum()) / moment.geometry.focal_px**2 >= config.least_m2
+
+    def _measured(
+        self,
+        number: int,
+        pixels: Pixels,
+        depth_m: Metres,
+        span: Span,
+        moment: ThingMoment,
+        known: Thing | None,
+    ) -> Thing:
+        config, time_s, count = self._config, moment.time_s, len(pixels)
+        has_changed = known is None or abs(count - known.steady_px) > config.growth * known.steady_px
+        steady_s = time_s if has_changed or known is None else known.steady_s
+        if known is not None and known.is_settled and count <= known.most:
+            return replace(known, pixels=count, seen_s=float(np.median(span.seen_s.ravel()[pixels])))
+        points = moment.geometry.points(pixels, depth_m)
+        low, high = np.quantile(points[:, 2], [0.02, 0.98]).tolist()
+        rows, columns = np.divmod(pixels, depth_m.shape[1])
+        left, top = int(columns.min()), int(rows.min())
+        x, y, z = np.median(points, axis=0).tolist()
+        first, last = (
+            float(np.median(span.first_s.ravel()[pixels])),
+            float(np.median(span.last_s.ravel()[pixels])),
+        )
+        return Thing(
+            id=number,
+            box=(float(left), float(top), float(columns.max() - left + 1), float(rows.max() - top + 1)),
+            pixels=count,
+            most=max(count, known.most if known is not None else 0),
+            where=pixels,
+            depth_m=float(np.median(depth_m.ravel()[pixels])),
+            place_m=(x, y, z),
+            size_m2=float((depth_m.ravel()[pixels] ** 2).sum()) / moment.geometry.focal_px**2,
+            height_m=high - low,
+            top_m=high,
+            colour=None
+            if moment.colour is None
+            else moment.colour.reshape(-1, moment.colour.shape[2])[pixels].mean(axis=0),
+            span_s=(min(first, last), last),
+            seen_s=float(np.median(span.seen_s.ravel()[pixels])),
+            steady_s=steady_s,
+            steady_px=count if has_changed or known is None else known.steady_px,
+            is_settled=(known is not None and known.is_settled) or time_s - steady_s >= config.settled_s,
+        )
+
+    def _left(self, present: set[int], mask: Bools, moment: ThingMoment) -> list[Thing]:
+        """Find the things of which too little is left; forget those that never settled."""
+        left = []
+        for number, thing in list(self.things.items()):
+            is_less = number not in present or thing.pixels < self._config.left * thing.most
+            if thing.is_gone or not is_less:
+                continue
+            if thing.is_settled and mask.ravel()[thing.where].mean() > _COVERED:
+                continue  # something else stands before it
+            if not thing.is_settled:
+                del self.things[number]
+                continue
+            self.things[number] = replace(thing, is_gone=True, pixels=0)
+            left.append(replace(thing, span_s=(thing.seen_s, moment.time_s)))
+            self.owner[self.owner == number] = 0
+        return left
+
+
+def standing(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Span]:
+    """Find what stands before the background: where, at which depth [m], and since when."""
+    front, since = layers.front_m, layers.front_since_s
+    mask = layers.is_covered & (layers.background_m - front > config.off_m)
+    return (
+        mask,
+        front,
+        Span(np.minimum(layers.back_seen_s, since), since, layers.front_seen_s, config.slack_s),
+    )
+
+
+def opened(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Span]:
+    """Find what stood where something farther is seen since: where, at which depth [m], and until when."""
+    past, gone = layers.past_m, layers.past_gone_s
+    mask = (past > 0.0) & (layers.background_m - past > config.off_m)
+    first = np.minimum(layers.past_seen_s, gone)
+    return mask, past, Span(first, gone, layers.past_seen_s, config.slack_s)
+
+
+def pieces_like(
+    thing: Thing, mask: Bools, depth_m: Metres, geometry: Geometry, config: ThingsConfig
+) -> Iterator[tuple[tuple[float, float], Pixels]]:
+    """Find the compact pieces of a mask (H, W) that may be a thing: their places on the floor, and pixels."""
+    labels, count = pieces_of(mask, depth_m, config.gap_m)
+    cores = np.bincount(labels[cv2.erode(mask.astype(np.uint8), _AROUND) > 0], minlength=count + 1)
+    for label, pixels in pixels_by_label(labels, count):
+        size = float((depth_m.ravel()[pixels] ** 2).sum()) / geometry.focal_px**2 / thing.size_m2
+        is_like = 1.0 / config.size_ratio < size < config.size_ratio
+        if is_like and len(pixels) >= config.least_px // 2 and cores[label] >= _COMPACT * len(pixels):
+            x, y, _ = np.median(geometry.points(pixels, depth_m), axis=0).tolist()
+            yield (x, y), pixels

@@ -1,0 +1,163 @@
+"""Places seen from several standing points, joined to one map: by odometry, and by how their surfaces lie."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from peopleboy.tracker.frame import Floats, Odometry
+from peopleboy.tracker.scene_model.geometry import Geometry
+from peopleboy.tracker.scene_model.scene import Metres
+
+_CELL_M: Final = 0.05  # a map has one point in each
+_STEPS: Final = 30
+_REACH_M: Final = 0.4  # of correspondences at first; it shrinks
+_CLOSEST_M: Final = 0.08
+_FEWEST: Final = 100
+_EDGE: Final = 0.06  # share of depth by which neighbours on one surface differ at most
+_FLOOR_M: Final = 0.08  # the floor tells nothing of where one stands on it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pose:
+    """Where the robot stands in the frame of its first place: [m], and its heading [rad]."""
+
+    x_m: float = 0.0
+    y_m: float = 0.0
+    heading_rad: float = 0.0
+
+    def moved(self, way: Odometry) -> Pose:
+        """Go on by what the odometry says."""
+        return self.after(Pose(x_m=way.advance_m, y_m=way.aside_m, heading_rad=way.turn_rad))
+
+    def after(self, then: Pose) -> Pose:
+        """Give the pose of somebody whose pose in this one's frame is told."""
+        x, y = self.place((then.x_m, then.y_m))
+        return Pose(x_m=x, y_m=y, heading_rad=math.remainder(self.heading_rad + then.heading_rad, math.tau))
+
+    def place(self, place_m: tuple[float, float]) -> tuple[float, float]:
+        """Map a place of the robot's frame."""
+        cosine, sine = math.cos(self.heading_rad), math.sin(self.heading_rad)
+        x, y = place_m
+        return self.x_m + cosine * x - sine * y, self.y_m + sine * x + cosine * y
+
+    def points(self, points_m: Floats) -> Floats:
+        """Map points (N, 3) of the robot's frame."""
+        cosine, sine = math.cos(self.heading_rad), math.sin(self.heading_rad)
+        turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        return np.asarray(points_m @ turn.T + (self.x_m, self.y_m, 0.0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surface:
+    """Points that stand, with the directions that their surfaces face.
+
+    Attributes:
+        points_m: (N, 3).
+        normals: (N, 3) of length 1.
+    """
+
+    points_m: Floats
+    normals: Floats
+
+    @classmethod
+    def of(cls, depth_m: Metres, geometry: Geometry) -> Surface:
+        """Find the surface of a background (H, W) [m], in the robot's frame; edges are left out."""
+        origin = geometry.calibration.robot_from_camera[:3, 3]
+        points = origin + geometry.rays.astype(np.float64) * depth_m[:, :, None]
+        middle, z = points[1:-1, 1:-1], depth_m[1:-1, 1:-1]
+        across = points[1:-1, 2:] - points[1:-1, :-2]
+        down = points[2:, 1:-1] - points[:-2, 1:-1]
+        normals = np.cross(across, down)
+        length = np.linalg.norm(normals, axis=2)
+        around = np.stack([depth_m[1:-1, 2:], depth_m[1:-1, :-2], depth_m[2:, 1:-1], depth_m[:-2, 1:-1]])
+        is_whole = (around > 0.0).all(axis=0) & (np.abs(around - z).max(axis=0) < _EDGE * z) & (z > 0.0)
+        kept = is_whole & (length > 0.0)
+        return cls(middle[kept], normals[kept] / length[kept][:, None]).thinned()
+
+    def thinned(self) -> Surface:
+        """Keep one point of each cell."""
+        cells = np.floor(self.points_m / _CELL_M).astype(np.int64)
+        _, first = np.unique(cells, axis=0, return_index=True)
+        return Surface(self.points_m[first], self.normals[first])
+
+    def seen_from(self, pose: Pose) -> Surface:
+        """Map it from the robot's frame."""
+        turn = Pose(heading_rad=pose.heading_rad)
+        return Surface(pose.points(self.points_m), turn.points(self.normals))
+
+    def joined(self, other: Surface) -> Surface:
+        """Take two together."""
+        return Surface(
+            np.concatenate([self.points_m, other.points_m]), np.concatenate([self.normals, other.normals])
+        ).thinned()
+
+
+def registered(surface: Surface, known: Surface, guess: Pose) -> Pose:
+    """Correct the pose from which a surface was seen until it lies on what is known.
+
+    Points are drawn to the planes of their nearest neighbours, on the floor plane only: iterative closest
+    points with three unknowns. Where too little is known, or nothing tells how far along a wall one stands,
+    the guess stays as it is in that direction.
+    """
+    is_upright = known.points_m[:, 2] > _FLOOR_M
+    if is_upright.sum() < _FEWEST:
+        return guess
+    tree, targets, normals = (
+        cKDTree(known.points_m[is_upright]),
+        known.points_m[is_upright],
+        known.normals[is_upright],
+    )
+    own = surface.points_m[surface.points_m[:, 2] > _FLOOR_M]
+    pose, reach = guess, _REACH_M
+    for _ in range(_STEPS):
+        moved = pose.points(own)
+        way, index = tree.query(moved, distance_upper_bound=reach)
+        found = np.isfinite(way)
+        if found.sum() < _FEWEST:
+            return guess
+        pose, step = _stepped(pose, moved[found], targets[index[found]], normals[index[found]])
+        reach = max(0.8 * reach, _CLOSEST_M)
+        if step < 1e-5 and reach == _CLOSEST_M:
+            break
+    return pose
+
+
+def _stepped(pose: Pose, points: Floats, targets: Floats, normals: Floats) -> tuple[Pose, float]:
+    """Move by the least squares of distances to planes; directions that nothing tells are left out."""
+    apart = ((targets - points) * normals).sum(axis=1)
+    x, y = points[:, 0] - pose.x_m, points[:, 1] - pose.y_m
+    rows = np.stack([normals[:, 0], normals[:, 1], x * normals[:, 1] - y * normals[:, 0]], axis=1)
+    weight = 1.0 / np.maximum(np.abs(apart), 0.02)  # outliers count by their distance, not by its square
+    matrix = rows.T @ (rows * weight[:, None])
+    values, vectors = np.linalg.eigh(matrix)
+    told = values > 0.02 * values[-1]
+    move = vectors[:, told] @ ((vectors[:, told].T @ (rows.T @ (weight * apart))) / values[told])
+    dx, dy, turn = move.tolist()
+    heading = math.remainder(pose.heading_rad + turn, math.tau)
+    return Pose(x_m=pose.x_m + dx, y_m=pose.y_m + dy, heading_rad=heading), float(np.abs(move).max())
+
+
+class StaticMap:
+    """What stands, seen from everywhere until now, in the frame of the first place.
+
+    Args:
+        joins: whether places are registered, or joined by odometry alone.
+    """
+
+    def __init__(self, *, joins: bool) -> None:
+        self._joins = joins
+        self.surface: Surface | None = None
+
+    def add(self, surface: Surface, guess: Pose) -> Pose:
+        """Add what was seen from a pose; give the pose as registration corrects it."""
+        if self.surface is None:
+            self.surface = surface.seen_from(guess)
+            return guess
+        pose = registered(surface, self.surface, guess) if self._joins else guess
+        self.surface = self.surface.joined(surface.seen_from(pose))
+        return pose
