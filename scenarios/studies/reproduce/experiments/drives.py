@@ -198,7 +198,7 @@ class Goals:
         pairs = list(
             zip(*(_seeds(turning_drives(plan), done, who) for who in (NO_ODOMETRY, DEFAULT)), strict=True)
         )
-        yield "rate in turns, gained by odometry", _figures(_gain(pairs), *interval(pairs, _gain))
+        yield "switches a run in turns, saved by odometry", _figures(_saved(pairs), *interval(pairs, _saved))
 
 
 def drive(plan: Plan, scenario: str, seed: int, names: Sequence[str], scale: float = 1.0) -> DriveUnit:
@@ -320,9 +320,8 @@ def _worst_set(seeds: Sequence[Mapping[int, DriveRecord]]) -> float:
     return float(np.nanmin(rates))
 
 
-def _gain(pairs: Sequence[tuple[DriveRecord, DriveRecord]]) -> float:
-    without, with_it = (DriveRecord.joined(side) for side in zip(*pairs, strict=True))
-    return with_it.rate() - without.rate()
+def _saved(pairs: Sequence[tuple[DriveRecord, DriveRecord]]) -> float:
+    return sum(without.switches - with_it.switches for without, with_it in pairs) / len(pairs)
 
 
 DRIVES = (

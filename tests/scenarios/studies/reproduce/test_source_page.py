@@ -163,7 +163,7 @@ def test_goals_are_reached_or_not_by_what_was_measured() -> None:
     assert figures["rate"] == figures["rate of the worst set"] == [0.75]
     assert figures["error, mean [m]"] == pytest.approx([0.1])
     assert figures["false sizes per image"] == pytest.approx([1.0 / 3.0])
-    assert figures["rate in turns, gained by odometry"] == [0.0]
+    assert figures["switches a run in turns, saved by odometry"] == [0.0]
 
 
 def test_papers_share_all_experiments_among_themselves() -> None:
