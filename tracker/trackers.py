@@ -70,12 +70,12 @@ class Introducible(Protocol):
 
 
 @runtime_checkable
-class Recognises(Protocol):
+class KnowsAgain(Protocol):
     """A tracker that knows people again by itself, however long they were away."""
 
     @property
-    def recognises(self) -> bool:
-        """Whether a new number is somebody else."""
+    def knows_again(self) -> bool:
+        """Whether whoever has a new number is somebody else."""
         ...
 
 
@@ -105,9 +105,9 @@ def explanation_of(tracker: Tracker) -> object:
     return tracker.explanation if isinstance(tracker, Explains) else None
 
 
-def recognises(tracker: Tracker) -> bool:
+def knows_again(tracker: Tracker) -> bool:
     """Tell whether a person who comes back has the old number, and whoever has a new one is somebody else."""
-    return isinstance(tracker, Recognises) and tracker.recognises
+    return isinstance(tracker, KnowsAgain) and tracker.knows_again
 
 
 def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:

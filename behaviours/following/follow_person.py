@@ -16,6 +16,7 @@ from peopleboy.behaviours.following.last_seen import (
     on_the_way,
     place_of,
 )
+from peopleboy.behaviours.following.make_room import RoomConfig, is_somebody_near
 from peopleboy.behaviours.following.occluder import OccluderConfig, hider, keep_behind
 from peopleboy.behaviours.following.reidentification import ReidentificationConfig, company, recognise
 from peopleboy.behaviours.following.target import (
@@ -63,7 +64,8 @@ class FollowConfig:
         gone_s: [s] the same for one lost in the middle of the image with nobody in front: it went behind a
             wall, or the tracker missed it; then the robot goes to where it was seen last.
         recover_1_s: [1/s] speed per distance on the way there.
-        give_up_s: [s] a person out of sight for this long is given up; the robot looks for anybody then.
+        give_up_s: [s] a person out of sight for this long is given up; the robot looks for anybody then ...
+        give_up_known_s: [s] ... and this long where people are known again when they come back.
         leaving_rad: [rad] a person seen farther off the nose, or about to be, has left the image.
         target: smoothing of what is seen.
         identity: who is taken for the followed person.
@@ -72,6 +74,8 @@ class FollowConfig:
         avoid: steering along walls.
         avoid_alone: the same on the way to where a person was seen last, when there is nobody to look at.
         heard: what is remembered of echoes for that: an edge vanishes in the gaps between the sonars' cones.
+        room: what is made for who is lost because it came too near, where people are known again; the robot
+            would stand in the door through which the person comes back.
     """
 
     keep_height: float = 0.58
@@ -97,6 +101,7 @@ class FollowConfig:
     gone_s: float = 0.7
     recover_1_s: float = 0.6
     give_up_s: float = 30.0
+    give_up_known_s: float = 300.0
     leaving_rad: float = math.radians(19.0)
     target: TargetConfig = field(default_factory=TargetConfig)
     identity: ReidentificationConfig = field(default_factory=ReidentificationConfig)
@@ -105,6 +110,7 @@ class FollowConfig:
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
     avoid_alone: AvoidConfig = WIDELY
     heard: EchoMemoryConfig = field(default_factory=lambda: EchoMemoryConfig(keep_s=4.0, within_m=1.7))
+    room: RoomConfig = field(default_factory=RoomConfig)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -189,6 +195,8 @@ def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[
     gap_s = percept.time_s - state.target.seen_s
     if gap_s <= config.max_age_s:
         return _go_after(state, state.target, percept, step_s, config)
+    if percept.knows_again and _is_too_near(state.target, gap_s, percept, config):
+        return _make_room(state, state.target, config)
     why, patience_s = _patience(state, state.target, percept, config)
     if gap_s <= patience_s:
         return _wait(state, state.target, why, config)
@@ -205,7 +213,8 @@ def distance_error(height: float, config: FollowConfig) -> float:
 def _update_target(state: FollowState, percept: Percept, step_s: float, config: FollowConfig) -> FollowState:
     """Predict where the followed person is, look for it, give it up when it stays away."""
     known = state.target if step_s <= config.wait_s else None
-    if known is not None and percept.time_s - known.seen_s > config.give_up_s:
+    give_up_s = config.give_up_known_s if percept.knows_again else config.give_up_s
+    if known is not None and percept.time_s - known.seen_s > give_up_s:
         known = None
     if known is None:
         state = replace(state, target=None, others=frozenset(), place=None)
@@ -218,7 +227,15 @@ def _update_target(state: FollowState, percept: Percept, step_s: float, config: 
             gone = keep_behind(gone, percept.people, config.hidden, config.target)
         state = replace(state, target=gone, place=place)
     gap_s = 0.0 if known is None else percept.time_s - known.seen_s
-    person = recognise(percept.people, known, state.others, gap_s, config.identity, config.target)
+    person = recognise(
+        percept.people,
+        known,
+        state.others,
+        gap_s,
+        config.identity,
+        config.target,
+        knows_again=percept.knows_again,
+    )
     if person is None:
         if known is None:
             return state
@@ -280,6 +297,19 @@ def _wait(state: FollowState, target: Target, why: str, config: FollowConfig) ->
     """Stand, and turn gently towards where the person should be by now."""
     turn = _clip(_facing_turn(target, config), config.wait_turn_rad_s)
     return replace(state, mode="wait", reason=why), Command(linear_m_s=0.0, angular_rad_s=turn)
+
+
+def _is_too_near(target: Target, gap_s: float, percept: Percept, config: FollowConfig) -> bool:
+    """Tell whether the person came too near to be seen, and something is there still."""
+    was_near = target.height >= config.near_height and gap_s <= config.room.longest_s
+    return was_near and is_somebody_near(echoes(percept), config.room)
+
+
+def _make_room(state: FollowState, target: Target, config: FollowConfig) -> tuple[FollowState, Command]:
+    """Back off, facing the person."""
+    turn = _clip(_facing_turn(target, config), config.wait_turn_rad_s)
+    state = replace(state, mode="wait", reason=f"track {target.id} is too near to be seen")
+    return state, Command(linear_m_s=-config.room.speed_m_s, angular_rad_s=turn)
 
 
 def _recover(

@@ -144,9 +144,7 @@ def score_of(sight: Sight, look: PersonLook, box: Box, config: AttentionConfig) 
     return float(_together(parts, look)[0, 0])
 
 
-def relearn(
-    look: PersonLook, sight: Sight, focus: Focus, config: AttentionConfig
-) -> PersonLook:
+def relearn(look: PersonLook, sight: Sight, focus: Focus, config: AttentionConfig) -> PersonLook:
     """Take in a little of what the person looks like now, if it is likely that it is this one.
 
     Source: situation-awareness thesis, section 5.4.
@@ -155,7 +153,9 @@ def relearn(
         return look
     new = learn(sight, focus.box, config)
     pairs = zip(look.parts, new.parts, strict=True)
-    return replace(look, parts=tuple((part, old.updated(fresh, config.rate)) for (part, old), (_, fresh) in pairs))
+    return replace(
+        look, parts=tuple((part, old.updated(fresh, config.rate)) for (part, old), (_, fresh) in pairs)
+    )
 
 
 def _searched(
@@ -180,11 +180,10 @@ def _part_scores(
 ) -> PartScores:
     features = found = colour = None
     if sight.map_sums is not None and sight.maps is not None:
-        used = in_use(config)
         if config.reward == "same":
-            features = likenesses(sight.map_sums, *at, size, known.mean, known.spread, used)
+            features = likenesses(sight.map_sums, *at, size, known.mean, known.spread, in_use(config))
         else:
-            features = mean_scores(_attention(sight, known, used, config), *at, size)
+            features = mean_scores(_attention(sight, known, config), *at, size)
             if not config.is_absolute:
                 features = features / max(float(features.max()), 1e-12)
     if sight.pattern_sums is not None:
@@ -193,7 +192,7 @@ def _part_scores(
         ratio = known.colour_ratio[sight.colours].astype(np.float32)
         height, width = CELL_PX * sight.rows, CELL_PX * sight.columns
         cells = cv2.resize(ratio[:height, :width], (sight.columns, sight.rows), interpolation=cv2.INTER_AREA)
-        colour = mean_scores(cv2.integral(cells, sdepth=cv2.CV_64F), *at, size)
+        colour = mean_scores(np.asarray(cv2.integral(cells, sdepth=cv2.CV_64F), np.float64), *at, size)
     return PartScores(features, found, colour)
 
 
@@ -207,8 +206,8 @@ def attention_map(sight: Sight, known: PartLook, config: AttentionConfig) -> Dou
     return np.maximum(sight.maps @ weight, 0.0)
 
 
-def _attention(sight: Sight, known: PartLook, used: NDArray[np.bool_], config: AttentionConfig) -> Doubles:
-    return cv2.integral(attention_map(sight, known, config), sdepth=cv2.CV_64F)
+def _attention(sight: Sight, known: PartLook, config: AttentionConfig) -> Doubles:
+    return np.asarray(cv2.integral(attention_map(sight, known, config), sdepth=cv2.CV_64F), np.float64)
 
 
 def _together(parts: list[PartScores], look: PersonLook) -> Doubles:

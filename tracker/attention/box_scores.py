@@ -20,7 +20,8 @@ def box_means(sums: Doubles, row: int, column: int, height: int, width: int) -> 
     low, right = row + height, column + width
     count = np.float64(height * width)
     total = sums[low, right] - sums[row, right] - sums[low, column] + sums[row, column]
-    return (total / count).astype(np.float64)
+    mean: Doubles = (total / count).astype(np.float64)
+    return mean
 
 
 @njit(cache=True, nogil=True)
@@ -35,19 +36,8 @@ def spreads(sums: Doubles, height: int, width: int, step: int) -> Doubles:
             second += mean * mean
             count += 1
     first /= count
-    return np.sqrt(np.maximum(second / count - first * first, 1e-12))
-
-
-@njit(cache=True, nogil=True)
-def likeness(means: Doubles, learned: Doubles, spread: Doubles, used: NDArray[np.bool_]) -> float:
-    """Compare the features (C,) of a box with learned ones: 1 for the same, near 0 for others."""
-    total, count = 0.0, 0
-    for k in range(means.shape[0]):
-        if used[k]:
-            off = (means[k] - learned[k]) / spread[k]
-            total += min(off * off, MOST)
-            count += 1
-    return np.exp(-total / max(count, 1))
+    spread: Doubles = np.sqrt(np.maximum(second / count - first * first, 1e-12))
+    return spread
 
 
 @njit(cache=True, nogil=True)
@@ -60,7 +50,11 @@ def likenesses(
     spread: Doubles,
     used: NDArray[np.bool_],
 ) -> Doubles:
-    """Compare boxes of one size, at all rows (R,) and columns (C,), (R, C); 0 where one is not inside."""
+    """Compare features (C,) of boxes of one size, at all rows (R,) and columns (L,), with learned ones.
+
+    Returns:
+        (R, L) 1 for the same, near 0 for others; 0 for boxes that are not inside.
+    """
     height, width = size
     found = np.zeros((len(rows), len(columns)))
     index = np.flatnonzero(used)
@@ -87,7 +81,7 @@ def likenesses(
 def mean_scores(
     sums: Doubles, rows: NDArray[np.int64], columns: NDArray[np.int64], size: tuple[int, int]
 ) -> Doubles:
-    """Give the means (R, C) over boxes, of an integral image (rows + 1, columns + 1); 0 for those not inside."""
+    """Give the means (R, C) over boxes of an integral image (rows + 1, columns + 1); 0 for those outside."""
     height, width = size
     found = np.zeros((len(rows), len(columns)))
     for i in range(len(rows)):
@@ -126,7 +120,7 @@ def pattern_scores(
             left, right = columns[j], columns[j] + width
             if left < 0 or right >= sums.shape[1]:
                 continue
-            total = np.float32(0)
+            total = 0.0
             for k in range(sums.shape[2]):
                 below = sums[low, right, k] - sums[low, left, k]
                 off = (below - sums[top, right, k] + sums[top, left, k]) * many - learned[k]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import cv2
@@ -108,5 +109,5 @@ def _by_peaks(maps: Floats) -> Floats:
     for k in range(maps.shape[2]):
         small = cv2.resize(maps[:, :, k], size, interpolation=cv2.INTER_AREA)
         is_peak = (small == cv2.dilate(small, kernel)) & (small > _PEAK * small.max())
-        result[:, :, k] = maps[:, :, k] / np.sqrt(max(np.count_nonzero(is_peak), 1))
+        result[:, :, k] = maps[:, :, k] / math.sqrt(max(int(np.count_nonzero(is_peak)), 1))
     return result

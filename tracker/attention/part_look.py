@@ -80,7 +80,9 @@ class PartLook:
             name: (1.0 - rate) * getattr(self, name) + rate * getattr(new, name)
             for name in (field.name for field in fields(self))
         }
-        return PartLook(**{name: np.asarray(value, getattr(self, name).dtype) for name, value in mixed.items()})
+        return PartLook(
+            **{name: np.asarray(value, getattr(self, name).dtype) for name, value in mixed.items()}
+        )
 
 
 def _shares(
@@ -96,7 +98,10 @@ def _shares(
     inside[cells.row : cells.row + cells.height, cells.column : cells.column + cells.width] = True
     if near is not None:
         inside &= near[: CELL_PX * sight.rows : CELL_PX, : CELL_PX * sight.columns : CELL_PX]
-    whole, box = sight.maps.sum(axis=(0, 1), dtype=np.float64), sight.maps[inside].sum(axis=0, dtype=np.float64)
+    whole, box = (
+        sight.maps.sum(axis=(0, 1), dtype=np.float64),
+        sight.maps[inside].sum(axis=0, dtype=np.float64),
+    )
     rest = whole - box
     if config.share == "means":
         count = np.count_nonzero(inside)

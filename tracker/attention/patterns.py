@@ -25,7 +25,7 @@ _BIN_OF: Final = _uniform_bins()
 
 
 def patterns(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Give the bin of the pattern at each pixel (H, W) of an image (H, W, 3); that of even areas at the border.
+    """Give the bin of the pattern at each pixel (H, W) of an image (H, W, 3); of even areas at the border.
 
     Source: situation-awareness thesis, section 5.2, which says no more than "uniform".
     """

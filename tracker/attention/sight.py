@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.attention.attention_config import AttentionConfig
-from peopleboy.tracker.attention.feature_maps import CELL_PX, Floats, feature_maps
+from peopleboy.tracker.attention.channels import Floats
+from peopleboy.tracker.attention.feature_maps import CELL_PX, feature_maps
 from peopleboy.tracker.attention.patterns import BINS, patterns
 
 COLOUR_BINS: Final = 512
@@ -54,12 +55,12 @@ class Sight:
     @property
     def rows(self) -> int:
         """Height in cells."""
-        return self.image.shape[0] // CELL_PX
+        return int(self.image.shape[0]) // CELL_PX
 
     @property
     def columns(self) -> int:
         """Width in cells."""
-        return self.image.shape[1] // CELL_PX
+        return int(self.image.shape[1]) // CELL_PX
 
 
 def check_image(image: object) -> None:

@@ -45,7 +45,7 @@ class AttentiveTracker(Generic[Look, Seen]):
     tracker's, and people are known again after a long absence.
     """
 
-    recognises = True
+    knows_again = True
 
     def __init__(
         self, below: Below, recogniser: Recogniser[Look, Seen], config: AttentiveConfig | None = None
@@ -93,13 +93,15 @@ class AttentiveTracker(Generic[Look, Seen]):
 
     @property
     def explanation(self) -> AttentiveExplanation:
-        """What the tracker below believes, by the numbers that are told, and how much people look like those."""
+        """What the tracker below believes, by the numbers that are told, and how sure these are."""
         likeness = {}
         for wearer in self._wearers.values():
             mean = None if wearer.number is None else wearer.mean(wearer.number, least=1)
             if mean is not None and wearer.number is not None and wearer.seen_s == self._time_s:
                 likeness[wearer.number] = mean
-        return AttentiveExplanation(renumbered(getattr(self._below, "explanation", None), self._told), likeness)
+        return AttentiveExplanation(
+            renumbered(getattr(self._below, "explanation", None), self._told), likeness
+        )
 
     def _meet(self, track: Track, time_s: float) -> None:
         """Find who a track was, should it be there without a longer break."""

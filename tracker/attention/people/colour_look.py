@@ -54,7 +54,7 @@ class ColourLook:
         return float(np.sqrt(self.shares * other.shares).sum(axis=1) @ _WEIGHTS)
 
     def updated(self, new: ColourLook, rate: float) -> ColourLook:
-        """Take in a share of how the person looks now (situation-awareness thesis, equations 5.15 and 5.16)."""
+        """Take in a share of how the person looks now (situation-awareness thesis, equation 5.15)."""
         return ColourLook((1.0 - rate) * self.shares + rate * new.shares)
 
 
@@ -82,4 +82,5 @@ def _histogram(pixels: NDArray[np.uint8], scale: float) -> Doubles:
                 weight *= over[c] if is_upper else 1.0 - over[c]
                 bin_ = bin_ * _STEPS + low[c] + is_upper
             shares[bin_] += weight
-    return shares / max(pixels.shape[0], 1)
+    shares /= max(pixels.shape[0], 1)
+    return shares

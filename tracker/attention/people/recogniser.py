@@ -83,7 +83,7 @@ class ByFocus:
             self._newest = Sight.of(view.image, self._config)
         return Spotted(self._newest, view)
 
-    def learned(self, known: PersonLook | None, seen: Spotted, rate: float) -> PersonLook:
+    def learned(self, known: PersonLook | None, seen: Spotted, rate: float) -> PersonLook:  # noqa: ARG002
         """Learn somebody from the first image; later ones count as little as the source has it."""
         if known is None:
             return learn(seen.sight, seen.view.box, self._config)

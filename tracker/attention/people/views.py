@@ -58,7 +58,9 @@ def check_colours(frame: Frame) -> None:
     """
     if not any(camera in frame.images or camera in frame.calibrations for camera in LOOKED_AT):
         known = ", ".join(frame.images) or "none"
-        raise BadInput(f"attention needs a camera of colours, {' or '.join(LOOKED_AT)}; the robot has {known}")
+        raise BadInput(
+            f"attention needs a camera of colours, {' or '.join(LOOKED_AT)}; the robot has {known}"
+        )
 
 
 def box_in(camera: str, track: Track, frame: Frame) -> Box | None:
