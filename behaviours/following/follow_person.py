@@ -16,7 +16,7 @@ from peopleboy.behaviours.following.last_seen import (
     on_the_way,
     place_of,
 )
-from peopleboy.behaviours.following.make_room import RoomConfig, is_somebody_near
+from peopleboy.behaviours.following.make_room import RoomConfig, is_somebody_near, is_way_out
 from peopleboy.behaviours.following.occluder import OccluderConfig, hider, keep_behind
 from peopleboy.behaviours.following.reidentification import ReidentificationConfig, company, recognise
 from peopleboy.behaviours.following.target import (
@@ -290,6 +290,8 @@ def _search(
     if state.mode in ("follow", "wait", "blind"):
         state = replace(state, reason="nobody came back")
     state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s, searched_rad=turned)
+    if percept.knows_again and turned > math.tau and is_way_out(echoes(percept), config.room):
+        return state, Command(linear_m_s=config.room.speed_m_s, angular_rad_s=0.0)
     return state, Command(linear_m_s=0.0, angular_rad_s=turn)
 
 
@@ -300,9 +302,11 @@ def _wait(state: FollowState, target: Target, why: str, config: FollowConfig) ->
 
 
 def _is_too_near(target: Target, gap_s: float, percept: Percept, config: FollowConfig) -> bool:
-    """Tell whether the person came too near to be seen, and something is there still."""
-    was_near = target.height >= config.near_height and gap_s <= config.room.longest_s
-    return was_near and is_somebody_near(echoes(percept), config.room)
+    """Tell whether the person came too near to be seen: something is close ahead now."""
+    was_near = target.height >= config.near_height
+    return gap_s <= config.room.longest_s and is_somebody_near(
+        echoes(percept), config.room, was_near=was_near
+    )
 
 
 def _make_room(state: FollowState, target: Target, config: FollowConfig) -> tuple[FollowState, Command]:

@@ -1,4 +1,4 @@
-"""Backing off for somebody who has come so near that no camera shows who it is."""
+"""Making room for somebody who comes back: neither in the way, nor so near that no camera shows who it is."""
 
 from __future__ import annotations
 
@@ -14,24 +14,46 @@ class RoomConfig:
     """How much room is made.
 
     Attributes:
-        ahead_m: [m] way ahead that is to be free ...
+        ahead_m: [m] way ahead that is to be free for somebody who was near when last seen ...
+        close_m: [m] ... and for anybody who was lost ...
         half_width_m: [m] ... so far to either side.
         longest_s: [s] since the person was seen, after which the robot goes on otherwise.
-        speed_m_s: [m/s] of backing off.
+        speed_m_s: [m/s] of backing off, and of driving out of a narrow place.
+        cramped_m: [m] from the origin within which something makes a place narrow.
+        free_m: [m] way ahead that leads out of it.
     """
 
     ahead_m: float = 2.2
-    half_width_m: float = 0.6
+    close_m: float = 1.3
+    half_width_m: float = 0.45
     longest_s: float = 12.0
     speed_m_s: float = 0.4
+    cramped_m: float = 1.1
+    free_m: float = 2.8
 
 
-def is_somebody_near(around: Points, config: RoomConfig) -> bool:
+def is_somebody_near(around: Points, config: RoomConfig, *, was_near: bool) -> bool:
     """Tell whether something is close ahead.
 
     Args:
         around: (N, 2) [m] what the sonars hear, robot frame.
+        was_near: whether the person was near when it was last seen.
         config: how close.
     """
+    return _is_taken(around, config.ahead_m if was_near else config.close_m, config.half_width_m)
+
+
+def is_way_out(around: Points, config: RoomConfig) -> bool:
+    """Tell whether the robot stands in a narrow place, such as a door, and heads for a wide one.
+
+    Args:
+        around: (N, 2) [m] what the sonars hear, robot frame.
+        config: how narrow, and how wide.
+    """
+    is_narrow = bool(np.any(np.hypot(*around.T) < config.cramped_m))
+    return is_narrow and not _is_taken(around, config.free_m, config.half_width_m)
+
+
+def _is_taken(around: Points, ahead_m: float, half_width_m: float) -> bool:
     x, y = around.T
-    return bool(np.any((x > 0.0) & (x < config.ahead_m) & (np.abs(y) < config.half_width_m)))
+    return bool(np.any((x > 0.0) & (x < ahead_m) & (np.abs(y) < half_width_m)))
