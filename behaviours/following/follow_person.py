@@ -130,6 +130,7 @@ class FollowState:
         place: where the person was last seen; None once the robot has been there.
         searched_rad: [rad] by how much the search has turned.
         stalled_s: [s] for how long the search has not turned: an obstacle is in the way.
+        cleared_m: [m] way driven in the search, not to stand in anybody's.
         heard: echoes of the last seconds.
     """
 
@@ -144,6 +145,7 @@ class FollowState:
     place: LastPlace | None = None
     searched_rad: float = 0.0
     stalled_s: float = 0.0
+    cleared_m: float = 0.0
     heard: EchoMemory = field(default_factory=EchoMemory)
 
 
@@ -262,6 +264,7 @@ def _seen_at(
         has_left=max(abs(seen.bearing_rad), abs(soon)) > config.leaving_rad,
         place=place_of(seen, config.place),
         searched_rad=0.0,
+        cleared_m=0.0,
     )
 
 
@@ -290,8 +293,11 @@ def _search(
     if state.mode in ("follow", "wait", "blind"):
         state = replace(state, reason="nobody came back")
     state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s, searched_rad=turned)
-    if percept.knows_again and turned > math.tau and is_way_out(echoes(percept), config.room):
-        return state, Command(linear_m_s=config.room.speed_m_s, angular_rad_s=0.0)
+    if percept.knows_again and turned > math.tau and state.cleared_m < config.room.farthest_m:
+        cleared_m = state.cleared_m + max(percept.linear_m_s, 0.0) * min(step_s, config.max_age_s)
+        state = replace(state, cleared_m=cleared_m)
+        if is_way_out(echoes(percept), config.room):
+            return state, Command(linear_m_s=config.room.speed_m_s, angular_rad_s=0.0)
     return state, Command(linear_m_s=0.0, angular_rad_s=turn)
 
 

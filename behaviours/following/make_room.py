@@ -21,6 +21,7 @@ class RoomConfig:
         speed_m_s: [m/s] of backing off, and of driving out of a narrow place.
         cramped_m: [m] from the origin within which something makes a place narrow.
         free_m: [m] way ahead that leads out of it.
+        farthest_m: [m] way that is made in one search.
     """
 
     ahead_m: float = 2.2
@@ -28,8 +29,9 @@ class RoomConfig:
     half_width_m: float = 0.45
     longest_s: float = 12.0
     speed_m_s: float = 0.4
-    cramped_m: float = 1.1
+    cramped_m: float = 1.6
     free_m: float = 2.8
+    farthest_m: float = 3.0
 
 
 def is_somebody_near(around: Points, config: RoomConfig, *, was_near: bool) -> bool:
@@ -44,7 +46,7 @@ def is_somebody_near(around: Points, config: RoomConfig, *, was_near: bool) -> b
 
 
 def is_way_out(around: Points, config: RoomConfig) -> bool:
-    """Tell whether the robot stands in a narrow place, such as a door, and heads for a wide one.
+    """Tell whether the robot stands in a narrow place, or beside somebody, and heads for a wide one.
 
     Args:
         around: (N, 2) [m] what the sonars hear, robot frame.

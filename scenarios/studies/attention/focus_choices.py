@@ -35,5 +35,6 @@ CHOICES: Final[Mapping[str, AttentionConfig]] = {
     "colour ratio alone": AttentionConfig(maps=False),
     DEFAULT: AttentionConfig(),
 }
-"""By name: from the printed one down to "neither of them" one thing is changed in that with means; from there on each has what the
-ones above it have; "matching maps" leaves out centre-surround; the default adds the ratio of colours to that."""
+"""By name. Those down to "neither of them" change one thing, or both, of "means, not sums"; from there on
+each has what the ones above it have. "matching maps" leaves out centre-surround, the two below it one more thing
+of that; the default adds the ratio of colours to it."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
 
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.studies.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import Truth
@@ -29,8 +30,8 @@ def watch_absence(scenario: Scenario, seed: int, names: Sequence[str]) -> dict[s
 
     Returns:
         Plain data by the tracker's name: "away", images in which the person is away, "accepted", how often
-        somebody else had its number then, "late_s", the time from when it is to be seen again until it has its
-        number, infinite for never, and "found_s" the same until it has any.
+        somebody else had its number then, "late_s", the time from when it is to be seen again until it has
+        its number, None for never, and "found_s" the same until it has any.
     """
     trackers = {name: make_tracker(name, stream(seed, "tracker")) for name in names}
     told: dict[str, list[dict[int, str]]] = {name: [] for name in names}
@@ -69,7 +70,7 @@ def who_is_who(tracks: Sequence[Track], truth: Truth) -> dict[int, str]:
 
 def judged(
     rows: Sequence[Mapping[int, str]], visible: Sequence[float], leader: str, rate_hz: float
-) -> dict[str, float]:
+) -> dict[str, float | None]:
     """Give plain data of what a tracker said, image by image, about a person with these visible shares."""
     gone, back = longest_gap(visible)
     numbers = Counter(number for row in rows[:gone] for number, name in row.items() if name == leader)
@@ -80,15 +81,15 @@ def judged(
     return {
         "away": len(away),
         "accepted": sum(row.get(own or 0, leader) != leader for row in away),
-        "late_s": own_again[0] / rate_hz if own_again else float("inf"),
-        "found_s": any_again[0] / rate_hz if any_again else float("inf"),
+        "late_s": own_again[0] / rate_hz if own_again else None,
+        "found_s": any_again[0] / rate_hz if any_again else None,
     }
 
 
 def longest_gap(visible: Sequence[float]) -> tuple[int, int]:
     """Find the longest time in which somebody cannot be seen: its first image, and that of the return."""
     seen = [k for k, share in enumerate(visible) if share >= GONE]
-    gaps = [(later - one, one, later) for one, later in zip(seen, seen[1:], strict=False)]
+    gaps = [(later - one, one, later) for one, later in pairwise(seen)]
     _, gone, later = max(gaps)
     back = next((k for k in range(later, len(visible)) if visible[k] >= BACK), later)
     return gone + 1, back

@@ -30,6 +30,8 @@ class Plan:
         drives: seeds of each of them.
         ablated: seeds of those on which trackers are compared that differ in one thing.
         drive_s: [s] after which drives are cut.
+        absences: seeds of each film in which somebody goes away and comes back.
+        follows: seeds of runs in which the robot follows such a person.
     """
 
     cache: Path
@@ -46,6 +48,8 @@ class Plan:
     drives: int = 5
     ablated: int = 2
     drive_s: float = 3600.0
+    absences: int = 10
+    follows: int = 20
 
 
 QUICK_S = 20.0
@@ -74,6 +78,8 @@ def quick_plan(cache: Path) -> Plan:
         drives=1,
         ablated=1,
         drive_s=10.0,
+        absences=1,
+        follows=1,
     )
 
 
