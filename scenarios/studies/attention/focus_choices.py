@@ -36,5 +36,5 @@ CHOICES: Final[Mapping[str, AttentionConfig]] = {
     DEFAULT: AttentionConfig(),
 }
 """By name. Those down to "neither of them" change one thing, or both, of "means, not sums"; from there on
-each has what the ones above it have. "matching maps" leaves out centre-surround, the two below it one more thing
-of that; the default adds the ratio of colours to it."""
+each has what the ones above it have. "matching maps" leaves out centre-surround, the two below it one thing
+more; the default adds the ratio of colours to it."""
