@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import singledispatch
 
+from peopleboy.tracker.attention.people.attended import Attended
 from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.explanation import ContourExplanation
@@ -18,10 +19,12 @@ class AttentiveExplanation:
     Attributes:
         below: of its own kind, by the numbers that are told.
         likeness: 0..1, mean score of late of those who are seen well enough, by number.
+        attended: who was learned first, in the newest image of a colour camera; None before, or without one.
     """
 
     below: object
     likeness: Mapping[int, float]
+    attended: Attended | None
 
 
 @singledispatch

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Generic, Protocol
 
 from peopleboy.tracker.attention.people.acquaintance import Acquaintance, Wearer
+from peopleboy.tracker.attention.people.attended import Attended
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation, renumbered
 from peopleboy.tracker.attention.people.recogniser import Look, Recogniser, Seen
@@ -57,6 +58,7 @@ class AttentiveTracker(Generic[Look, Seen]):
         self._told: dict[int, int] = {}
         self._newest = 0
         self._time_s = 0.0
+        self._attended: Attended | None = None
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -82,6 +84,7 @@ class AttentiveTracker(Generic[Look, Seen]):
         """
         check_colours(frame)
         self._time_s = frame.time_s
+        self._attend(frame)
         tracks = self._below.update(frame)
         sure = [track for track in tracks if track.status is not Status.TENTATIVE]
         self._forget(frame.time_s)
@@ -99,9 +102,8 @@ class AttentiveTracker(Generic[Look, Seen]):
             mean = None if wearer.number is None else wearer.mean(wearer.number, least=1)
             if mean is not None and wearer.number is not None and wearer.seen_s == self._time_s:
                 likeness[wearer.number] = mean
-        return AttentiveExplanation(
-            renumbered(getattr(self._below, "explanation", None), self._told), likeness
-        )
+        below = renumbered(getattr(self._below, "explanation", None), self._told)
+        return AttentiveExplanation(below, likeness, self._attended)
 
     def _meet(self, track: Track, time_s: float) -> None:
         """Find who a track was, should it be there without a longer break."""
@@ -122,8 +124,9 @@ class AttentiveTracker(Generic[Look, Seen]):
         wearer = self._wearers[track.id]
         if track.status is not Status.TRACKED or wearer.number is None:
             return
-        glimpses = ((view.camera, self._recogniser.see(view)) for view in views_of(track, frame))
-        seen = {camera: one for camera, one in glimpses if one is not None}
+        views = {view.camera: view for view in views_of(track, frame)}
+        glimpses = {camera: self._recogniser.see(view) for camera, view in views.items()}
+        seen = {camera: one for camera, one in glimpses.items() if one is not None}
         if not seen:
             return
         if wearer.is_new:
@@ -135,6 +138,14 @@ class AttentiveTracker(Generic[Look, Seen]):
         own = self._people[wearer.number]
         if score is None or score >= self._config.doubt or not own.is_known(self._config):
             own.learn(seen, self._recogniser, self._config)
+        if self._attended is None and own.is_known(self._config):
+            self._attended = Attended.learned(own.number, views[next(iter(seen))])
+
+    def _attend(self, frame: Frame) -> None:
+        """Have a new image ready in which the person can be looked for on whom attention is."""
+        attended = self._attended
+        if attended is not None and attended.camera in frame.images:
+            self._attended = replace(attended, image=frame.rgb(attended.camera))
 
     def _recognise(self, wearer: Wearer, seen: Mapping[str, Seen]) -> None:
         """Let somebody new be the one of those who were lost before whom he looks like most, if he does."""
