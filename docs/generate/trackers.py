@@ -60,9 +60,9 @@ ABOUT: Mapping[str, tuple[str, str]] = {
     ),
     "attentive": (
         "the situation-awareness thesis, chapter 5, and beyond",
-        "`peopleboy`, which learns what everybody looks like, and gives who comes back the old number, however "
-        "long the person was away; whoever is not known stays a stranger. A robot that follows searches on "
-        "until it sees its person again.",
+        "`peopleboy`, which learns what everybody looks like, and gives who comes back the old number, "
+        "however long the person was away; whoever is not known stays a stranger. A robot that follows "
+        "searches on until it sees its person again.",
     ),
     "attentive-printed": (
         "the situation-awareness thesis, chapter 5",
@@ -70,7 +70,7 @@ ABOUT: Mapping[str, tuple[str, str]] = {
     ),
     "attentive-fused": (
         "all of these",
-        "`fused`, whose people are known again like those of `attentive`, by every camera that shows colours.",
+        "`fused`, whose people are known again like those of `attentive`, by every camera of colours.",
     ),
 }
 

@@ -14,6 +14,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
 from peopleboy.scenarios.studies.attention.focus_choices import CHOICES
+from peopleboy.scenarios.studies.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.sim.world import World
 from peopleboy.tracker.attention.attend import Focus, PersonLook, learn, middle_of, search
@@ -23,8 +24,10 @@ from peopleboy.tracker.attention.sight import Sight
 from peopleboy.tracker.frame import COLOUR, THERMAL
 from peopleboy.tracker.track import Box
 
-EVERY: Final = 8
-"""Frames from one that is looked at to the next: about two a second."""
+EVERY: Final = 10
+"""Frames from one that is looked at to the next: 1.5 a second."""
+
+FOLLOWS: Final = "follow_person"
 
 LEARNED: Final = 0.6  # visible share from which on somebody can be learned
 PRESENT: Final = 0.3  # likewise looked for
@@ -58,6 +61,11 @@ class _ToldEyes(OracleTracker):
 
 def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[FocusMoment]:
     """Play a scenario; a robot that follows a person is told who that is."""
+    if scenario.robot.behaviour != FOLLOWS:
+        for number, (world, seen) in enumerate(blind_drive(scenario, seed)):
+            if number % every == 0:
+                yield FocusMoment(seen.time_s, seen.images[COLOUR], world.truth(COLOUR))
+        return
     config = scenario.world(seed)
     with World(config) as world:
         eyes, behaviour = _ToldEyes(lambda: world.truth()), scenario.make_behaviour()
@@ -69,7 +77,7 @@ def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[Fo
 
 def wanted(scenario: Scenario, truth: Truth) -> list[PersonTruth]:
     """List those who are looked for: everybody, or the first one if the robot follows."""
-    is_led = scenario.robot.behaviour == "follow_person"
+    is_led = scenario.robot.behaviour == FOLLOWS
     return [person for person in truth.people if not is_led or person.id == 1]
 
 
