@@ -14,6 +14,7 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.attention.attend import PersonLook
 from peopleboy.tracker.attention.attention_config import PRINTED as PRINTED_ATTENTION
+from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
 from peopleboy.tracker.attention.people.colour_look import ColourLook
 from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, Spotted
@@ -142,7 +143,7 @@ def _attentive_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook,
 
 
 def _attentive_printed_tracker(rng: np.random.Generator) -> AttentiveTracker[PersonLook, Spotted]:
-    return AttentiveTracker(_contour_tracker(DEFAULT_TRACKER, rng), ByFocus(PRINTED_ATTENTION))
+    return AttentiveTracker(_contour_tracker(DEFAULT_TRACKER, rng), ByFocus(PRINTED_ATTENTION), AS_FOUND)
 
 
 def _attentive_fused_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook, ColourLook]:

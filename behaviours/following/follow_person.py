@@ -293,10 +293,10 @@ def _search(
     if state.mode in ("follow", "wait", "blind"):
         state = replace(state, reason="nobody came back")
     state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s, searched_rad=turned)
-    if percept.knows_again and turned > math.tau and state.cleared_m < config.room.farthest_m:
-        cleared_m = state.cleared_m + max(percept.linear_m_s, 0.0) * min(step_s, config.max_age_s)
-        state = replace(state, cleared_m=cleared_m)
-        if is_way_out(echoes(percept), config.room):
+    if percept.knows_again and turned > math.tau:
+        gone_m = state.cleared_m + max(percept.linear_m_s, 0.0) * min(step_s, config.max_age_s)
+        state = replace(state, cleared_m=gone_m)
+        if is_way_out(echoes(percept), config.room, gone_m):
             return state, Command(linear_m_s=config.room.speed_m_s, angular_rad_s=0.0)
     return state, Command(linear_m_s=0.0, angular_rad_s=turn)
 

@@ -63,7 +63,7 @@ def _fill_colours(image: NDArray[np.uint8], maps: Floats) -> None:
 def _gabor_kernels() -> tuple[Floats, ...]:
     """Make filters of mean 0 and gain 1 for lines at 0, 45, 90 and 135 degrees from the row."""
     kernels = []
-    for turn in (90.0, 135.0, 0.0, 45.0):  # OpenCV counts that of the wave
+    for turn in (90.0, 45.0, 0.0, 135.0):  # OpenCV counts that of the wave, and rows downwards
         size = (_KERNEL_PX, _KERNEL_PX)
         kernel = cv2.getGaborKernel(size, _SIGMA_PX, np.deg2rad(turn), _WAVE_PX, 1.0, 0.0)
         kernel -= kernel.mean()

@@ -9,8 +9,20 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL.Image import Image
 
-from docs.generate.pictures import all_round, depth, occlusion, panorama, rays, rgbd, runs, thermal, tracker
+from docs.generate.pictures import (
+    all_round,
+    attention,
+    depth,
+    occlusion,
+    panorama,
+    rays,
+    rgbd,
+    runs,
+    thermal,
+    tracker,
+)
 from docs.generate.pictures.paper import save
+from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import draw_parts
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
 FOLDER = Path(__file__).parents[2] / "pictures"
@@ -28,6 +40,8 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "rgbd": rgbd.steps,
     "panoramic_features": draw_features,
     "panoramic_errors": panorama.errors_over_distance,
+    "attention": attention.absence,
+    "attention_parts": draw_parts,
     "all_round": all_round.all_round,
     "handed_over": all_round.handed_over,
     "detector": tracker.detector,

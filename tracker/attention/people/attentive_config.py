@@ -53,4 +53,6 @@ class AttentiveConfig:
                 raise BadInput(f"AttentiveConfig: {name} must be 0 or more, got {getattr(self, name)}")
 
 
-DEFAULT: Final = AttentiveConfig()
+AS_FOUND: Final = AttentiveConfig(accept=0.24, reject=0.0, doubt=0.0)
+"""For the focus of attention as printed: it can be elsewhere while somebody is there, so that nobody is
+doubted for that; and where no feature speaks for the box, patterns alone make a score of a quarter."""

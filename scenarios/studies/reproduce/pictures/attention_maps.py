@@ -63,7 +63,7 @@ def draw_excitation() -> Figure:
     sight = Sight.of(first.moment.image, _MEANS)
     known = dict(learn(sight, _box_of(first.person), _MEANS).parts)[TORSO]
     assert sight.maps is not None
-    page = canvas(2.2)
+    page = canvas(1.7)
     image, *axes = page.subplots(1, 4)
     _show(image, first.moment.image, "image, and the learned box")
     _frame(image, _box_of(first.person), _LEARNED)
@@ -78,7 +78,7 @@ def draw_excitation() -> Figure:
 def draw_parts() -> Figure:
     """Draw the scores of torso, head and patterns, and of the whole person: figure 5.7."""
     first = next(learned_films())
-    page = canvas(4.2)
+    page = canvas(2.9)
     ways = ((_MEANS, "as printed, means"), (_ALONE, "default"))
     for row, (config, name) in zip(page.subplots(2, 5), ways, strict=True):
         sight = Sight.of(first.moment.image, config)
@@ -144,8 +144,10 @@ def _part_box(part: Part, box: Box) -> Box:
     return left + (width - wide) / 2.0, top + part.top * height, wide, part.height * height
 
 
-def _show(axes: Axes, picture: NDArray[np.generic], title: str) -> None:
-    axes.imshow(picture, cmap="inferno", interpolation="nearest")
+def _show(axes: Axes, picture: NDArray[np.number], title: str) -> None:
+    # What is outside is 0 in scores; likely places differ little in some.
+    lowest = np.percentile(picture[picture > 0], 1.0) if picture.ndim == 2 and (picture > 0).any() else None
+    axes.imshow(picture, cmap="inferno", interpolation="nearest", vmin=lowest)
     label(axes, title)
     axes.set_axis_off()
 
