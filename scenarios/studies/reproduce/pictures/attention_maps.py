@@ -31,7 +31,7 @@ _LEARNED: Final = "#e7298a"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Learned:
+class LearnedFilm:
     """A person who was learned, and later images of it.
 
     Attributes:
@@ -45,7 +45,7 @@ class Learned:
     later: Sequence[FocusMoment]
 
 
-def learned_films(scenario: str = SCENE, seed: int = SEED, every: int = 15) -> Iterator[Learned]:
+def learned_films(scenario: str = SCENE, seed: int = SEED, every: int = 15) -> Iterator[LearnedFilm]:
     """Give each person of a film with the first image that shows most of it."""
     loaded = load_scenario(scenario)
     moments = list(play_focus(loaded, seed, every))
@@ -53,7 +53,7 @@ def learned_films(scenario: str = SCENE, seed: int = SEED, every: int = 15) -> I
         for k, moment in enumerate(moments):
             person = next((one for one in moment.truth.people if one.id == number), None)
             if person is not None and can_be_learned(person, moment.image.shape):
-                yield Learned(moment, person, moments[k + 1 :])
+                yield LearnedFilm(moment, person, moments[k + 1 :])
                 break
 
 
