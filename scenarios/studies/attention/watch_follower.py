@@ -13,6 +13,9 @@ from peopleboy.sim.world import World
 AWAY_S: Final = 8.0
 """Not followed for longer than this somebody is away."""
 
+LEFT_S: Final = 30.0
+"""Of a time like that which the end of the run cuts off sooner nobody knows how it would have ended."""
+
 
 def watch_follower(scenario: Scenario, seed: int, name: str) -> dict[str, Any]:
     """Let a robot follow the first person of a scenario with a tracker.
@@ -31,8 +34,7 @@ def watch_follower(scenario: Scenario, seed: int, name: str) -> dict[str, Any]:
         frames = round(scenario.duration_s * config.control_hz)
         ticks = closed_loop(world, eyes, scenario.make_behaviour(), frames)
         followed = [_followed(tick) for tick in ticks]
-    away = round(AWAY_S * config.control_hz)
-    after = resumptions(followed, leader, away)
+    after = resumptions(followed, leader, *(round(s * config.control_hz) for s in (AWAY_S, LEFT_S)))
     return {
         "images": len(followed),
         "right": sum(who == leader for who in followed),
@@ -47,15 +49,21 @@ def _followed(tick: Tick) -> str | None:
     return None if tick.following is None else who_is_who(tick.tracks, tick.truth).get(tick.following)
 
 
-def resumptions(followed: list[str | None], leader: str, away: int) -> list[bool]:
+def resumptions(followed: list[str | None], leader: str, away: int, left: int) -> list[bool]:
     """Tell of each time that the robot did not follow the person for longer whether it went on with this one.
 
     Args:
         followed: whom it followed, image by image.
         leader: the person's name.
-        away: images from which on it counts.
+        away: images from which on it counts ...
+        left: ... and of the last time, which the end cuts off.
     """
     ours = [k for k, who in enumerate(followed) if who == leader]
     ends = [*ours[1:], len(followed)]
-    long = [(one, later) for one, later in zip(ours, ends, strict=True) if later - one > away]
+    least = [*(away for _ in ours[1:]), left]
+    long = [
+        (one, later)
+        for one, later, at_least in zip(ours, ends, least, strict=False)
+        if later - one > at_least
+    ]
     return [later < len(followed) and not any(followed[one + 1 : later]) for one, later in long]

@@ -27,8 +27,10 @@ def test_an_absence_counts_who_else_has_the_number_and_how_late_it_is_right():
 def test_a_follower_goes_on_with_the_person_only_if_with_nobody_else_before():
     anna, bert = "anna", "bert"
     followed = [anna, None, None, None, anna, None, anna, None, bert, None, anna, None, None, None]
-    assert resumptions(followed, anna, 2) == [True, False, False]
-    assert resumptions([anna, None, anna], anna, 2) == []
+    assert resumptions(followed, anna, 2, 3) == [True, False, False]
+    assert resumptions(followed, anna, 2, 4) == [True, False]
+    assert resumptions([anna, None, anna], anna, 2, 2) == []
+    assert resumptions([None] * 9, anna, 2, 2) == []
 
 
 def test_ways_to_look_begin_as_printed_and_end_with_the_default():
