@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Generic
+from typing import Final, Generic
 
 import numpy as np
 
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
 from peopleboy.tracker.attention.people.recogniser import Look, Recogniser, Seen
+
+_OF_LATE: Final = 0.05  # share of the newest image in the usual score
 
 
 @dataclass(slots=True)
@@ -21,12 +23,14 @@ class Acquaintance(Generic[Look]):
         number: of the person's tracks.
         looks: by camera.
         images: in which it was learned, by camera.
+        usual: score that it has of late while it is there.
         seen_s: [s] when it was seen last.
     """
 
     number: int
     looks: dict[str, Look] = field(default_factory=dict)
     images: dict[str, int] = field(default_factory=dict)
+    usual: float = 0.0
     seen_s: float = -np.inf
 
     def is_known(self, config: AttentiveConfig) -> bool:
@@ -39,6 +43,14 @@ class Acquaintance(Generic[Look]):
             recogniser.score(self.looks[camera], one) for camera, one in seen.items() if camera in self.looks
         ]
         return float(np.mean(scores)) if scores else None
+
+    def needed(self, config: AttentiveConfig) -> float:
+        """Give the score from which on somebody new is this person: who always looks the same must do so."""
+        return max(config.accept, self.usual - config.slack)
+
+    def note(self, score: float) -> None:
+        """Take in the score of an image in which the person is there."""
+        self.usual += _OF_LATE * (score - self.usual) if self.usual else score
 
     def learn(
         self, seen: Mapping[str, Seen], recogniser: Recogniser[Look, Seen], config: AttentiveConfig

@@ -13,7 +13,8 @@ class AttentiveConfig:
     """How looks are learned, and what they must be to be somebody's.
 
     Attributes:
-        accept: mean score from which on somebody new is a person who was lost.
+        accept: mean score from which on somebody new may be a person who was lost ...
+        slack: ... if it is not so much below the one that this person usually had.
         reject: mean score below which somebody is not who the tracker below takes him for.
         images: that scores are averaged over ...
         least_images: ... and how many there must be at least.
@@ -31,6 +32,7 @@ class AttentiveConfig:
     """
 
     accept: float = 0.62
+    slack: float = 0.2
     reject: float = 0.45
     images: int = 8
     least_images: int = 2
@@ -45,7 +47,7 @@ class AttentiveConfig:
 
     def __post_init__(self) -> None:
         """Refuse what cannot be done."""
-        for name in ("accept", "reject", "rate", "doubt"):
+        for name in ("accept", "slack", "reject", "rate", "doubt"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise BadInput(f"AttentiveConfig: {name} must be in 0..1, got {getattr(self, name)}")
         for name in (field.name for field in fields(self)):
@@ -53,6 +55,6 @@ class AttentiveConfig:
                 raise BadInput(f"AttentiveConfig: {name} must be 0 or more, got {getattr(self, name)}")
 
 
-AS_FOUND: Final = AttentiveConfig(accept=0.24, reject=0.0, doubt=0.0)
+AS_FOUND: Final = AttentiveConfig(accept=0.24, slack=1.0, reject=0.0, doubt=0.0)
 """For the focus of attention as printed: it can be elsewhere while somebody is there, so that nobody is
 doubted for that; and where no feature speaks for the box, patterns alone make a score of a quarter."""

@@ -138,6 +138,8 @@ class AttentiveTracker(Generic[Look, Seen]):
         own = self._people[wearer.number]
         if score is None or score >= self._config.doubt or not own.is_known(self._config):
             own.learn(seen, self._recogniser, self._config)
+            if score is not None and own.is_known(self._config):
+                own.note(score)
         if self._attended is None and own.is_known(self._config):
             self._attended = Attended.learned(own.number, views[next(iter(seen))])
 
@@ -154,7 +156,7 @@ class AttentiveTracker(Generic[Look, Seen]):
             if number != wearer.number and person.seen_s < wearer.since_s and person.is_known(config):
                 self._score(wearer, number, seen)
                 mean = wearer.mean(number, config.least_images)
-                if mean is not None and mean >= config.accept:
+                if mean is not None and mean >= person.needed(config):
                     found[number] = mean
         if found:
             self._take(wearer, max(found, key=lambda number: found[number]))
