@@ -57,6 +57,8 @@ class Percept:
         images: of the cameras that took one now, by name, such as `colour`, (H, W, 3) uint8 sRGB; each may be
             made only when it is asked for.
         image_age_s: [s] since the newest image came in; `people` are those of that image.
+        knows_again: whether somebody who comes back has the old number, however long it was away, so that
+            whoever has a new one is somebody else.
         fault: why nobody can be seen just now, such as a tracker's error; empty if all is well.
 
     Raises:
@@ -71,6 +73,7 @@ class Percept:
     angular_rad_s: float
     images: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
     image_age_s: float = 0.0
+    knows_again: bool = False
     fault: str = ""
 
     def __post_init__(self) -> None:

@@ -12,6 +12,12 @@ from typing import Final, Protocol, runtime_checkable
 import numpy as np
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.attention.attend import PersonLook
+from peopleboy.tracker.attention.attention_config import PRINTED as PRINTED_ATTENTION
+from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
+from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
+from peopleboy.tracker.attention.people.colour_look import ColourLook
+from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, Spotted
 from peopleboy.tracker.frame import Calibration, Frame
 from peopleboy.tracker.fusion.ahead_tracker import AheadTracker
 from peopleboy.tracker.fusion.fused_tracker import FusedTracker
@@ -65,6 +71,16 @@ class Introducible(Protocol):
 
 
 @runtime_checkable
+class KnowsAgain(Protocol):
+    """A tracker that knows people again by itself, however long they were away."""
+
+    @property
+    def knows_again(self) -> bool:
+        """Whether whoever has a new number is somebody else."""
+        ...
+
+
+@runtime_checkable
 class ChecksCameras(Protocol):
     """A tracker that cannot see by every camera of the right name."""
 
@@ -88,6 +104,11 @@ FOOTAGE_TRACKER: Final = "footage"
 def explanation_of(tracker: Tracker) -> object:
     """Ask a tracker what it believes beyond its tracks; None where it tells nothing."""
     return tracker.explanation if isinstance(tracker, Explains) else None
+
+
+def knows_again(tracker: Tracker) -> bool:
+    """Tell whether a person who comes back has the old number, and whoever has a new one is somebody else."""
+    return isinstance(tracker, KnowsAgain) and tracker.knows_again
 
 
 def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
@@ -117,6 +138,18 @@ def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
     return FusedTracker(AheadTracker(thermal, rgbd, FusionConfig()), _panoramic_tracker(rng))
 
 
+def _attentive_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook, ColourLook]:
+    return AttentiveTracker(_contour_tracker(DEFAULT_TRACKER, rng), ByColour())
+
+
+def _attentive_printed_tracker(rng: np.random.Generator) -> AttentiveTracker[PersonLook, Spotted]:
+    return AttentiveTracker(_contour_tracker(DEFAULT_TRACKER, rng), ByFocus(PRINTED_ATTENTION), AS_FOUND)
+
+
+def _attentive_fused_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook, ColourLook]:
+    return AttentiveTracker(_fused_tracker(rng), ByColour())
+
+
 TRACKERS: Final[dict[str, Factory]] = {
     **{name: partial(_contour_tracker, name) for name in VARIANTS},
     "panoramic-paper": _panoramic_paper_tracker,
@@ -125,6 +158,9 @@ TRACKERS: Final[dict[str, Factory]] = {
     "rgbd": partial(_rgbd_tracker, RgbdConfig()),
     "rgbd-printed": partial(_rgbd_tracker, PRINTED),
     "fused": _fused_tracker,
+    "attentive": _attentive_tracker,
+    "attentive-printed": _attentive_printed_tracker,
+    "attentive-fused": _attentive_fused_tracker,
 }
 """Each tracker's factory by name; the first is the default. Whoever has a further one adds it here."""
 

@@ -16,6 +16,7 @@ from peopleboy.behaviours.following.last_seen import (
     on_the_way,
     place_of,
 )
+from peopleboy.behaviours.following.make_room import RoomConfig, is_somebody_near, is_way_out
 from peopleboy.behaviours.following.occluder import OccluderConfig, hider, keep_behind
 from peopleboy.behaviours.following.reidentification import ReidentificationConfig, company, recognise
 from peopleboy.behaviours.following.target import (
@@ -63,7 +64,8 @@ class FollowConfig:
         gone_s: [s] the same for one lost in the middle of the image with nobody in front: it went behind a
             wall, or the tracker missed it; then the robot goes to where it was seen last.
         recover_1_s: [1/s] speed per distance on the way there.
-        give_up_s: [s] a person out of sight for this long is given up; the robot looks for anybody then.
+        give_up_s: [s] a person out of sight for this long is given up; the robot looks for anybody then ...
+        give_up_known_s: [s] ... and this long where people are known again when they come back.
         leaving_rad: [rad] a person seen farther off the nose, or about to be, has left the image.
         target: smoothing of what is seen.
         identity: who is taken for the followed person.
@@ -72,6 +74,8 @@ class FollowConfig:
         avoid: steering along walls.
         avoid_alone: the same on the way to where a person was seen last, when there is nobody to look at.
         heard: what is remembered of echoes for that: an edge vanishes in the gaps between the sonars' cones.
+        room: what is made for who is lost because it came too near, where people are known again; the robot
+            would stand in the door through which the person comes back.
     """
 
     keep_height: float = 0.58
@@ -97,6 +101,7 @@ class FollowConfig:
     gone_s: float = 0.7
     recover_1_s: float = 0.6
     give_up_s: float = 30.0
+    give_up_known_s: float = 300.0
     leaving_rad: float = math.radians(19.0)
     target: TargetConfig = field(default_factory=TargetConfig)
     identity: ReidentificationConfig = field(default_factory=ReidentificationConfig)
@@ -105,6 +110,7 @@ class FollowConfig:
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
     avoid_alone: AvoidConfig = WIDELY
     heard: EchoMemoryConfig = field(default_factory=lambda: EchoMemoryConfig(keep_s=4.0, within_m=1.7))
+    room: RoomConfig = field(default_factory=RoomConfig)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,6 +130,7 @@ class FollowState:
         place: where the person was last seen; None once the robot has been there.
         searched_rad: [rad] by how much the search has turned.
         stalled_s: [s] for how long the search has not turned: an obstacle is in the way.
+        cleared_m: [m] way driven in the search, not to stand in anybody's.
         heard: echoes of the last seconds.
     """
 
@@ -138,6 +145,7 @@ class FollowState:
     place: LastPlace | None = None
     searched_rad: float = 0.0
     stalled_s: float = 0.0
+    cleared_m: float = 0.0
     heard: EchoMemory = field(default_factory=EchoMemory)
 
 
@@ -189,6 +197,8 @@ def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[
     gap_s = percept.time_s - state.target.seen_s
     if gap_s <= config.max_age_s:
         return _go_after(state, state.target, percept, step_s, config)
+    if percept.knows_again and _is_too_near(state.target, gap_s, percept, config):
+        return _make_room(state, state.target, config)
     why, patience_s = _patience(state, state.target, percept, config)
     if gap_s <= patience_s:
         return _wait(state, state.target, why, config)
@@ -205,7 +215,8 @@ def distance_error(height: float, config: FollowConfig) -> float:
 def _update_target(state: FollowState, percept: Percept, step_s: float, config: FollowConfig) -> FollowState:
     """Predict where the followed person is, look for it, give it up when it stays away."""
     known = state.target if step_s <= config.wait_s else None
-    if known is not None and percept.time_s - known.seen_s > config.give_up_s:
+    give_up_s = config.give_up_known_s if percept.knows_again else config.give_up_s
+    if known is not None and percept.time_s - known.seen_s > give_up_s:
         known = None
     if known is None:
         state = replace(state, target=None, others=frozenset(), place=None)
@@ -218,7 +229,15 @@ def _update_target(state: FollowState, percept: Percept, step_s: float, config: 
             gone = keep_behind(gone, percept.people, config.hidden, config.target)
         state = replace(state, target=gone, place=place)
     gap_s = 0.0 if known is None else percept.time_s - known.seen_s
-    person = recognise(percept.people, known, state.others, gap_s, config.identity, config.target)
+    person = recognise(
+        percept.people,
+        known,
+        state.others,
+        gap_s,
+        config.identity,
+        config.target,
+        knows_again=percept.knows_again,
+    )
     if person is None:
         if known is None:
             return state
@@ -245,6 +264,7 @@ def _seen_at(
         has_left=max(abs(seen.bearing_rad), abs(soon)) > config.leaving_rad,
         place=place_of(seen, config.place),
         searched_rad=0.0,
+        cleared_m=0.0,
     )
 
 
@@ -273,6 +293,11 @@ def _search(
     if state.mode in ("follow", "wait", "blind"):
         state = replace(state, reason="nobody came back")
     state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s, searched_rad=turned)
+    if percept.knows_again and turned > math.tau:
+        gone_m = state.cleared_m + max(percept.linear_m_s, 0.0) * min(step_s, config.max_age_s)
+        state = replace(state, cleared_m=gone_m)
+        if is_way_out(echoes(percept), config.room, gone_m):
+            return state, Command(linear_m_s=config.room.speed_m_s, angular_rad_s=0.0)
     return state, Command(linear_m_s=0.0, angular_rad_s=turn)
 
 
@@ -280,6 +305,21 @@ def _wait(state: FollowState, target: Target, why: str, config: FollowConfig) ->
     """Stand, and turn gently towards where the person should be by now."""
     turn = _clip(_facing_turn(target, config), config.wait_turn_rad_s)
     return replace(state, mode="wait", reason=why), Command(linear_m_s=0.0, angular_rad_s=turn)
+
+
+def _is_too_near(target: Target, gap_s: float, percept: Percept, config: FollowConfig) -> bool:
+    """Tell whether the person came too near to be seen: something is close ahead now."""
+    was_near = target.height >= config.near_height
+    return gap_s <= config.room.longest_s and is_somebody_near(
+        echoes(percept), config.room, was_near=was_near
+    )
+
+
+def _make_room(state: FollowState, target: Target, config: FollowConfig) -> tuple[FollowState, Command]:
+    """Back off, facing the person."""
+    turn = _clip(_facing_turn(target, config), config.wait_turn_rad_s)
+    state = replace(state, mode="wait", reason=f"track {target.id} is too near to be seen")
+    return state, Command(linear_m_s=-config.room.speed_m_s, angular_rad_s=turn)
 
 
 def _recover(

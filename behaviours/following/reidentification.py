@@ -37,6 +37,8 @@ def recognise(
     gap_s: float,
     config: ReidentificationConfig,
     view: TargetConfig,
+    *,
+    knows_again: bool = False,
 ) -> SeenPerson | None:
     """Find the followed person among those in the image; None if it is not seen.
 
@@ -50,11 +52,12 @@ def recognise(
         gap_s: [s] since the target was seen.
         config: how far off a track under another number may be.
         view: bearings of image columns.
+        knows_again: whether the person has its old number when it comes back.
     """
     seen = [p for p in people if p.is_sound and p.is_visible and p.confidence >= config.min_confidence]
     if target is None:
         return max(seen, key=lambda person: person.height, default=None)
-    if any(person.id == target.id for person in people):
+    if knows_again or any(person.id == target.id for person in people):
         return next((person for person in seen if person.id == target.id), None)
     fitting = [
         person

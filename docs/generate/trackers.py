@@ -58,6 +58,20 @@ ABOUT: Mapping[str, tuple[str, str]] = {
         "`peopleboy` and `rgbd` at once, and `panoramic` where that camera is mounted: thermal says warm, "
         "depth says where, colour says who. It goes on with the cameras that are left, and in the dark.",
     ),
+    "attentive": (
+        "the situation-awareness thesis, chapter 5, and beyond",
+        "`peopleboy`, which learns what everybody looks like, and gives who comes back the old number, "
+        "however long the person was away; whoever is not known stays a stranger. A robot that follows "
+        "searches on until it sees its person again.",
+    ),
+    "attentive-printed": (
+        "the situation-awareness thesis, chapter 5",
+        "The same, but people are known by the attention of that chapter as it is printed.",
+    ),
+    "attentive-fused": (
+        "all of these",
+        "`fused`, whose people are known again like those of `attentive`, by every camera of colours.",
+    ),
 }
 
 

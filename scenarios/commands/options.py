@@ -11,7 +11,8 @@ SEED = "[default: 0, or that of a run's own scenario.yaml]"
 # Spelled out, since the trackers themselves take a second to load, which --help should not.
 TRACKERS = (
     "peopleboy, learned, footage, thesis, colour, thermal, paper, panoramic-paper, panoramic, handover, "
-    "rgbd, rgbd-printed or fused; truth, which is told; or module:Class, your own"
+    "rgbd, rgbd-printed, fused, attentive, attentive-printed or attentive-fused; truth, which is told; or "
+    "module:Class, your own"
 )
 tracker_option = click.option(
     "--tracker", help=f"One of {TRACKERS}.  [default: the scenario's, or peopleboy]"

@@ -8,6 +8,7 @@ from functools import singledispatch
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.thermal.explanation import ContourExplanation
@@ -32,3 +33,8 @@ def _(explanation: ContourExplanation, points: int = 48) -> Mapping[int, tuple[L
 @lines_of.register
 def _(explanation: BothExplanations, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
     return lines_of(explanation.thermal, points)
+
+
+@lines_of.register
+def _(explanation: AttentiveExplanation, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
+    return lines_of(explanation.below, points)

@@ -19,7 +19,7 @@ from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
-from peopleboy.tracker.trackers import Tracker, explanation_of
+from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
 
 JUMP_EVERY_S = 1.0
 JUMP = Planar(x=0.7, y=-0.4, heading=math.radians(50.0))
@@ -82,6 +82,11 @@ class FaultyTracker:
     def cameras(self) -> tuple[str, ...]:
         """Those of the tracker."""
         return self._tracker.cameras
+
+    @property
+    def knows_again(self) -> bool:
+        """Whether the tracker does."""
+        return knows_again(self._tracker)
 
     @property
     def explanation(self) -> object:

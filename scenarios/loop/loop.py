@@ -26,7 +26,7 @@ from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
 from peopleboy.tracker.track import Box, Status, Track
-from peopleboy.tracker.trackers import Tracker, explanation_of
+from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
 
 # Ways between two images beyond what the drive can do in a quarter of a second are jumps of the odometry.
 FARTHEST_TURN_RAD = math.radians(40.0)
@@ -109,7 +109,13 @@ class Eyes:
 
         Images equal to the last ones to the bit are no new ones: the noise of a camera never repeats.
         """
-        newest, tell = self._newest, partial(make_percept, observation, self._calibrations[THERMAL])
+        newest = self._newest
+        tell = partial(
+            make_percept,
+            observation,
+            self._calibrations[THERMAL],
+            knows_again=knows_again(self._tracker),
+        )
         images = {name: observation.images[name] for name in self._watched if name in observation.images}
         if newest is not None and _are_same(self._images, images):
             return tell(self.tracks, image_age_s=observation.time_s - newest.time_s)
@@ -173,6 +179,7 @@ def make_percept(
     tracks: tuple[Track, ...],
     *,
     image_age_s: float = 0.0,
+    knows_again: bool = False,
     fault: str = "",
 ) -> Percept:
     """Give the behaviour what it steers by: confirmed tracks, sonar and the wheels' speed."""
@@ -192,6 +199,7 @@ def make_percept(
         angular_rad_s=(right - left) / WHEEL_DISTANCE_M,
         images=observation.images,
         image_age_s=image_age_s,
+        knows_again=knows_again,
         fault=fault,
     )
 

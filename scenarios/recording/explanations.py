@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.palette import Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.recording.marks import Lines, Points, colours_of, lines_of, particle_points
+from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS
@@ -53,6 +54,11 @@ def _(explanation: FusedExplanation, tick: Tick) -> Lines:
     return explained_lines(explanation.both, tick)
 
 
+@explained_lines.register
+def _(explanation: AttentiveExplanation, tick: Tick) -> Lines:
+    return explained_lines(explanation.below, tick)
+
+
 @singledispatch
 def explained_points(explanation: object) -> Mapping[str, Points]:  # noqa: ARG001
     """Give the points on the thermal image that explain a tick's tracks, by the layer that they lie in."""
@@ -75,6 +81,22 @@ def _(explanation: BothExplanations) -> Mapping[str, Points]:
 @explained_points.register
 def _(explanation: FusedExplanation) -> Mapping[str, Points]:
     return explained_points(explanation.both)
+
+
+@explained_points.register
+def _(explanation: AttentiveExplanation) -> Mapping[str, Points]:
+    return explained_points(explanation.below)
+
+
+@singledispatch
+def explained_likeness(explanation: object) -> Mapping[int, float]:  # noqa: ARG001
+    """Give how much people look like who they are said to be, 0..1, by track; of trackers that compare."""
+    return {}
+
+
+@explained_likeness.register
+def _(explanation: AttentiveExplanation) -> Mapping[int, float]:
+    return explanation.likeness
 
 
 def section_marks(

@@ -24,16 +24,17 @@ from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 
 
-def lay_out(config: WorldConfig, watched: Collection[str] = ()) -> rrb.Blueprint:
+def lay_out(config: WorldConfig, watched: Collection[str] = (), *, attends: bool = False) -> rrb.Blueprint:
     """Lay out: thermal on the left, colour, events, further cameras and the world beside it, curves below.
 
     Args:
         config: of the world.
         watched: cameras that the tracker asks for.
+        attends: whether it explains where in colour images it looks for somebody.
     """
     cameras = {name: camera.camera for name, camera in config.robot.cameras.items()}
     thermal = _image_view(THERMAL, "Thermal: tracks with evidence, particles, truth", cameras.pop("thermal"))
-    colour = _image_view(COLOUR, "Colour: tracks, truth", cameras.pop("colour"))
+    colour = _colour_view(cameras.pop("colour"), attends=attends)
     further = [_further_view(name, camera, name in watched) for name, camera in cameras.items()]
     events = rrb.TextLogView(
         origin=EVENTS, name="Events", columns=rrb.TextLogColumns(text_log_columns=["LogLevel", "Body"])
@@ -44,6 +45,8 @@ def lay_out(config: WorldConfig, watched: Collection[str] = ()) -> rrb.Blueprint
         _plot("offset", "Offset of tracks [half widths]", (-1.05, 1.05), has_legend=False),
         _plot("motion", "Speed and turn rate", (-1.6, 1.6)),
     ]
+    if attends:
+        plots.insert(1, _plot("likeness", "Likeness to who they are", (-0.05, 1.05), has_legend=False))
     rows = [rrb.Horizontal(colour, events), *([rrb.Horizontal(*further)] if further else [])]
     right = rrb.Vertical(*rows, _world_view(config))
     above = rrb.Horizontal(thermal, right, column_shares=[1.0, 1.0])
@@ -52,6 +55,19 @@ def lay_out(config: WorldConfig, watched: Collection[str] = ()) -> rrb.Blueprint
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
         rrb.TimePanel(state="collapsed", timeline="time"),
+    )
+
+
+def _colour_view(camera: CameraGeometry, *, attends: bool) -> rrb.Spatial2DView | rrb.Tabs:
+    """Show the colour camera; behind a tab, how much each place looks like the one on whom attention is."""
+    if not attends:
+        return _image_view(COLOUR, "Colour: tracks, truth", camera)
+    return rrb.Tabs(
+        _image_view(
+            COLOUR, "Colour: tracks, focus, truth", camera, ("$origin/**", f"- $origin/{BACKGROUND}")
+        ),
+        _image_view(COLOUR, "Colour: attention, focus", camera, ("$origin/explained/**",)),
+        active_tab=0,
     )
 
 

@@ -32,7 +32,11 @@ from peopleboy.scenarios.recording.entities import (
     points_path,
     thing_path,
 )
-from peopleboy.scenarios.recording.explanations import explained_lines, explained_points
+from peopleboy.scenarios.recording.explanations import (
+    explained_likeness,
+    explained_lines,
+    explained_points,
+)
 from peopleboy.scenarios.recording.layout import lay_out
 from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
@@ -76,6 +80,7 @@ class Recorder:
         title: name of the recording; the same title gives the same recording id.
         viewer: address of a viewer that is to show it at once; None for none.
         watched: cameras that the tracker asks for.
+        attends: whether it explains where in colour images it looks for somebody.
     """
 
     def __init__(
@@ -86,6 +91,7 @@ class Recorder:
         title: str,
         viewer: str | None = None,
         watched: Collection[str] = (),
+        attends: bool = False,
     ) -> None:
         self._cameras = config.robot.cameras
         self._boxed = with_boxes(self._cameras)
@@ -99,12 +105,13 @@ class Recorder:
         self._things: dict[str, tuple[Vector, float, bool]] = {}
         self._sightings = marks.Sightings(self._boxed)
         self._tracks_named: set[int] = set()
+        self._compared: set[int] = set()
         self._tracked = {"thermal"}
         self._has_places = False
         self._rows = RowBuffer()
         self._stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(title))
         sinks = [rr.FileSink(path)] if viewer is None else [rr.FileSink(path), rr.GrpcSink(viewer)]
-        self._stream.set_sinks(*sinks, default_blueprint=lay_out(config, watched))
+        self._stream.set_sinks(*sinks, default_blueprint=lay_out(config, watched, attends=attends))
         self._stream.send_recording_name(title)
         self._still = Still(self._stream)
         self._still.log_world(config)
@@ -295,6 +302,11 @@ class Recorder:
             box = track.boxes.get("thermal")  # a number that is none interrupts the line
             offset = math.nan if box is None else marks.box_offset(box, self._width)
             curves[f"curves/offset/track_{track.id}"] = [offset]
+        for number, likeness in explained_likeness(tick.explanation).items():
+            if number not in self._compared:
+                self._compared.add(number)
+                self._still.log_track(number, ("likeness",))
+            curves[f"curves/likeness/track_{number}"] = [likeness]
         for path, values in curves.items():
             self._rows.add(path, rr.Scalars, scalars=np.array(values, np.float64))
 

@@ -16,6 +16,7 @@ from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import invert_pose, transform
+from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.frame import DEPTH, PANORAMA
 from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
@@ -132,6 +133,19 @@ def _(
     }
 
 
+@explained_sketches.register
+def _(
+    explanation: AttentiveExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    below, attended = explained_sketches(explanation.below, tracks, cameras), explanation.attended
+    if attended is None or attended.camera in below:
+        return below
+    focus, own = attended.focus(), track_colour(attended.number)
+    lines = [_frame(focus.box), *_cross(focus.place, 0.1 * focus.box[3])]
+    sketch = Sketch(_brightened(focus.scores, attended.image.shape), lines, colours_of([own] * len(lines)))
+    return {**below, attended.camera: sketch}
+
+
 def outlines_of(mask: NDArray[np.bool_]) -> list[Line]:
     """Trace closed lines (n, 2) round all that is set in an image (H, W), through its outermost pixels."""
     # Pixels of two by two have outlines even if they are alone.
@@ -174,6 +188,19 @@ def _frame(box: Box) -> Line:
     left, top, width, height = box
     right, bottom = left + width, top + height
     return np.array([(left, top), (right, top), (right, bottom), (left, bottom), (left, top)])
+
+
+def _cross(place: tuple[float, float], reach: float) -> list[Line]:
+    """Draw an upright cross (2, 2) and (2, 2) about a place."""
+    u, v = place
+    return [np.array([(u - reach, v), (u + reach, v)]), np.array([(u, v - reach), (u, v + reach)])]
+
+
+def _brightened(scores: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.uint8]:
+    """Draw scores 0..1 as an image (H, W) of an image's size, brighter than they are."""
+    grey = np.rint(255.0 * np.sqrt(np.clip(scores, 0.0, 1.0))).astype(np.uint8)
+    size = (shape[1], shape[0])
+    return np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_LINEAR), np.uint8)
 
 
 def _parts(line: Line, around: float) -> Iterator[Line]:

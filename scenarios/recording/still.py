@@ -70,10 +70,10 @@ class Still:
             self._log(curve, rr.SeriesLines(names=labels, colors=shades))
         self._log_people([person.name for person in config.people])
 
-    def log_track(self, number: int) -> None:
-        """Name the curves of a track."""
+    def log_track(self, number: int, kinds: Sequence[str] = ("confidence", "offset")) -> None:
+        """Name the curves of a track, of some kinds."""
         line = rr.SeriesLines(names=[f"track {number}"], colors=[track_colour(number)])
-        for kind in ("confidence", "offset"):
+        for kind in kinds:
             self._log(f"curves/{kind}/track_{number}", line)
 
     def _log_moved(self, fixtures: Sequence[Fixture]) -> None:

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from functools import singledispatch
 from typing import Any
 
+from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.ellipse import Ellipse
@@ -40,6 +41,11 @@ def _(explanation: BothExplanations, track: int) -> Mapping[str, Any]:
 @explained.register
 def _(explanation: FusedExplanation, track: int) -> Mapping[str, Any]:
     return explained(explanation.both, track)
+
+
+@explained.register
+def _(explanation: AttentiveExplanation, track: int) -> Mapping[str, Any]:
+    return explained(explanation.below, track)
 
 
 def read_explanation(tracker: str, rows: Iterable[Mapping[str, Any]]) -> ContourExplanation | None:

@@ -19,6 +19,7 @@ from peopleboy.scenarios.running.watchers import Watchers
 from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.sim.world import World
+from peopleboy.tracker.trackers import knows_again
 
 FOLLOWERS = ("follow_person", "patrol")
 
@@ -104,6 +105,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
                     title=title,
                     viewer=options.viewer,
                     watched=tracker.cameras,
+                    attends=knows_again(tracker),
                 )
             )
         watchers = Watchers(config, title, recorder)

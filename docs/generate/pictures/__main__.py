@@ -11,6 +11,7 @@ from PIL.Image import Image
 
 from docs.generate.pictures import (
     all_round,
+    attention,
     depth,
     moved,
     occlusion,
@@ -23,6 +24,7 @@ from docs.generate.pictures import (
     tracker,
 )
 from docs.generate.pictures.paper import save
+from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import draw_parts
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
 FOLDER = Path(__file__).parents[2] / "pictures"
@@ -42,6 +44,8 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "scene_model": scene_model.scenes,
     "panoramic_features": draw_features,
     "panoramic_errors": panorama.errors_over_distance,
+    "attention": attention.absence,
+    "attention_parts": draw_parts,
     "all_round": all_round.all_round,
     "handed_over": all_round.handed_over,
     "detector": tracker.detector,

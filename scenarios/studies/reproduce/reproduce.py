@@ -118,7 +118,8 @@ def _amount(plan: Plan, papers: Set[str]) -> str:
             f"{plan.drives} runs of each of {len(plan.sets)} drives, {plan.ablated} where trackers differ in "
             f"one thing or the noise is varied, {2 * plan.drives} where odometry is left out; "
             f"{plan.scene_seeds} of each of {len(plan.scenes)} films of moved things, by {len(plan.presets)} "
-            "depth cameras."
+            f"depth cameras. {plan.drives} runs of each film of attention, {plan.absences} of each absence, "
+            f"{plan.follows} of followers."
         )
     total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
     return f"{plan.repeats} repeats of everything with other random numbers in the trackers. {total}."

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.studies.reproduce.experiments.attention import ATTENTION
 from peopleboy.scenarios.studies.reproduce.experiments.contents import Contents
 from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
 from peopleboy.scenarios.studies.reproduce.experiments.distances import DISTANCES, Correlations, FloorPath
@@ -15,7 +16,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experim
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
 from peopleboy.scenarios.studies.reproduce.experiments.pictures import DEPICTIONS
 from peopleboy.scenarios.studies.reproduce.experiments.scene_models import SCENES
-from peopleboy.scenarios.studies.reproduce.experiments.timing import TIMINGS
+from peopleboy.scenarios.studies.reproduce.experiments.timing import ATTENTION_TIMES, TIMINGS
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, TrackerTrial, Tracking
 from peopleboy.scenarios.studies.reproduce.experiments.webcams import Angles, Webcams
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting, Value
@@ -242,7 +243,7 @@ _ALL: tuple[Experiment, ...] = (
     _paper_figure_5(),
     *DEPICTIONS[:2],
     Webcams(),
-    *DEPICTIONS[2:],
+    *DEPICTIONS[2:4],
     Angles(),
     Correlations(),
     *DISTANCES,
@@ -251,6 +252,9 @@ _ALL: tuple[Experiment, ...] = (
     *DRIVES,
     *WINDOWS,
     *FIGURES,
+    *ATTENTION,
+    ATTENTION_TIMES,
+    *DEPICTIONS[4:],
 )
 
 EXPERIMENTS: dict[str, Experiment] = {experiment.id: experiment for experiment in _ALL}

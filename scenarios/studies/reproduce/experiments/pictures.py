@@ -1,4 +1,4 @@
-"""Figures of the 2003 paper that are pictures."""
+"""Figures that are pictures: of the 2003 paper, and of attention."""
 
 from __future__ import annotations
 
@@ -36,4 +36,7 @@ class Depiction:
         return address
 
 
-DEPICTIONS = tuple(Depiction(f"panoramic-figure-{number}") for number in range(1, 5))
+DEPICTIONS = (
+    *(Depiction(f"panoramic-figure-{number}") for number in range(1, 5)),
+    *(Depiction(f"situation-figure-5.{number}") for number in (6, 7, 8, 9)),
+)

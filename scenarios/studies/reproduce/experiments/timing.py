@@ -11,6 +11,7 @@ from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.scenarios.studies.reproduce.measuring.stopwatch import (
     Milliseconds,
+    time_attention,
     time_colours,
     time_integrals,
     time_people,
@@ -19,6 +20,7 @@ from peopleboy.scenarios.studies.reproduce.measuring.stopwatch import (
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
+from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 
 MS = "ms"
 
@@ -92,6 +94,10 @@ _MEASURES: dict[str, dict[str, Measure]] = {
     },
     "table-6.1": {"PeopleBoy": time_integrals},
     "table-6.2": _by_tracker(time_colours, "thesis-single", "peopleboy"),
+    "situation-attention-times": {
+        "printed": lambda steps: time_attention(PRINTED, steps),
+        "default": lambda steps: time_attention(AttentionConfig(), steps),
+    },
 }
 
-TIMINGS = tuple(Timing(table) for table in _MEASURES)
+*TIMINGS, ATTENTION_TIMES = (Timing(table) for table in _MEASURES)

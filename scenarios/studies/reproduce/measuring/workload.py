@@ -34,6 +34,8 @@ class Plan:
         scenes: names of the sequences in which things are moved.
         scene_seeds: seeds of each of them.
         presets: depth cameras that watch them.
+        absences: seeds of each film in which somebody goes away and comes back.
+        follows: seeds of runs in which the robot follows such a person.
     """
 
     cache: Path
@@ -53,6 +55,8 @@ class Plan:
     scenes: tuple[str, ...] = tuple(SEQUENCES)
     scene_seeds: int = 5
     presets: tuple[str, ...] = PRESETS
+    absences: int = 10
+    follows: int = 20
 
 
 QUICK_S = 20.0
@@ -84,6 +88,8 @@ def quick_plan(cache: Path) -> Plan:
         scenes=("s1r1", "s2r1", "s4r1"),
         scene_seeds=1,
         presets=PRESETS[:2],
+        absences=1,
+        follows=1,
     )
 
 

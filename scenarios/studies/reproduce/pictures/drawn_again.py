@@ -1,4 +1,4 @@
-"""The figures of the 2003 paper that need films of their own; drawing them needs PyBullet."""
+"""The figures that need films of their own; drawing them needs PyBullet."""
 
 from __future__ import annotations
 
@@ -6,6 +6,12 @@ from collections.abc import Callable, Mapping
 
 from matplotlib.figure import Figure
 
+from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import (
+    draw_examples,
+    draw_excitation,
+    draw_parts,
+    draw_paths,
+)
 from peopleboy.scenarios.studies.reproduce.pictures.set_up import draw_set_up
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 from peopleboy.scenarios.studies.reproduce.pictures.webcam_views import (
@@ -18,5 +24,9 @@ DRAWN: Mapping[str, Callable[[], Figure]] = {
     "panoramic-figure-2": draw_webcam_images,
     "panoramic-figure-3": draw_fields_of_view,
     "panoramic-figure-4": draw_features,
+    "situation-figure-5.6": draw_excitation,
+    "situation-figure-5.7": draw_parts,
+    "situation-figure-5.8": draw_paths,
+    "situation-figure-5.9": draw_examples,
 }
 """By id of the experiment."""

@@ -1,0 +1,66 @@
+"""Waiting for a person who is known again."""
+
+import dataclasses
+
+import numpy as np
+
+from peopleboy.behaviours.command import STOP
+from peopleboy.behaviours.following.follow_person import FollowConfig, FollowState, follow
+from peopleboy.behaviours.following.make_room import RoomConfig, is_somebody_near, is_way_out
+from tests.helpers.percepts.percepts import free, percept, person
+from tests.helpers.percepts.toy_world import STEP_S
+
+CONFIG, ROOM = FollowConfig(), RoomConfig()
+
+
+def play(state, from_s, seconds, *people, **changes):
+    command = STOP
+    for k in range(round(seconds / STEP_S)):
+        state, command = follow(state, percept(from_s + k * STEP_S, *people, **changes), CONFIG)
+    return state, command
+
+
+def test_nobody_else_is_followed_for_minutes_where_people_are_known_again():
+    stranger = person(x=0.1, id=2)
+    for knows_again, target in ((True, 1), (False, 2)):
+        state, _ = play(FollowState(), 1.0, 1.0, person(), knows_again=knows_again)
+        state, _ = play(state, 2.0, 60.0, knows_again=knows_again)
+        state, command = play(state, 62.0, 1.0, stranger, knows_again=knows_again)
+        assert state.target.id == target
+        assert (state.mode == "follow") != knows_again
+    assert np.isfinite(command.linear_m_s)
+
+
+def test_who_comes_back_under_the_old_number_is_followed_at_once():
+    state, _ = play(FollowState(), 1.0, 1.0, person(), knows_again=True)
+    state, _ = play(state, 2.0, 60.0, person(x=0.3, id=2), knows_again=True)
+    state, _ = play(state, 62.0, 0.2, person(x=-0.4), person(x=0.3, id=2), knows_again=True)
+    assert (state.mode, state.target.id) == ("follow", 1)
+
+
+def test_who_came_too_near_to_be_seen_has_room_made_only_while_somebody_is_there():
+    state, _ = play(FollowState(), 1.0, 1.0, person(height=1.2), knows_again=True)
+    near = dataclasses.replace(free(i3=0.6, i4=0.6), time_s=3.0, knows_again=True)
+    _, command = follow(state, near, CONFIG)
+    assert command.linear_m_s < 0.0
+    _, command = follow(state, dataclasses.replace(near, sonar_m=free().sonar_m), CONFIG)
+    assert command.linear_m_s >= 0.0
+    _, command = follow(state, dataclasses.replace(near, knows_again=False), CONFIG)
+    assert command.linear_m_s >= 0.0
+
+
+def test_something_is_near_within_the_lane_ahead_and_farther_where_somebody_was_near():
+    ahead, beside, behind = np.array([[1.8, 0.2]]), np.array([[1.0, 0.8]]), np.array([[-0.5, 0.0]])
+    assert is_somebody_near(ahead, ROOM, was_near=True)
+    assert not is_somebody_near(ahead, ROOM, was_near=False)
+    assert not is_somebody_near(np.concatenate([beside, behind]), ROOM, was_near=True)
+
+
+def test_a_way_leads_out_of_a_narrow_place_where_nothing_is_ahead():
+    post, wall = [0.0, 0.6], [2.0, 0.0]
+    assert is_way_out(np.array([post]), ROOM, 0.0)
+    assert not is_way_out(np.array([post, wall]), ROOM, 0.0)
+    assert not is_way_out(np.array([[0.0, 3.0]]), ROOM, 0.0)
+    aside = np.array([[0.0, 1.3]])
+    assert is_way_out(aside, ROOM, 0.0)
+    assert not is_way_out(aside, ROOM, ROOM.farthest_m)

@@ -1,0 +1,236 @@
+"""Learning a person from its box, and looking for it in an image: the focus of attention."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.attention.attention_config import AttentionConfig
+from peopleboy.tracker.attention.box_scores import likenesses, mean_scores, pattern_scores
+from peopleboy.tracker.attention.feature_maps import CELL_PX, in_use
+from peopleboy.tracker.attention.part_look import Mask, PartLook
+from peopleboy.tracker.attention.parts import HEAD, TORSO, Part, cells_of, check_box
+from peopleboy.tracker.attention.sight import Sight
+from peopleboy.tracker.track import Box
+
+Doubles = NDArray[np.float64]
+
+STEP_CELLS: Final = 2
+"""Cells from one place that is looked at to the next."""
+
+_COLOUR_BIAS: Final = 1.0
+"""Logarithm of the ratio of colours that is one half when negative; chosen on seeds 100 to 102."""
+
+_WIDTH: Final = 0.3  # of a box that is given, in its heights
+_BESIDE: Final = 0.25  # heights within which two heads are one
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PersonLook:
+    """A person as it looked: its parts, and how tall it appeared.
+
+    Attributes:
+        height: [px] from head to feet.
+        parts: each with what is known of it.
+    """
+
+    height: float
+    parts: tuple[tuple[Part, PartLook], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PartScores:
+    """How much each place looks like one part; all (rows, columns), of the scale that the focus has.
+
+    Attributes:
+        features: R, or the likeness of the maps.
+        patterns: LA; None if patterns are not looked at.
+        colour: mean logarithm of the ratio of colours; None if it is not looked at.
+    """
+
+    features: Doubles | None
+    patterns: Doubles | None
+    colour: Doubles | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Focus:
+    """Where a person is most likely.
+
+    Attributes:
+        box: left, top, width, height [px] from head to feet.
+        score: 0..1, of the best place.
+        second: the same of the best one that is not beside it.
+        second_box: where that is.
+        scores: (rows, columns) of every place at which the head's middle can be, `STEP_CELLS` apart.
+        parts: what they are made of.
+    """
+
+    box: Box
+    score: float
+    second: float
+    second_box: Box
+    scores: Doubles
+    parts: tuple[PartScores, ...]
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """u, v [px] of the middle of the torso."""
+        return middle_of(self.box)
+
+
+def middle_of(box: Box) -> tuple[float, float]:
+    """Give u, v [px] of the middle of the torso of a person with a box."""
+    left, top, width, height = box
+    return left + width / 2.0, top + (TORSO.top + TORSO.height / 2.0) * height
+
+
+def learn(sight: Sight, box: Box, config: AttentionConfig, near: Mask | None = None) -> PersonLook:
+    """Learn a person from its box.
+
+    Args:
+        sight: the image.
+        box: left, top, width, height [px] from head to feet.
+        config: what is looked at.
+        near: (H, W) pixels that are not behind the person; None if that is not known.
+
+    Raises:
+        BadInput: head or torso are not inside the image.
+
+    Source: situation-awareness thesis, section 5.3, where the box is drawn by hand.
+    """
+    check_box(box, sight.image.shape)
+    parts = (HEAD, TORSO) if config.head else (TORSO,)
+    looks = ((part, PartLook.learned(sight, cells_of(part, box), config, near)) for part in parts)
+    return PersonLook(height=box[3], parts=tuple(looks))
+
+
+def search(sight: Sight, look: PersonLook, config: AttentionConfig) -> Focus:
+    """Find where a person is most likely.
+
+    The source multiplies the torso's score at the head's place by the head's at the torso's (equation 5.17);
+    here each is taken at its own place.
+
+    Source: situation-awareness thesis, sections 5.4 and 5.5.
+    """
+    found = [_searched(sight, look, scale, config) for scale in config.scales]
+    best = max(range(len(found)), key=lambda k: float(found[k][0].max()))
+    scores, parts = found[best]
+    box, place = _box_at(scores, look.height * config.scales[best])
+    every = np.max([one for one, _ in found], axis=0)
+    score = float(scores[place])
+    _blank(every, place, box)
+    second_box, second_place = _box_at(every, box[3])
+    return Focus(box, score, float(every[second_place]), second_box, scores, parts)
+
+
+def score_of(sight: Sight, look: PersonLook, box: Box, config: AttentionConfig) -> float:
+    """Tell how much a person in a box looks like a known one: 0..1.
+
+    Raises:
+        BadInput: head or torso are not inside the image.
+    """
+    check_box(box, sight.image.shape)
+    parts = []
+    for part, known in look.parts:
+        cells = cells_of(part, box)
+        at = np.array([cells.row]), np.array([cells.column])
+        parts.append(_part_scores(sight, known, at, (cells.height, cells.width), config))
+    return float(_together(parts, look)[0, 0])
+
+
+def relearn(look: PersonLook, sight: Sight, focus: Focus, config: AttentionConfig) -> PersonLook:
+    """Take in a little of what the person looks like now, if it is likely that it is this one.
+
+    Source: situation-awareness thesis, section 5.4.
+    """
+    if focus.score < config.least or focus.score - focus.second < config.ahead:
+        return look
+    new = learn(sight, focus.box, config)
+    pairs = zip(look.parts, new.parts, strict=True)
+    return replace(
+        look, parts=tuple((part, old.updated(fresh, config.rate)) for (part, old), (_, fresh) in pairs)
+    )
+
+
+def _searched(
+    sight: Sight, look: PersonLook, scale: float, config: AttentionConfig
+) -> tuple[Doubles, tuple[PartScores, ...]]:
+    rows = np.arange(0, sight.rows, STEP_CELLS)
+    columns = np.arange(0, sight.columns, STEP_CELLS)
+    parts = []
+    for part, known in look.parts:
+        cells = cells_of(part, (0.0, 0.0, 0.0, look.height), scale)
+        at = rows + cells.row, columns + cells.column
+        parts.append(_part_scores(sight, known, at, (cells.height, cells.width), config))
+    return _together(parts, look), tuple(parts)
+
+
+def _part_scores(
+    sight: Sight,
+    known: PartLook,
+    at: tuple[NDArray[np.int64], NDArray[np.int64]],
+    size: tuple[int, int],
+    config: AttentionConfig,
+) -> PartScores:
+    features = found = colour = None
+    if sight.map_sums is not None and sight.maps is not None:
+        if config.reward == "same":
+            features = likenesses(sight.map_sums, *at, size, known.mean, known.spread, in_use(config))
+        else:
+            features = mean_scores(_attention(sight, known, config), *at, size)
+            if not config.is_absolute:
+                features = features / max(float(features.max()), 1e-12)
+    if sight.pattern_sums is not None:
+        found = pattern_scores(sight.pattern_sums, *at, size, known.patterns, known.pattern_weight)
+    if config.colour:
+        ratio = known.colour_ratio[sight.colours].astype(np.float32)
+        height, width = CELL_PX * sight.rows, CELL_PX * sight.columns
+        cells = cv2.resize(ratio[:height, :width], (sight.columns, sight.rows), interpolation=cv2.INTER_AREA)
+        colour = mean_scores(np.asarray(cv2.integral(cells, sdepth=cv2.CV_64F), np.float64), *at, size)
+    return PartScores(features, found, colour)
+
+
+def attention_map(sight: Sight, known: PartLook, config: AttentionConfig) -> Doubles:
+    """Give A (rows, columns): excitation minus inhibition, at least 0 (equations 5.9 to 5.11)."""
+    assert sight.maps is not None
+    weight = known.excites - known.inhibits
+    if not config.keeps_negative:
+        weight = np.maximum(weight, 0.0)
+    weight = np.where(in_use(config), weight, 0.0).astype(np.float32)
+    return np.maximum(sight.maps @ weight, 0.0)
+
+
+def _attention(sight: Sight, known: PartLook, config: AttentionConfig) -> Doubles:
+    return np.asarray(cv2.integral(attention_map(sight, known, config), sdepth=cv2.CV_64F), np.float64)
+
+
+def _together(parts: list[PartScores], look: PersonLook) -> Doubles:
+    """Multiply what all parts say by how likely their colours are the person's."""
+    kinds = [[kind for kind in (one.features, one.patterns) if kind is not None] for one in parts]
+    total = np.prod([np.mean(kind, axis=0) for kind in kinds if kind], axis=0)
+    colours = [one.colour for one in parts if one.colour is not None]
+    if colours:
+        areas = [part.width * part.height for part, _ in look.parts]
+        ratio = np.average(colours, axis=0, weights=areas)
+        total = total / (1.0 + np.exp(-ratio - _COLOUR_BIAS))
+    return np.asarray(total, np.float64)
+
+
+def _box_at(scores: Doubles, height: float) -> tuple[Box, tuple[int, int]]:
+    row, column = np.unravel_index(int(scores.argmax()), scores.shape)
+    step = STEP_CELLS * CELL_PX
+    width = _WIDTH * height
+    return (float(column * step) - width / 2.0, float(row * step), width, height), (int(row), int(column))
+
+
+def _blank(scores: Doubles, place: tuple[int, int], box: Box) -> None:
+    """Take out the places at which the heads of who stands at a place can be."""
+    reach = math.ceil(_BESIDE * box[3] / (STEP_CELLS * CELL_PX))
+    row, column = place
+    scores[max(row - reach, 0) : row + reach + 1, max(column - reach, 0) : column + reach + 1] = 0.0

@@ -1,0 +1,113 @@
+"""The maps in which a person is described, and looked for."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.attention.attention_config import AttentionConfig
+from peopleboy.tracker.attention.channels import COLOURS, INTENSITIES, ORIENTATIONS, Floats, basic_maps
+from peopleboy.tracker.attention.channels import NAMES as BASIC
+
+CELL_PX: Final = 2
+"""Side of a cell of the maps; more than half of the time goes by otherwise, for nothing."""
+
+PLAIN: Final = slice(0, 10)
+SURROUND: Final = slice(10, 20)
+SUMS: Final = slice(20, 23)
+NAMES: Final = (
+    *BASIC,
+    *(f"{name}, centre-surround" for name in BASIC),
+    "colour",
+    "orientation",
+    "intensity",
+)
+"""Of the 23 maps; the local binary patterns are the 24th, and no map that can be added to others."""
+
+LEVELS: Final = 6
+_SURROUND_PX: Final = 7
+_PEAK_PX: Final = 7
+_PEAK: Final = 0.5  # share of a map's maximum from which on a peak counts
+_OPPONENTS: Final = ((0, 2), (3, 1), (8, 9))  # red and green, blue and yellow, bright and dark
+
+
+def feature_maps(image: NDArray[np.uint8], config: AttentionConfig) -> Floats:
+    """Give the maps (H / 2, W / 2, 23) of an image (H, W, 3), in the order of `NAMES`.
+
+    Those with centre-surround are 0 where nobody asks for them.
+
+    Source: situation-awareness thesis, section 5.2.
+    """
+    height, width = image.shape[0] // CELL_PX, image.shape[1] // CELL_PX
+    basic = basic_maps(image, inhibits=config.inhibits)
+    maps = np.zeros((height, width, len(NAMES)), np.float32)
+    maps[:, :, PLAIN] = _resized(basic, (width, height), cv2.INTER_AREA)
+    if config.surround:
+        maps[:, :, SURROUND] = _resized(_centre_surround(basic), (width, height), cv2.INTER_AREA)
+        for number, part in enumerate((COLOURS, ORIENTATIONS, INTENSITIES), SUMS.start):
+            around = slice(SURROUND.start + part.start, SURROUND.start + part.stop)
+            maps[:, :, number] = maps[:, :, around].sum(axis=2)
+    return _by_peaks(maps) if config.divides_by_peaks else maps
+
+
+def in_use(config: AttentionConfig) -> NDArray[np.bool_]:
+    """Tell which of the maps (23,) a configuration looks at."""
+    used = np.zeros(len(NAMES), np.bool_)
+    used[PLAIN] = config.plain
+    used[SURROUND] = used[SUMS] = config.surround
+    return used
+
+
+def _centre_surround(basic: Floats) -> Floats:
+    """Add up, over the levels of a pyramid, by how much a map is above its surroundings.
+
+    The surroundings of red are those of green, and so on: the difference of the two is compared with its
+    mean, as only then nothing is left of an even area, as the text says. Orientations have no opposite.
+    """
+    level = _opponents(basic)
+    sides = []
+    for _ in range(LEVELS):
+        sides.append(level - cv2.blur(level, (_SURROUND_PX, _SURROUND_PX), borderType=cv2.BORDER_REFLECT))
+        level = np.dstack([cv2.pyrDown(level[:, :, :4]), cv2.pyrDown(level[:, :, 4:])])
+    total = _both_ways(sides[-1])
+    for side in reversed(sides[:-1]):
+        total = _resized(total, (side.shape[1], side.shape[0]), cv2.INTER_LINEAR) + _both_ways(side)
+    return total
+
+
+def _opponents(basic: Floats) -> Floats:
+    """Give the three differences of opposites, and the orientations (H, W, 7)."""
+    pairs = [basic[:, :, one] - basic[:, :, other] for one, other in _OPPONENTS]
+    return np.dstack([*pairs, basic[:, :, ORIENTATIONS]])
+
+
+def _both_ways(side: Floats) -> Floats:
+    """Part differences (H, W, 7) into what is above 0 and below it, in the order of the basic maps."""
+    maps = np.empty((*side.shape[:2], len(BASIC)), np.float32)
+    for number, (one, other) in enumerate(_OPPONENTS):
+        maps[:, :, one] = np.maximum(side[:, :, number], 0.0)
+        maps[:, :, other] = np.maximum(-side[:, :, number], 0.0)
+    maps[:, :, ORIENTATIONS] = np.maximum(side[:, :, 3:], 0.0)
+    return maps
+
+
+def _resized(maps: Floats, size: tuple[int, int], way: int) -> Floats:
+    """Resize maps (H, W, C) of which OpenCV takes four at a time."""
+    parts = [maps[:, :, k : k + 4] for k in range(0, maps.shape[2], 4)]
+    return np.dstack([cv2.resize(part, size, interpolation=way) for part in parts])
+
+
+def _by_peaks(maps: Floats) -> Floats:
+    """Divide maps by the root of how many peaks they have (equation 5.3), of half their maximum or more."""
+    size = (maps.shape[1] // 2, maps.shape[0] // 2)
+    kernel = np.ones((_PEAK_PX, _PEAK_PX), np.uint8)
+    result = np.empty_like(maps)
+    for k in range(maps.shape[2]):
+        small = cv2.resize(maps[:, :, k], size, interpolation=cv2.INTER_AREA)
+        is_peak = (small == cv2.dilate(small, kernel)) & (small > _PEAK * small.max())
+        result[:, :, k] = maps[:, :, k] / math.sqrt(max(int(np.count_nonzero(is_peak)), 1))
+    return result

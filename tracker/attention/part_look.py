@@ -1,0 +1,134 @@
+"""What is learned of one part of a person, from one box in one image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Final, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.attention.attention_config import AttentionConfig
+from peopleboy.tracker.attention.box_scores import box_means, spreads
+from peopleboy.tracker.attention.feature_maps import CELL_PX
+from peopleboy.tracker.attention.parts import Cells
+from peopleboy.tracker.attention.sight import COLOUR_BINS, Sight
+
+Doubles = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Mask = NDArray[np.bool_]
+
+_STEP_CELLS: Final = 2
+_RAREST: Final = 1e-3  # share of a pattern in the rest of the image that is believed
+_RARE_PX: Final = 2.0  # of each colour that are taken to be in the box and in the rest as in the whole image
+_MOST_RATIO: Final = 4.0  # of the logarithm of the ratio of colours
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PartLook:
+    """A part as it looked.
+
+    Attributes:
+        mean: (23,) of the maps in the box; none if maps are not looked at.
+        spread: (23,) of such means over all boxes of the image it was learned in.
+        excites: (23,) how much of each map the box has (equation 5.4).
+        inhibits: (23,) how much the rest has (equation 5.5).
+        patterns: (59,) shares of the patterns in the box.
+        pattern_weight: (59,) the same over those in the rest (equation 5.8).
+        colours: (512,) shares of the colours in the box.
+        colour_ratio: (512,) logarithm of the same over those in the rest.
+    """
+
+    mean: Doubles
+    spread: Doubles
+    excites: Doubles
+    inhibits: Doubles
+    patterns: Singles
+    pattern_weight: Singles
+    colours: Doubles
+    colour_ratio: Doubles
+
+    @classmethod
+    def learned(cls, sight: Sight, cells: Cells, config: AttentionConfig, near: Mask | None = None) -> Self:
+        """Learn a part from a box.
+
+        Args:
+            sight: the image.
+            cells: the box, all of which is inside.
+            config: what is looked at.
+            near: (H, W) pixels that are not behind the person; those of the box that are no part of it.
+                None if that is not known.
+        """
+        empty = np.zeros(0)
+        mean = spread = excites = inhibits = empty
+        if sight.map_sums is not None:
+            mean = box_means(sight.map_sums, cells.row, cells.column, cells.height, cells.width)
+            spread = spreads(sight.map_sums, cells.height, cells.width, _STEP_CELLS)
+            excites, inhibits = _shares(sight, cells, config, near)
+        patterns = weight = np.zeros(0, np.float32)
+        if sight.pattern_sums is not None:
+            patterns, weight = _patterns(sight.pattern_sums, cells)
+        colours, ratio = _colours(sight, cells, near)
+        return cls(mean, spread, excites, inhibits, patterns, weight, colours, ratio)
+
+    def updated(self, new: PartLook, rate: float) -> PartLook:
+        """Take in a share of what was learned anew.
+
+        The source's equations 5.15 and 5.16 print the rate, which is "very small", on what is old.
+        """
+        mixed = {
+            name: (1.0 - rate) * getattr(self, name) + rate * getattr(new, name)
+            for name in (field.name for field in fields(self))
+        }
+        return PartLook(
+            **{name: np.asarray(value, getattr(self, name).dtype) for name, value in mixed.items()}
+        )
+
+
+def _shares(
+    sight: Sight, cells: Cells, config: AttentionConfig, near: Mask | None
+) -> tuple[Doubles, Doubles]:
+    """Give how much of each map the box has, and the rest (equations 5.4 to 5.6).
+
+    Sums over a box that is smaller than half of the image make nearly every feature speak against it; hence
+    the means.
+    """
+    assert sight.maps is not None
+    inside = np.zeros(sight.maps.shape[:2], np.bool_)
+    inside[cells.row : cells.row + cells.height, cells.column : cells.column + cells.width] = True
+    if near is not None:
+        inside &= near[: CELL_PX * sight.rows : CELL_PX, : CELL_PX * sight.columns : CELL_PX]
+    whole, box = (
+        sight.maps.sum(axis=(0, 1), dtype=np.float64),
+        sight.maps[inside].sum(axis=0, dtype=np.float64),
+    )
+    rest = whole - box
+    if config.share == "means":
+        count = np.count_nonzero(inside)
+        box, rest = box / max(count, 1), rest / (inside.size - count)
+    excites = box / np.maximum(box + rest, 1e-12)
+    return excites, 1.0 - excites
+
+
+def _patterns(sums: Singles, cells: Cells) -> tuple[Singles, Singles]:
+    """Give the shares of the patterns in a box, and their ratio to those in the rest (equation 5.8)."""
+    low, right = cells.row + cells.height, cells.column + cells.width
+    box = sums[low, right] - sums[cells.row, right] - sums[low, cells.column] + sums[cells.row, cells.column]
+    rest = sums[-1, -1] - box
+    share, other = box / max(box.sum(), 1.0), rest / max(rest.sum(), 1.0)
+    return share.astype(np.float32), (share / np.maximum(other, _RAREST)).astype(np.float32)
+
+
+def _colours(sight: Sight, cells: Cells, near: Mask | None) -> tuple[Doubles, Doubles]:
+    """Give the shares of the colours in a box, and the logarithm of their ratio to those in the rest."""
+    rows = slice(CELL_PX * cells.row, CELL_PX * (cells.row + cells.height))
+    columns = slice(CELL_PX * cells.column, CELL_PX * (cells.column + cells.width))
+    found = sight.colours[rows, columns]
+    found = found.ravel() if near is None else found[near[rows, columns]]
+    box = np.bincount(found, minlength=COLOUR_BINS).astype(np.float64)
+    whole = np.bincount(sight.colours.ravel(), minlength=COLOUR_BINS)
+    usual = _RARE_PX * (whole + 1.0) / (whole.sum() + COLOUR_BINS)
+    share = (box + usual) / (box.sum() + _RARE_PX)
+    rest = (whole - box + usual) / (whole.sum() - box.sum() + _RARE_PX)
+    ratio = np.clip(np.log(share / rest), -_MOST_RATIO, _MOST_RATIO)
+    return box / max(box.sum(), 1.0), ratio

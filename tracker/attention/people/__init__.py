@@ -1,0 +1,1 @@
+"""People who are known again by their looks, however long they were away."""

@@ -1,0 +1,114 @@
+"""Where colour cameras show a person who is tracked in another one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Calibration, Frame
+from peopleboy.tracker.track import Box, Track
+
+LOOKED_AT: Final = (COLOUR, DEPTH_COLOUR, PANORAMA)
+"""Cameras that show colours, by their names."""
+
+_SAME_LENS: Final = {DEPTH_COLOUR: DEPTH}
+_TALL_M: Final = 1.72
+_WIDTH: Final = 0.3  # of a box whose width nobody knows, in its heights
+_NEAREST_M: Final = 0.3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """A person in the image of one camera.
+
+    Attributes:
+        camera: its name.
+        image: (H, W, 3) RGB.
+        box: left, top, width, height [px] from head to feet.
+    """
+
+    camera: str
+    image: NDArray[np.uint8]
+    box: Box
+
+
+def views_of(track: Track, frame: Frame) -> Iterator[View]:
+    """Give a tracked person in each colour image that there is.
+
+    Raises:
+        BadInput: an image is none.
+    """
+    for camera in LOOKED_AT:
+        if camera in frame.images:
+            box = box_in(camera, track, frame)
+            if box is not None:
+                yield View(camera, frame.rgb(camera), box)
+
+
+def check_colours(frame: Frame) -> None:
+    """Refuse frames of a robot without colours.
+
+    Raises:
+        BadInput: no camera is there, now or at other instants, that shows any.
+    """
+    if not any(camera in frame.images or camera in frame.calibrations for camera in LOOKED_AT):
+        known = ", ".join(frame.images) or "none"
+        raise BadInput(
+            f"attention needs a camera of colours, {' or '.join(LOOKED_AT)}; the robot has {known}"
+        )
+
+
+def box_in(camera: str, track: Track, frame: Frame) -> Box | None:
+    """Find the box of a track in a colour camera's image: its own, that of its rays, or of who stands there.
+
+    Without calibrations colours are taken to show what the thermal image shows.
+
+    Returns:
+        left, top, width, height [px], which may lie outside; None where it cannot be told.
+    """
+    for name in (camera, _SAME_LENS.get(camera, camera)):
+        if name in track.boxes:
+            return track.boxes[name]
+    calibration, thermal = frame.calibrations.get(camera), frame.calibrations.get(THERMAL)
+    if calibration is None:
+        return _same_view(camera, track, frame)
+    if track.place is None:
+        return None
+    ahead, aside = track.place.position_m
+    if THERMAL in track.boxes and thermal is not None:
+        ends = _ends(track.boxes[THERMAL], ahead, thermal)
+    else:
+        ends = np.array([[ahead, aside, _TALL_M], [ahead, aside, 0.0]])
+    return None if ends is None else _between(calibration.project(ends))
+
+
+def _same_view(camera: str, track: Track, frame: Frame) -> Box | None:
+    if THERMAL not in track.boxes or THERMAL not in frame.images:
+        return None
+    here, there = frame.images[camera].shape, frame.images[THERMAL].shape
+    across, down = here[1] / there[1], here[0] / there[0]
+    left, top, width, height = track.boxes[THERMAL]
+    return left * across, top * down, width * across, height * down
+
+
+def _ends(box: Box, ahead_m: float, thermal: Calibration) -> NDArray[np.float64] | None:
+    """Give the points (2, 3) [m] of head and feet, so far ahead of the robot, that a box ends at."""
+    left, top, width, height = box
+    rays = thermal.rays(np.array([[left + width / 2.0, top], [left + width / 2.0, top + height]]))
+    away_m = ahead_m - thermal.position_m[0]
+    if away_m < _NEAREST_M or rays[:, 0].min() <= 0.0:
+        return None
+    return np.asarray(thermal.position_m + rays * (away_m / rays[:, :1]), np.float64)
+
+
+def _between(ends: NDArray[np.float64]) -> Box | None:
+    (u, top), (low_u, bottom) = ends.tolist()
+    height = bottom - top
+    if not height > 1.0 or not abs(low_u - u) < height:
+        return None
+    return u - _WIDTH * height / 2.0, top, _WIDTH * height, height

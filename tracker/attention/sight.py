@@ -1,0 +1,108 @@
+"""An image made ready to be looked at: sums over any box of its maps, its patterns and its colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.attention.attention_config import AttentionConfig
+from peopleboy.tracker.attention.channels import Floats
+from peopleboy.tracker.attention.feature_maps import CELL_PX, feature_maps
+from peopleboy.tracker.attention.patterns import BINS, patterns
+
+COLOUR_BINS: Final = 512
+"""Eight steps of each of red, green and blue."""
+
+_LEAST_PX: Final = 16
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sight:
+    """An image in cells of two by two pixels.
+
+    Attributes:
+        image: (H, W, 3) RGB.
+        maps: (rows, columns, 23) of the features; None if they are not looked at.
+        map_sums: (rows + 1, columns + 1, 23) integral of that; None likewise.
+        pattern_sums: (rows + 1, columns + 1, 59) integral of how often each pattern occurs; None likewise.
+        colours: (H, W) the bin of each pixel's colour.
+    """
+
+    image: NDArray[np.uint8]
+    maps: Floats | None
+    map_sums: NDArray[np.float64] | None
+    pattern_sums: NDArray[np.float32] | None
+    colours: NDArray[np.uint16]
+
+    @classmethod
+    def of(cls, image: NDArray[np.uint8], config: AttentionConfig) -> Sight:
+        """Prepare an image.
+
+        Raises:
+            BadInput: it is no (H, W, 3) uint8 image, or too small to hold anything.
+        """
+        check_image(image)
+        maps = feature_maps(image, config) if config.maps and (config.plain or config.surround) else None
+        found = _pattern_sums(patterns(image)) if config.maps and config.patterns else None
+        return cls(image, maps, None if maps is None else _sums(maps), found, colour_bins(image))
+
+    @property
+    def rows(self) -> int:
+        """Height in cells."""
+        return int(self.image.shape[0]) // CELL_PX
+
+    @property
+    def columns(self) -> int:
+        """Width in cells."""
+        return int(self.image.shape[1]) // CELL_PX
+
+
+def check_image(image: object) -> None:
+    """Refuse what is no colour image.
+
+    Raises:
+        BadInput: it is none.
+    """
+    rule = f"attention: image must be (H, W, 3) uint8, at least {_LEAST_PX} px each way"
+    if not isinstance(image, np.ndarray):
+        raise BadInput(f"{rule}, got {type(image).__name__}")
+    is_colour = image.ndim == 3 and image.shape[2] == 3 and min(image.shape[:2]) >= _LEAST_PX
+    if not is_colour or image.dtype != np.uint8:
+        raise BadInput(f"{rule}, got {image.shape} {image.dtype}")
+
+
+@njit(cache=True, nogil=True)
+def colour_bins(image: NDArray[np.uint8]) -> NDArray[np.uint16]:
+    """Give the bin (H, W) of each colour of an image (H, W, 3)."""
+    bins = np.empty(image.shape[:2], np.uint16)
+    for v in range(image.shape[0]):
+        for u in range(image.shape[1]):
+            bins[v, u] = (image[v, u, 0] >> 5) << 6 | (image[v, u, 1] >> 5) << 3 | (image[v, u, 2] >> 5)
+    return bins
+
+
+def _sums(maps: Floats) -> NDArray[np.float64]:
+    parts = [cv2.integral(maps[:, :, k : k + 4], sdepth=cv2.CV_64F) for k in range(0, maps.shape[2], 4)]
+    return np.ascontiguousarray(np.dstack(parts))
+
+
+@njit(cache=True, nogil=True)
+def _pattern_sums(found: NDArray[np.uint8]) -> NDArray[np.float32]:
+    rows, columns = found.shape[0] // CELL_PX, found.shape[1] // CELL_PX
+    sums = np.zeros((rows + 1, columns + 1, BINS), np.float32)
+    row = np.zeros(BINS, np.float32)
+    for y in range(rows):
+        row[:] = 0
+        for x in range(columns):
+            for v in range(CELL_PX * y, CELL_PX * y + CELL_PX):
+                for u in range(CELL_PX * x, CELL_PX * x + CELL_PX):
+                    row[found[v, u]] += np.float32(1)
+            for k in range(BINS):
+                sums[y + 1, x + 1, k] = sums[y, x + 1, k] + row[k]
+    return sums
