@@ -107,7 +107,8 @@ class Eyes:
     def look(self, observation: Observation) -> Percept:
         """Let the tracker see the images if they are new, and tell the behaviour.
 
-        Images equal to the last ones to the bit are no new ones: the noise of a camera never repeats.
+        Images equal to the last ones to the bit are no new ones: the noise of a camera never repeats. Before
+        a wall colder than the thermal camera's span there is none, though: an image of one grey may be new.
         """
         newest = self._newest
         tell = partial(
@@ -205,7 +206,8 @@ def make_percept(
 
 
 def _are_same(old: Images, new: Images) -> bool:
-    return all(name in old and np.array_equal(old[name], image) for name, image in new.items())
+    are_equal = all(name in old and np.array_equal(old[name], image) for name, image in new.items())
+    return are_equal and any(image.min() < image.max() for image in new.values())
 
 
 def see_person(track: Track, box: Box, width: int, height: int) -> SeenPerson:
