@@ -1,10 +1,14 @@
-"""What a depth camera sees: depth without noise, with the usual noise, and with three times that."""
+"""What a depth camera sees: depth with more and less noise, and what is behind a thing that is moved."""
 
 from __future__ import annotations
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from docs.generate.pictures.paper import panels, show
+from peopleboy.scenarios.drawing.palette import person_colour
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.studies.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
 from peopleboy.sim.cameras.depth_image import show_depth
 from peopleboy.sim.config import WorldConfig
@@ -12,11 +16,19 @@ from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.truth.truth import Truth
 from peopleboy.sim.world import World
 
 PEOPLE = {"anna": (3.9, -0.8), "carl": (5.6, 0.6), "dora": (8.2, -0.35)}
 ROWS = slice(120, 400)
 SCALES = {"plain": 0.0, "depth": 1.0, "rough": 3.0}
+MOVED, MOVED_AT_S = "bears_4", 13.4
+MOVED_TITLES = (
+    "colours beside the depth",
+    "depth",
+    "whose pixels: people and things",
+    "nobody, nothing movable",
+)
 
 
 def scales() -> Figure:
@@ -32,3 +44,28 @@ def scales() -> Figure:
     for panel, name in zip(axes, SCALES, strict=True):
         show(panel, show_depth(images[name][ROWS]))
     return figure
+
+
+def moved() -> Figure:
+    """A man carries a bear."""
+    for world, observation in blind_drive(load_scenario(MOVED), 0):
+        if observation.time_s >= MOVED_AT_S:
+            truth = world.truth("depth")
+            colour, depth = (observation.images[name] for name in ("depth_colour", "depth"))
+            break
+    behind = np.rint(1000.0 * truth.background_m()).astype(np.uint16)
+    figure, axes = panels(list(MOVED_TITLES), 1.9)
+    for panel, image in zip(
+        axes, (colour, show_depth(depth), _owners(truth), show_depth(behind)), strict=True
+    ):
+        show(panel, image)
+    return figure
+
+
+def _owners(truth: Truth) -> np.ndarray:
+    """Grey, but for people and things that are moved, each in a colour."""
+    image = np.full((*truth.depth_m.shape, 3), 225, np.uint8)
+    names = [*(person.name for person in truth.people), *(thing.name for thing in truth.things)]
+    for number, name in enumerate(names, start=1):
+        image[truth.owners.mask(name)] = person_colour(number)
+    return image
