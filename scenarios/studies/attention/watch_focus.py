@@ -16,12 +16,11 @@ from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
 from peopleboy.scenarios.studies.attention.focus_choices import CHOICES
 from peopleboy.scenarios.studies.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import PersonTruth, Truth
-from peopleboy.sim.world import World
 from peopleboy.tracker.attention.attend import Focus, PersonLook, learn, middle_of, search
 from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.parts import check_box
 from peopleboy.tracker.attention.sight import Sight
-from peopleboy.tracker.frame import COLOUR, THERMAL
+from peopleboy.tracker.frame import COLOUR
 from peopleboy.tracker.track import Box
 
 EVERY: Final = 10
@@ -50,15 +49,6 @@ class FocusMoment:
     truth: Truth
 
 
-class _ToldEyes(OracleTracker):
-    """An oracle for robots that look at images too."""
-
-    @property
-    def cameras(self) -> tuple[str, ...]:
-        """Both of the robot's: a black thermal image alone would be taken for one that stays."""
-        return (THERMAL, COLOUR)
-
-
 def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[FocusMoment]:
     """Play a scenario; a robot that follows a person is told who that is."""
     if scenario.robot.behaviour != FOLLOWS:
@@ -66,9 +56,11 @@ def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[Fo
             if number % every == 0:
                 yield FocusMoment(seen.time_s, seen.images[COLOUR], world.truth(COLOUR))
         return
+    from peopleboy.sim.world import World  # here, as what was made before can be read without PyBullet
+
     config = scenario.world(seed)
     with World(config) as world:
-        eyes, behaviour = _ToldEyes(lambda: world.truth()), scenario.make_behaviour()
+        eyes, behaviour = OracleTracker(lambda: world.truth()), scenario.make_behaviour()
         for tick in closed_loop(world, eyes, behaviour, round(scenario.duration_s * config.control_hz)):
             if tick.frame % every == 1:
                 seen = tick.observation

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.scenarios.studies.attention.watch_absence import who_is_who
-from peopleboy.sim.world import World
+
+if TYPE_CHECKING:
+    from peopleboy.sim.world import World
 
 AWAY_S: Final = 8.0
 """Not followed for longer than this somebody is away."""
@@ -25,6 +27,8 @@ def watch_follower(scenario: Scenario, seed: int, name: str) -> dict[str, Any]:
         "absences", how often it did not follow the person for longer, and "resumed", after how many of those
         it went on with this one.
     """
+    from peopleboy.sim.world import World  # here, as what was made before can be read without PyBullet
+
     world: World  # the tracker looks at it only once it is built
     eyes = make_eyes(name, seed, lambda: world.truth())
     scenario = scenario.mounting(eyes.cameras)
