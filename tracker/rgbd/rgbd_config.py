@@ -89,6 +89,8 @@ class RgbdConfig:
         has_verification: whether what is found must look like a human, too.
         sees_depth: whether windows are judged by depth as well as by colour.
         least_far_score, least_near_score: of a window that is taken for a human.
+        least_other_score: likewise of what is one by something else than its window, such as its warmth:
+            lamps are warm, too.
     """
 
     size: HumanSize = field(default_factory=HumanSize)
@@ -99,6 +101,7 @@ class RgbdConfig:
     sees_depth: bool = True
     least_far_score: float = 0.9
     least_near_score: float = 0.5
+    least_other_score: float = -0.3
 
     def least_score(self, kind: Range) -> float:
         """Tell above which score a window of a range is a human's."""

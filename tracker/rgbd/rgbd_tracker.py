@@ -106,7 +106,7 @@ class RgbdTracker:
             window = window_of(found, kind, layout.floor, geometry)
             score = self._model.look(view.colour, view.depth, found.z_m, window, kind)
         is_verified = not self.config.has_verification or score > self.config.least_score(kind)
-        if not is_verified and self._is_human is not None:
+        if not is_verified and self._is_human is not None and score > self.config.least_other_score:
             is_verified = self._is_human(found, frame)
         ground = layout.floor.slope * found.z_m + layout.floor.offset_m
         top = (found.box[1] - geometry.centre_v) * found.z_m / geometry.focal_px
