@@ -129,21 +129,6 @@ def search(sight: Sight, look: PersonLook, config: AttentionConfig) -> Focus:
     return Focus(box, score, float(every[second_place]), second_box, scores, parts)
 
 
-def score_of(sight: Sight, look: PersonLook, box: Box, config: AttentionConfig) -> float:
-    """Tell how much a person in a box looks like a known one: 0..1.
-
-    Raises:
-        BadInput: head or torso are not inside the image.
-    """
-    check_box(box, sight.image.shape)
-    parts = []
-    for part, known in look.parts:
-        cells = cells_of(part, box)
-        at = np.array([cells.row]), np.array([cells.column])
-        parts.append(_part_scores(sight, known, at, (cells.height, cells.width), config))
-    return float(_together(parts, look)[0, 0])
-
-
 def relearn(look: PersonLook, sight: Sight, focus: Focus, config: AttentionConfig) -> PersonLook:
     """Take in a little of what the person looks like now, if it is likely that it is this one.
 

@@ -56,10 +56,6 @@ class Geometry:
         rays = self.rays.reshape(-1, 3)[pixels].astype(np.float64)
         return np.asarray(self.calibration.robot_from_camera[:3, 3] + rays * depth_m.ravel()[pixels, None])
 
-    def area_m2(self, depth_m: Metres) -> Metres:
-        """Give the area (H, W) [m^2] that each pixel shows, upright before the camera."""
-        return np.asarray((depth_m / np.float32(self.focal_px)) ** 2, np.float32)
-
     def warmth(self, depth_m: Metres, frame: Frame, warm: float) -> NDArray[np.int8] | None:
         """Tell (H, W) of each reading whether it is warm, cold, or not seen by the thermal camera.
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from peopleboy.tracker.attention.attend import learn, middle_of, relearn, score_of, search
+from peopleboy.tracker.attention.attend import learn, middle_of, relearn, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.attention.parts import TORSO
 from peopleboy.tracker.attention.sight import Sight
@@ -62,14 +62,6 @@ def test_the_default_score_is_absolute_and_the_printed_one_is_not():
     assert away < 0.5 * there
     there, away = scores[PRINTED]
     assert away > 0.5 * there
-
-
-def test_a_person_scores_more_in_the_own_box_than_in_anothers():
-    sight = Sight.of(FIRST, DEFAULT)
-    look = learn(sight, BOX, DEFAULT)
-    assert score_of(sight, look, BOX, DEFAULT) > 2.0 * score_of(
-        sight, look, (200.0, 60.0, 36.0, 120.0), DEFAULT
-    )
 
 
 def test_what_excites_and_what_inhibits_add_up_to_all_and_means_do_not_depend_on_the_size_of_the_box():
