@@ -9,6 +9,7 @@ from peopleboy.sim.cameras.kinds import check_rate
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.shapes.materials import Detail
 
 CONTROL_HZ = 15  # [Hz] of commands and images, if nothing else is said
 
@@ -25,6 +26,7 @@ class WorldConfig:
         physics_hz: [Hz] steps of the physics engine.
         control_hz: [Hz] commands and images.
         renderer: "raycast" or "bullet"; "none" for a world without images, which is several times faster.
+        detail: "plain", or "full" for what makes images harder: how finely people and surfaces are drawn.
 
     Raises:
         BadInput: a control step is not a whole number of physics steps, or an image not one of control
@@ -38,6 +40,7 @@ class WorldConfig:
     physics_hz: int = 240
     control_hz: int = CONTROL_HZ
     renderer: str = "raycast"
+    detail: Detail = "plain"
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide, and seeds that are none."""

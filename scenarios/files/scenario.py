@@ -113,6 +113,7 @@ class Scenario:
             robot=equip_robot(self.spec.robot),
             seed=seed,
             renderer=renderer,
+            detail=self.spec.detail,
         )
 
     def mounting(self, cameras: Sequence[str]) -> Scenario:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import Literal
 
+Detail = Literal["plain", "full"]
 Rgb = tuple[float, float, float]
 
 

@@ -11,6 +11,7 @@ from peopleboy.scenarios.files.schema.place import PlaceSpec
 from peopleboy.scenarios.files.schema.robot import FaultSpec, RobotSpec
 from peopleboy.scenarios.files.schema.things import ThingSpec
 from peopleboy.scenarios.files.schema.values import Key, Seconds, Strict
+from peopleboy.sim.shapes.materials import Detail
 
 
 class LightSpec(Strict):
@@ -58,6 +59,11 @@ class ScenarioSpec(Strict):
     clothes_differ: bool = Field(
         default=False,
         description="whether the seed draws clearly different colours where the file leaves them out",
+    )
+    detail: Detail = Field(
+        default="plain",
+        description="how finely people and surfaces are drawn: `full` is nearer to real images, "
+        "`plain` is quicker and keeps the bytes of older files",
     )
     lights: tuple[LightSpec, ...] = Field(
         default=(),
