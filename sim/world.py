@@ -277,6 +277,7 @@ class World:
             surroundings_c=self.config.place.surroundings_c,
             light_level=light_level(self.config.place, self.time_s),
             turn_rad_s=self._robot.velocity()[1],
+            time_s=self.time_s,
         )
 
 

@@ -1,7 +1,8 @@
 """The thermal image: from surface temperatures to the grey picture that a robot gets.
 
 Temperature of each surface point -> band radiance, with emissivity and mirrored surroundings -> optics and
-rotation blur -> apparent temperature -> detector noise -> 8 bit over 24..36 degC (T ch. 3), 16 bit at 10 mK.
+rotation blur -> apparent temperature -> detector noise -> 16 bit at 10 mK.
+Grey of 8 bits is what `electronics.gain` makes of it.
 """
 
 from __future__ import annotations
@@ -130,7 +131,15 @@ def make_detector(config: ThermalConfig, rng: np.random.Generator) -> Detector:
     """Draw the detector of one run."""
     shape = (config.camera.height, config.camera.width)
     offset = rng.standard_normal(shape, np.float32) * np.float32(config.fixed_pattern_k)
+    if config.vignetting_k > 0.0:
+        offset += _corners(config)
     return Detector(offset, rng.random(shape) < config.dead_pixels, config.lowest_c)
+
+
+def _corners(config: ThermalConfig) -> NDArray[np.float32]:
+    """(H, W) [K] what the lens's warm housing adds, which rises with the square of the way to the corners."""
+    v, u = (np.linspace(-1.0, 1.0, size) for size in (config.camera.height, config.camera.width))
+    return np.asarray(config.vignetting_k * (v[:, None] ** 2 + u**2) / 2.0, np.float32)
 
 
 def surface_image(
@@ -171,23 +180,24 @@ def surface_image(
 
 
 def detect(
-    apparent_c: NDArray[np.float32], detector: Detector, config: ThermalConfig, rng: np.random.Generator
+    apparent_c: NDArray[np.float32],
+    detector: Detector,
+    config: ThermalConfig,
+    rng: np.random.Generator,
+    drift_k: NDArray[np.float32] | None = None,
 ) -> NDArray[np.float32]:
-    """Add the detector's noise to an (H, W) image of apparent temperature [degC]; returns a new image."""
+    """Add the detector's noise, and its drift, to an (H, W) image of apparent temperature [degC].
+
+    Returns a new image.
+    """
     noise = gaussian(apparent_c.shape, rng)
     noise *= np.float32(config.netd_k)
     noise += apparent_c
     noise += detector.offset_k
+    if drift_k is not None:
+        noise += drift_k
     noise[detector.dead] = detector.dead_c
     return noise
-
-
-def encode_8bit(
-    temperature_c: NDArray[np.float32], lowest_c: float = 24.0, highest_c: float = 36.0
-) -> NDArray[np.uint8]:
-    """Encode [degC] as grey: round((T - lowest) / (highest - lowest) * 255), clipped (T ch. 3)."""
-    grey = (temperature_c - np.float32(lowest_c)) * np.float32(255.0 / (highest_c - lowest_c))
-    return np.asarray(np.clip(np.rint(grey), 0.0, 255.0), np.uint8)
 
 
 def encode_16bit(temperature_c: NDArray[np.float32]) -> NDArray[np.uint16]:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from docs.generate.pictures.moments import world_at
 from docs.generate.pictures.paper import panels, plot, show
 from peopleboy.sim.cameras.camera_config import ThermalConfig
-from peopleboy.sim.cameras.thermal import band_radiance, detect, encode_8bit, make_detector, surface_image
+from peopleboy.sim.cameras.electronics.gain import encode_8bit
+from peopleboy.sim.cameras.thermal import band_radiance, detect, make_detector, surface_image
 from peopleboy.sim.people.body.clothes import BOTTOMS, SKIN_C, TOPS
 from peopleboy.sim.places.thing_kinds import KINDS
 

@@ -31,7 +31,7 @@ FOLDER = {
     "run.json", "scenario.yaml", "truth", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",
     "events.jsonl", "metrics.json", "contact_sheet.png",
 }  # fmt: skip
-FRAMES = {"thermal", "thermal16", "colour"}
+FRAMES = {"thermal", "thermal16", "thermal_scene", "colour"}
 
 
 def scene(**changes: object) -> dict[str, object]:
