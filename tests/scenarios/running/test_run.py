@@ -105,6 +105,11 @@ def test_a_fresh_process_gives_the_same_bytes_and_another_seed_does_not(
         assert first[name] != other[name]
 
 
+def test_it_is_said_by_which_span_the_tracker_got_its_grey(finished: Path) -> None:
+    about = json.loads((finished / "run.json").read_text(encoding="utf-8"))
+    assert about["gains"] == {"thermal": {"gain": "fixed", "lowest_c": 24.0, "highest_c": 36.0}}
+
+
 def test_the_resolved_scenario_gives_the_same_world_again(finished: Path, tmp_path: Path) -> None:
     assert run_cli("run", finished / "scenario.yaml", "--out", tmp_path / "again", "--no-rrd") == 0
     again = digests(tmp_path / "again")
