@@ -206,7 +206,12 @@ class World:
         config, bullet = self.config, self._bullet
         materials = _add_fixtures(bullet, config.place)
         self._crowd = Crowd(
-            bullet, config.people, config.place, config.seed, is_visible=config.renderer != BLIND
+            bullet,
+            config.people,
+            config.place,
+            config.seed,
+            is_visible=config.renderer != BLIND,
+            detail=config.detail,
         )
         self._handling = Handling(bullet, config.place, self._crowd.people)
         self._robot = PeopleBot(bullet, config.robot, config.seed)

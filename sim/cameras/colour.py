@@ -9,7 +9,13 @@ from numpy.typing import NDArray
 from peopleboy.sim.cameras.blur import rotation_blur
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, LightConfig
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
+from peopleboy.sim.cameras.surfaces import (
+    MaterialTable,
+    finish_at,
+    part_from_pixel,
+    pattern_value,
+    surface_point,
+)
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.view import View
 
@@ -28,11 +34,14 @@ def _radiance_image(
     kind: NDArray[np.int64],
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
+    finish: NDArray[np.float64],
+    texels: NDArray[np.float32],
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
+    has_finish = len(finish) > 0
     for v in range(height):
         for u in range(width):
             p = part[v, u]
@@ -43,6 +52,11 @@ def _radiance_image(
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
+            if has_finish and finish[p, 0] >= 0.0:
+                _, factor, cover = finish_at(finish, texels, p, x, y, z)
+                for c in range(3):
+                    over = cover * (shade * finish[p, 5 + c] - image[v, u, c])
+                    image[v, u, c] = factor * (image[v, u, c] + over)
     return image
 
 
@@ -91,7 +105,7 @@ def colour_image(
     image = _radiance_image(
         view.part, view.depth, view.normal, matrices,
         materials.colour, materials.kind, materials.period, materials.phase,
-        LIGHT, light_level * config.gain,
+        materials.finish, materials.texels, LIGHT, light_level * config.gain,
     )  # fmt: skip
     return rotation_blur(image, config.camera, turned_rad)
 

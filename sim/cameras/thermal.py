@@ -19,6 +19,7 @@ from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
+    finish_at,
     part_from_pixel,
     pattern_value,
     smooth_variation,
@@ -82,12 +83,15 @@ def _radiance_image(
     kind: NDArray[np.int64],
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
+    finish: NDArray[np.float64],
+    texels: NDArray[np.float32],
     table: NDArray[np.float64],
     surroundings: float,
     span: tuple[float, float],
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.empty((height, width), np.float32)
+    has_finish = len(finish) > 0
     for v in range(height):
         for u in range(width):
             p = part[v, u]
@@ -95,10 +99,13 @@ def _radiance_image(
                 image[v, u] = surroundings
                 continue
             temperature = thermal[p, 0]
-            if thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
+            is_finished = has_finish and finish[p, 0] >= 0.0
+            if is_finished or thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
                 temperature += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
                 temperature += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
+                if is_finished:
+                    temperature += finish_at(finish, texels, p, x, y, z)[0]
             emitted = _look_up(table, span[0], span[1], temperature)
             image[v, u] = thermal[p, 1] * emitted + (1.0 - thermal[p, 1]) * surroundings
     return image
@@ -171,7 +178,7 @@ def surface_image(
     matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
     radiance = _radiance_image(
         view.part, view.depth, matrices, materials.thermal, materials.kind, materials.period, materials.phase,
-        _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
+        materials.finish, materials.texels, _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
     )  # fmt: skip
     radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)
     radiance = np.ascontiguousarray(radiance)
