@@ -28,6 +28,7 @@ from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.rendering.finish import Finish
 from peopleboy.sim.rendering.view import View
 
 Image = NDArray[Any]
@@ -46,6 +47,7 @@ class Glimpse:
         surroundings_c: [degC] what surfaces mirror.
         light_level: 1 is the place's full light.
         turn_rad_s: [rad/s] of the robot about the vertical axis.
+        finish: what makes images of full detail; None in a world of plain detail.
     """
 
     view: View
@@ -56,6 +58,7 @@ class Glimpse:
     surroundings_c: float
     light_level: float
     turn_rad_s: float
+    finish: Finish | None = None
 
 
 class Sensor(Protocol):
@@ -83,7 +86,7 @@ class ThermalSensor:
         config = self._config
         apparent = surface_image(
             glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.surroundings_c, glimpse.turn_rad_s * config.exposure_s,
+            glimpse.surroundings_c, glimpse.turn_rad_s * config.exposure_s, glimpse.finish,
         )  # fmt: skip
         temperature = detect(apparent, self._detector, config, self._noise)
         return encode_8bit(temperature, config.lowest_c, config.highest_c), temperature
@@ -105,7 +108,7 @@ class ColourSensor:
         config = self._config
         linear = colour_image(
             glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s,
+            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s, glimpse.finish,
         )  # fmt: skip
         return (expose(linear, config, self._noise),)
 
@@ -196,6 +199,6 @@ class DepthSensor:
         config = self._config
         linear = colour_image(
             glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s,
+            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s, glimpse.finish,
         )  # fmt: skip
         return expose(linear, config, self._colour_noise)

@@ -36,6 +36,7 @@ class MaterialTable:
         kind: (P, 2) PatternKind of the thermal and of the colour pattern.
         period: (P, 2) [m] of the same.
         phase: (P, 3) [waves] offsets of the smooth variation.
+        shine: (P,) how much of what is reflected is mirrored, 0..1.
     """
 
     thermal: NDArray[np.float64]
@@ -43,6 +44,7 @@ class MaterialTable:
     kind: NDArray[np.int64]
     period: NDArray[np.float64]
     phase: NDArray[np.float64]
+    shine: NDArray[np.float64]
 
 
 def make_material_table(materials: Sequence[Material], rng: np.random.Generator) -> MaterialTable:
@@ -62,6 +64,7 @@ def make_material_table(materials: Sequence[Material], rng: np.random.Generator)
             -1, 2
         ),
         phase=rng.uniform(0.0, 1.0, (len(materials), 3)),
+        shine=np.array([k.shine for k in materials], np.float64),
     )
 
 

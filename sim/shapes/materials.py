@@ -44,6 +44,8 @@ class Material:
         colour_pattern: where the second colour applies.
         glow: share of light that the surface gives out itself (a lamp or a monitor), whatever the room's
             light; 0 for everything else.
+        shine: how much of what the surface reflects it mirrors as a mirror does, 0..1: 0 is dull, 1 is glass.
+            Only images of full detail show it.
     """
 
     temperature_c: float
@@ -56,3 +58,4 @@ class Material:
     second_rgb: Rgb = (0.5, 0.5, 0.5)
     colour_pattern: Pattern = field(default_factory=Pattern)
     glow: float = 0.0
+    shine: float = 0.0
