@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import rotation_blur
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, LightConfig
+from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows
+from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
@@ -17,11 +19,16 @@ from peopleboy.sim.cameras.surfaces import (
     surface_point,
 )
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
 
 # The room's lamps hang above and a little to one side, so that walls and sides of people differ in shade.
 LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])
 _AMBIENT = 0.55
+
+_GLASS = 0.04  # share of light that glass and varnish, of a refractive index of 1.5, mirror straight on
+_CONTRAST = 0.03  # share of the light: fainter edges need no smoothing
+_ROOM = 0.4  # what is mirrored where nothing in particular is, share of the light
 
 
 @njit(cache=True, fastmath=True)
@@ -86,6 +93,7 @@ def colour_image(
     world_from_part: Matrix,
     light_level: float,
     turned_rad: float,
+    full_detail: FullDetail | None = None,
 ) -> NDArray[np.float32]:
     """Form the noise-free colour image.
 
@@ -97,16 +105,29 @@ def colour_image(
         world_from_part: (P, 4, 4).
         light_level: 1 is the room's full light, 0 is dark; glowing surfaces stay bright.
         turned_rad: [rad] turned about the vertical axis while the exposure lasted.
+        full_detail: adds shadows where things touch the floor, what shiny surfaces mirror, and smooth edges; None
+            leaves them out.
 
     Returns:
         (H, W, 3) linear light, 1 being full scale.
     """
-    matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
-    image = _radiance_image(
-        view.part, view.depth, view.normal, matrices,
-        materials.colour, materials.kind, materials.period, materials.phase,
-        materials.finish, materials.texels, LIGHT, light_level * config.gain,
-    )  # fmt: skip
+    level, camera = light_level * config.gain, config.camera
+
+    def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
+        return _radiance_image(
+            one.part, one.depth, one.normal, matrices,
+            materials.colour, materials.kind, materials.period, materials.phase,
+            materials.finish, materials.texels, LIGHT, level,
+        )  # fmt: skip
+
+    image = draw(view, part_from_pixel(camera, world_from_camera, world_from_part))
+    if full_detail is not None:
+        add_contact_shadows(image, view, camera, world_from_camera, full_detail.contacts)
+        add_reflections(
+            image, view, camera, world_from_part, full_detail.reflections,
+            np.full(len(materials.shine), _GLASS), materials.shine, np.full(3, _ROOM * level), draw,
+        )  # fmt: skip
+        full_detail.smooth(image, _CONTRAST * level)
     return rotation_blur(image, config.camera, turned_rad)
 
 

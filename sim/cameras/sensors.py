@@ -22,7 +22,7 @@ from peopleboy.sim.cameras.depth import (
 )
 from peopleboy.sim.cameras.depth_image import to_millimetres
 from peopleboy.sim.cameras.electronics.drift import Drift
-from peopleboy.sim.cameras.electronics.finish import compress, sharpen
+from peopleboy.sim.cameras.electronics.output import compress, sharpen
 from peopleboy.sim.cameras.electronics.gain import Gain
 from peopleboy.sim.cameras.noise import skip_gaussian
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
@@ -32,6 +32,7 @@ from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
 
 Image = NDArray[Any]
@@ -51,6 +52,7 @@ class Glimpse:
         light_level: 1 is the place's full light.
         turn_rad_s: [rad/s] of the robot about the vertical axis.
         time_s: [s] since the start.
+        full_detail: what makes images of full detail; None in a world of plain detail.
     """
 
     view: View
@@ -62,6 +64,7 @@ class Glimpse:
     light_level: float
     turn_rad_s: float
     time_s: float
+    full_detail: FullDetail | None = None
 
 
 class Sensor(Protocol):
@@ -106,7 +109,7 @@ class ThermalSensor:
         config = self._config
         apparent = surface_image(
             glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.surroundings_c, glimpse.turn_rad_s * config.exposure_s,
+            glimpse.surroundings_c, glimpse.turn_rad_s * config.exposure_s, glimpse.full_detail,
         )  # fmt: skip
         return detect(apparent, self._detector, config, self._noise, self._drift.offset_k(glimpse.time_s))
 
@@ -128,7 +131,7 @@ class ColourSensor:
         config = self._config
         linear = colour_image(
             glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s,
+            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s, glimpse.full_detail,
         )  # fmt: skip
         return (expose(linear, config, self._noise),)
 
@@ -219,6 +222,6 @@ class DepthSensor:
         config = self._config
         linear = colour_image(
             glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s,
+            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s, glimpse.full_detail,
         )  # fmt: skip
         return expose(linear, config, self._colour_noise)

@@ -40,6 +40,7 @@ class MaterialTable:
         finish: (P, 8) of each part's finish its first texel (-1 for none), columns, rows, lowest z [m], rows
             a metre, and colour; (0, 8) if no part has one.
         texels: (N, 3) kelvin, light and cover of all finishes.
+        shine: (P,) how much of what is reflected is mirrored, 0..1.
     """
 
     thermal: NDArray[np.float64]
@@ -49,6 +50,7 @@ class MaterialTable:
     phase: NDArray[np.float64]
     finish: NDArray[np.float64]
     texels: NDArray[np.float32]
+    shine: NDArray[np.float64]
 
 
 def make_material_table(materials: Sequence[Material], rng: np.random.Generator) -> MaterialTable:
@@ -71,6 +73,7 @@ def make_material_table(materials: Sequence[Material], rng: np.random.Generator)
         phase=rng.uniform(0.0, 1.0, (len(materials), 3)),
         finish=finish,
         texels=texels,
+        shine=np.array([k.shine for k in materials], np.float64),
     )
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
 from peopleboy.sim.cameras.camera_config import ThermalConfig
+from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
@@ -26,8 +27,10 @@ from peopleboy.sim.cameras.surfaces import (
     surface_point,
 )
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
 
+_CONTRAST = 1.0  # [W / (m2 sr)] about a kelvin: fainter edges need no smoothing
 _LOWEST_C, _HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
 
 
@@ -157,6 +160,7 @@ def surface_image(
     world_from_part: Matrix,
     surroundings_c: float,
     turned_rad: float,
+    full_detail: FullDetail | None = None,
 ) -> NDArray[np.float32]:
     """Form the noise-free image of apparent temperature.
 
@@ -171,15 +175,28 @@ def surface_image(
         world_from_part: (P, 4, 4).
         surroundings_c: [degC] what surfaces mirror, and what is seen where nothing is.
         turned_rad: [rad] turned about the vertical axis while the exposure lasted.
+        full_detail: adds what shiny surfaces mirror, and smooth edges; None leaves both out.
 
     Returns:
         (H, W) [degC].
     """
-    matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
-    radiance = _radiance_image(
-        view.part, view.depth, matrices, materials.thermal, materials.kind, materials.period, materials.phase,
-        materials.finish, materials.texels, _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
-    )  # fmt: skip
+    surroundings = _mirrored(surroundings_c)
+
+    def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
+        return _radiance_image(
+            one.part, one.depth, matrices, materials.thermal, materials.kind, materials.period,
+            materials.phase, materials.finish, materials.texels, _RADIANCE, surroundings,
+            (_LOWEST_C, _HIGHEST_C),
+        )  # fmt: skip
+
+    radiance = draw(view, part_from_pixel(config.camera, world_from_camera, world_from_part))
+    if full_detail is not None:
+        add_reflections(
+            radiance[..., None], view, config.camera, world_from_part, full_detail.reflections,
+            1.0 - materials.thermal[:, 1], materials.shine, np.array([surroundings]),
+            lambda one, matrices: draw(one, matrices)[..., None],
+        )  # fmt: skip
+        full_detail.smooth(radiance[..., None], _CONTRAST)
     radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)
     radiance = np.ascontiguousarray(radiance)
     _apparent_c(radiance, _TEMPERATURE, _DIMMEST, _BRIGHTEST)

@@ -47,6 +47,8 @@ class Material:
         glow: share of light that the surface gives out itself (a lamp or a monitor), whatever the room's
             light; 0 for everything else.
         finish: what the surface carries beside; None for nothing.
+        shine: how much of what the surface reflects it mirrors as a mirror does, 0..1: 0 is dull, 1 is glass.
+            Only images of full detail show it.
     """
 
     temperature_c: float
@@ -60,3 +62,4 @@ class Material:
     colour_pattern: Pattern = field(default_factory=Pattern)
     glow: float = 0.0
     finish: Finish | None = None
+    shine: float = 0.0

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from peopleboy.sim.cameras.electronics.finish import MOST_K, compress, sharpen
+from peopleboy.sim.cameras.electronics.output import MOST_K, compress, sharpen
 
 
 def edge(step_k: float) -> np.ndarray:
