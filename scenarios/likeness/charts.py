@@ -106,4 +106,4 @@ def grid(patches: Sequence[Grey]) -> str:
         row, column = divmod(number, _COLUMNS)
         large = np.kron(patch, np.ones((_LARGER, _LARGER), np.uint8))
         page[row * step : row * step + len(large), column * step : column * step + len(large)] = large
-    return f"data:image/png;base64,{base64.b64encode(cv2.imencode('.png', page)[1]).decode()}"
+    return f"data:image/png;base64,{base64.b64encode(cv2.imencode('.png', page)[1].tobytes()).decode()}"

@@ -27,7 +27,7 @@ _VISIBLE: Final = 0.7
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Moment:
+class ClipFrame:
     """One picture, the next one, and who is there.
 
     Attributes:
@@ -59,7 +59,7 @@ class Clip:
     paths: tuple[Path, ...]
     truth: TrueBoxes
 
-    def moments(self, count: int) -> Iterator[Moment]:
+    def moments(self, count: int) -> Iterator[ClipFrame]:
         """Read some pictures, spread evenly.
 
         Raises:
@@ -79,7 +79,7 @@ class Clip:
             rows = self.truth.frame == index + 1
             boxes = self.truth.box[rows]
             clear = (self.truth.visible[rows] >= _VISIBLE) & _is_inside(boxes, grey.shape)
-            yield Moment(grey, later, boxes, clear)
+            yield ClipFrame(grey, later, boxes, clear)
 
 
 def find_clips(folders: Sequence[Path]) -> list[Clip]:

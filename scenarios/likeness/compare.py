@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.likeness.clips import Clip, Grey, Moment, find_clips
+from peopleboy.scenarios.likeness.clips import Clip, Grey, ClipFrame, find_clips
 from peopleboy.scenarios.likeness.measures import Looks, measure_looks
 from peopleboy.scenarios.likeness.patches import anywhere, of_background, of_people
 from peopleboy.scenarios.likeness.tell_apart import Told, tell_apart
@@ -84,7 +84,7 @@ class _Cut:
     """A scene's pictures, and patches of them."""
 
     name: str
-    moments: list[Moment]
+    moments: list[ClipFrame]
     anywhere: list[Grey]
     background: list[Grey]
     people: list[Grey]
@@ -168,11 +168,11 @@ def _figures(side: Side) -> dict[str, Any]:
 
 
 def figures_of(looks: Looks) -> dict[str, float | None]:
-    """The figures of some pictures that are one number each; None where nobody is."""
+    """The figures of some pictures that are one number each; None where there is none."""
     has_people = bool(len(looks.contrast))
     return {
         "background_deviation": looks.deviation,
-        "noise": looks.noise,
+        "noise": None if np.isnan(looks.noise) else looks.noise,
         "share_clipped": looks.clipped,
         "contrast_median": float(np.median(looks.contrast)) if has_people else None,
         "contrast_in_ring_median": float(np.median(looks.contrast_in_ring)) if has_people else None,

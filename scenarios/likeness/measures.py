@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.likeness.clips import Grey, Moment
+from peopleboy.scenarios.likeness.clips import Grey, ClipFrame
 from peopleboy.scenarios.likeness.patches import background_corners, covered, shrunk
 
 Floats = NDArray[np.float64]
@@ -19,6 +19,7 @@ CONTRAST_EDGES: Final = np.arange(-160.0, 250.0, 10.0)
 _WINDOW: Final = 64
 _WINDOWS: Final = 3
 _STEADY: Final = 0.9  # share of the pixels that counts as noise; the rest may be something that moves
+_LEFT: Final = 0.7895  # root mean square of that share of a normal distribution of deviation 1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,7 +34,7 @@ class Looks:
         contrast: (P,) people's mean grey less that of a ring round their box [grey].
         contrast_in_ring: (P,) the same in standard deviations of the ring.
         deviation: standard deviation of the background of a picture, mean over pictures [grey].
-        noise: root mean square of what changes between pictures but for its largest tenth, median [grey].
+        noise: deviation of what changes between pictures but for its largest tenth, median [grey].
         clipped: share of pixels of value 0 or 255.
     """
 
@@ -48,7 +49,7 @@ class Looks:
     clipped: float
 
 
-def measure_looks(moments: list[Moment], rng: np.random.Generator) -> Looks:
+def measure_looks(moments: list[ClipFrame], rng: np.random.Generator) -> Looks:
     """Measure pictures; each counts the same."""
     contrasts = [pair for moment in moments for pair in contrasts_of(moment)]
     table = np.array(contrasts, np.float64).reshape(-1, 2)
@@ -70,17 +71,20 @@ def measure_looks(moments: list[Moment], rng: np.random.Generator) -> Looks:
 def gradient(grey: Grey) -> Floats:
     """Magnitude (H, W) of the gradient by central differences [grey/px]."""
     down, right = np.gradient(grey.astype(np.float64))
-    return np.hypot(down, right)
+    return np.asarray(np.hypot(down, right))
 
 
-def background_deviation(moment: Moment) -> float:
+def background_deviation(moment: ClipFrame) -> float:
     """Standard deviation of grey where nobody is; of the whole picture if people fill it."""
     free = ~covered(moment.grey.shape, moment.boxes)
     return float((moment.grey[free] if free.any() else moment.grey).std())
 
 
-def noise_of(moment: Moment) -> float:
-    """Root mean square of noise, from changes where nobody is, the largest tenth of them left out."""
+def noise_of(moment: ClipFrame) -> float:
+    """Standard deviation of noise, from changes where nobody is, the largest tenth of them left out.
+
+    For normal noise it is its deviation.
+    """
     assert moment.later is not None
     free = ~covered(moment.grey.shape, moment.boxes, grown=0.5)
     change = (moment.later.astype(np.float64) - moment.grey)[free]
@@ -88,10 +92,10 @@ def noise_of(moment: Moment) -> float:
         return float("nan")
     apart = np.sort(np.abs(change - np.median(change)))
     steady = apart[: max(round(_STEADY * len(apart)), 1)]
-    return float(np.sqrt((steady**2).mean() / 2.0))
+    return float(np.sqrt((steady**2).mean() / 2.0) / _LEFT)
 
 
-def contrasts_of(moment: Moment) -> list[tuple[float, float]]:
+def contrasts_of(moment: ClipFrame) -> list[tuple[float, float]]:
     """How much everybody who is clear differs from the ring round the box: [grey], [deviations of the ring].
 
     The ring reaches half the box's size beyond it on every side, and leaves out other people's boxes.
@@ -124,7 +128,7 @@ def radial_power(window: Floats) -> Floats:
     return np.asarray(total / np.bincount(number.ravel()))[1:]
 
 
-def _spectra(moment: Moment, rng: np.random.Generator) -> tuple[Floats, Floats]:
+def _spectra(moment: ClipFrame, rng: np.random.Generator) -> tuple[Floats, Floats]:
     assert moment.later is not None
     before, after = (shrunk(grey).astype(np.float64) for grey in (moment.grey, moment.later))
     corners = background_corners(moment, _WINDOWS, rng, _WINDOW) or [(0, 0)]

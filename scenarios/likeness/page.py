@@ -76,7 +76,7 @@ def table_rows(name: str, side: Side) -> list[tuple[str, ...]]:
             str(count),
             str(persons),
             f"{figures['background_deviation']:.1f}",
-            f"{figures['noise']:.1f}",
+            _or_nothing(figures["noise"], ".1f"),
             f"{100.0 * (figures['share_clipped'] or 0.0):.1f}",
             _or_nothing(figures["contrast_median"], ".0f"),
             _or_nothing(figures["contrast_in_ring_median"], ".1f"),

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.likeness.clips import ROWS, Grey, Moment
+from peopleboy.scenarios.likeness.clips import ROWS, Grey, ClipFrame
 
 SIDE: Final = 32
 """Rows and columns of a patch."""
@@ -34,20 +34,20 @@ def covered(shape: tuple[int, ...], boxes: NDArray[np.float64], grown: float = 0
     return mask
 
 
-def anywhere(moment: Moment, count: int, rng: np.random.Generator) -> list[Grey]:
+def anywhere(moment: ClipFrame, count: int, rng: np.random.Generator) -> list[Grey]:
     """Cut patches at random places of the shrunken picture, whatever they show."""
     picture = shrunk(moment.grey)
     return [_cut(picture, *_corner(picture, rng)) for _ in range(count)]
 
 
-def of_background(moment: Moment, count: int, rng: np.random.Generator, side: int = SIDE) -> list[Grey]:
+def of_background(moment: ClipFrame, count: int, rng: np.random.Generator, side: int = SIDE) -> list[Grey]:
     """Cut patches of the shrunken picture that reach into nobody's box; fewer where there is no room."""
     picture = shrunk(moment.grey)
     return [_cut(picture, *corner, side) for corner in background_corners(moment, count, rng, side)]
 
 
 def background_corners(
-    moment: Moment, count: int, rng: np.random.Generator, side: int
+    moment: ClipFrame, count: int, rng: np.random.Generator, side: int
 ) -> list[tuple[int, int]]:
     """Choose rows and columns of such patches."""
     factor = ROWS / moment.grey.shape[0]
@@ -61,7 +61,7 @@ def background_corners(
     return found
 
 
-def of_people(moment: Moment) -> list[Grey]:
+def of_people(moment: ClipFrame) -> list[Grey]:
     """Cut a square round everybody who is clear, shrunk so that each is as high; nobody is enlarged."""
     return [
         _square(moment.grey, box)

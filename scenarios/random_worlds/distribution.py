@@ -57,7 +57,7 @@ RANGES: Final[Mapping[str, Range]] = {
     "drive_speed": Range(low=-0.2, high=0.7, unit="m/s", what="speed of a command"),
     "drive_turn": Range(low=-40.0, high=40.0, unit="deg/s", what="turn rate of a command"),
     "drive_lasts": Range(low=0.8, high=4.0, unit="s", what="how long a command holds"),
-    "light": Range(low=0.1, high=1.2, unit="", what="level of the light"),
+    "light": Range(low=0.25, high=1.2, unit="", what="level of the light"),
 }
 """All that is drawn evenly."""
 

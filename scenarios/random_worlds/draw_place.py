@@ -5,16 +5,15 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from peopleboy.scenarios.files.build_place import make_floor_plan
-from peopleboy.scenarios.files.schema.place import CorridorSpec, LCorridorSpec, RoomSpec, TCorridorSpec
+from peopleboy.scenarios.files.schema.place import PlaceSpec
 from peopleboy.scenarios.random_worlds.attempts import Data, colour, rounded
 from peopleboy.scenarios.random_worlds.distribution import Draws
 from peopleboy.sim.places.floor_plan import FloorPlan
 
-_SPECS: Final = {
-    "room": RoomSpec, "corridor": CorridorSpec, "l_corridor": LCorridorSpec, "t_corridor": TCorridorSpec,
-}  # fmt: skip
+_PLACE: Final[TypeAdapter[PlaceSpec]] = TypeAdapter(PlaceSpec)
 _LENGTHS: Final = {
     "room": ("length_m",), "corridor": ("length_m",),
     "l_corridor": ("first_m", "second_m"), "t_corridor": ("stem_m", "bar_m"),
@@ -70,7 +69,7 @@ def draw_door(draws: Draws, place: Data) -> Data:
 
 def plan_of(place: Data) -> FloorPlan:
     """Lay out the floor of a place."""
-    return make_floor_plan(_SPECS[place["kind"]].model_validate(place))
+    return make_floor_plan(_PLACE.validate_python(place))
 
 
 def air_of(place: Data) -> float:

@@ -7,24 +7,21 @@ from typing import Final
 
 from peopleboy.scenarios.random_worlds.attempts import Data, rounded
 from peopleboy.scenarios.random_worlds.distribution import Draws
-from peopleboy.scenarios.random_worlds.draw_place import draw_point
+from peopleboy.scenarios.random_worlds.draw_place import draw_point, plan_of
 from peopleboy.sim.cameras.camera_config import COLOUR_BASELINE_M, COLOUR_ZOOM
 from peopleboy.sim.geometry.pinhole import Pinhole
 
 _AIMS: Final = 4
+_TRIES: Final = 8
+_AHEAD_M: Final = 3.0  # of floor before the robot, if it can be
+_WALL_M: Final = 0.1
+_FREE_M, _FREE_RAD = 1.5, math.radians(40.0)
 
 
 def draw_robot(draws: Draws, place: Data, duration_s: float) -> Data:
-    """Draw a robot, which looks about as far as the place reaches: at the farthest of four points."""
-    at = draw_point(draws, place)
-    aims = [draw_point(draws, place) for _ in range(_AIMS)]
-    robot: Data = {
-        "at_m": at,
-        "heading_deg": rounded(
-            _towards(at, max(aims, key=lambda aim: math.dist(at, aim))) + draws.number("heading_off")
-        ),
-        "cameras": draw_cameras(draws),
-    }
+    """Draw a robot, which looks about as far as the place reaches."""
+    at, heading = _stance(draws, place)
+    robot: Data = {"at_m": at, "heading_deg": heading, "cameras": draw_cameras(draws)}
     if draws.one_of("robot") == "drives":
         robot |= {"behaviour": "scripted", "commands": _drive(draws, duration_s)}
     return robot
@@ -54,9 +51,24 @@ def draw_cameras(draws: Draws) -> Data:
     return {"thermal": thermal, "colour": colour}
 
 
-def _towards(at: list[float], aim: list[float]) -> float:
-    """Heading [deg] from a point to another."""
-    return math.degrees(math.atan2(aim[1] - at[1], aim[0] - at[0]))
+def is_before(robot: Data, at: list[float]) -> bool:
+    """Tell whether a point is so near before the robot that a thing there would fill its view."""
+    ahead, aside = at[0] - robot["at_m"][0], at[1] - robot["at_m"][1]
+    off = math.remainder(math.atan2(aside, ahead) - math.radians(robot["heading_deg"]), math.tau)
+    return math.hypot(ahead, aside) < _FREE_M and abs(off) < _FREE_RAD
+
+
+def _stance(draws: Draws, place: Data) -> tuple[list[float], float]:
+    """Draw a point and a heading [deg] past the farthest of four others, most likely with floor ahead."""
+    areas = [area.grown(-_WALL_M) for _, area in plan_of(place).areas]
+    for _ in range(_TRIES):
+        at = draw_point(draws, place)
+        x, y = max((draw_point(draws, place) for _ in range(_AIMS)), key=lambda aim: math.dist(at, aim))
+        heading = math.degrees(math.atan2(y - at[1], x - at[0])) + draws.number("heading_off")
+        cos, sin = math.cos(math.radians(heading)), math.sin(math.radians(heading))
+        if any(area.contains(at[0] + _AHEAD_M * cos, at[1] + _AHEAD_M * sin) for area in areas):
+            break
+    return at, rounded(heading)
 
 
 def _drive(draws: Draws, duration_s: float) -> list[Data]:

@@ -7,6 +7,7 @@ from typing import Final
 from peopleboy.scenarios.random_worlds.attempts import Data, colour, rounded
 from peopleboy.scenarios.random_worlds.distribution import Draws
 from peopleboy.scenarios.random_worlds.draw_place import air_of, draw_point, plan_of
+from peopleboy.scenarios.random_worlds.draw_robot import is_before
 from peopleboy.sim.places.thing_kinds import KINDS, Kind
 
 _USUAL_AIR_C: Final = 21.5  # to which the kinds' own temperatures belong
@@ -16,12 +17,16 @@ _TABLE_M: Final = (0.4, 1.3)
 _PATTERNS: Final = ("stripes", "checks", "patch", "speckle")
 
 
-def draw_thing(draws: Draws, place: Data, things: list[Data]) -> Data:
+def draw_thing(draws: Draws, place: Data, robot: Data, things: list[Data]) -> Data:
     """Draw a thing; it may stand where it cannot."""
     is_hung = draws.happens("hung")
     name = str(draws.rng.choice([name for name, kind in KINDS.items() if kind.is_hung == is_hung]))
     kind = KINDS[name]
-    thing: Data = {"kind": name, "name": f"{name}_{len(things) + 1}", **_where(draws, place, things, kind)}
+    thing: Data = {
+        "kind": name,
+        "name": f"{name}_{len(things) + 1}",
+        **_where(draws, place, robot, things, kind),
+    }
     if not kind.is_to_ceiling and draws.happens("sized"):
         thing["size_m"] = [round(side * draws.number("thing_size"), 3) for side in kind.size_m]
     thing["temperature_c"] = _temperature(draws, place, kind)
@@ -34,7 +39,7 @@ def draw_thing(draws: Draws, place: Data, things: list[Data]) -> Data:
     return thing
 
 
-def _where(draws: Draws, place: Data, things: list[Data], kind: Kind) -> Data:
+def _where(draws: Draws, place: Data, robot: Data, things: list[Data], kind: Kind) -> Data:
     if kind.is_hung:
         walls = plan_of(place).walls()
         wall = walls[int(draws.rng.integers(len(walls)))]
@@ -44,7 +49,10 @@ def _where(draws: Draws, place: Data, things: list[Data], kind: Kind) -> Data:
     if tables and kind.size_m[2] < _LOW_M and not kind.is_from_ceiling and draws.happens("on_top"):
         return {"on_top_of": str(draws.rng.choice(tables))}
     facing = round(float(draws.rng.uniform(-180.0, 180.0)))
-    return {"at_m": draw_point(draws, place), "facing_deg": float(facing)}
+    at = draw_point(draws, place)
+    while is_before(robot, at):
+        at = draw_point(draws, place)
+    return {"at_m": at, "facing_deg": float(facing)}
 
 
 def _carries(thing: Data) -> bool:

@@ -46,7 +46,9 @@ def random_world(seed: int, duration_s: float = LASTS_S) -> Data:
         scene = _with_door(draws, scene)
     for _ in range(draws.count("things")):
         things = scene.get("things", [])
-        scene = with_one_more(scene, "things", partial(draw_thing, draws, scene["place"], things), _TRIES)
+        scene = with_one_more(
+            scene, "things", partial(draw_thing, draws, place, scene["robot"], things), _TRIES
+        )
     ground = parse_scenario(scene, source=scene["name"], folder=Path()).ground
     for number in range(draws.count("people")):
         scene = with_one_more(

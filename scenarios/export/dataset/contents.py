@@ -23,7 +23,7 @@ class Member:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Contents:
+class SetContents:
     """What a set is to hold.
 
     Attributes:
@@ -41,7 +41,7 @@ class Contents:
     is_random: bool = False
 
 
-def of_scenarios(scenarios: Sequence[str], seeds: int) -> Contents:
+def of_scenarios(scenarios: Sequence[str], seeds: int) -> SetContents:
     """Hold some scenarios, by name or path, with so many seeds each, from 0 on.
 
     Raises:
@@ -51,7 +51,7 @@ def of_scenarios(scenarios: Sequence[str], seeds: int) -> Contents:
     names = [scenario.name for scenario in loaded]
     if len(set(names)) < len(names):
         raise BadInput(f"render: {', '.join(names)}: two scenarios have the same name; give each once")
-    return Contents(
+    return SetContents(
         members=tuple(
             Member(scenario, seed, f"{scenario.name}-{seed}") for scenario in loaded for seed in range(seeds)
         ),
@@ -61,13 +61,13 @@ def of_scenarios(scenarios: Sequence[str], seeds: int) -> Contents:
     )
 
 
-def of_worlds(count: int, first: int) -> Contents:
+def of_worlds(count: int, first: int) -> SetContents:
     """Hold so many worlds drawn at random, each by a seed of its own, from `first` on."""
     seeds = range(first, first + count)
     worlds = [random_scenario(seed) for seed in seeds]
     empty = [split for split in SPLITS if split not in map(split_of, seeds)]
     are = "are" if len(empty) > 1 else "is"
-    return Contents(
+    return SetContents(
         members=tuple(Member(world, seed, world.name) for world, seed in zip(worlds, seeds, strict=True)),
         asked=("--randomise", str(count), "--seed", str(first)),
         about={"randomise": count, "seed": first},

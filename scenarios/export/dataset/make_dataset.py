@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.dataset.checks import Check, check_set
-from peopleboy.scenarios.export.dataset.contents import Contents
+from peopleboy.scenarios.export.dataset.contents import SetContents
 from peopleboy.scenarios.export.dataset.datasheet import write_datasheet
 from peopleboy.scenarios.export.dataset.splits import (
     ABOUT,
@@ -59,7 +59,7 @@ class RenderedSet:
 
 
 def render_set(
-    contents: Contents, folder: Path, *, frames: bool, tracker: str, workers: Workers
+    contents: SetContents, folder: Path, *, frames: bool, tracker: str, workers: Workers
 ) -> RenderedSet:
     """Render a set, or what is missing of it; complete runs stay.
 
