@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.likeness.clips import Clip, Grey, ClipFrame, find_clips
+from peopleboy.scenarios.likeness.clips import Clip, ClipFrame, Grey, find_clips
 from peopleboy.scenarios.likeness.measures import Looks, measure_looks
 from peopleboy.scenarios.likeness.patches import anywhere, of_background, of_people
 from peopleboy.scenarios.likeness.tell_apart import Told, tell_apart

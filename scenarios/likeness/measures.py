@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.likeness.clips import Grey, ClipFrame
+from peopleboy.scenarios.likeness.clips import ClipFrame, Grey
 from peopleboy.scenarios.likeness.patches import background_corners, covered, shrunk
 
 Floats = NDArray[np.float64]
