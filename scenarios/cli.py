@@ -10,11 +10,10 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.browse import list_command, schema, show
+from peopleboy.scenarios.commands.compare_footage import compare_footage
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.export import export
-from peopleboy.scenarios.commands.learn_foreground import train_foreground
-from peopleboy.scenarios.commands.learn_places import train_places
-from peopleboy.scenarios.commands.learn_windows import train_windows
+from peopleboy.scenarios.commands.learn import train_foreground, train_places, train_windows
 from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
 from peopleboy.scenarios.commands.report import report
@@ -36,6 +35,7 @@ COMMANDS = (
     evaluate,
     compare,
     track,
+    compare_footage,
     view,
     watch,
     report,

@@ -7,14 +7,19 @@ from pathlib import Path
 
 import click
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.options import tracker_option, workers_options
 from peopleboy.scenarios.scores.show_scores import print_spread
 
 
 @click.command()
-@click.argument("scenario")
+@click.argument("scenario", required=False)
+@click.option("--seeds", type=click.IntRange(min=1), help="How many, from 0 on.  [default: 10]")
 @click.option(
-    "--seeds", type=click.IntRange(min=1), default=10, show_default=True, help="How many, from 0 on."
+    "--randomise",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="In place of a scenario: how many worlds drawn at random, as `render` has them.",
 )
 @click.option(
     "--out",
@@ -27,24 +32,34 @@ from peopleboy.scenarios.scores.show_scores import print_spread
 @workers_options
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
 def sweep(
-    scenario: str,
-    seeds: int,
+    scenario: str | None,
+    seeds: int | None,
+    randomise: int | None,
     out: Path,
     tracker: str | None,
     workers: int | None,
     scheduler: str | None,
     overwrite: bool,
 ) -> None:
-    """Run a scenario with many seeds, without recordings, and score them together.
+    """Run a scenario with many seeds, or many random worlds, without recordings, and score them together.
 
     A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.running.sweep import sweep as run_seeds
+    from peopleboy.scenarios.running.sweep import sweep_worlds
     from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 
     who = chosen_workers(workers, scheduler)
-    print_spread(evaluate_runs(run_seeds(scenario, range(seeds), out, tracker, who, overwrite=overwrite)))
+    if (scenario is None) == (randomise is None) or (randomise is not None and seeds is not None):
+        raise BadInput("sweep: give a scenario, with --seeds or without, or --randomise N")
+    if scenario is None:
+        runs = sweep_worlds(range(randomise or 0), out, tracker, who, overwrite=overwrite)
+    else:
+        runs = run_seeds(
+            scenario, range(10 if seeds is None else seeds), out, tracker, who, overwrite=overwrite
+        )
+    print_spread(evaluate_runs(runs))
 
 
 @click.command()

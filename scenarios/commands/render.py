@@ -8,23 +8,35 @@ from pathlib import Path
 
 import click
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.options import TRACKERS, workers_options
 
 FAILED = 1
 
 
 @click.command()
-@click.argument("scenarios", metavar="SCENARIO...", nargs=-1, required=True)
+@click.argument("scenarios", metavar="[SCENARIO...]", nargs=-1)
 @click.option("--frames", is_flag=True, help="Write every image too, as for `run`; else truth alone.")
 @click.option(
     "--seeds",
     type=click.IntRange(min=1),
-    default=100,
-    show_default=True,
-    help="How many, from 0 on; from 7 on every split has runs.",
+    help="How many, from 0 on; from 7 on every split has runs.  [default: 100]",
 )
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder of the set.  [default: sets/SCENARIO-SCENARIO...]"
+    "--randomise",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="In place of scenarios: how many worlds, each drawn at random.",
+)
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    help="Of the first random world; the next one has the next.  [default: 0]",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder of the set.  [default: sets/SCENARIO-SCENARIO..., or sets/worlds]",
 )
 @click.option(
     "--tracker",
@@ -36,7 +48,9 @@ FAILED = 1
 def render(
     scenarios: Sequence[str],
     frames: bool,
-    seeds: int,
+    seeds: int | None,
+    randomise: int | None,
+    seed: int | None,
     out: Path | None,
     tracker: str,
     workers: int | None,
@@ -44,16 +58,28 @@ def render(
 ) -> None:
     """Render a data set: scenarios with many seeds, split, counted and checked, with a datasheet.
 
-    A killed call goes on where it was; with more --seeds the set grows, and no run changes its split.
+    Or, with --randomise, worlds of which each has its own place, things, temperatures, people and cameras. A
+    killed call goes on where it was; with more --seeds, or worlds, the set grows, and no run changes its
+    split.
     """
+    from peopleboy.scenarios.export.dataset.contents import of_scenarios, of_worlds
     from peopleboy.scenarios.export.dataset.make_dataset import render_set
-    from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.running.engine.workers import chosen_workers
 
     who = chosen_workers(workers, scheduler)
-    names = [load_scenario(scenario).name for scenario in scenarios]
-    folder = out if out is not None else Path("sets") / "-".join(names)
-    done = render_set(scenarios, seeds, folder, frames=frames, tracker=tracker, workers=who)
+    if randomise is None:
+        if seed is not None or not scenarios:
+            raise BadInput("render: give scenarios, or --randomise N, which --seed goes with")
+        contents = of_scenarios(scenarios, 100 if seeds is None else seeds)
+        usual = "-".join(contents.about["scenarios"])
+    else:
+        if seeds is not None or scenarios:
+            raise BadInput(
+                "render: --randomise draws worlds in place of scenarios and --seeds; leave these out"
+            )
+        contents, usual = of_worlds(randomise, 0 if seed is None else seed), "worlds"
+    folder = out if out is not None else Path("sets") / usual
+    done = render_set(contents, folder, frames=frames, tracker=tracker, workers=who)
     for check in done.checks:
         click.echo(f"{'holds' if not check.failures else 'FAILS'}: {check.what}")
         for failure in check.failures[:5]:

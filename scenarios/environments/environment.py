@@ -28,10 +28,13 @@ from peopleboy.scenarios.environments.randomise import check_options, vary
 from peopleboy.scenarios.environments.rewards import TASKS, TERMS, reward_terms
 from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.environments.situation import Episode
+from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.loop.tracker_by_name import camera_names, check_cameras, make_eyes
+from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.planar import Planar
@@ -48,6 +51,7 @@ SMALLEST_PX: Final = (80, 60)
 LARGEST_PX: Final = (1280, 960)
 DEFAULT_PX: Final = (320, 240)
 _SEEDS: Final = 2**31
+_RANDOM_S: Final = 30.0  # episodes in random worlds
 
 
 class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
@@ -65,7 +69,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     `reset(options=...)` varies that one episode, see `peopleboy.scenarios.environments.randomise.LIMITS`.
 
     Args:
-        scenario: name in the library or path of a YAML file.
+        scenario: name in the library or path of a YAML file; None for a world drawn at random at every reset
+            from `peopleboy.scenarios.random_worlds.distribution`, by the episode's seed, which lasts 30 s.
         task: "follow", "corridor" or "patrol", which decides the reward.
         observation: "pixels"; "tracks", what the tracker makes of the images; or "truth", what a perfect
             tracker would, for which nothing is rendered.
@@ -84,7 +89,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
     def __init__(
         self,
-        scenario: str | Path = "single_follow",
+        scenario: str | Path | None = "single_follow",
         *,
         task: str = "follow",
         observation: str = "tracks",
@@ -101,20 +106,18 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         _check_size(image_size)
         self._randomise = {} if randomise is None else dict(randomise)
         check_options(self._randomise)
-        self._scenario = load_scenario(scenario)
-        self._tracker_name = self._scenario.tracker if tracker is None else tracker
-        wanted = camera_names(self._tracker_name)  # refuses an unknown name now
-        if observation == "tracks":
-            self._scenario = self._scenario.mounting(wanted)
+        self._draws_worlds = scenario is None
+        first = _random_episode(0) if scenario is None else load_scenario(scenario)
+        self._tracker_name = first.tracker if tracker is None else tracker
+        self._wanted = camera_names(self._tracker_name)  # refuses an unknown name now
         self._task, self._kind, self._size = task, observation, image_size
         self.render_mode = render_mode
-        usual = self._scenario.world(0)
+        usual = first.world(0)
         self._physics_hz = usual.physics_hz if physics_hz is None else physics_hz
         replace(usual, physics_hz=self._physics_hz)  # refuses a rate that does not fit now
-        self._robot = _resize(usual.robot, image_size)
+        self._take(first)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = observation_space(observation, self._robot)
-        self._picture = ScenePicture(self._scenario.plan, self._scenario.place) if render_mode else None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -129,6 +132,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         check_options(chosen)
         self.close()
         self._seed = int(self.np_random.integers(_SEEDS)) if seed is None else seed
+        if self._draws_worlds:
+            self._take(_random_episode(self._seed))
         config = self._config(chosen)
         self._world = World(config)
         self._calibrations = calibrations_of(config.robot.cameras)
@@ -205,6 +210,12 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             self._world.close()
             self._world = None
 
+    def _take(self, scenario: Scenario) -> None:
+        """Play this scenario from the next episode on."""
+        self._scenario = scenario.mounting(self._wanted) if self._kind == "tracks" else scenario
+        self._robot = _resize(equip_robot(self._scenario.robot), self._size)
+        self._picture = ScenePicture(scenario.plan, scenario.place) if self.render_mode else None
+
     def _config(self, options: Mapping[str, Any]) -> WorldConfig:
         config = self._scenario.world(self._seed)
         needs_images = self._kind != "truth" or self.render_mode is not None
@@ -257,6 +268,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         if self._world is None or (self._is_over and not even_over):
             raise BadInput("environment: no episode is under way; call reset() first")
         return self._world
+
+
+def _random_episode(seed: int) -> Scenario:
+    return random_scenario(seed, _RANDOM_S)
 
 
 def _check_word(name: str, word: str | None, known: Sequence[str | None]) -> None:

@@ -1,4 +1,4 @@
-"""A scenario with many seeds."""
+"""A scenario with many seeds, or many worlds drawn at random."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
@@ -32,3 +33,26 @@ def sweep(
     ]
     play(unfinished([RunTask(loaded, option) for option in options]), workers, loaded.name)
     return [option.out for option in options]
+
+
+def sweep_worlds(
+    seeds: Iterable[int], out: Path, tracker: str | None, workers: Workers, *, overwrite: bool
+) -> list[Path]:
+    """Run worlds drawn at random, one by each seed, otherwise as `sweep`.
+
+    Returns:
+        The folders out/world_SEED, in the order of the seeds.
+
+    Raises:
+        BadInput: as for a single run, or a complete run in its place is another one.
+        TasksFailed: some runs failed.
+    """
+    tasks = []
+    for seed in seeds:
+        world = random_scenario(seed)
+        options = RunOptions(
+            seed=seed, out=out / world.name, tracker=tracker, record=False, overwrite=overwrite
+        )
+        tasks.append(RunTask(world, options))
+    play(unfinished(tasks), workers, "random worlds")
+    return [task.options.out for task in tasks]

@@ -152,8 +152,12 @@ def _check_splits(folder: Path, runs: Sequence[Path]) -> list[str]:
 
 
 def _check_again(done: Path, scenario: Scenario, options: RunOptions) -> list[str]:
-    """Start the run again, for a few frames, and compare every image and every line of text."""
-    short = scenario.lasting(_AGAIN_FRAMES / json.loads((done / "run.json").read_text())["rate_hz"])
+    """Start the run again, until all are there, and compare every image and every line of text."""
+    rate_hz = json.loads((done / "run.json").read_text())["rate_hz"]
+    entries_s = [person.enter_s for person in scenario.people(options.seed)]
+    short = scenario.lasting(
+        max(_AGAIN_FRAMES / rate_hz, *(entry + 1.0 / rate_hz for entry in entries_s), 0.0)
+    )
     with tempfile.TemporaryDirectory() as scratch:
         again = Path(scratch) / "again"
         run(short, replace(options, out=again), lambda _tick, _frames: None)

@@ -17,6 +17,7 @@ from peopleboy.scenarios.export.dataset.statistics import Bin, Statistics
 from peopleboy.scenarios.export.image_words import describe_images
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import KINDS, image_folders, kind_of
 
@@ -36,7 +37,8 @@ def write_datasheet(
         path: the file.
         statistics: of all, and of each split that has runs.
         checks: what was looked at.
-        about: scenarios as given, seeds, images, tracker, versions, size_mb, and which splits are lacking.
+        about: words of the command that ask for it, images, tracker, versions, size_mb, which splits are
+            lacking, and of random worlds histograms of what was drawn.
         scenarios: what was played.
     """
     environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
@@ -48,6 +50,9 @@ def write_datasheet(
         checks=checks,
         about=about,
         scenarios=scenarios,
+        ranges=RANGES,
+        shares=SHARES,
+        odds=ODDS,
         images=describe_images(outfits),
         units=_units(outfits),
         folders=_folders(outfits),

@@ -1,4 +1,4 @@
-"""Render a data set: every scenario with every seed, then splits, statistics, checks and the datasheet."""
+"""Render a data set: all its runs, then splits, statistics, checks and the datasheet."""
 
 from __future__ import annotations
 
@@ -6,27 +6,30 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.dataset.checks import Check, check_set
+from peopleboy.scenarios.export.dataset.contents import SetContents
 from peopleboy.scenarios.export.dataset.datasheet import write_datasheet
 from peopleboy.scenarios.export.dataset.splits import (
     ABOUT,
     SPLITS,
     is_set,
-    lacking_splits,
     split_file,
     split_lines,
     split_of,
 )
 from peopleboy.scenarios.export.dataset.statistics import Statistics, measure
-from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.random_worlds.drawn_values import drawn_values, histograms
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import check_named, writing_to
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
+
+DRAWN: Final = "drawn.json"
+"""The file in which a set of random worlds says what was drawn for each."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,11 +38,11 @@ class RenderedSet:
 
     Attributes:
         folder: where it lies.
-        runs: folders of its runs, in the order of scenarios, then seeds.
+        runs: folders of its runs, in the order of the contents.
         statistics: of each split that has runs, and of "all".
         checks: what was looked at.
         size_mb: [MB] of the runs on disk; exports may lie beside them.
-        lacking: which splits have no run, and how many seeds they need; empty if all have one.
+        lacking: which splits have no run, and what to ask for; empty if all have one.
     """
 
     folder: Path
@@ -56,15 +59,14 @@ class RenderedSet:
 
 
 def render_set(
-    scenarios: Sequence[str], seeds: int, folder: Path, *, frames: bool, tracker: str, workers: Workers
+    contents: SetContents, folder: Path, *, frames: bool, tracker: str, workers: Workers
 ) -> RenderedSet:
     """Render a set, or what is missing of it; complete runs stay.
 
     The datasheet and `dataset.json` are written last: without them a set is not finished.
 
     Args:
-        scenarios: names, or paths of scenario files.
-        seeds: how many of each, from 0 on.
+        contents: what it holds.
         folder: of the set.
         frames: whether images are written.
         tracker: whose eyes steer robots that follow people; "truth" for the true boxes.
@@ -74,38 +76,43 @@ def render_set(
         BadInput: as for a run; or the folder holds something that is no set.
         TasksFailed: some runs failed.
     """
-    loaded = [load_scenario(scenario) for scenario in scenarios]
-    names = [scenario.name for scenario in loaded]
-    if len(set(names)) < len(names):
-        raise BadInput(f"render: {', '.join(names)}: two scenarios have the same name; give each once")
+    members = contents.members
     _claim(folder)
     tasks = [
         RunTask(
-            scenario,
+            member.scenario,
             RunOptions(
-                seed=seed, out=folder / f"{name}-{seed}", frames=frames, tracker=tracker, record=False
+                seed=member.seed, out=folder / member.name, frames=frames, tracker=tracker, record=False
             ),
         )
-        for scenario, name in zip(loaded, names, strict=True)
-        for seed in range(seeds)
+        for member in members
     ]
     waiting = unfinished(tasks)
     _reopen(folder)
     runs = tuple(task.options.out for task in tasks)
-    numbers = [task.options.seed for task in tasks]
+    numbers = [member.seed for member in members]
     _write_splits(folder, [run.name for run in runs], numbers)
     play(waiting, workers, folder.name)
     done = RenderedSet(
         folder=folder,
         runs=runs,
         statistics=_statistics(runs, numbers),
-        checks=tuple(check_set(folder, runs, loaded[0], tasks[0].options)),
+        checks=tuple(check_set(folder, runs, members[0].scenario, tasks[0].options)),
         size_mb=sum(path.stat().st_size for run in runs for path in run.rglob("*") if path.is_file()) / 1e6,
-        lacking=lacking_splits(seeds),
+        lacking=contents.lacking,
     )
-    about = {"scenarios": names, "seeds": seeds, "images": frames, "tracker": tracker, "versions": versions()}
-    content = about | {"given": list(scenarios), "size_mb": done.size_mb, "lacking": done.lacking}
-    write_datasheet(folder / "README.md", done.statistics, done.checks, content, loaded)
+    about = {**contents.about, "images": frames, "tracker": tracker, "versions": versions()}
+    drawn = {m.name: drawn_values(m.scenario.resolved(m.seed)) for m in members} if contents.is_random else {}
+    if drawn:
+        (folder / DRAWN).write_text(json.dumps(drawn, indent=1) + "\n", encoding="utf-8")
+    content = about | {
+        "asked": contents.asked,
+        "size_mb": done.size_mb,
+        "lacking": done.lacking,
+        "drawn": histograms(list(drawn.values())),
+    }
+    scenarios = list(dict.fromkeys(member.scenario for member in members))
+    write_datasheet(folder / "README.md", done.statistics, done.checks, content, scenarios)
     _write_about(done, about)
     return done
 
@@ -125,7 +132,7 @@ def _claim(folder: Path) -> None:
 
 def _reopen(folder: Path) -> None:
     """Take back what says that the set is finished."""
-    for name in ("README.md", ABOUT):
+    for name in ("README.md", ABOUT, DRAWN):
         (folder / name).unlink(missing_ok=True)
 
 

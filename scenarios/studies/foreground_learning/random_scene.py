@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from functools import partial
-from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.files.load import parse_scenario
-from peopleboy.sim.people.body.clothes import COLOURS
+from peopleboy.scenarios.random_worlds.attempts import (
+    Data,
+    colour,
+    rounded,
+    until_valid,
+    with_one_more,
+)
 
 Draw = np.random.Generator
-Data = dict[str, Any]
 
 IMAGES: Final = {3: 60, 5: 60, 15: 90}
 """How many images a scene has, by how many the camera takes a second."""
@@ -24,7 +24,6 @@ _STANDING: Final = (
     "cabinet", "table", "chair", "block", "pillar", "round_pillar", "plant", "floor_lamp", "robot",
 )  # fmt: skip
 _HANGING: Final = ("radiator", "poster", "window", "pipe")
-_TRIES: Final = 30
 
 
 def random_scene(seed: int, camera: str = "panorama") -> Data:
@@ -44,41 +43,15 @@ def random_scene(seed: int, camera: str = "panorama") -> Data:
         "description": "A scene drawn at random, to learn from.",
         "duration_s": duration_s,
         "clothes_differ": bool(rng.random() < 0.5),
-        "lights": [{"at_s": 0.0, "level": _rounded(rng.uniform(0.55, 1.1))}],
+        "lights": [{"at_s": 0.0, "level": rounded(rng.uniform(0.55, 1.1))}],
     }
-    scene |= _until_valid(lambda: _stage(rng, camera, rate, duration_s), scene)
+    scene |= until_valid(lambda: _stage(rng, camera, rate, duration_s), scene)
     place = scene["place"]
     for _ in range(rng.integers(0, 9)):
-        scene = _with_one_more(scene, "things", lambda: _thing(rng, place))
+        scene = with_one_more(scene, "things", lambda: _thing(rng, place))
     for number in range(rng.integers(1, 5)):
-        scene = _with_one_more(scene, "people", partial(_person, rng, place, f"p{number}", duration_s))
+        scene = with_one_more(scene, "people", partial(_person, rng, place, f"p{number}", duration_s))
     return scene
-
-
-def _until_valid(draw: Callable[[], Data], scene: Data) -> Data:
-    """Draw again until the scene can be played."""
-    for _ in range(_TRIES):
-        drawn = draw()
-        if _is_valid(scene | drawn):
-            return drawn
-    raise AssertionError(f"{scene['name']}: no start was found for the robot")
-
-
-def _with_one_more(scene: Data, key: str, draw: Callable[[], Data]) -> Data:
-    """Add a thing or person; none, if all that are drawn stand in the way."""
-    for _ in range(_TRIES):
-        fuller = scene | {key: [*scene.get(key, []), draw()]}
-        if _is_valid(fuller):
-            return fuller
-    return scene
-
-
-def _is_valid(scene: Data) -> bool:
-    try:
-        parse_scenario(scene, source=scene["name"], folder=Path())
-    except BadInput:
-        return False
-    return True
 
 
 def _stage(rng: Draw, camera: str, rate: int, duration_s: float) -> Data:
@@ -86,7 +59,7 @@ def _stage(rng: Draw, camera: str, rate: int, duration_s: float) -> Data:
     place = _place(rng)
     robot: Data = {
         "at_m": _point(rng, place),
-        "heading_deg": _rounded(rng.uniform(-180.0, 180.0)),
+        "heading_deg": rounded(rng.uniform(-180.0, 180.0)),
         "cameras": {camera: {"kind": camera, "rate_hz": rate}},
     }
     if rng.random() < 0.65:
@@ -109,9 +82,9 @@ def _place(rng: Draw) -> Data:
         "room": ("length_m",), "corridor": ("length_m",),
         "l_corridor": ("first_m", "second_m"), "t_corridor": ("stem_m", "bar_m"),
     }  # fmt: skip
-    colours = {part: _colour(rng) for part in ("floor", "walls", "doors") if rng.random() < 0.8}
-    sizes = {name: _rounded(long) for name in lengths[kind]}
-    return {"kind": kind, "width_m": _rounded(across), **sizes, "colours": colours}
+    colours = {part: colour(rng) for part in ("floor", "walls", "doors") if rng.random() < 0.8}
+    sizes = {name: rounded(long) for name in lengths[kind]}
+    return {"kind": kind, "width_m": rounded(across), **sizes, "colours": colours}
 
 
 def _drive(rng: Draw, duration_s: float) -> list[Data]:
@@ -122,22 +95,22 @@ def _drive(rng: Draw, duration_s: float) -> list[Data]:
         linear = rng.uniform(-0.3, 0.8) if ways in ("straight", "curve") else 0.0
         turn = rng.uniform(-45.0, 45.0) if ways in ("turn", "curve") else 0.0
         commands.append(
-            {"from_s": _rounded(at), "linear_m_s": _rounded(linear), "angular_deg_s": _rounded(turn)}
+            {"from_s": rounded(at), "linear_m_s": rounded(linear), "angular_deg_s": rounded(turn)}
         )
         at += float(rng.uniform(0.8, 4.0))
     return commands
 
 
 def _thing(rng: Draw, place: Data) -> Data:
-    colour = {"colour": _colour(rng)} if rng.random() < 0.5 else {}
+    own = {"colour": colour(rng)} if rng.random() < 0.5 else {}
     if rng.random() < 0.3 and place["kind"] == "room":
         wall = str(rng.choice(["north", "south", "east", "west"]))
         reach = place["length_m"] if wall in ("north", "south") else place["width_m"]
         middle = reach / 2.0 if wall in ("north", "south") else 0.0
-        along = _rounded(middle + rng.uniform(-0.4, 0.4) * reach)
-        return {"kind": str(rng.choice(_HANGING)), "wall": wall, "along_m": along, **colour}
-    facing = _rounded(rng.uniform(-180.0, 180.0))
-    return {"kind": str(rng.choice(_STANDING)), "at_m": _point(rng, place), "facing_deg": facing, **colour}
+        along = rounded(middle + rng.uniform(-0.4, 0.4) * reach)
+        return {"kind": str(rng.choice(_HANGING)), "wall": wall, "along_m": along, **own}
+    facing = rounded(rng.uniform(-180.0, 180.0))
+    return {"kind": str(rng.choice(_STANDING)), "at_m": _point(rng, place), "facing_deg": facing, **own}
 
 
 def _person(rng: Draw, place: Data, name: str, duration_s: float) -> Data:
@@ -146,18 +119,18 @@ def _person(rng: Draw, place: Data, name: str, duration_s: float) -> Data:
     ]
     person: Data = {"name": name, "yields": bool(rng.random() < 0.5), "path": path}
     if rng.random() < 0.3:
-        person["enter_s"] = _rounded(rng.uniform(0.0, 0.6) * duration_s)
+        person["enter_s"] = rounded(rng.uniform(0.0, 0.6) * duration_s)
     elif rng.random() < 0.2:
-        person["leave_s"] = _rounded(rng.uniform(0.3, 0.9) * duration_s)
+        person["leave_s"] = rounded(rng.uniform(0.3, 0.9) * duration_s)
     if rng.random() < 0.5:
-        person["clothes"] = {"bottom_colour": _colour(rng)}
+        person["clothes"] = {"bottom_colour": colour(rng)}
     return person
 
 
 def _waypoint(rng: Draw, place: Data) -> Data:
-    waypoint: Data = {"at_m": _point(rng, place), "speed_m_s": _rounded(rng.uniform(0.5, 1.5))}
+    waypoint: Data = {"at_m": _point(rng, place), "speed_m_s": rounded(rng.uniform(0.5, 1.5))}
     if rng.random() < 0.2:
-        waypoint["pause_s"] = _rounded(rng.uniform(0.5, 5.0))
+        waypoint["pause_s"] = rounded(rng.uniform(0.5, 5.0))
         waypoint["posture"] = str(rng.choice(["standing", "bending", "arms_crossed"], p=[0.7, 0.2, 0.1]))
     return waypoint
 
@@ -166,16 +139,4 @@ def _point(rng: Draw, place: Data) -> list[float]:
     """Draw a point of the rectangle round the place; whether it is floor, who reads the scene says."""
     long = sum(place.get(key, 0.0) for key in ("length_m", "first_m", "stem_m"))
     side = max(place["width_m"], place.get("second_m", 0.0), place.get("bar_m", 0.0))
-    return [_rounded(rng.uniform(0.3, long - 0.3)), _rounded((rng.random() - 0.5) * side)]
-
-
-def _colour(rng: Draw) -> str | list[float]:
-    """Draw a colour: one with a name, or a grey with a tint."""
-    if rng.random() < 0.3:
-        return str(rng.choice(list(COLOURS)))
-    level = math.exp(rng.uniform(math.log(0.03), math.log(0.75)))
-    return [_rounded(x) for x in np.clip(level * np.exp(rng.normal(0.0, 0.25, 3)), 0.01, 0.95)]
-
-
-def _rounded(value: float) -> float:
-    return round(float(value), 2)
+    return [rounded(rng.uniform(0.3, long - 0.3)), rounded((rng.random() - 0.5) * side)]

@@ -9,6 +9,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.plan.plan import draw_plan
+from peopleboy.scenarios.export.dataset.contents import of_scenarios
 from peopleboy.scenarios.export.dataset.make_dataset import render_set
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.folder import claim_folder
@@ -123,7 +124,7 @@ FOLDERS = {
     "export or track": write_run,
     "run": lambda path: claim_folder(path, overwrite=False),
     "render": lambda path: render_set(
-        ["pass_behind"], 1, path, frames=False, tracker="truth", workers=Workers()
+        of_scenarios(["pass_behind"], 1), path, frames=False, tracker="truth", workers=Workers()
     ),
 }
 OTHERS = {

@@ -1,0 +1,138 @@
+"""What each step towards real thermal pictures does to how well they are told from real ones.
+
+`python -m benchmarks.realism --chosen CLIP --chosen CLIP --others CLIP --others CLIP` leaves the pictures of
+each step, and pages that set them beside the clips, in runs/realism.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+from rich.table import Table
+
+from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.likeness.compare import compare_footage
+from peopleboy.scenarios.likeness.page import auc_words, write_comparison
+from peopleboy.scenarios.likeness.tell_apart import Told
+from peopleboy.scenarios.random_worlds.random_world import random_scenario
+from peopleboy.scenarios.running.finished import is_finished
+from peopleboy.scenarios.running.run import RunOptions, run
+
+OUT = Path("runs/realism")
+CLIP = click.Path(exists=True, file_okay=False, path_type=Path)
+PLAIN = (
+    "crossing_3",
+    "crowd_8",
+    "group_abreast",
+    "sitting",
+    "stop_and_talk",
+    "three_depths",
+    "corridor_meeting",
+    "crossing_2_moving",
+)
+STRUCTURED = (
+    "warm_office",
+    "kitchen_morning",
+    "glass_corridor",
+    "street_evening",
+    "sunny_hall",
+    "garage",
+    "workshop",
+    "crowded_foyer",
+)
+"""The library's scenes that are to look like real ones."""
+WORLDS = 24
+SEED = 100
+SCENE_S, WORLD_S = 8.0, 4.0
+
+Data = dict[str, Any]
+Change = Callable[[Data], Data]
+
+
+def _with_camera(**keys: Any) -> Change:
+    return lambda data: (
+        data
+        | {
+            "robot": data["robot"]
+            | {
+                "cameras": data["robot"].get("cameras", {})
+                | {"thermal": data["robot"].get("cameras", {}).get("thermal", {"kind": "thermal"}) | keys}
+            }
+        }
+    )
+
+
+def _in_full(data: Data) -> Data:
+    return data | {"detail": "full"}
+
+
+def _as_it_is(data: Data) -> Data:
+    return data
+
+
+STEPS: dict[str, tuple[Change, ...]] = {
+    "fixed span, 24 to 36 degC": (_as_it_is,),
+    "automatic gain": (_with_camera(gain="plateau"),),
+    "and camera effects": (_with_camera(preset="uncooled_film"),),
+    "and full detail": (_with_camera(preset="uncooled_film"), _in_full),
+}
+"""How the library's older scenes are changed, step by step."""
+
+
+@click.command()
+@click.option("--chosen", multiple=True, required=True, type=CLIP, help="A clip that values were chosen by.")
+@click.option("--others", multiple=True, required=True, type=CLIP, help="A clip for reporting alone.")
+def main(chosen: Sequence[Path], others: Sequence[Path]) -> None:
+    """Render every step, compare it, and print the AUC of patches, and of people."""
+    table = Table("step", "chosen: all", "people", "others: all", "people", box=None)
+    for name, scenarios in steps():
+        folder = OUT / name.replace(",", "").replace(" ", "_")
+        film(scenarios, folder)
+        row = []
+        for clips, what in ((chosen, "chosen"), (others, "others")):
+            found = compare_footage([folder], clips)
+            write_comparison(found, OUT / f"{folder.name}_{what}.html")
+            row += [auc_words(found.told), _words(found.told_people)]
+        table.add_row(name, *row)
+    Console(width=160).print(table)
+
+
+def steps() -> Iterator[tuple[str, list[tuple[Scenario, int]]]]:
+    """Name each step, and what is played in it, with which seed."""
+    for name, changes in STEPS.items():
+        yield name, [(_changed(scene, changes), SEED) for scene in PLAIN]
+    yield "scenes with structure", [(_changed(scene, (_as_it_is,)), SEED) for scene in STRUCTURED]
+    yield "random worlds", [(random_scenario(seed, WORLD_S), seed) for seed in range(SEED, SEED + WORLDS)]
+
+
+def film(scenarios: Sequence[tuple[Scenario, int]], folder: Path) -> None:
+    """Run what has not been run yet, with images."""
+    for scenario, seed in scenarios:
+        options = RunOptions(
+            seed=seed, out=folder / f"{scenario.name}-{seed}", frames=True, tracker="truth", record=False
+        )
+        if not is_finished(scenario, options):
+            run(scenario, options, lambda _tick, _frames: None)
+
+
+def _changed(name: str, changes: Sequence[Change]) -> Scenario:
+    """A scene of the library, its first seconds, changed."""
+    data = load_scenario(name).spec.model_dump(mode="json", exclude_unset=True)
+    early = [person for person in data["people"] if person.get("enter_s", 0.0) < SCENE_S]
+    data |= {"duration_s": SCENE_S, "people": early}
+    for change in changes:
+        data = change(data)
+    return parse_scenario(data, source=name, folder=LIBRARY)
+
+
+def _words(told: Told | None) -> str:
+    return "" if told is None else auc_words(told)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""Commands that learn from scenes drawn at random: `train-foreground`, `train-places`, `train-windows`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from peopleboy.scenarios.commands.options import workers_options
+
+
+@click.command("train-foreground")
+@click.option(
+    "--scenes", type=click.IntRange(min=1), default=400, show_default=True, help="How many to learn from."
+)
+@click.option(
+    "--tests", type=click.IntRange(min=0), default=20, show_default=True, help="How many others to judge by."
+)
+@click.option(
+    "--rounds",
+    type=click.IntRange(min=1),
+    default=12,
+    show_default=True,
+    help="How often a hundred of the scenes are learned from.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("runs") / "foreground",
+    show_default=True,
+    help="Folder for the films and the network.",
+)
+@click.option("--ship", is_flag=True, help="Put the network in the place of the tracker's own.")
+@workers_options
+def train_foreground(
+    scenes: int, tests: int, rounds: int, out: Path, ship: bool, workers: int | None, scheduler: str | None
+) -> None:
+    """Learn to tell people from background in the panorama, from scenes drawn at random.
+
+    Their places, things, people and drives are drawn by their seeds. Films that are there are not made again.
+    """
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.studies.foreground_learning.foreground_lesson import (
+        ForegroundLessons,
+        give_foreground_lesson,
+    )
+
+    lessons = ForegroundLessons(scenes=scenes, tests=tests, rounds=rounds)
+    click.echo(give_foreground_lesson(out, chosen_workers(workers, scheduler), lessons, ship=ship))
+
+
+@click.command("train-places")
+@click.option(
+    "--scenes", type=click.IntRange(min=2), default=400, show_default=True, help="How many to learn from."
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("runs/places"),
+    show_default=True,
+    help="Folder for the examples and the networks.",
+)
+@click.option(
+    "--films",
+    type=click.Path(path_type=Path),
+    default=Path("runs/foreground/films"),
+    show_default=True,
+    help="Folder of the films, which train-foreground uses, too.",
+)
+@click.option("--ship", is_flag=True, help="Put the networks in the place of the tracker's own.")
+@workers_options
+def train_places(
+    scenes: int, out: Path, films: Path, ship: bool, workers: int | None, scheduler: str | None
+) -> None:
+    """Learn from scenes drawn at random how people look in the panorama from where they stand.
+
+    It is for the tracker `panoramic`, after `train-foreground`, whose network must be there. Needs
+    scikit-learn: .[train]. A killed call goes on where it was.
+    """
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.studies.place_learning.place_lesson import give_place_lesson
+
+    click.echo(give_place_lesson(out, films, chosen_workers(workers, scheduler), scenes=scenes, ship=ship))
+
+
+@click.command("train-windows")
+@click.option(
+    "--scenes", type=click.IntRange(min=1), default=300, show_default=True, help="How many to learn from."
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("runs/windows"),
+    show_default=True,
+    help="Folder for the examples and the machines.",
+)
+@click.option("--ship", is_flag=True, help="Put the machines in the place of the tracker's own.")
+@workers_options
+def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, scheduler: str | None) -> None:
+    """Learn what people look like to a depth camera, from scenes drawn at random.
+
+    It is for the trackers `rgbd` and `rgbd-printed`: support vector machines for who is near and who is
+    farther, by colour alone and with depth. Needs scikit-learn: .[train]. A killed call goes on where it was.
+    """
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.studies.window_learning.window_lesson import give_window_lesson
+
+    for path in give_window_lesson(out, chosen_workers(workers, scheduler), scenes=scenes, ship=ship):
+        click.echo(path)

@@ -1,0 +1,1 @@
+"""How near rendered thermal pictures come to real ones: figures, a page, and a classifier as the judge."""

@@ -1,0 +1,151 @@
+"""Thermal clips with boxes of people, rendered or real, as folders hold them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.footage.picture_names import pictures_in
+from peopleboy.tracker.footage.pictures import INNER, read_picture, size_of
+from peopleboy.tracker.footage.truth_files import NAMES, load_truth
+
+Grey = NDArray[np.uint8]
+
+ROWS: Final = 192
+"""Height to which all pictures are shrunk, so that a pixel is the same share of the view."""
+
+_BESIDE: Final = ("gt.txt", *NAMES)
+_VISIBLE: Final = 0.7
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClipFrame:
+    """One picture, the next one, and who is there.
+
+    Attributes:
+        grey: (H, W) uint8, as it was recorded.
+        later: (H, W) uint8, the picture after it; None behind the last one.
+        boxes: (N, 4) [px] left, top, width, height of everybody.
+        clear: (N,) whether that one is mostly visible, and inside the picture.
+    """
+
+    grey: Grey
+    later: Grey | None
+    boxes: NDArray[np.float64]
+    clear: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Clip:
+    """A row of pictures with truth.
+
+    Attributes:
+        name: its folder's.
+        scene: what it shows; clips of one scene are never in training and in test at once.
+        paths: of the pictures.
+        truth: boxes, by frame from 1.
+    """
+
+    name: str
+    scene: str
+    paths: tuple[Path, ...]
+    truth: TrueBoxes
+
+    def moments(self, count: int) -> Iterator[ClipFrame]:
+        """Read some pictures, spread evenly.
+
+        Raises:
+            BadInput: a picture that is no 8-bit grey one, too small, or of another size than the first.
+        """
+        first: Grey | None = None
+        chosen = np.linspace(0, max(len(self.paths) - 2, 0), min(count, len(self.paths)))
+        for index in np.unique(chosen.round().astype(int)):
+            grey = _read(self.paths[index])
+            first = grey if first is None else first
+            if grey.shape != first.shape:
+                raise BadInput(
+                    f"{self.paths[index]}: all pictures must have one size, {size_of(first)} as the first, "
+                    f"got {size_of(grey)}"
+                )
+            later = _read(self.paths[index + 1]) if index + 1 < len(self.paths) else None
+            rows = self.truth.frame == index + 1
+            boxes = self.truth.box[rows]
+            clear = (self.truth.visible[rows] >= _VISIBLE) & _is_inside(boxes, grey.shape)
+            yield ClipFrame(grey, later, boxes, clear)
+
+
+def find_clips(folders: Sequence[Path]) -> list[Clip]:
+    """Find the clips of these folders: clips, runs, or sets of them.
+
+    Raises:
+        BadInput: a folder without pictures, without truth, or with a truth that cannot be read.
+    """
+    return [clip for folder in folders for home in _homes(folder) for clip in (_clip(home),)]
+
+
+def _homes(folder: Path) -> list[Path]:
+    if not folder.is_dir():
+        raise BadInput(f"{folder}: there is no such folder")
+    if _pictures_of(folder) is not None:
+        return [folder]
+    within = [path for path in sorted(folder.iterdir()) if path.is_dir() and _pictures_of(path) is not None]
+    if not within:
+        frames = "; `peopleboy run --frames` writes some" if (folder / "run.json").is_file() else ""
+        raise BadInput(f"{folder}: has no pictures, neither in thermal/ nor in folders with thermal/{frames}")
+    return within
+
+
+def _pictures_of(folder: Path) -> Path | None:
+    """Give the folder inside that has the pictures; its own ones only where it is no run."""
+    inner = [folder / name for name in reversed(INNER) if (folder / name).is_dir()]
+    if not (folder / "run.json").is_file():
+        inner.append(folder)
+    return next((path for path in inner if pictures_in(path)), None)
+
+
+def _clip(folder: Path) -> Clip:
+    home = _pictures_of(folder)
+    assert home is not None
+    truth = next((folder / name for name in _BESIDE if (folder / name).is_file()), None)
+    if truth is None:
+        raise BadInput(f"{folder}: has no boxes of people; wanted is one of {', '.join(_BESIDE)}")
+    paths = tuple(pictures_in(home))
+    given = load_truth(truth, len(paths))
+    return Clip(folder.resolve().name, _scene(folder), paths, given.truth)
+
+
+def _scene(folder: Path) -> str:
+    """Name what a clip shows: of runs their scenario, whatever the seed."""
+    try:
+        return str(json.loads((folder / "run.json").read_text(encoding="utf-8"))["scenario"])
+    except (OSError, ValueError, KeyError):
+        return str(folder.resolve())
+
+
+def _read(path: Path) -> Grey:
+    picture = read_picture(path, [])
+    if picture.ndim == 3:
+        if (picture != picture[..., :1]).any():
+            raise BadInput(f"{path}: must be grey, got a picture in colours")
+        picture = picture[..., 0]
+    if picture.dtype != np.uint8:
+        raise BadInput(f"{path}: must have 8 bits, as a robot's thermal/ has, got {picture.dtype}")
+    if min(picture.shape) < ROWS:
+        raise BadInput(f"{path}: must be at least {ROWS} x {ROWS} pixels, got {size_of(picture)}")
+    return np.ascontiguousarray(picture)
+
+
+def _is_inside(boxes: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    left, top, width, height = boxes.T
+    inside: NDArray[np.bool_] = (
+        (left >= 0) & (top >= 0) & (left + width <= shape[1]) & (top + height <= shape[0])
+    )
+    return inside

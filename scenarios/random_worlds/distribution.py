@@ -1,0 +1,120 @@
+"""From what random worlds are drawn: every range and every share, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Range:
+    """An even distribution from `low` to `high`, both in `unit`; `what` says of what."""
+
+    low: float
+    high: float
+    unit: str
+    what: str
+    is_whole: bool = False
+
+
+RANGES: Final[Mapping[str, Range]] = {
+    "room_length": Range(low=4.0, high=20.0, unit="m", what="length of a room"),
+    "room_width": Range(low=3.5, high=14.0, unit="m", what="width of a room"),
+    "corridor_length": Range(low=7.0, high=24.0, unit="m", what="length of a corridor, and of its legs"),
+    "corridor_width": Range(low=1.8, high=4.0, unit="m", what="width of a corridor"),
+    "ceiling": Range(low=2.4, high=5.0, unit="m", what="height of the place"),
+    "doors": Range(low=0, high=3, unit="", what="doors", is_whole=True),
+    "door_width": Range(low=0.8, high=1.8, unit="m", what="width of a door"),
+    "air": Range(low=8.0, high=31.0, unit="degC", what="air of the place, and what surfaces mirror"),
+    "floor_over_air": Range(low=-3.0, high=3.0, unit="K", what="floor less air"),
+    "walls_over_air": Range(low=-2.5, high=2.5, unit="K", what="walls less air"),
+    "ceiling_over_air": Range(low=-0.5, high=4.0, unit="K", what="ceiling less air"),
+    "wall_over_others": Range(low=-5.0, high=5.0, unit="K", what="a wall that differs, less the others"),
+    "things": Range(low=0, high=24, unit="", what="things that it is tried to place", is_whole=True),
+    "thing_over_air": Range(low=-1.5, high=1.5, unit="K", what="a thing that is not heated, less air"),
+    "thing_heat": Range(
+        low=0.6, high=1.3, unit="", what="heat of a thing that is heated, over its usual one"
+    ),
+    "thing_size": Range(low=0.75, high=1.35, unit="", what="each side of a thing, over its usual one"),
+    "emissivity": Range(low=0.75, high=0.97, unit="", what="emissivity of things"),
+    "people": Range(low=0, high=10, unit="", what="people that it is tried to place", is_whole=True),
+    "points": Range(low=1, high=5, unit="", what="points of a path", is_whole=True),
+    "speed": Range(low=0.4, high=1.8, unit="m/s", what="walking speed"),
+    "pause": Range(low=0.3, high=4.0, unit="s", what="pause at a point"),
+    "camera_height": Range(low=0.4, high=1.8, unit="m", what="height of the cameras above the floor"),
+    "pitch": Range(low=-15.0, high=15.0, unit="deg", what="tilt of the cameras; positive looks down"),
+    "vertical_fov": Range(low=25.0, high=70.0, unit="deg", what="height of the thermal camera's view"),
+    "blur": Range(low=0.4, high=1.4, unit="px", what="blur of the thermal camera's optics"),
+    "netd": Range(low=0.02, high=0.15, unit="K", what="noise that is new in every image"),
+    "fixed_pattern": Range(low=0.01, high=0.12, unit="K", what="noise that is the same in every image"),
+    "dead_pixels": Range(low=0.0, high=0.0005, unit="", what="share of dead pixels"),
+    "heading_off": Range(
+        low=-30.0, high=30.0, unit="deg", what="where the robot looks, beside a far point of the floor"
+    ),
+    "drive_speed": Range(low=-0.2, high=0.7, unit="m/s", what="speed of a command"),
+    "drive_turn": Range(low=-40.0, high=40.0, unit="deg/s", what="turn rate of a command"),
+    "drive_lasts": Range(low=0.8, high=4.0, unit="s", what="how long a command holds"),
+    "light": Range(low=0.25, high=1.2, unit="", what="level of the light"),
+}
+"""All that is drawn evenly."""
+
+SHARES: Final[Mapping[str, Mapping[str, float]]] = {
+    "place": {"room": 0.55, "corridor": 0.15, "l_corridor": 0.15, "t_corridor": 0.15},
+    "door": {"open": 0.5, "closed": 0.5},
+    "robot": {"stands": 0.5, "drives": 0.5},
+    "command": {"straight": 0.4, "curve": 0.35, "turn": 0.15, "stop": 0.1},
+    "posture": {
+        "standing": 0.6, "sitting": 0.1, "bending": 0.1, "arms_crossed": 0.1, "arms_raised": 0.1,
+    },
+    "arms": {"swinging": 0.85, "crossed": 0.1, "raised": 0.05},
+    "light_changes": {"never": 0.8, "once": 0.2},
+    "clothes": {"as people dress": 0.75, "all different": 0.25},
+}  # fmt: skip
+"""All that is drawn from a few, and how often each is."""
+
+ODDS: Final[Mapping[str, tuple[float, str]]] = {
+    "wall_differs": (0.3, "a wall of the place has a temperature of its own"),
+    "coloured": (0.6, "a surface or thing has a colour that is drawn"),
+    "patterned": (0.3, "a thing has a pattern"),
+    "sized": (0.5, "a thing is of another size than usual"),
+    "hung": (0.35, "a thing is one that hangs on a wall, rather than one that stands"),
+    "on_top": (0.5, "a small thing stands on a piece of furniture, if there is one"),
+    "begins_in_view": (0.7, "somebody begins where the thermal camera looks at first"),
+    "pauses": (0.25, "somebody stays a while at a point"),
+    "looks_at_robot": (0.3, "somebody who stays looks at the robot"),
+    "enters_later": (0.25, "somebody comes later"),
+    "leaves": (0.15, "somebody goes before the end"),
+    "yields": (0.5, "somebody makes way"),
+    "carries": (0.2, "somebody carries a bag"),
+}
+"""How often something is so."""
+
+
+class Draws:
+    """Draws from the distribution above, and from nothing else."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self.rng = rng
+
+    def number(self, name: str) -> float:
+        """Draw from a range, to a hundredth; dead pixels and emissivities finer."""
+        spread = RANGES[name]
+        if spread.is_whole:
+            return int(self.rng.integers(int(spread.low), int(spread.high), endpoint=True))
+        return round(float(self.rng.uniform(spread.low, spread.high)), 2 if spread.high > 0.5 else 6)
+
+    def count(self, name: str) -> int:
+        """Draw from a range of whole numbers."""
+        return int(self.number(name))
+
+    def one_of(self, name: str) -> str:
+        """Draw from a few by their shares."""
+        shares = SHARES[name]
+        return str(self.rng.choice(list(shares), p=list(shares.values())))
+
+    def happens(self, name: str) -> bool:
+        """Draw whether something is so."""
+        return bool(self.rng.random() < ODDS[name][0])

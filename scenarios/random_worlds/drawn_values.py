@@ -1,0 +1,104 @@
+"""What was drawn for a random world, value by value, read back from its scenario."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from peopleboy.scenarios.random_worlds.distribution import RANGES, SHARES, Range
+
+Values = dict[str, list[float] | list[str]]
+"""By name of what was drawn: a value, or as many as there are."""
+
+_BARS: Final = 6
+
+
+def drawn_values(played: Mapping[str, Any]) -> Values:
+    """List what was drawn for a world.
+
+    Args:
+        played: the scenario as plain data with everything drawn, as a run's scenario.yaml holds it.
+    """
+    place, robot = played["place"], played["robot"]
+    warm, camera = place["temperatures"], robot["cameras"]["thermal"]
+    people, things = played["people"], played["things"]
+    points = [point for person in people for point in person["path"]]
+    air = warm["surroundings_c"]
+    size = "room" if place["kind"] == "room" else "corridor"
+    lengths = [place[key] for key in ("length_m", "first_m", "second_m", "stem_m", "bar_m") if key in place]
+    return {
+        "place": [place["kind"]],
+        f"{size}_length": lengths,
+        f"{size}_width": [place["width_m"]],
+        "ceiling": [place["height_m"]],
+        "doors": [len(place["doors"])],
+        "door": ["open" if door["open"] else "closed" for door in place["doors"]],
+        "air": [air],
+        "floor_over_air": [warm["floor_c"] - air],
+        "walls_over_air": [warm["walls_c"] - air],
+        "ceiling_over_air": [warm["ceiling_c"] - air],
+        "wall_over_others": [other - warm["walls_c"] for other in warm["single_walls_c"].values()],
+        "things": [len(things)],
+        "thing": [thing["kind"] for thing in things],
+        "emissivity": [thing["emissivity"] for thing in things],
+        "people": [len(people)],
+        "sex": [person["sex"] for person in people],
+        "top": [person["clothes"]["top"] for person in people],
+        "bottom": [person["clothes"]["bottom"] for person in people],
+        "hair": [person["clothes"]["hair"] for person in people],
+        "arms": [person["arms"] for person in people],
+        "points": [len(person["path"]) for person in people],
+        "speed": [point["speed_m_s"] for point in points],
+        "pause": [point["pause_s"] for point in points if point["pause_s"] > 0.0],
+        "posture": [point["posture"] for point in points if point["pause_s"] > 0.0],
+        "camera_height": [camera["mount_m"][2]],
+        "pitch": [camera["pitch_deg"]],
+        "vertical_fov": [camera["vertical_fov_deg"]],
+        "blur": [camera["blur_px"]],
+        "netd": [camera["netd_k"]],
+        "fixed_pattern": [camera["fixed_pattern_k"]],
+        "dead_pixels": [camera["dead_pixels"]],
+        "robot": ["drives" if robot["behaviour"] == "scripted" else "stands"],
+        "drive_speed": [one["linear_m_s"] for one in robot["commands"] if one["linear_m_s"] != 0.0],
+        "drive_turn": [one["angular_deg_s"] for one in robot["commands"] if one["angular_deg_s"] != 0.0],
+        "light": [step["level"] for step in played["lights"]],
+    }
+
+
+def histograms(worlds: Sequence[Values]) -> list[tuple[str, str, str]]:
+    """Count what was drawn for many worlds.
+
+    Returns:
+        Of each value: what it is, the range with its unit or the number of different ones, and in words how
+        many lie in each sixth of the range, or how often each was drawn.
+    """
+    names = dict.fromkeys(name for world in worlds for name in world)
+    rows = []
+    for name in names:
+        values = [value for world in worlds for value in world.get(name, [])]
+        spread = RANGES.get(name)
+        if name in SHARES or spread is None or any(isinstance(value, str) for value in values):
+            rows.append((name, f"{len(values)} drawn", _counts(map(str, values))))
+        else:
+            rows.append((spread.what, _span(spread), _bars(np.array(values, np.float64), spread)))
+    return rows
+
+
+def _counts(values: Iterable[str]) -> str:
+    return ", ".join(f"{value.replace('_', ' ')} {count}" for value, count in Counter(values).most_common())
+
+
+def _bars(values: Any, spread: Range) -> str:
+    """Count values in equal parts of their range; of whole numbers, each by itself where they are few."""
+    bars = int(spread.high - spread.low) + 1 if spread.is_whole and spread.high <= 12 else _BARS
+    edges = np.linspace(spread.low, spread.high + spread.is_whole, bars + 1)
+    inside = np.clip(values, spread.low, np.nextafter(edges[-1], -math.inf))
+    return " · ".join(str(int(count)) for count in np.histogram(inside, edges)[0])
+
+
+def _span(spread: Range) -> str:
+    return f"{spread.low:g} to {spread.high:g} {spread.unit}".rstrip()
