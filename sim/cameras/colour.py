@@ -105,8 +105,8 @@ def colour_image(
         world_from_part: (P, 4, 4).
         light_level: 1 is the room's full light, 0 is dark; glowing surfaces stay bright.
         turned_rad: [rad] turned about the vertical axis while the exposure lasted.
-        full_detail: adds shadows where things touch the floor, what shiny surfaces mirror, and smooth edges; None
-            leaves them out.
+        full_detail: adds shadows where things touch the floor, what shiny surfaces mirror, and smooth edges;
+            None leaves them out.
 
     Returns:
         (H, W, 3) linear light, 1 being full scale.

@@ -22,8 +22,8 @@ from peopleboy.sim.cameras.depth import (
 )
 from peopleboy.sim.cameras.depth_image import to_millimetres
 from peopleboy.sim.cameras.electronics.drift import Drift
-from peopleboy.sim.cameras.electronics.output import compress, sharpen
 from peopleboy.sim.cameras.electronics.gain import Gain
+from peopleboy.sim.cameras.electronics.output import compress, sharpen
 from peopleboy.sim.cameras.noise import skip_gaussian
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.surfaces import MaterialTable

@@ -15,8 +15,8 @@ from docs.generate.pictures.paper import panels, plot, show
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.electronics.drift import Drift
 from peopleboy.sim.cameras.electronics.eye import show_scene
-from peopleboy.sim.cameras.electronics.output import compress, sharpen
 from peopleboy.sim.cameras.electronics.gain import Gain, encode_8bit
+from peopleboy.sim.cameras.electronics.output import compress, sharpen
 from peopleboy.sim.cameras.thermal import band_radiance, detect, make_detector, surface_image
 from peopleboy.sim.people.body.clothes import BOTTOMS, SKIN_C, TOPS
 from peopleboy.sim.places.thing_kinds import KINDS

@@ -158,7 +158,7 @@ def test_a_wall_takes_half_of_the_light_at_its_foot_and_none_out_of_reach() -> N
 
 def test_what_hangs_high_takes_less_light_than_what_stands() -> None:
     row = np.array([0.0, 0.0, 1.0, 0.0, 0.1, 0.05, 0.02, 0.0, 0.3])
-    high = row + (0, 0, 0, 0, 0, 0, 0, 0.2, 0.2)
+    high = row + np.array([0, 0, 0, 0, 0, 0, 0, 0.2, 0.2])
     assert lost_light(high, 0.05) < 0.4 * lost_light(row, 0.05)
 
 
