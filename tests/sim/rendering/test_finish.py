@@ -60,9 +60,12 @@ def test_a_ball_fills_its_edge_pixels_by_the_share_of_their_area(x: float, y: fl
         table, fine, POSE, seen.scene.world_from_part, np.zeros(1, np.int64), np.zeros(1, np.bool_)
     ).part
     share = (parts == 0).reshape(CAMERA.height, 16, CAMERA.width, 16).mean(axis=(1, 3))
-    # Shares are known to some hundredths themselves.
-    assert np.abs(found - share).max() <= 0.25 + 0.03
-    assert found.sum() == pytest.approx(share.sum(), abs=0.6 + 0.02 * share.sum())
+    error = np.abs(found - share)
+    # A straight outline is off by a quarter at most; this one is bent, and shares are known to hundredths.
+    assert error.max() <= 0.3
+    assert error[(share > 0.0) & (share < 1.0)].mean() < 0.12
+    stairs = np.abs((seen.view.part == 0) - share)
+    assert (error**2).sum() < 0.25 * (stairs**2).sum()
 
 
 def test_where_box_and_floor_meet_both_have_their_share_and_all_else_keeps_its_value() -> None:
@@ -158,7 +161,7 @@ def test_a_wall_takes_half_of_the_light_at_its_foot_and_none_out_of_reach() -> N
 
 def test_what_hangs_high_takes_less_light_than_what_stands() -> None:
     row = np.array([0.0, 0.0, 1.0, 0.0, 0.1, 0.05, 0.02, 0.0, 0.3])
-    high = row + (0, 0, 0, 0, 0, 0, 0, 0.2, 0.2)
+    high = row + np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.2, 0.2])
     assert lost_light(high, 0.05) < 0.4 * lost_light(row, 0.05)
 
 
