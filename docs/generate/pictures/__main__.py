@@ -20,6 +20,7 @@ from docs.generate.pictures import (
     runs,
     scene_model,
     thermal,
+    thermal_worlds,
     tracker,
 )
 from docs.generate.pictures.paper import save
@@ -34,6 +35,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "thermal_steps": thermal.steps,
     "thermal_bars": thermal.bars,
     "thermal_mirror": thermal.mirror,
+    "light": thermal_worlds.light,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,
