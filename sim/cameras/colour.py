@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.cameras.blur import rotation_blur
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, LightConfig
 from peopleboy.sim.cameras.noise import gaussian
+from peopleboy.sim.cameras.paintings import painted
 from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.view import View
@@ -28,6 +29,8 @@ def _radiance_image(
     kind: NDArray[np.int64],
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
+    paint: NDArray[np.float64],
+    texels: NDArray[np.float32],
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
@@ -41,6 +44,8 @@ def _radiance_image(
             x, y, z = surface_point(matrices, p, u, v, depth[v, u])
             second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
+            if paint[p, 0] >= 0.0:
+                shade *= painted(paint, texels, p, x, y, z)[1]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
     return image
@@ -91,7 +96,7 @@ def colour_image(
     image = _radiance_image(
         view.part, view.depth, view.normal, matrices,
         materials.colour, materials.kind, materials.period, materials.phase,
-        LIGHT, light_level * config.gain,
+        materials.paint, materials.texels, LIGHT, light_level * config.gain,
     )  # fmt: skip
     return rotation_blur(image, config.camera, turned_rad)
 

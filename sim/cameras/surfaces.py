@@ -14,8 +14,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.sim.cameras.paintings import make_paint_table
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.shapes.materials import Material, PatternKind
+from peopleboy.sim.shapes.paintings import Painting
 
 # Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
 _OFFSET = 0.137
@@ -36,6 +38,7 @@ class MaterialTable:
         kind: (P, 2) PatternKind of the thermal and of the colour pattern.
         period: (P, 2) [m] of the same.
         phase: (P, 3) [waves] offsets of the smooth variation.
+        paint, texels: paintings, as `make_paint_table` gives them.
     """
 
     thermal: NDArray[np.float64]
@@ -43,10 +46,17 @@ class MaterialTable:
     kind: NDArray[np.int64]
     period: NDArray[np.float64]
     phase: NDArray[np.float64]
+    paint: NDArray[np.float64]
+    texels: NDArray[np.float32]
 
 
-def make_material_table(materials: Sequence[Material], rng: np.random.Generator) -> MaterialTable:
+def make_material_table(
+    materials: Sequence[Material],
+    rng: np.random.Generator,
+    paintings: Sequence[Painting | None] | None = None,
+) -> MaterialTable:
     """Put the looks of all parts into arrays; the generator draws each part's phase of variation."""
+    paint, texels = make_paint_table([None] * len(materials) if paintings is None else paintings)
     return MaterialTable(
         thermal=np.array(
             [
@@ -62,6 +72,8 @@ def make_material_table(materials: Sequence[Material], rng: np.random.Generator)
             -1, 2
         ),
         phase=rng.uniform(0.0, 1.0, (len(materials), 3)),
+        paint=paint,
+        texels=texels,
     )
 
 

@@ -20,6 +20,21 @@ class PatternKind(IntEnum):
     SPECKLE = 4  # irregular blotches
 
 
+class Finish(IntEnum):
+    """How a surface is finished, which `detail: full` paints."""
+
+    BARE = 0
+    PLASTER = 1  # inner walls
+    FLOORING = 2
+    CEILING = 3
+    STREET = 4  # pavement and road
+    FACADE = 5  # storeys of windows
+    SKY = 6
+    SKYLINE = 7  # far houses and trees before the sky
+    LEAVES = 8
+    GLASS = 9  # lets the sun in
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pattern:
     """A pattern and its period: the width of a pair of stripes, or the height of a patch [m]."""
@@ -44,6 +59,9 @@ class Material:
         colour_pattern: where the second colour applies.
         glow: share of light that the surface gives out itself (a lamp or a monitor), whatever the room's
             light; 0 for everything else.
+        finish: what `detail: full` paints on it.
+        gradient_k_per_m: [K/m] how much warmer it is above than below, by `detail: full`.
+        uneven_k: [K] deviation of its temperature over all scales, by `detail: full`.
     """
 
     temperature_c: float
@@ -56,3 +74,6 @@ class Material:
     second_rgb: Rgb = (0.5, 0.5, 0.5)
     colour_pattern: Pattern = field(default_factory=Pattern)
     glow: float = 0.0
+    finish: Finish = Finish.BARE
+    gradient_k_per_m: float = 0.0
+    uneven_k: float = 0.0
