@@ -17,11 +17,11 @@ def paint_plaster(fresco: Fresco) -> None:
     """A plastered wall on studs, with skirting, wires, pipes, sockets and stains."""
     rng, width = fresco.rng, fresco.size[0]
     fresco.kelvin += rng.uniform(0.5, 1.1) * (fresco.up - 1.2)
-    fresco.kelvin -= _edges(fresco, rng.uniform(0.8, 2.2), 0.22)
-    fresco.kelvin -= rng.uniform(0.2, 0.7) * fresco.lines(
+    fresco.kelvin -= _edges(fresco, rng.uniform(1.2, 3.0), 0.22)
+    fresco.kelvin -= rng.uniform(0.3, 1.1) * fresco.lines(
         fresco.across + rng.uniform(0.0, 0.6), _STUDS_M, 0.05
     )
-    fresco.kelvin += rng.uniform(0.25, 0.5) * fresco.cloudy(1.6) + 0.15 * fresco.cloudy(0.25)
+    fresco.kelvin += rng.uniform(0.5, 0.9) * fresco.cloudy(1.6) + 0.25 * fresco.cloudy(0.25)
     for _ in range(rng.poisson(0.25 * width)):
         _stain(fresco)
     for _ in range(rng.poisson(0.3 * width)):
@@ -38,10 +38,10 @@ def paint_flooring(fresco: Fresco) -> None:
     """A floor in slabs, cold along the walls, warm where it gets sun, heating or feet."""
     rng = fresco.rng
     fresco.kelvin -= _edges(fresco, rng.uniform(0.5, 1.6), 0.35)
-    fresco.kelvin += rng.uniform(0.4, 0.8) * fresco.cloudy(2.5) + 0.12 * fresco.cloudy(0.3)
+    fresco.kelvin += rng.uniform(0.6, 1.0) * fresco.cloudy(2.5) + 0.2 * fresco.cloudy(0.3)
     pitch = rng.choice([0.3, 0.5, 0.6, 1.0])
     joints = _joints(fresco, pitch, pitch, 0.012)
-    fresco.kelvin += rng.uniform(0.1, 0.3) * fresco.cells(pitch, pitch) - rng.uniform(0.3, 0.9) * joints
+    fresco.kelvin += rng.uniform(0.15, 0.45) * fresco.cells(pitch, pitch) - rng.uniform(0.5, 1.4) * joints
     fresco.light *= (1.0 - 0.2 * joints) * (1.0 + 0.04 * fresco.cloudy(1.2))
     fresco.light *= 1.0 - 0.3 * np.exp(-_to_edge(fresco) / 0.15)
 
@@ -51,7 +51,7 @@ def paint_ceiling(fresco: Fresco) -> None:
     rng, pitch = fresco.rng, 0.6
     joints, tiles = _joints(fresco, pitch, pitch, 0.02), fresco.cells(pitch, pitch)
     fresco.kelvin -= _edges(fresco, rng.uniform(0.4, 1.4), 0.3)
-    fresco.kelvin += 0.5 * fresco.cloudy(2.0) + 0.25 * tiles - rng.uniform(0.3, 0.8) * joints
+    fresco.kelvin += 0.6 * fresco.cloudy(2.0) + 0.4 * tiles - rng.uniform(0.5, 1.5) * joints
     is_grille = tiles > rng.uniform(2.0, 2.6)
     fresco.kelvin += np.where(is_grille, rng.choice([-3.0, 2.5]), 0.0) * (
         0.6 + 0.4 * _joints(fresco, 1.0, 0.06, 0.03)
@@ -65,13 +65,13 @@ def _stain(fresco: Fresco) -> None:
     u, v = rng.uniform(0.0, width), rng.uniform(0.1, height)
     wide, high = rng.uniform(0.12, 0.6, 2)
     shape = ((fresco.across - u) / wide) ** 2 + ((fresco.up - v) / high) ** 2
-    fresco.kelvin += rng.normal(0.0, 1.1) * np.exp(-shape * np.clip(1.0 + 0.5 * fresco.cloudy(0.5), 0.2, 3.0))
+    fresco.kelvin += rng.normal(0.0, 1.7) * np.exp(-shape * np.clip(1.0 + 0.5 * fresco.cloudy(0.5), 0.2, 3.0))
 
 
 def _wire(fresco: Fresco) -> None:
     """A wire in the wall from a socket or switch up to the ceiling; the socket is as warm again."""
     rng, width = fresco.rng, fresco.size[0]
-    u, v, warm = rng.uniform(0.2, max(width - 0.2, 0.21)), rng.choice([0.35, 1.1]), rng.uniform(0.3, 1.3)
+    u, v, warm = rng.uniform(0.2, max(width - 0.2, 0.21)), rng.choice([0.35, 1.1]), rng.uniform(0.6, 2.0)
     fresco.kelvin += warm * fresco.strip(fresco.across - u, 0.008, 0.03) * (fresco.up > v)
     socket = fresco.strip(fresco.across - u, 0.04, 0.004) * fresco.strip(fresco.up - v, 0.04, 0.004)
     fresco.kelvin += 1.5 * warm * socket

@@ -19,7 +19,7 @@ from peopleboy.sim.places.painting.outdoors import (
 )
 from peopleboy.sim.places.painting.sunlight import shine_on
 from peopleboy.sim.places.painting.things import paint_thing
-from peopleboy.sim.places.painting.warmth import warm_by
+from peopleboy.sim.places.painting.warmth import frame_doors, warm_by
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Finish, Material
@@ -35,7 +35,7 @@ _PAINTERS: Mapping[Finish, Callable[[Fresco], None]] = {
     Finish.SKYLINE: paint_skyline,
     Finish.LEAVES: paint_leaves,
 }
-_OFFSET_K = 0.6  # deviation of whole surfaces: another wall behind, another load, another make
+_OFFSET_K = 0.9  # deviation of whole surfaces: another wall behind, another load, another make
 _SHELL = (Finish.PLASTER, Finish.FLOORING, Finish.CEILING, Finish.STREET, Finish.FACADE)
 _FLAT = (*_SHELL, Finish.SKY, Finish.SKYLINE)
 
@@ -81,11 +81,23 @@ def _paint(
         painter(fresco)
     fresco.kelvin += _OFFSET_K * rng.standard_normal()
     if material.finish in _SHELL:
+        frame_doors(fresco, _doorways(place))
         extents = [(fixture_extent(thing), other.temperature_c) for thing, other in things]
         warm_by(fresco, material.temperature_c, extents)
         if place.sun is not None and material.finish is not Finish.CEILING:
             shine_on(fresco, place.sun, *_sun_ways(place, things))
     return fresco.painting()
+
+
+def _doorways(place: Place) -> list[Extent]:
+    """The boxes of all doors, from the floor up to where their leaf ends or their lintel begins."""
+    found = []
+    for fixture in place.fixtures:
+        if fixture.name.endswith(("/leaf", "/lintel")) and fixture.name.startswith("door_"):
+            low, high = fixture_extent(fixture)
+            top = high[2] if fixture.name.endswith("/leaf") else low[2]
+            found.append(np.array([[low[0], low[1], 0.0], [high[0], high[1], top]]))
+    return found
 
 
 def _sun_ways(place: Place, things: Sequence[tuple[Fixture, Material]]) -> tuple[list[Extent], list[Extent]]:

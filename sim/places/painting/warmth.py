@@ -8,9 +8,11 @@ import numpy as np
 
 from peopleboy.sim.places.extent import Extent
 from peopleboy.sim.places.painting.fresco import Array, Fresco
+from peopleboy.sim.shapes.paintings import Unrolling
 
 _LEAST_K = 2.0  # a thing that differs less from a surface leaves no trace
 _REACH_M, _NEAR_M = 0.6, 0.14
+_FRAME_M, _DRAUGHT_K = 0.08, 2.0
 _STEP = 8  # texels between those by which a thing's neighbourhood is found
 _PLUME_SHARE, _TOUCH_SHARE, _PLUME_M = 0.13, 0.12, 0.9
 
@@ -25,6 +27,19 @@ def warm_by(fresco: Fresco, surface_c: float, things: Sequence[tuple[Extent, flo
         difference = temperature - surface_c
         if abs(difference) > _LEAST_K:
             _touch(fresco, extent, difference)
+
+
+def frame_doors(fresco: Fresco, doorways: Sequence[Extent]) -> None:
+    """Put frames about doors, darker than walls, and let cold air in below them."""
+    for extent in doorways:
+        gap = np.maximum(np.maximum(extent[0] - fresco.world, fresco.world - extent[1]), 0.0)
+        away = np.linalg.norm(gap, axis=-1)
+        is_wall = fresco.unrolling == Unrolling.UPRIGHT
+        frame = is_wall * np.clip((_FRAME_M - away) / fresco.texel_m + 0.5, 0.0, 1.0)
+        fresco.kelvin += 0.7 * frame - _DRAUGHT_K * np.exp(
+            -((away / 0.35) ** 2) - fresco.world[..., 2] / 0.15
+        )
+        fresco.light *= 1.0 - 0.4 * frame
 
 
 def _touch(fresco: Fresco, extent: Extent, difference: float) -> None:
