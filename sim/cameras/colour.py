@@ -30,7 +30,7 @@ def _radiance_image(
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
     paint: NDArray[np.float64],
-    texels: NDArray[np.float32],
+    paint_texels: NDArray[np.float32],
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
@@ -45,7 +45,7 @@ def _radiance_image(
             second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
             if paint[p, 0] >= 0.0:
-                shade *= painted(paint, texels, p, x, y, z)[1]
+                shade *= painted(paint, paint_texels, p, x, y, z)[1]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
     return image
@@ -96,7 +96,7 @@ def colour_image(
     image = _radiance_image(
         view.part, view.depth, view.normal, matrices,
         materials.colour, materials.kind, materials.period, materials.phase,
-        materials.paint, materials.texels, LIGHT, light_level * config.gain,
+        materials.paint, materials.paint_texels, LIGHT, light_level * config.gain,
     )  # fmt: skip
     return rotation_blur(image, config.camera, turned_rad)
 

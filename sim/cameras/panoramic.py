@@ -52,7 +52,7 @@ def panorama_image(
     image = _radiance_image(
         view.part, view.depth, view.normal, part_from_camera, directions, slopes,
         camera.mirror.ring_radius_m, materials.colour, materials.kind, materials.period, materials.phase,
-        materials.paint, materials.texels, LIGHT, light,
+        materials.paint, materials.paint_texels, LIGHT, light,
     )  # fmt: skip
     return shift_blur(image, abs(turned_rad) / math.tau * camera.width)
 
@@ -80,7 +80,7 @@ def _radiance_image(
     period: Matrix,
     phase: Matrix,
     paint: Matrix,
-    texels: NDArray[np.float32],
+    paint_texels: NDArray[np.float32],
     light: Matrix,
     level: float,
 ) -> Linear:
@@ -96,7 +96,7 @@ def _radiance_image(
             second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
             if paint[p, 0] >= 0.0:
-                shade *= painted(paint, texels, p, x, y, z)[1]
+                shade *= painted(paint, paint_texels, p, x, y, z)[1]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
     return image

@@ -38,7 +38,7 @@ class MaterialTable:
         kind: (P, 2) PatternKind of the thermal and of the colour pattern.
         period: (P, 2) [m] of the same.
         phase: (P, 3) [waves] offsets of the smooth variation.
-        paint, texels: paintings, as `make_paint_table` gives them.
+        paint, paint_texels: paintings, as `make_paint_table` gives them.
     """
 
     thermal: NDArray[np.float64]
@@ -47,7 +47,7 @@ class MaterialTable:
     period: NDArray[np.float64]
     phase: NDArray[np.float64]
     paint: NDArray[np.float64]
-    texels: NDArray[np.float32]
+    paint_texels: NDArray[np.float32]
 
 
 def make_material_table(
@@ -73,7 +73,7 @@ def make_material_table(
         ),
         phase=rng.uniform(0.0, 1.0, (len(materials), 3)),
         paint=paint,
-        texels=texels,
+        paint_texels=texels,
     )
 
 

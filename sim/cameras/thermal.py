@@ -83,7 +83,7 @@ def _radiance_image(
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
     paint: NDArray[np.float64],
-    texels: NDArray[np.float32],
+    paint_texels: NDArray[np.float32],
     table: NDArray[np.float64],
     surroundings: float,
     span: tuple[float, float],
@@ -99,7 +99,7 @@ def _radiance_image(
             temperature = thermal[p, 0]
             if paint[p, 0] >= 0.0:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
-                temperature += painted(paint, texels, p, x, y, z)[0]
+                temperature += painted(paint, paint_texels, p, x, y, z)[0]
             if thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
                 temperature += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
@@ -168,7 +168,7 @@ def surface_image(
     matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
     radiance = _radiance_image(
         view.part, view.depth, matrices, materials.thermal, materials.kind, materials.period, materials.phase,
-        materials.paint, materials.texels, _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
+        materials.paint, materials.paint_texels, _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
     )  # fmt: skip
     radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)
     radiance = np.ascontiguousarray(radiance)

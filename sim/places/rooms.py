@@ -14,7 +14,7 @@ from peopleboy.sim.places.floor_plan import Door, FloorPlan, Wall, check_doors
 from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.places.place import Fixture, Place, Sun, is_in_the_way
 from peopleboy.sim.places.rectangle import Rectangle
-from peopleboy.sim.shapes.materials import Finish, Material, Pattern, PatternKind
+from peopleboy.sim.shapes.materials import Covering, Material, Pattern, PatternKind
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
 # Blocks that meet run this far into each other, so that no two faces lie in one plane.
@@ -41,7 +41,7 @@ class Surfaces:
             rgb=(0.42, 0.36, 0.30),
             second_rgb=(0.36, 0.31, 0.26),
             colour_pattern=Pattern(kind=PatternKind.CHECKS, period_m=1.0),
-            finish=Finish.FLOORING,
+            covering=Covering.FLOORING,
         )
     )
     ceiling: Material = field(
@@ -51,7 +51,7 @@ class Surfaces:
             variation_k=0.3,
             variation_m=3.0,
             rgb=(0.80, 0.80, 0.78),
-            finish=Finish.CEILING,
+            covering=Covering.CEILING,
         )
     )
     walls: Material = field(
@@ -61,7 +61,7 @@ class Surfaces:
             variation_k=0.5,
             variation_m=1.8,
             rgb=(0.72, 0.69, 0.60),
-            finish=Finish.PLASTER,
+            covering=Covering.PLASTER,
         )
     )
     door: Material = field(

@@ -107,7 +107,7 @@ def _material(piece: Piece) -> Material:
         second_rgb=(red, green, blue),
         colour_pattern=piece.pattern,
         glow=piece.glow,
-        finish=piece.finish,
+        covering=piece.covering,
         gradient_k_per_m=piece.gradient_k_per_m,
         uneven_k=piece.uneven_k,
     )

@@ -20,8 +20,8 @@ class PatternKind(IntEnum):
     SPECKLE = 4  # irregular blotches
 
 
-class Finish(IntEnum):
-    """How a surface is finished, which `detail: full` paints."""
+class Covering(IntEnum):
+    """What covers a surface, which `detail: full` paints."""
 
     BARE = 0
     PLASTER = 1  # inner walls
@@ -59,7 +59,7 @@ class Material:
         colour_pattern: where the second colour applies.
         glow: share of light that the surface gives out itself (a lamp or a monitor), whatever the room's
             light; 0 for everything else.
-        finish: what `detail: full` paints on it.
+        covering: what `detail: full` paints on it.
         gradient_k_per_m: [K/m] how much warmer it is above than below, by `detail: full`.
         uneven_k: [K] deviation of its temperature over all scales, by `detail: full`.
     """
@@ -74,6 +74,6 @@ class Material:
     second_rgb: Rgb = (0.5, 0.5, 0.5)
     colour_pattern: Pattern = field(default_factory=Pattern)
     glow: float = 0.0
-    finish: Finish = Finish.BARE
+    covering: Covering = Covering.BARE
     gradient_k_per_m: float = 0.0
     uneven_k: float = 0.0

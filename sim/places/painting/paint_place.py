@@ -1,4 +1,4 @@
-"""Paint a whole place: every surface by its finish, then what things and the sun do to it."""
+"""Paint a whole place: every surface by its covering, then what things and the sun do to it."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ from peopleboy.sim.places.painting.things import paint_thing
 from peopleboy.sim.places.painting.warmth import frame_doors, warm_by
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.shapes.materials import Finish, Material
+from peopleboy.sim.shapes.materials import Covering, Material
 from peopleboy.sim.shapes.paintings import Painting
 
-_PAINTERS: Mapping[Finish, Callable[[Fresco], None]] = {
-    Finish.PLASTER: paint_plaster,
-    Finish.FLOORING: paint_flooring,
-    Finish.CEILING: paint_ceiling,
-    Finish.STREET: paint_street,
-    Finish.FACADE: paint_facade,
-    Finish.SKY: paint_sky,
-    Finish.SKYLINE: paint_skyline,
-    Finish.LEAVES: paint_leaves,
+_PAINTERS: Mapping[Covering, Callable[[Fresco], None]] = {
+    Covering.PLASTER: paint_plaster,
+    Covering.FLOORING: paint_flooring,
+    Covering.CEILING: paint_ceiling,
+    Covering.STREET: paint_street,
+    Covering.FACADE: paint_facade,
+    Covering.SKY: paint_sky,
+    Covering.SKYLINE: paint_skyline,
+    Covering.LEAVES: paint_leaves,
 }
 _OFFSET_K = 0.9  # deviation of whole surfaces: another wall behind, another load, another make
-_SHELL = (Finish.PLASTER, Finish.FLOORING, Finish.CEILING, Finish.STREET, Finish.FACADE)
-_FLAT = (*_SHELL, Finish.SKY, Finish.SKYLINE)
+_SHELL = (Covering.PLASTER, Covering.FLOORING, Covering.CEILING, Covering.STREET, Covering.FACADE)
+_FLAT = (*_SHELL, Covering.SKY, Covering.SKYLINE)
 
 
 def paint_place(place: Place, seed: int) -> dict[str, Painting]:
@@ -51,7 +51,7 @@ def paint_place(place: Place, seed: int) -> dict[str, Painting]:
     things = [
         (fixture, material)
         for fixture, material in parts
-        if material.finish not in _FLAT and fixture.name.split("/")[0] not in moved
+        if material.covering not in _FLAT and fixture.name.split("/")[0] not in moved
     ]
     return {
         fixture.name: _paint(fixture, material, place, things, clouds, seed) for fixture, material in parts
@@ -71,20 +71,20 @@ def _paint(
         fixture,
         clouds,
         rng,
-        is_shell=material.finish in _FLAT,
+        is_shell=material.covering in _FLAT,
         air_k=place.surroundings_c - material.temperature_c,
     )
-    painter = _PAINTERS.get(material.finish)
+    painter = _PAINTERS.get(material.covering)
     if painter is None:
         paint_thing(fresco, material)
     else:
         painter(fresco)
     fresco.kelvin += _OFFSET_K * rng.standard_normal()
-    if material.finish in _SHELL:
+    if material.covering in _SHELL:
         frame_doors(fresco, _doorways(place))
         extents = [(fixture_extent(thing), other.temperature_c) for thing, other in things]
         warm_by(fresco, material.temperature_c, extents)
-        if place.sun is not None and material.finish is not Finish.CEILING:
+        if place.sun is not None and material.covering is not Covering.CEILING:
             shine_on(fresco, place.sun, *_sun_ways(place, things))
     return fresco.painting()
 
@@ -102,12 +102,16 @@ def _doorways(place: Place) -> list[Extent]:
 
 def _sun_ways(place: Place, things: Sequence[tuple[Fixture, Material]]) -> tuple[list[Extent], list[Extent]]:
     """What the sun gets in by, and what keeps it out."""
-    panes = [fixture_extent(f) for f, m in things if m.finish is Finish.GLASS and f.name.endswith("/pane")]
-    is_open = any(m.finish is Finish.STREET for m in _materials(place))
+    panes = [
+        fixture_extent(f) for f, m in things if m.covering is Covering.GLASS and f.name.endswith("/pane")
+    ]
+    is_open = any(m.covering is Covering.STREET for m in _materials(place))
     walls = [fixture_extent(f) for f in place.fixtures if is_open and f.name.startswith("wall_")]
     walls = [wall for wall in walls if _is_thin(wall)] if is_open else []
     others = [
-        fixture_extent(f) for f, m in things if m.finish is not Finish.GLASS and not f.name.endswith("/frame")
+        fixture_extent(f)
+        for f, m in things
+        if m.covering is not Covering.GLASS and not f.name.endswith("/frame")
     ]
     return ([] if is_open else panes), [*others, *walls]
 

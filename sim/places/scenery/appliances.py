@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from peopleboy.sim.places.pieces import ALONG_Y, BLACK, SINK_M, STEEL, Piece, ball, box, standing_box, tube
-from peopleboy.sim.shapes.materials import Finish, Rgb
+from peopleboy.sim.shapes.materials import Covering, Rgb
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
 
 ALONG_X: Quaternion = (0.0, math.sin(math.pi / 4.0), 0.0, math.cos(math.pi / 4.0))
@@ -181,7 +181,7 @@ def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     return (
         Piece(
             name="pane", shapes=(pane,), temperature_c=temperature, rgb=rgb, emissivity=0.85, uneven_k=0.5,
-            gradient_k_per_m=0.8, finish=Finish.GLASS,
+            gradient_k_per_m=0.8, covering=Covering.GLASS,
         ),
         Piece(
             name="frame", shapes=(*posts, *rails), temperature_c=temperature + 1.5, rgb=STEEL, emissivity=0.7

@@ -8,7 +8,7 @@ from peopleboy.sim.places.floor_plan import WALL_M, FloorPlan, Side
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.places.rectangle import Rectangle
 from peopleboy.sim.places.rooms import SINK_M, Surfaces, block_fixture, build_door
-from peopleboy.sim.shapes.materials import Finish, Material, Pattern
+from peopleboy.sim.shapes.materials import Covering, Material, Pattern
 
 _FAR_M = 30.0  # from the street to where the world ends
 _SKY_M = 24.0  # how high the sky hangs
@@ -35,9 +35,9 @@ class StreetLook:
 def street_shell(plan: FloorPlan, look: StreetLook, surfaces: Surfaces) -> tuple[Fixture, ...]:
     """Build the fixtures of a street: a ray from any point on it meets a surface."""
     far = plan.bounds().grown(_FAR_M)
-    street = replace(surfaces.floor, finish=Finish.STREET, colour_pattern=Pattern())
+    street = replace(surfaces.floor, covering=Covering.STREET, colour_pattern=Pattern())
     sky = Material(
-        temperature_c=look.sky_c, emissivity=1.0, rgb=(0.36, 0.5, 0.72), glow=0.45, finish=Finish.SKY
+        temperature_c=look.sky_c, emissivity=1.0, rgb=(0.36, 0.5, 0.72), glow=0.45, covering=Covering.SKY
     )
     houses = tuple(
         block_fixture(
@@ -46,7 +46,8 @@ def street_shell(plan: FloorPlan, look: StreetLook, surfaces: Surfaces) -> tuple
             -SINK_M,
             look.house_m if wall.name in look.houses else _LOBBY_M,
             replace(
-                surfaces.of_wall(wall), finish=Finish.FACADE if wall.name in look.houses else Finish.PLASTER
+                surfaces.of_wall(wall),
+                covering=Covering.FACADE if wall.name in look.houses else Covering.PLASTER,
             ),
         )
         for number, (wall, block) in enumerate(plan.wall_pieces(), start=1)
@@ -69,11 +70,11 @@ def street_shell(plan: FloorPlan, look: StreetLook, surfaces: Surfaces) -> tuple
 
 def _fronts(surfaces: Surfaces) -> Surfaces:
     """The looks with those of houses on every wall."""
-    named = {name: replace(look, finish=Finish.FACADE) for name, look in surfaces.named.items()}
-    return replace(surfaces, walls=replace(surfaces.walls, finish=Finish.FACADE), named=named)
+    named = {name: replace(look, covering=Covering.FACADE) for name, look in surfaces.named.items()}
+    return replace(surfaces, walls=replace(surfaces.walls, covering=Covering.FACADE), named=named)
 
 
 def _horizon(name: str, strip: Rectangle, sky: Material) -> Fixture:
-    material = replace(sky, finish=Finish.SKYLINE)
+    material = replace(sky, covering=Covering.SKYLINE)
     fixture = block_fixture(f"wall_horizon/{name}", strip, -SINK_M, _SKY_M + SINK_M, material)
     return replace(fixture, is_solid=False)

@@ -20,7 +20,7 @@ from peopleboy.sim.places.pieces import (
     tube,
 )
 from peopleboy.sim.places.scenery.appliances import capsule
-from peopleboy.sim.shapes.materials import Finish, Rgb
+from peopleboy.sim.shapes.materials import Covering, Rgb
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, Vector
 
 # Where each ball of a crown touches the outline, as a direction, and its radius as a share of the crown's.
@@ -150,7 +150,7 @@ def tree(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
             shapes=crown,
             temperature_c=temperature,
             rgb=rgb,
-            finish=Finish.LEAVES,
+            covering=Covering.LEAVES,
             is_solid=False,
         ),
         Piece(
