@@ -168,7 +168,8 @@ def surface_image(
     matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
     radiance = _radiance_image(
         view.part, view.depth, matrices, materials.thermal, materials.kind, materials.period, materials.phase,
-        materials.paint, materials.paint_texels, _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
+        materials.paint, materials.paint_texels, _RADIANCE, _mirrored(surroundings_c),
+        (_LOWEST_C, _HIGHEST_C),
     )  # fmt: skip
     radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)
     radiance = np.ascontiguousarray(radiance)
