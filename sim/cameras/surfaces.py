@@ -56,7 +56,7 @@ def make_material_table(
     paintings: Sequence[Painting | None] | None = None,
 ) -> MaterialTable:
     """Put the looks of all parts into arrays; the generator draws each part's phase of variation."""
-    paint, texels = make_paint_table([None] * len(materials) if paintings is None else paintings)
+    paint, paint_texels = make_paint_table([None] * len(materials) if paintings is None else paintings)
     return MaterialTable(
         thermal=np.array(
             [
@@ -73,7 +73,7 @@ def make_material_table(
         ),
         phase=rng.uniform(0.0, 1.0, (len(materials), 3)),
         paint=paint,
-        paint_texels=texels,
+        paint_texels=paint_texels,
     )
 
 
