@@ -21,7 +21,7 @@ def paint_plaster(fresco: Fresco) -> None:
     fresco.kelvin -= rng.uniform(0.3, 1.1) * fresco.lines(
         fresco.across + rng.uniform(0.0, 0.6), _STUDS_M, 0.05
     )
-    fresco.kelvin += rng.uniform(0.5, 0.9) * fresco.cloudy(1.6) + 0.25 * fresco.cloudy(0.25)
+    fresco.kelvin += rng.uniform(0.25, 0.55) * fresco.cloudy(1.6) + 0.15 * fresco.cloudy(0.25)
     for _ in range(rng.poisson(0.25 * width)):
         _stain(fresco)
     for _ in range(rng.poisson(0.3 * width)):
@@ -38,7 +38,7 @@ def paint_flooring(fresco: Fresco) -> None:
     """A floor in slabs, cold along the walls, warm where it gets sun, heating or feet."""
     rng = fresco.rng
     fresco.kelvin -= _edges(fresco, rng.uniform(0.5, 1.6), 0.35)
-    fresco.kelvin += rng.uniform(0.6, 1.0) * fresco.cloudy(2.5) + 0.2 * fresco.cloudy(0.3)
+    fresco.kelvin += rng.uniform(0.3, 0.6) * fresco.cloudy(2.5) + 0.2 * fresco.cloudy(0.3)
     pitch = rng.choice([0.3, 0.5, 0.6, 1.0])
     joints = _joints(fresco, pitch, pitch, 0.012)
     fresco.kelvin += rng.uniform(0.15, 0.45) * fresco.cells(pitch, pitch) - rng.uniform(0.5, 1.4) * joints
@@ -51,7 +51,7 @@ def paint_ceiling(fresco: Fresco) -> None:
     rng, pitch = fresco.rng, 0.6
     joints, tiles = _joints(fresco, pitch, pitch, 0.02), fresco.cells(pitch, pitch)
     fresco.kelvin -= _edges(fresco, rng.uniform(0.4, 1.4), 0.3)
-    fresco.kelvin += 0.6 * fresco.cloudy(2.0) + 0.4 * tiles - rng.uniform(0.5, 1.5) * joints
+    fresco.kelvin += 0.3 * fresco.cloudy(2.0) + 0.4 * tiles - rng.uniform(0.5, 1.5) * joints
     is_grille = tiles > rng.uniform(2.0, 2.6)
     fresco.kelvin += np.where(is_grille, rng.choice([-3.0, 2.5]), 0.0) * (
         0.6 + 0.4 * _joints(fresco, 1.0, 0.06, 0.03)

@@ -25,7 +25,7 @@ def paint_street(fresco: Fresco) -> None:
     slabs = 0.4 * fresco.cells(slab, slab) - 1.2 * joints
     asphalt = rng.uniform(0.4, 2.0) + 0.25 * fresco.cloudy(0.12)
     asphalt = asphalt + 0.9 * fresco.strip(np.abs(off - 0.5 * road_m) - 0.75, 0.15, 0.3)
-    fresco.kelvin += np.where(is_road, asphalt, slabs) + 0.8 * fresco.cloudy(4.0) + 0.3 * fresco.cloudy(0.7)
+    fresco.kelvin += np.where(is_road, asphalt, slabs) + 0.5 * fresco.cloudy(4.0) + 0.2 * fresco.cloudy(0.7)
     kerb = fresco.strip(off - road_m - 0.08, 0.08, 0.02)
     mark = fresco.strip(off, 0.06, 0.01) * ((fresco.world[..., 0] % 6.0) < 3.0)
     fresco.kelvin += 1.2 * kerb - 1.4 * mark
@@ -77,7 +77,7 @@ def paint_facade(fresco: Fresco) -> None:
     glass = -5.0 - 0.9 * (fresco.up / _STOREY_M) + 1.2 * each + 1.1 * fresco.cloudy(1.5)
     glass = np.where(other > 1.2, 3.0 + each, glass)
     bricks = 0.18 * fresco.cells(0.25, 0.08) - 0.3 * fresco.lines(fresco.up, 0.08 * rng.integers(1, 6), 0.015)
-    stone = bricks + 0.9 * fresco.cloudy(3.0) + 0.3 * fresco.cloudy(0.4) - 0.25 * (fresco.up - 3.0)
+    stone = bricks + 0.5 * fresco.cloudy(3.0) + 0.2 * fresco.cloudy(0.4) - 0.25 * (fresco.up - 3.0)
     stone = stone + 1.2 * fresco.strip(fresco.up % _STOREY_M - 2.95, 0.1, 0.02) * (fresco.up > 2.0)
     fresco.kelvin += pane * ((1.0 - frame) * glass + frame * 0.8) + (1.0 - pane) * stone
     dark = np.where(other > 1.2, 1.7, 0.3 + 0.08 * each)
