@@ -11,6 +11,7 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 
 # (x, y) [m] of the people in front of the robot, who walk on at the same pace.
@@ -69,7 +70,7 @@ def _corridor(renderer: str) -> WorldConfig:
         for i, (x, y) in enumerate(STARTS_M)
     )
     place = build_place(straight_corridor(20.0, 2.4))
-    return WorldConfig(place=place, people=people, renderer=renderer)
+    return WorldConfig(place=place, people=people, renderer=renderer, robot=RobotConfig(at_m=(1.0, 0.0)))
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ from peopleboy.sim.cameras.sensors import Glimpse
 from peopleboy.sim.cameras.surfaces import make_material_table
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.people.crowd import Crowd
@@ -24,8 +25,9 @@ from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.sight import Scene, Seen, Sight, look
-from peopleboy.sim.rendering.view import BLIND
+from peopleboy.sim.rendering.view import BLIND, NOBODY
 from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME as ROBOT
 from peopleboy.sim.robot.robot_body import RADIUS_M
@@ -38,6 +40,7 @@ from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.truth.truth import BORDER, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 
+_STANDS_OUT_K = 5.0  # from the surroundings: what differs by more is seen in mirrors
 _MOST_PEOPLE = 64  # a view's cover has a bit for each
 
 
@@ -206,7 +209,12 @@ class World:
         config, bullet = self.config, self._bullet
         materials = _add_fixtures(bullet, config.place)
         self._crowd = Crowd(
-            bullet, config.people, config.place, config.seed, is_visible=config.renderer != BLIND
+            bullet,
+            config.people,
+            config.place,
+            config.seed,
+            is_visible=config.renderer != BLIND,
+            detail=config.detail,
         )
         self._handling = Handling(bullet, config.place, self._crowd.people)
         self._robot = PeopleBot(bullet, config.robot, config.seed)
@@ -277,7 +285,18 @@ class World:
             surroundings_c=self.config.place.surroundings_c,
             light_level=light_level(self.config.place, self.time_s),
             turn_rad_s=self._robot.velocity()[1],
+            time_s=self.time_s,
+            full_detail=self._full_detail(seen),
         )
+
+    def _full_detail(self, seen: Seen) -> FullDetail | None:
+        """What makes images of full detail, for cameras that can have it."""
+        if self.config.detail == "plain" or not isinstance(seen.camera, Pinhole):
+            return None
+        materials, person_of_part = self._materials, self._truth_maker.person_of_part
+        stands_out = abs(materials.thermal[:, 0] - self.config.place.surroundings_c) > _STANDS_OUT_K
+        is_mirrored = (person_of_part != NOBODY) | stands_out | (materials.colour[:, 6] > 0.0)
+        return FullDetail(seen, seen.camera, materials.shine > 0.0, is_mirrored)
 
 
 def light_level(place: Place, time_s: float) -> float:

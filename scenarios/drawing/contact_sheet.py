@@ -21,11 +21,11 @@ from peopleboy.scenarios.drawing.key_moments import KeyMoments, Moment, Shot
 from peopleboy.scenarios.drawing.overlay import (
     Picture,
     Plate,
+    as_picture,
     draw_tracks_of,
     draw_truth,
     enlarge,
     people_parts,
-    show_image,
     show_thermal,
 )
 from peopleboy.scenarios.drawing.palette import Rgb
@@ -81,7 +81,7 @@ class ContactSheet:
     def __init__(self, title: str, robot: RobotConfig | None = None) -> None:
         self._title = title
         self._robot = RobotConfig() if robot is None else robot
-        self._moments = KeyMoments()
+        self._moments = KeyMoments(self._robot.cameras)
         self._last: Tick | None = None
 
     def add(self, tick: Tick, events: Sequence[LogLine]) -> None:
@@ -165,7 +165,7 @@ class ContactSheet:
         """Draw what a further camera saw, with tracks, truth where it has boxes, name and how old it is."""
         scale = _fitting_scale(shot.image, _share(beside))
         config = self._robot.cameras[shot.camera]
-        picture, camera = enlarge(show_image(shot.image, config), scale), config.camera
+        picture, camera = enlarge(as_picture(shot.image), scale), config.camera
         if kind_of(config).has_boxes:
             plates: list[Plate] = []
             picture = self._with_tracks(shot.camera, picture, shot.tracks, scale, None, plates)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,8 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.event_wording import describe
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.kinds import shown_to_people
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.track import Status, Track
 
@@ -47,14 +48,14 @@ class Shot:
     Attributes:
         camera: its name.
         time_s: [s] when it was taken.
-        image: (H, W) or (H, W, 3), as the camera gave it.
+        image: (H, W) or (H, W, 3), 8 bits, as people are shown it.
         people: what was true in it.
         tracks: what the tracker made of it.
     """
 
     camera: str
     time_s: float
-    image: NDArray[Any]
+    image: NDArray[np.uint8]
     people: tuple[PersonTruth, ...]
     tracks: tuple[Track, ...]
 
@@ -65,7 +66,7 @@ class Moment:
 
     Attributes:
         frame, time_s, mode: as in the tick.
-        thermal, colour: (H, W) and (H, W, 3) what the cameras saw.
+        thermal, colour: (H, W) and (H, W, 3) what the cameras saw, as people are shown it.
         further: what the other cameras saw last.
         tracks, explanation: what the tracker made of it, and told beyond that.
         people: what was true.
@@ -97,9 +98,14 @@ class _Occlusion:
 
 
 class KeyMoments:
-    """Collects moments while a run goes: about 60 at most, however long it is."""
+    """Collects moments while a run goes: about 60 at most, however long it is.
 
-    def __init__(self) -> None:
+    Args:
+        cameras: that the robot has, by name.
+    """
+
+    def __init__(self, cameras: Mapping[str, CameraConfig]) -> None:
+        self._cameras = cameras
         self._kept: dict[tuple[str, int], tuple[Moment, Words]] = {}
         self._newest: dict[str, Shot] = {}
         self._counts: Counter[str] = Counter()
@@ -110,7 +116,7 @@ class KeyMoments:
 
     def add(self, tick: Tick, events: Sequence[LogLine]) -> None:
         """Look at one tick and what happened at it."""
-        self._newest |= {shot.camera: shot for shot in _further(tick)}
+        self._newest |= {shot.camera: shot for shot in _further(tick, self._cameras)}
         moment = _moment(tick, tuple(self._newest.values()))
         if not self._spare:
             self._keep_new("start", moment, partial(_always, "start"))
@@ -198,11 +204,12 @@ def _hidden(person: PersonTruth, moment: Moment) -> str:
     return f"{shown.name}: {shown.occluded_fraction:.0%} hidden{by}"
 
 
-def _further(tick: Tick) -> Iterator[Shot]:
+def _further(tick: Tick, cameras: Mapping[str, CameraConfig]) -> Iterator[Shot]:
     """Give what cameras took beside the two whose images everybody has."""
     for name in (name for name in tick.truths if name not in ("thermal", "colour")):
         senses, truth = tick.observation, tick.truths[name]
-        yield Shot(name, senses.time_s, senses.images[name], truth.people, tick.tracks)
+        image = shown_to_people(senses.images, name, cameras[name])
+        yield Shot(name, senses.time_s, image, truth.people, tick.tracks)
 
 
 def _moment(tick: Tick, further: tuple[Shot, ...]) -> Moment:
@@ -211,7 +218,7 @@ def _moment(tick: Tick, further: tuple[Shot, ...]) -> Moment:
         frame=tick.frame,
         time_s=senses.time_s,
         mode=tick.mode,
-        thermal=senses.images["thermal"],
+        thermal=senses.images["thermal_scene"],
         colour=senses.images["colour"],
         further=further,
         tracks=tick.tracks,

@@ -79,9 +79,13 @@ def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
     return np.asarray(cv2.cvtColor(cv2.applyColorMap(thermal, colours), cv2.COLOR_BGR2RGB), np.uint8)
 
 
-def show_image(image: NDArray[Any], config: CameraConfig) -> Picture:
-    """Turn a camera's image into a picture of the same size, as its kind is shown to people."""
-    shown = shown_to_people(image, config)
+def show_image(images: Mapping[str, NDArray[Any]], name: str, config: CameraConfig) -> Picture:
+    """Turn what a camera took into a picture of the same size, as its kind is shown to people."""
+    return as_picture(shown_to_people(images, name, config))
+
+
+def as_picture(shown: NDArray[np.uint8]) -> Picture:
+    """Turn (H, W) grey into RGB; (H, W, 3) RGB stays."""
     return show_thermal(shown) if shown.ndim == 2 else shown
 
 

@@ -12,8 +12,10 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.people.body.clothes import random_clothes
-from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.people.body.clothes import Clothes, random_clothes
+from peopleboy.sim.people.looks.wardrobe import usual_clothes
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.places.place import Fixture, Place, air_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
 
@@ -66,8 +68,15 @@ def vary(config: WorldConfig, options: Mapping[str, Any], rng: np.random.Generat
     if "people" in drawn:
         people = people[: round(drawn["people"])]
     if drawn.get("clothes"):
-        people = tuple(replace(person, clothes=random_clothes(rng)) for person in people)
+        people = tuple(replace(person, clothes=_clothes(config, person, rng)) for person in people)
     return replace(config, place=place, robot=robot, people=people)
+
+
+def _clothes(config: WorldConfig, person: PersonConfig, rng: np.random.Generator) -> Clothes:
+    """Draw what a person wears: anything, or what is usual where all is drawn finely."""
+    if config.detail == "plain":
+        return random_clothes(rng)
+    return usual_clothes(rng, person.sex, air_of(config.place))
 
 
 def _is_number(value: object, key: str) -> bool:

@@ -41,7 +41,7 @@ class ScenePicture:
         self, observation: Observation, scene: ImageFreeTruth, tracks: Sequence[Track], explanation: object
     ) -> Picture:
         """Draw an instant, with tracks and what their tracker explains of them: (360, 1440, 3)."""
-        thermal, colour = observation.images["thermal"], observation.images["colour"]
+        thermal, colour = observation.images["thermal_scene"], observation.images["colour"]
         scale = HEIGHT_PX / thermal.shape[0]
         seen = draw_tracks(_fit(show_thermal(thermal)), tracks, scale, explanation)
         return np.concatenate((seen, _fit(colour), self._draw_plan(scene)), axis=1)

@@ -30,6 +30,7 @@ from peopleboy.scenarios.export.by_split import by_split
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.gains import thermal_span_c
 from peopleboy.scenarios.run_folder.image_files import image_file, make_image_folders, write_images
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import image_folders, with_boxes
@@ -212,7 +213,7 @@ def _video(number: int, run: FinishedRun) -> dict[str, Any]:
         "seed": run.about.seed,
         "frames": run.frames,
         "rate_hz": run.rate_hz,
-        "thermal_span_c": [thermal.lowest_c, thermal.highest_c],
+        "thermal_span_c": thermal_span_c(thermal),
         "cameras": {name: _camera(camera.camera) for name, camera in run.robot.cameras.items()},
     }
 

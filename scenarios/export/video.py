@@ -94,9 +94,9 @@ def _width(words: str) -> int:
 
 def _picture(tick: Tick, camera: str, robot: RobotConfig) -> Picture:
     """Draw the image of a camera, tracks where they are known, and truth."""
-    image = tick.observation.images[camera]
+    image = show_image(tick.observation.images, camera, robot.cameras[camera])
     scale = min(HEIGHT_PX / image.shape[0], _WIDEST_PX / image.shape[1])
-    picture, plates = enlarge(show_image(image, robot.cameras[camera]), scale), list[Plate]()
+    picture, plates = enlarge(image, scale), list[Plate]()
     picture = draw_tracks_of(camera, picture, tick.tracks, robot.cameras, scale, tick.explanation, plates)
     if kind_of(robot.cameras[camera]).has_boxes:
         people = people_parts(tick.truths[camera].people, robot.cameras[camera].camera)

@@ -107,7 +107,7 @@ def _surfaces(spec: PlaceSpec, plan: FloorPlan) -> Surfaces:
     for name in temperatures.single_walls_c:
         check_wall(plan, ("place", "temperatures", "single_walls_c"), name)
     return Surfaces(
-        floor=_material(usual.floor, temperatures.floor_c, colours.floor),
+        floor=replace(_material(usual.floor, temperatures.floor_c, colours.floor), shine=spec.floor_shine),
         ceiling=_material(usual.ceiling, temperatures.ceiling_c, colours.ceiling),
         walls=walls,
         door=_material(usual.door, usual.door.temperature_c, colours.doors),

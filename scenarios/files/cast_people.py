@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 
 from peopleboy.scenarios.files.schema.people import ClothesSpec, GroupSpec, PersonSpec, WaypointSpec
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
 from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.looks.wardrobe import usual_clothes
 from peopleboy.sim.people.person import PersonConfig
 from peopleboy.sim.people.walking.path import abreast
 from peopleboy.sim.people.walking.walk import Waypoint
@@ -26,7 +28,12 @@ _TRIES = 50
 Path = tuple[WaypointSpec, ...]
 
 
-def cast(person: PersonSpec, seed: int, can_walk: Callable[[PersonSpec], bool]) -> PersonSpec:
+def cast(
+    person: PersonSpec,
+    seed: int,
+    can_walk: Callable[[PersonSpec], bool],
+    usual_air_c: float | None = None,
+) -> PersonSpec:
     """Decide everything about a person that the file leaves to the seed.
 
     Each person has random streams of its own, so that another person in the file changes nothing for it.
@@ -37,8 +44,13 @@ def cast(person: PersonSpec, seed: int, can_walk: Callable[[PersonSpec], bool]) 
         seed: of the run.
         can_walk: whether somebody can walk the way that it has; one that the seed moves into a wall is drawn
             again, and after many tries the file's own path is kept.
+        usual_air_c: [degC] air for which people dress as is usual; None draws from the whole catalogue.
     """
     looks = _draw_looks(stream(seed, f"scenario.{person.name}.looks"), person)
+    if usual_air_c is not None:
+        rng = stream(seed, f"scenario.{person.name}.clothes")
+        usual = ClothesSpec(**asdict(usual_clothes(rng, looks["sex"], usual_air_c)))
+        looks["clothes"] = _keep_given(usual, person)
     rng = stream(seed, f"scenario.{person.name}.walk")
     delay = float(rng.uniform(0.0, person.enter_jitter_s)) if person.enter_jitter_s > 0.0 else 0.0
     later = person.model_copy(
@@ -115,7 +127,7 @@ def _moved(path: Path, points: Sequence[tuple[float, float]]) -> Path:
     )
 
 
-def _draw_looks(rng: np.random.Generator, person: PersonSpec) -> dict[str, object]:
+def _draw_looks(rng: np.random.Generator, person: PersonSpec) -> dict[str, Any]:
     """Sex, build, height and clothes; each is drawn even where the file gives it, so the others stay."""
     sex = str(rng.choice(list(_STATURE_M)))
     build = str(rng.choice(list(_BUILDS), p=list(_BUILDS.values())))
@@ -124,13 +136,18 @@ def _draw_looks(rng: np.random.Generator, person: PersonSpec) -> dict[str, objec
     sex = sex if person.sex is None else person.sex
     mean, deviation = _STATURE_M[sex]
     stature = min(max(mean + above * deviation, _SHORTEST_M), _TALLEST_M)
-    given = {} if person.clothes is None else person.clothes.model_dump(exclude_none=True)
     return {
         "sex": sex,
         "build": build if person.build is None else person.build,
         "height_m": _rounded(stature) if person.height_m is None else person.height_m,
-        "clothes": clothes.model_copy(update=given),
+        "clothes": _keep_given(clothes, person),
     }
+
+
+def _keep_given(drawn: ClothesSpec, person: PersonSpec) -> ClothesSpec:
+    """Clothes that were drawn, but what the file says."""
+    given = {} if person.clothes is None else person.clothes.model_dump(exclude_none=True)
+    return drawn.model_copy(update=given)
 
 
 def _vary_path(person: PersonSpec, rng: np.random.Generator, can_walk: Callable[[PersonSpec], bool]) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import Any
 
@@ -10,12 +11,14 @@ from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.schema.robot import CameraSpec, RobotSpec
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS
+from peopleboy.sim.cameras.electronics.thermal_presets import THERMAL_PRESETS
 from peopleboy.sim.cameras.kinds import KINDS
 from peopleboy.sim.geometry.mirror import MIRRORS, Mirror
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 _IN_DEGREES = {"vertical_fov_deg": "vertical_fov_rad", "pitch_deg": "pitch_rad", "yaw_deg": "yaw_rad"}
 _RENAMED = {"width_px": "width", "height_px": "height", "mount_m": "position_m"}
+_PRESETS: Mapping[str, CameraConfig] = {**DEPTH_PRESETS, **THERMAL_PRESETS}
 _KEYS = {field: key for key, field in (_IN_DEGREES | _RENAMED).items()}
 
 
@@ -40,7 +43,7 @@ def _camera(name: str, spec: CameraSpec) -> CameraConfig:
     given: dict[str, Any] = spec.model_dump(exclude_none=True)
     kind, mirror = given.pop("kind"), given.pop("mirror", None)
     preset = given.pop("preset", None)
-    usual = KINDS[kind].config() if preset is None else DEPTH_PRESETS[preset]
+    usual = KINDS[kind].config() if preset is None else _PRESETS[preset]
     geometry = {_RENAMED[key]: given.pop(key) for key in _RENAMED if key in given}
     geometry |= {_IN_DEGREES[key]: math.radians(given.pop(key)) for key in _IN_DEGREES if key in given}
     if mirror is not None:

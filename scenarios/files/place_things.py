@@ -105,6 +105,7 @@ def _make_thing(
             size_m=None if urdf is not None else (depth, width, height),
             temperature_c=spec.temperature_c,
             emissivity=spec.emissivity,
+            shine=spec.shine,
             rgb=None if spec.colour is None else resolve_colour(spec.colour),
             pattern=Pattern(kind=PatternKind[spec.pattern.kind.upper()], period_m=spec.pattern.period_m),
             urdf=urdf,

@@ -28,7 +28,7 @@ from peopleboy.scenarios.files.schema.scenario_file import DrawnSpec, ScenarioSp
 from peopleboy.sim.cameras.kinds import KINDS, flat_geometry
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.places.floor_plan import FloorPlan
-from peopleboy.sim.places.place import Place
+from peopleboy.sim.places.place import Place, air_of
 from peopleboy.sim.random_streams import stream
 
 RENDERERS = ("raycast", "bullet")
@@ -97,7 +97,10 @@ class Scenario:
         people = tuple(person for _, person in _everybody(self.spec))
         if self.spec.clothes_differ:
             people = tell_apart(people, stream(seed, "scenario.colours"))
-        return tuple(cast(person, seed, lambda one: self.ground.fault(one) is None) for person in people)
+        air_c = air_of(self.place) if self.spec.detail == "full" else None
+        return tuple(
+            cast(person, seed, lambda one: self.ground.fault(one) is None, air_c) for person in people
+        )
 
     def world(self, seed: int, renderer: str = "raycast") -> WorldConfig:
         """Settings of the world; the same seed gives equal settings.

@@ -45,7 +45,7 @@ from peopleboy.scenarios.recording.sketches import explained_sketches
 from peopleboy.scenarios.recording.still import Still
 from peopleboy.sim.cameras.camera_config import DepthConfig
 from peopleboy.sim.cameras.depth_image import points_of
-from peopleboy.sim.cameras.kinds import kind_of, shown_to_people, with_boxes
+from peopleboy.sim.cameras.kinds import shown_to_people, with_boxes
 from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Matrix, transform
@@ -56,7 +56,7 @@ from peopleboy.sim.truth.things import ThingTruth
 APPLICATION = "peopleboy"
 
 _FRAMES_SENT_TOGETHER = 15
-_JPEG_QUALITY = {1: 60, 3: 45}  # by channels
+_JPEG_QUALITY = 45
 _POINTS = 10_000  # about, of a depth image
 _NAME_HEIGHT = 1.0 / 15.0  # [image heights] of names above boxes
 _GONE = 1e-4  # of its size is what is not there
@@ -160,8 +160,7 @@ class Recorder:
             if isinstance(config, DepthConfig):
                 self._log_depth(name, config, tick)
                 continue
-            quality = _JPEG_QUALITY[kind_of(config).channels]
-            blob = encode_jpeg(images[name], quality, has_own_codes=False)
+            blob = encode_jpeg(shown_to_people(images, name, config), _JPEG_QUALITY, has_own_codes=False)
             self._rows.add(f"{camera_path(name)}/image", rr.EncodedImage, blob=[blob])
 
     def _log_depth(self, name: str, config: DepthConfig, tick: Tick) -> None:
@@ -169,7 +168,7 @@ class Recorder:
         images = tick.observation.images
         blob = cv2.imencode(".png", images[name], [cv2.IMWRITE_PNG_COMPRESSION, 1])[1].tobytes()
         self._rows.add(f"{camera_path(name)}/image", rr.EncodedDepthImage, blob=[blob])
-        colour = images[f"{name}_colour"] if config.colour else shown_to_people(images[name], config)
+        colour = images[f"{name}_colour"] if config.colour else shown_to_people(images, name, config)
         every = max(round(math.sqrt(images[name].size / _POINTS)), 1)
         places, pixels = points_of(images[name], config.camera, every)
         world = transform(tick.truths[name].world_from_camera, places.astype(np.float64))
@@ -222,7 +221,7 @@ class Recorder:
             empty = sketch.background
             if empty is not None and not np.array_equal(self._backgrounds.get(camera, ()), empty):
                 self._backgrounds[camera] = empty
-                blob = encode_jpeg(empty, _JPEG_QUALITY[3], has_own_codes=False)
+                blob = encode_jpeg(empty, _JPEG_QUALITY, has_own_codes=False)
                 self._rows.add(
                     f"{path}/{BACKGROUND}", rr.EncodedImage, blob=[blob], media_type=["image/jpeg"]
                 )

@@ -15,6 +15,7 @@ from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import check_cameras, make_eyes
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
+from peopleboy.scenarios.run_folder.gains import about_gains
 from peopleboy.scenarios.running.watchers import Watchers
 from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
@@ -81,6 +82,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         "renderer": options.renderer,
         "rate_hz": config.control_hz,
         "images": options.frames,
+        "gains": about_gains(config.robot.cameras),
     } | ({"mounted_for_tracker": mounted} if mounted else {})
     with ExitStack() as stack:
         world = stack.enter_context(World(config))

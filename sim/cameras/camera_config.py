@@ -21,6 +21,7 @@ _DEPTH_ROWS = 480  # that such a sensor has, however many of them an image has
 FARTHEST_M: Final = 65.0  # that 16 bits of millimetres hold
 
 DepthSensorName = Literal["kinect", "tof"]
+GainName = Literal["fixed", "percentile", "plateau"]
 
 
 def _colour_camera() -> Pinhole:
@@ -51,6 +52,11 @@ class CameraConfig:
     rate_hz: int | None = None
     exposure_s: float = 0.0
 
+    @property
+    def remembers(self) -> bool:
+        """Whether images depend on those before, so that it must take each, also if nobody asks for it."""
+        return False
+
     def resized(self, width: int, height: int) -> Self:
         """The same camera with images of another size [px], of the same height of view."""
         return replace(self, camera=replace(self.camera, width=width, height=height))
@@ -70,7 +76,27 @@ class ThermalConfig(CameraConfig):
         netd_k: [K] temporal noise, noise-equivalent temperature difference.
         fixed_pattern_k: [K] standard deviation of the offsets between pixels, constant over a run.
         dead_pixels: share of pixels that read one constant value over a run.
-        lowest_c, highest_c: [degC] span of the 8-bit image (T ch. 3).
+        gain: how 8-bit grey comes from temperature: "fixed", linear over `lowest_c` to `highest_c`;
+            "percentile", linear over the image's own span; or "plateau", its histogram equalised.
+        lowest_c, highest_c: [degC] span of a fixed gain (T ch. 3).
+        gain_follows_s: [s] time constant with which an automatic gain follows the images; 0 for at once. A
+            span grows at once.
+        tail_percent: [%] of the pixels that may lie outside an automatic gain's span, at either end.
+        least_span_k: [K] that an automatic gain spreads over all greys at least.
+        plateau_percent: [%] of the pixels, the most that a bin of 0.05 K counts for in a plateau gain.
+        linear_share: of the greys that a plateau gain shares out linearly over its span.
+        column_noise_k: [K] standard deviation of the offsets between columns, until the next calibration.
+        vignetting_k: [K] by which corners seem warmer than the middle.
+        offset_drift_k_per_min: [K/min] standard deviation of the common offset's drift since a calibration;
+            that of the pattern is in proportion.
+        shutter_every_s: [s] from one calibration, before a shutter, to the next; 0 for none.
+        shutter_lasts_s: [s] for which the image stands still then.
+        sharpening: amount of the unsharp mask in 8 bits; 0 for none.
+        sharpening_px: [px] standard deviation of its blur.
+        jpeg_quality: 1..100, of the compression that the 8-bit image went through; None for none.
+
+    Raises:
+        BadInput: no such gain, an empty span, or a shutter that never opens.
     """
 
     kind: ClassVar[str] = "thermal"
@@ -81,17 +107,61 @@ class ThermalConfig(CameraConfig):
     netd_k: float = 0.08
     fixed_pattern_k: float = 0.03
     dead_pixels: float = 0.0001
+    gain: GainName = "fixed"
     lowest_c: float = 24.0
     highest_c: float = 36.0
+    gain_follows_s: float = 1.0
+    tail_percent: float = 0.3
+    least_span_k: float = 5.0
+    plateau_percent: float = 0.5
+    linear_share: float = 0.3
+    column_noise_k: float = 0.0
+    vignetting_k: float = 0.0
+    offset_drift_k_per_min: float = 0.0
+    shutter_every_s: float = 0.0
+    shutter_lasts_s: float = 0.4
+    sharpening: float = 0.0
+    sharpening_px: float = 1.5
+    jpeg_quality: int | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what no camera does."""
+        if self.gain not in get_args(GainName):
+            known = ", ".join(get_args(GainName))
+            raise BadInput(f"no such gain: {self.gain!r}; choose from {known}", key=("gain",))
+        if not self.lowest_c < self.highest_c:
+            raise BadInput(
+                f"{self.highest_c} must be more than lowest_c, {self.lowest_c}", key=("highest_c",)
+            )
+        if 0.0 < self.shutter_every_s <= self.shutter_lasts_s:
+            raise BadInput(
+                f"{self.shutter_every_s} must be more than shutter_lasts_s, {self.shutter_lasts_s}, or 0",
+                key=("shutter_every_s",),
+            )
+
+    @property
+    def remembers(self) -> bool:
+        """Whether an automatic gain follows the images, or a shutter stops them."""
+        return self.shutter_every_s > 0.0 or (self.gain != "fixed" and self.gain_follows_s > 0.0)
 
     def resized(self, width: int, height: int) -> Self:
         """The same camera with images of another size [px], of the same height of view and as sharp."""
-        camera = replace(self.camera, width=width, height=height)
-        return replace(self, camera=camera, blur_px=self.blur_px * height / self.camera.height)
+        camera, larger = replace(self.camera, width=width, height=height), height / self.camera.height
+        return replace(
+            self,
+            camera=camera,
+            blur_px=self.blur_px * larger,
+            sharpening_px=self.sharpening_px * larger,
+        )
 
     def noisier(self, factor: float) -> Self:
         """The same camera with so many times the noise, temporal and fixed."""
-        return replace(self, netd_k=factor * self.netd_k, fixed_pattern_k=factor * self.fixed_pattern_k)
+        return replace(
+            self,
+            netd_k=factor * self.netd_k,
+            fixed_pattern_k=factor * self.fixed_pattern_k,
+            column_noise_k=factor * self.column_noise_k,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,14 +8,27 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import rotation_blur
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, LightConfig
+from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows
+from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
+from peopleboy.sim.cameras.surfaces import (
+    MaterialTable,
+    finish_at,
+    part_from_pixel,
+    pattern_value,
+    surface_point,
+)
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
 
 # The room's lamps hang above and a little to one side, so that walls and sides of people differ in shade.
 LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])
 _AMBIENT = 0.55
+
+_GLASS = 0.04  # share of light that glass and varnish, of a refractive index of 1.5, mirror straight on
+_CONTRAST = 0.03  # share of the light: fainter edges need no smoothing
+_ROOM = 0.4  # what is mirrored where nothing in particular is, share of the light
 
 
 @njit(cache=True, fastmath=True)
@@ -28,11 +41,14 @@ def _radiance_image(
     kind: NDArray[np.int64],
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
+    finish: NDArray[np.float64],
+    texels: NDArray[np.float32],
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
+    has_finish = len(finish) > 0
     for v in range(height):
         for u in range(width):
             p = part[v, u]
@@ -43,6 +59,11 @@ def _radiance_image(
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
+            if has_finish and finish[p, 0] >= 0.0:
+                _, factor, cover = finish_at(finish, texels, p, x, y, z)
+                for c in range(3):
+                    over = cover * (shade * finish[p, 5 + c] - image[v, u, c])
+                    image[v, u, c] = factor * (image[v, u, c] + over)
     return image
 
 
@@ -72,6 +93,7 @@ def colour_image(
     world_from_part: Matrix,
     light_level: float,
     turned_rad: float,
+    full_detail: FullDetail | None = None,
 ) -> NDArray[np.float32]:
     """Form the noise-free colour image.
 
@@ -83,16 +105,29 @@ def colour_image(
         world_from_part: (P, 4, 4).
         light_level: 1 is the room's full light, 0 is dark; glowing surfaces stay bright.
         turned_rad: [rad] turned about the vertical axis while the exposure lasted.
+        full_detail: adds shadows where things touch the floor, what shiny surfaces mirror, and smooth edges;
+            None leaves them out.
 
     Returns:
         (H, W, 3) linear light, 1 being full scale.
     """
-    matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
-    image = _radiance_image(
-        view.part, view.depth, view.normal, matrices,
-        materials.colour, materials.kind, materials.period, materials.phase,
-        LIGHT, light_level * config.gain,
-    )  # fmt: skip
+    level, camera = light_level * config.gain, config.camera
+
+    def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
+        return _radiance_image(
+            one.part, one.depth, one.normal, matrices,
+            materials.colour, materials.kind, materials.period, materials.phase,
+            materials.finish, materials.texels, LIGHT, level,
+        )  # fmt: skip
+
+    image = draw(view, part_from_pixel(camera, world_from_camera, world_from_part))
+    if full_detail is not None:
+        add_contact_shadows(image, view, camera, world_from_camera, full_detail.contacts)
+        add_reflections(
+            image, view, camera, world_from_part, full_detail.reflections,
+            np.full(len(materials.shine), _GLASS), materials.shine, np.full(3, _ROOM * level), draw,
+        )  # fmt: skip
+        full_detail.smooth(image, _CONTRAST * level)
     return rotation_blur(image, config.camera, turned_rad)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -19,6 +19,7 @@ from peopleboy.sim.cameras.camera_config import (
     ThermalConfig,
 )
 from peopleboy.sim.cameras.depth_image import show_amplitude, show_depth
+from peopleboy.sim.cameras.electronics.eye import show_scene
 from peopleboy.sim.cameras.sensors import (
     ColourSensor,
     DepthSensor,
@@ -29,8 +30,12 @@ from peopleboy.sim.cameras.sensors import (
 )
 from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.rendering.panoramic_sight import PanoramicSight
 from peopleboy.sim.rendering.sight import FLAT, Sight
+
+SCENE: Final = "_scene"
+"""Suffix of the image by which people are shown what a thermal camera sees."""
 
 Stored = NDArray[np.uint8] | NDArray[np.uint16]
 
@@ -49,6 +54,8 @@ class Layer:
         folder: suffix of the folder that its files lie in, behind the name of the camera.
         encode: gives what a PNG file can hold of it, without loss: (H, W) of 8 or 16 bits, or (H, W, 3) RGB.
         show: gives what people are shown of it: (H, W) grey or (H, W, 3) RGB, of 8 bits.
+        source: suffix of the image that it is made from; None for one that the sensor gives itself.
+        make: gives it from that.
     """
 
     what: str = "8-bit, as the robot sees it"
@@ -56,6 +63,27 @@ class Layer:
     folder: str = ""
     encode: Callable[[Image], Stored] = _as_it_is
     show: Callable[[Image], NDArray[np.uint8]] = _as_it_is
+    source: str | None = None
+    make: Callable[[Image], Image] = _as_it_is
+
+
+def _thermal_images(config: ThermalConfig) -> tuple[Layer, ...]:
+    """Grey as the robot sees it; temperatures; and a grey for people, made when somebody asks for it."""
+    if config.gain == "fixed":
+        what = f"8-bit, {config.lowest_c:g}..{config.highest_c:g} degC, as the robot sees it"
+    else:
+        what = f"8-bit, by automatic gain ({config.gain}), as the robot sees it"
+    return (
+        Layer(what=what),
+        Layer(what="16-bit, hundredths of a kelvin", suffix="_c", folder="16", encode=encode_16bit),
+        Layer(
+            what="8-bit, greys shared out so that people see the whole scene, made from the temperatures",
+            suffix=SCENE,
+            folder=SCENE,
+            source="_c",
+            make=show_scene,
+        ),
+    )
 
 
 def _round_image(config: PanoramaConfig) -> tuple[Layer, ...]:
@@ -82,8 +110,9 @@ class CameraKind:
         config: class of its settings.
         sensor: opens a camera by settings, name and seed; the name is that of its streams of noise, too.
         sight: draws what it sees, and tells the outlines of the truth's boxes; by default as a pinhole does.
-        layers: its images; the first, without suffixes, is what people and controllers are shown.
+        layers: its images; the first of all, without suffixes, is what controllers are shown.
         more_layers: what cameras of some settings give besides.
+        shown: suffix of the image that people are shown.
         channels: of that first image: 1 for (H, W), 3 for (H, W, 3) RGB.
         dtype, unit: of that first image.
         has_boxes: whether a box round a person makes sense in it.
@@ -94,6 +123,7 @@ class CameraKind:
     sight: Sight = FLAT
     layers: tuple[Layer, ...] = (Layer(),)
     more_layers: Callable[[Any], tuple[Layer, ...]] = lambda config: ()  # noqa: ARG005
+    shown: str = ""
     channels: int = 1
     dtype: type[np.unsignedinteger[Any]] = np.uint8
     unit: str = "grey"
@@ -104,10 +134,9 @@ KINDS: Final[dict[str, CameraKind]] = {
     "thermal": CameraKind(
         config=ThermalConfig,
         sensor=ThermalSensor,
-        layers=(
-            Layer(what="8-bit, 24..36 degC, as the robot sees it"),
-            Layer(what="16-bit, hundredths of a kelvin", suffix="_c", folder="16", encode=encode_16bit),
-        ),
+        layers=(),
+        more_layers=_thermal_images,
+        shown=SCENE,
     ),
     "colour": CameraKind(
         config=ColourConfig, sensor=ColourSensor, layers=(Layer(what="8-bit colour"),), channels=3
@@ -160,9 +189,19 @@ def layers_of(config: CameraConfig) -> tuple[Layer, ...]:
     return (*kind.layers, *kind.more_layers(config))
 
 
-def shown_to_people(image: Image, config: CameraConfig) -> NDArray[np.uint8]:
-    """Give what people are shown of a camera's first image: (H, W) grey or (H, W, 3) RGB, of 8 bits."""
-    return layers_of(config)[0].show(image)
+def shown_to_people(images: Mapping[str, Image], name: str, config: CameraConfig) -> NDArray[np.uint8]:
+    """Give what people are shown of a camera's images: (H, W) grey or (H, W, 3) RGB, of 8 bits."""
+    suffix = kind_of(config).shown
+    layer = next(layer for layer in layers_of(config) if layer.suffix == suffix)
+    return layer.show(images[f"{name}{suffix}"])
+
+
+def name_images(name: str, config: CameraConfig, taken: Sequence[Image]) -> Mapping[str, Image]:
+    """Name the images that a sensor gives, and beside them those made from them when first asked for."""
+    layers = {f"{name}{layer.suffix}": layer for layer in layers_of(config)}
+    own = [image for image, layer in layers.items() if layer.source is None]
+    given = dict(zip(own, taken, strict=True))
+    return OnDemand(layers, lambda image: layers[image].make(given[f"{name}{layers[image].source}"]), given)
 
 
 def image_names(name: str, config: CameraConfig) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import hat_integral
 from peopleboy.sim.cameras.colour import LIGHT, shade_of
-from peopleboy.sim.cameras.surfaces import MaterialTable, pattern_value
+from peopleboy.sim.cameras.surfaces import MaterialTable, finish_at, pattern_value
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.vectors import map_point
@@ -51,7 +51,7 @@ def panorama_image(
     image = _radiance_image(
         view.part, view.depth, view.normal, part_from_camera, directions, slopes,
         camera.mirror.ring_radius_m, materials.colour, materials.kind, materials.period, materials.phase,
-        LIGHT, light,
+        materials.finish, materials.texels, LIGHT, light,
     )  # fmt: skip
     return shift_blur(image, abs(turned_rad) / math.tau * camera.width)
 
@@ -78,11 +78,14 @@ def _radiance_image(
     kind: NDArray[np.int64],
     period: Matrix,
     phase: Matrix,
+    finish: NDArray[np.float64],
+    texels: NDArray[np.float32],
     light: Matrix,
     level: float,
 ) -> Linear:
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
+    has_finish = len(finish) > 0
     for v in range(height):
         for u in range(width):
             p, out = part[v, u], depth[v, u]
@@ -94,6 +97,11 @@ def _radiance_image(
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
+            if has_finish and finish[p, 0] >= 0.0:
+                _, factor, cover = finish_at(finish, texels, p, x, y, z)
+                for c in range(3):
+                    over = cover * (shade * finish[p, 5 + c] - image[v, u, c])
+                    image[v, u, c] = factor * (image[v, u, c] + over)
     return image
 
 

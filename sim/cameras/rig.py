@@ -7,7 +7,7 @@ from functools import partial
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.kinds import image_names, kind_of
+from peopleboy.sim.cameras.kinds import image_names, kind_of, name_images
 from peopleboy.sim.cameras.sensors import Glimpse, Image
 from peopleboy.sim.on_demand import OnDemand
 
@@ -15,8 +15,9 @@ from peopleboy.sim.on_demand import OnDemand
 class Rig:
     """Takes the images of a robot's cameras.
 
-    A camera's noise is its own, and that of an image that nobody asks for goes by: what an image holds
-    depends neither on the other cameras nor on which images were asked for before.
+    A camera's noise is its own, and that of an image that nobody asks for goes by; a camera that remembers
+    takes all of its images at once. What an image holds depends therefore neither on the other cameras nor
+    on which images were asked for before.
 
     Args:
         cameras: settings by name.
@@ -45,6 +46,8 @@ class Rig:
     def read(self, tick: int) -> Mapping[str, Image]:
         """Give the images of the cameras that are due, each made when first asked for, until the next call.
 
+        One of a camera that remembers is made now.
+
         Raises:
             BadInput: when one is asked for later.
         """
@@ -53,6 +56,9 @@ class Rig:
         for name in due:
             self._unread[name] += 1
         shots = OnDemand(due, partial(self._shoot, self._reading))
+        for name in due:
+            if self._cameras[name].remembers:
+                shots[name]
         owner = {image: name for name in due for image in image_names(name, self._cameras[name])}
         return OnDemand(owner, lambda image: shots[owner[image]][image])
 
@@ -60,7 +66,7 @@ class Rig:
         """Let nobody ask any more for images of the last reading."""
         self._reading += 1
 
-    def _shoot(self, reading: int, name: str) -> dict[str, Image]:
+    def _shoot(self, reading: int, name: str) -> Mapping[str, Image]:
         if reading != self._reading:
             raise BadInput(
                 f"camera {name!r}: the image of an instant that is over was not asked for while it lasted; "
@@ -70,5 +76,4 @@ class Rig:
         for _ in range(self._unread[name] - 1):
             sensor.skip()
         self._unread[name] = 0
-        images = sensor.take(self._look(config))
-        return dict(zip(image_names(name, config), images, strict=True))
+        return name_images(name, config, sensor.take(self._look(config)))

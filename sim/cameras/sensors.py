@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, PanoramaConfig, ThermalConfig
@@ -20,14 +21,18 @@ from peopleboy.sim.cameras.depth import (
     time_of_flight,
 )
 from peopleboy.sim.cameras.depth_image import to_millimetres
+from peopleboy.sim.cameras.electronics.drift import Drift
+from peopleboy.sim.cameras.electronics.gain import Gain
+from peopleboy.sim.cameras.electronics.output import compress, sharpen
 from peopleboy.sim.cameras.noise import skip_gaussian
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.surfaces import MaterialTable
-from peopleboy.sim.cameras.thermal import detect, encode_8bit, make_detector, surface_image
+from peopleboy.sim.cameras.thermal import detect, make_detector, surface_image
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
 
 Image = NDArray[Any]
@@ -46,6 +51,8 @@ class Glimpse:
         surroundings_c: [degC] what surfaces mirror.
         light_level: 1 is the place's full light.
         turn_rad_s: [rad/s] of the robot about the vertical axis.
+        time_s: [s] since the start.
+        full_detail: what makes images of full detail; None in a world of plain detail.
     """
 
     view: View
@@ -56,6 +63,8 @@ class Glimpse:
     surroundings_c: float
     light_level: float
     turn_rad_s: float
+    time_s: float
+    full_detail: FullDetail | None = None
 
 
 class Sensor(Protocol):
@@ -71,26 +80,43 @@ class Sensor(Protocol):
 
 
 class ThermalSensor:
-    """Gives 8-bit grey, and the same in float32 [degC] before it is encoded."""
+    """Gives 8-bit grey, and the same in float32 [degC] before it is encoded.
+
+    While the shutter is closed, it gives the last images again. Drift and shutter go by the time.
+    """
 
     def __init__(self, config: ThermalConfig, name: str, seed: int) -> None:
         self._config = config
         self._detector = make_detector(config, stream(seed, f"{name}.detector"))
         self._noise = stream(seed, f"{name}.noise")
+        self._drift = Drift(config, name, seed)
+        self._gain = Gain(config)
+        self._last: tuple[Image, ...] = ()
 
     def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
         """Take the (H, W) images of an instant: uint8, float32."""
-        config = self._config
-        apparent = surface_image(
-            glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.surroundings_c, glimpse.turn_rad_s * config.exposure_s,
-        )  # fmt: skip
-        temperature = detect(apparent, self._detector, config, self._noise)
-        return encode_8bit(temperature, config.lowest_c, config.highest_c), temperature
+        if not self._last or not self._drift.is_closed(glimpse.time_s):
+            temperature = self._read_out(glimpse)
+            self._last = self._grey(temperature, glimpse.time_s), temperature
+        return self._last
 
     def skip(self) -> None:
         """Let the noise of an image go by."""
         skip_gaussian(self._detector.dead.shape, self._noise)
+
+    def _read_out(self, glimpse: Glimpse) -> NDArray[np.float32]:
+        """Give what the detector makes of the scene [degC]."""
+        config = self._config
+        apparent = surface_image(
+            glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
+            glimpse.surroundings_c, glimpse.turn_rad_s * config.exposure_s, glimpse.full_detail,
+        )  # fmt: skip
+        return detect(apparent, self._detector, config, self._noise, self._drift.offset_k(glimpse.time_s))
+
+    def _grey(self, temperature_c: NDArray[np.float32], time_s: float) -> NDArray[np.uint8]:
+        config = self._config
+        crisp = sharpen(temperature_c, config.sharpening, config.sharpening_px)
+        return compress(self._gain.grey(crisp, time_s), config.jpeg_quality)
 
 
 class ColourSensor:
@@ -105,7 +131,7 @@ class ColourSensor:
         config = self._config
         linear = colour_image(
             glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s,
+            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s, glimpse.full_detail,
         )  # fmt: skip
         return (expose(linear, config, self._noise),)
 
@@ -196,6 +222,6 @@ class DepthSensor:
         config = self._config
         linear = colour_image(
             glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s,
+            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s, glimpse.full_detail,
         )  # fmt: skip
         return expose(linear, config, self._colour_noise)

@@ -15,6 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.shapes.finishes import Finish
 from peopleboy.sim.shapes.materials import Material, PatternKind
 
 # Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
@@ -36,6 +37,10 @@ class MaterialTable:
         kind: (P, 2) PatternKind of the thermal and of the colour pattern.
         period: (P, 2) [m] of the same.
         phase: (P, 3) [waves] offsets of the smooth variation.
+        finish: (P, 8) of each part's finish its first texel (-1 for none), columns, rows, lowest z [m], rows
+            a metre, and colour; (0, 8) if no part has one.
+        texels: (N, 3) kelvin, light and cover of all finishes.
+        shine: (P,) how much of what is reflected is mirrored, 0..1.
     """
 
     thermal: NDArray[np.float64]
@@ -43,10 +48,14 @@ class MaterialTable:
     kind: NDArray[np.int64]
     period: NDArray[np.float64]
     phase: NDArray[np.float64]
+    finish: NDArray[np.float64]
+    texels: NDArray[np.float32]
+    shine: NDArray[np.float64]
 
 
 def make_material_table(materials: Sequence[Material], rng: np.random.Generator) -> MaterialTable:
     """Put the looks of all parts into arrays; the generator draws each part's phase of variation."""
+    finish, texels = _lay_out([material.finish for material in materials])
     return MaterialTable(
         thermal=np.array(
             [
@@ -62,7 +71,22 @@ def make_material_table(materials: Sequence[Material], rng: np.random.Generator)
             -1, 2
         ),
         phase=rng.uniform(0.0, 1.0, (len(materials), 3)),
+        finish=finish,
+        texels=texels,
+        shine=np.array([k.shine for k in materials], np.float64),
     )
+
+
+def _lay_out(finishes: Sequence[Finish | None]) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+    """Put finishes one after the other: rows and texels as in `MaterialTable`."""
+    rows, texels = np.full((len(finishes), 8), -1.0), [np.zeros((0, 3), np.float32)]
+    for row, finish in zip(rows, finishes, strict=True):
+        if finish is not None:
+            height, width = finish.kelvin.shape
+            first = sum(map(len, texels))
+            row[:] = first, width, height, finish.lowest_m, 1.0 / finish.texel_m, *finish.rgb
+            texels.append(finish.texels())
+    return (rows if len(texels) > 1 else rows[:0]), np.concatenate(texels)
 
 
 def part_from_pixel(camera: Pinhole, world_from_camera: Matrix, world_from_part: Matrix) -> Matrix:
@@ -141,3 +165,41 @@ def pattern_value(
     if kind == _SPECKLE:
         return int(smooth_variation(x, y, z, 1.0 / period, phase, part) > 0.15)
     return 0
+
+
+@njit(cache=True, fastmath=True)
+def turn_of(x: float, y: float) -> float:
+    """Return the direction of (x, y) from +x towards +y, in turns 0..1, to 0.00002 of a turn."""
+    across, along = abs(y), abs(x)
+    ratio = min(across, along) / max(max(across, along), 1e-9)
+    square = ratio * ratio
+    # An odd polynomial fitted to atan(ratio) / 2 pi over 0..1.
+    turn = ratio * (0.15903002 + square * (-0.0511187 + square * (0.02328385 - 0.00620832 * square)))
+    turn = 0.25 - turn if across > along else turn
+    turn = 0.5 - turn if x < 0.0 else turn
+    return 1.0 - turn if y < 0.0 else turn
+
+
+@njit(cache=True, fastmath=True)
+def finish_at(
+    finish: NDArray[np.float64], texels: NDArray[np.float32], part: int, x: float, y: float, z: float
+) -> tuple[float, float, float]:
+    """Return kelvin, light and cover of a part's finish at a point [m] of the part, linear between texels."""
+    columns, rows = int(finish[part, 1]), int(finish[part, 2])
+    across = turn_of(x, y) * columns
+    up = min(max((z - finish[part, 3]) * finish[part, 4], 0.0), rows - 1.001)
+    column, row = int(across), int(up)
+    a, b = across - column, up - row
+    left = column if column < columns else column - columns
+    right = left + 1 if left + 1 < columns else 0
+    below = int(finish[part, 0]) + row * columns
+    above = below + columns
+    c, d, e, f = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
+    return (
+        c * texels[below + left, 0] + d * texels[below + right, 0]
+        + e * texels[above + left, 0] + f * texels[above + right, 0],
+        c * texels[below + left, 1] + d * texels[below + right, 1]
+        + e * texels[above + left, 1] + f * texels[above + right, 1],
+        c * texels[below + left, 2] + d * texels[below + right, 2]
+        + e * texels[above + left, 2] + f * texels[above + right, 2],
+    )  # fmt: skip

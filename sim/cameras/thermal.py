@@ -1,7 +1,8 @@
 """The thermal image: from surface temperatures to the grey picture that a robot gets.
 
 Temperature of each surface point -> band radiance, with emissivity and mirrored surroundings -> optics and
-rotation blur -> apparent temperature -> detector noise -> 8 bit over 24..36 degC (T ch. 3), 16 bit at 10 mK.
+rotation blur -> apparent temperature -> detector noise -> 16 bit at 10 mK.
+Grey of 8 bits is what `electronics.gain` makes of it.
 """
 
 from __future__ import annotations
@@ -15,17 +16,21 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
 from peopleboy.sim.cameras.camera_config import ThermalConfig
+from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
+    finish_at,
     part_from_pixel,
     pattern_value,
     smooth_variation,
     surface_point,
 )
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
 
+_CONTRAST = 1.0  # [W / (m2 sr)] about a kelvin: fainter edges need no smoothing
 _LOWEST_C, _HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
 
 
@@ -81,12 +86,15 @@ def _radiance_image(
     kind: NDArray[np.int64],
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
+    finish: NDArray[np.float64],
+    texels: NDArray[np.float32],
     table: NDArray[np.float64],
     surroundings: float,
     span: tuple[float, float],
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.empty((height, width), np.float32)
+    has_finish = len(finish) > 0
     for v in range(height):
         for u in range(width):
             p = part[v, u]
@@ -94,10 +102,13 @@ def _radiance_image(
                 image[v, u] = surroundings
                 continue
             temperature = thermal[p, 0]
-            if thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
+            is_finished = has_finish and finish[p, 0] >= 0.0
+            if is_finished or thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
                 temperature += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
                 temperature += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
+                if is_finished:
+                    temperature += finish_at(finish, texels, p, x, y, z)[0]
             emitted = _look_up(table, span[0], span[1], temperature)
             image[v, u] = thermal[p, 1] * emitted + (1.0 - thermal[p, 1]) * surroundings
     return image
@@ -130,7 +141,15 @@ def make_detector(config: ThermalConfig, rng: np.random.Generator) -> Detector:
     """Draw the detector of one run."""
     shape = (config.camera.height, config.camera.width)
     offset = rng.standard_normal(shape, np.float32) * np.float32(config.fixed_pattern_k)
+    if config.vignetting_k > 0.0:
+        offset += _corners(config)
     return Detector(offset, rng.random(shape) < config.dead_pixels, config.lowest_c)
+
+
+def _corners(config: ThermalConfig) -> NDArray[np.float32]:
+    """(H, W) [K] what the lens's warm housing adds, which rises with the square of the way to the corners."""
+    v, u = (np.linspace(-1.0, 1.0, size) for size in (config.camera.height, config.camera.width))
+    return np.asarray(config.vignetting_k * (v[:, None] ** 2 + u**2) / 2.0, np.float32)
 
 
 def surface_image(
@@ -141,6 +160,7 @@ def surface_image(
     world_from_part: Matrix,
     surroundings_c: float,
     turned_rad: float,
+    full_detail: FullDetail | None = None,
 ) -> NDArray[np.float32]:
     """Form the noise-free image of apparent temperature.
 
@@ -155,15 +175,28 @@ def surface_image(
         world_from_part: (P, 4, 4).
         surroundings_c: [degC] what surfaces mirror, and what is seen where nothing is.
         turned_rad: [rad] turned about the vertical axis while the exposure lasted.
+        full_detail: adds what shiny surfaces mirror, and smooth edges; None leaves both out.
 
     Returns:
         (H, W) [degC].
     """
-    matrices = part_from_pixel(config.camera, world_from_camera, world_from_part)
-    radiance = _radiance_image(
-        view.part, view.depth, matrices, materials.thermal, materials.kind, materials.period, materials.phase,
-        _RADIANCE, _mirrored(surroundings_c), (_LOWEST_C, _HIGHEST_C),
-    )  # fmt: skip
+    surroundings = _mirrored(surroundings_c)
+
+    def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
+        return _radiance_image(
+            one.part, one.depth, matrices, materials.thermal, materials.kind, materials.period,
+            materials.phase, materials.finish, materials.texels, _RADIANCE, surroundings,
+            (_LOWEST_C, _HIGHEST_C),
+        )  # fmt: skip
+
+    radiance = draw(view, part_from_pixel(config.camera, world_from_camera, world_from_part))
+    if full_detail is not None:
+        add_reflections(
+            radiance[..., None], view, config.camera, world_from_part, full_detail.reflections,
+            1.0 - materials.thermal[:, 1], materials.shine, np.array([surroundings]),
+            lambda one, matrices: draw(one, matrices)[..., None],
+        )  # fmt: skip
+        full_detail.smooth(radiance[..., None], _CONTRAST)
     radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)
     radiance = np.ascontiguousarray(radiance)
     _apparent_c(radiance, _TEMPERATURE, _DIMMEST, _BRIGHTEST)
@@ -171,23 +204,24 @@ def surface_image(
 
 
 def detect(
-    apparent_c: NDArray[np.float32], detector: Detector, config: ThermalConfig, rng: np.random.Generator
+    apparent_c: NDArray[np.float32],
+    detector: Detector,
+    config: ThermalConfig,
+    rng: np.random.Generator,
+    drift_k: NDArray[np.float32] | None = None,
 ) -> NDArray[np.float32]:
-    """Add the detector's noise to an (H, W) image of apparent temperature [degC]; returns a new image."""
+    """Add the detector's noise, and its drift, to an (H, W) image of apparent temperature [degC].
+
+    Returns a new image.
+    """
     noise = gaussian(apparent_c.shape, rng)
     noise *= np.float32(config.netd_k)
     noise += apparent_c
     noise += detector.offset_k
+    if drift_k is not None:
+        noise += drift_k
     noise[detector.dead] = detector.dead_c
     return noise
-
-
-def encode_8bit(
-    temperature_c: NDArray[np.float32], lowest_c: float = 24.0, highest_c: float = 36.0
-) -> NDArray[np.uint8]:
-    """Encode [degC] as grey: round((T - lowest) / (highest - lowest) * 255), clipped (T ch. 3)."""
-    grey = (temperature_c - np.float32(lowest_c)) * np.float32(255.0 / (highest_c - lowest_c))
-    return np.asarray(np.clip(np.rint(grey), 0.0, 255.0), np.uint8)
 
 
 def encode_16bit(temperature_c: NDArray[np.float32]) -> NDArray[np.uint16]:

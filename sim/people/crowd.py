@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.poses import quaternions
+from peopleboy.sim.people.looks.finish_person import Finisher
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.places.place import Place
+from peopleboy.sim.places.place import Place, air_of
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.shapes.materials import Material
+from peopleboy.sim.shapes.materials import Detail, Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
 
 # What robots bump into and sonars hear: an upright capsule, which no camera sees.
@@ -31,12 +32,20 @@ class Crowd:
     """
 
     def __init__(
-        self, bullet: Bullet, configs: Sequence[PersonConfig], place: Place, seed: int, *, is_visible: bool
+        self,
+        bullet: Bullet,
+        configs: Sequence[PersonConfig],
+        place: Place,
+        seed: int,
+        *,
+        is_visible: bool,
+        detail: Detail = "plain",
     ) -> None:
         self._bullet = bullet
         self._is_visible = is_visible
         self._place = place
-        self.people = tuple(Person(config, stream(seed, f"person.{config.name}")) for config in configs)
+        self._is_fine = is_visible and detail == "full"
+        self.people = tuple(self._make(config, seed) for config in configs)
         self.materials: dict[str, Material] = {}
         self._is_shown = dict.fromkeys((person.name for person in self.people), True)
         self._solid: set[str] = set()
@@ -72,6 +81,13 @@ class Crowd:
             if person.present:
                 self._pose(person)
                 self._make_solid(person, gap_to_robot)
+
+    def _make(self, config: PersonConfig, seed: int) -> Person:
+        name = f"person.{config.name}"
+        finisher = (
+            Finisher(config, air_of(self._place), stream(seed, f"{name}.looks")) if self._is_fine else None
+        )
+        return Person(config, stream(seed, name), finisher)
 
     def _add(self, person: Person) -> None:
         for part in self._visible_parts(person):

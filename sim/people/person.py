@@ -27,6 +27,7 @@ from peopleboy.sim.people.body.joints import joint_points
 from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations
 from peopleboy.sim.people.body.reaching import arm_length, least_stoop, stoop, turn_arm
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
+from peopleboy.sim.people.looks.finish_person import Finisher
 from peopleboy.sim.people.person_config import Arms, PersonConfig
 from peopleboy.sim.people.timetable import timetable
 from peopleboy.sim.people.walking.social_force import PlanarState
@@ -71,7 +72,7 @@ class _Grasp:
 
 
 class Person:
-    """A person that follows its script.
+    """A person that follows its script; a finisher refines its looks.
 
     Attributes:
         config: as given.
@@ -80,13 +81,17 @@ class Person:
         present: whether it is in the world now.
     """
 
-    def __init__(self, config: PersonConfig, rng: np.random.Generator) -> None:
+    def __init__(
+        self, config: PersonConfig, rng: np.random.Generator, finisher: Finisher | None = None
+    ) -> None:
         self.config = config
         self.name = config.name
         self.present = config.enter_s <= 0.0
         self._size = measure(config.height_m, config.sex, config.build)
         geometry = _geometry(config, self._size)
         materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
+        if finisher is not None:
+            materials = finisher.finish(materials, geometry)
         self.parts = tuple(Part(name=n, shapes=g.shapes, material=materials[n]) for n, g in geometry.items())
         self._part_bone = bone_index(geometry)
         self._part_offset = np.array([g.offset_m for g in geometry.values()])

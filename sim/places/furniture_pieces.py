@@ -31,7 +31,15 @@ def window(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         ),
     )
     return (
-        Piece(name="pane", shapes=(pane,), temperature_c=temperature, rgb=rgb, emissivity=0.9, glow=0.4),
+        Piece(
+            name="pane",
+            shapes=(pane,),
+            temperature_c=temperature,
+            rgb=rgb,
+            emissivity=0.9,
+            glow=0.4,
+            shine=1.0,
+        ),
         Piece(name="frame", shapes=frame, temperature_c=temperature + 2.5, rgb=WHITE),
     )
 

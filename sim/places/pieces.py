@@ -34,6 +34,7 @@ class Piece:
     variation_k: float = 0.2
     pattern: Pattern = field(default_factory=Pattern)
     is_solid: bool = True
+    shine: float = 0.0
 
 
 def box(size: Vector, position: Vector) -> Shape:

@@ -70,6 +70,11 @@ class Place:
         return np.concatenate([self.obstacles, boxes]) if boxes else self.obstacles
 
 
+def air_of(place: Place) -> float:
+    """Tell the temperature [degC] of the air of a place, which people's surfaces follow."""
+    return place.surroundings_c
+
+
 def _ground_box(mover: Mover, time_s: float) -> NDArray[np.float64] | None:
     """The rectangle (4,) around a thing at a time; None if it is in nobody's way."""
     state = mover.at(time_s)

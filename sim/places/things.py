@@ -27,6 +27,7 @@ class Thing:
         size_m: depth, width, height [m]; None takes the kind's own.
         temperature_c: [degC] of its main surface; None takes the kind's own.
         emissivity: of its main surface.
+        shine: of its main surface, see `Material`; None takes the kind's own.
         rgb: linear reflectance of its main surface; None takes the kind's own, a URDF its file's.
         pattern: of its main surface's colour.
         urdf, scale: the file of a "urdf", and its size.
@@ -40,6 +41,7 @@ class Thing:
     size_m: Vector | None = None
     temperature_c: float | None = None
     emissivity: float = 0.93
+    shine: float | None = None
     rgb: Rgb | None = None
     pattern: Pattern = field(default_factory=Pattern)
     urdf: str | None = None
@@ -52,7 +54,9 @@ def build_thing(thing: Thing) -> tuple[Fixture, ...]:
     turned = (0.0, 0.0, math.sin(thing.facing_rad / 2.0), math.cos(thing.facing_rad / 2.0))
     if thing.kind == "urdf":
         temperature = _given(thing.temperature_c, 21.0)
-        material = Material(temperature_c=temperature, emissivity=thing.emissivity)
+        material = Material(
+            temperature_c=temperature, emissivity=thing.emissivity, shine=_given(thing.shine, 0.0)
+        )
         return (
             Fixture(
                 name=thing.name,
@@ -77,11 +81,12 @@ def build_thing(thing: Thing) -> tuple[Fixture, ...]:
 
 
 def _pieces(thing: Thing, kind: Kind) -> tuple[Piece, ...]:
-    """The pieces of a thing; emissivity and pattern go to the first, the main one."""
+    """The pieces of a thing; emissivity, shine and pattern go to the first, the main one."""
     size = kind.size_m if thing.size_m is None else thing.size_m
     rgb = kind.rgb if thing.rgb is None else thing.rgb
     main, *others = kind.build(size, _given(thing.temperature_c, kind.temperature_c), rgb)
-    return (replace(main, emissivity=thing.emissivity, pattern=thing.pattern), *others)
+    shine = _given(thing.shine, main.shine)
+    return (replace(main, emissivity=thing.emissivity, shine=shine, pattern=thing.pattern), *others)
 
 
 def _given(value: float | None, default: float) -> float:
@@ -99,4 +104,5 @@ def _material(piece: Piece) -> Material:
         second_rgb=(red, green, blue),
         colour_pattern=piece.pattern,
         glow=piece.glow,
+        shine=piece.shine,
     )

@@ -84,7 +84,15 @@ def monitor(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     stem = standing_box(0.03, 0.06, -SINK_M, bottom + 0.05, x=-0.01)
     foot = standing_box(depth, 0.45 * width, -SINK_M, 0.02)
     return (
-        Piece(name="screen", shapes=(screen,), temperature_c=temperature, rgb=rgb, glow=0.7, variation_k=0.8),
+        Piece(
+            name="screen",
+            shapes=(screen,),
+            temperature_c=temperature,
+            rgb=rgb,
+            glow=0.7,
+            variation_k=0.8,
+            shine=1.0,
+        ),
         Piece(name="case", shapes=(case,), temperature_c=temperature - 3.0, rgb=BLACK),
         Piece(name="foot", shapes=(stem, foot), temperature_c=23.0, rgb=BLACK),
     )

@@ -63,15 +63,31 @@ def cast(
 ) -> View:
     """Draw by the ray caster; arguments as in `render`."""
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
+    return cast_window(table, lens, world_from_camera, world_from_part, person_of_part, hidden)
+
+
+def cast_window(
+    table: ShapeTable,
+    lens: Lens,
+    world_from_camera: Matrix,
+    world_from_part: Matrix,
+    person_of_part: NDArray[np.int64],
+    hidden: NDArray[np.bool_],
+) -> View:
+    """Draw by the ray caster what a lens sees, which need not look from its image's middle.
+
+    The pose may be that of a camera in a mirror, which turns left and right round: meshes are
+    inside out then.
+    """
     canvas = make_canvas(lens, len(table.surface_part))
     camera_from_part = invert_pose(world_from_camera) @ world_from_part
     draw(table, camera_from_part, hidden, person_bits(person_of_part), lens, canvas)
-    shape = (camera.height, camera.width)
+    shape = (lens.height, lens.width)
     part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)
     normal = np.empty((*shape, 3), np.float32)
     rotation = np.ascontiguousarray(world_from_camera[:3, :3])
     shade(table.surface_part, lens, canvas, rotation, part, depth, normal)
-    return View(part, depth, normal, canvas.cover)
+    return View(part, depth, normal, canvas.cover, canvas.surface)
 
 
 def rasterise(

@@ -20,12 +20,15 @@ class View:
         depth: (H, W) [m] along the optical axis, inf where nothing is.
         normal: (H, W, 3) unit normal that faces the camera, world frame; 0 where nothing is.
         cover: (H, W) bit k is set where person k's silhouette lies, whether it is hidden or not.
+        surface: (H, W) number of the surface in the `ShapeTable`, of no meaning where nothing is; None if
+            what drew the view does not tell.
     """
 
     part: NDArray[np.int32]
     depth: NDArray[np.float32]
     normal: NDArray[np.float32]
     cover: NDArray[np.uint64]
+    surface: NDArray[np.int32] | None = None
 
 
 def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Literal
 
+from peopleboy.sim.shapes.finishes import Finish
+
 Detail = Literal["plain", "full"]
 Rgb = tuple[float, float, float]
 
@@ -44,6 +46,9 @@ class Material:
         colour_pattern: where the second colour applies.
         glow: share of light that the surface gives out itself (a lamp or a monitor), whatever the room's
             light; 0 for everything else.
+        finish: what the surface carries beside; None for nothing.
+        shine: how much of what the surface reflects it mirrors as a mirror does, 0..1: 0 is dull, 1 is glass.
+            Only images of full detail show it.
     """
 
     temperature_c: float
@@ -56,3 +61,5 @@ class Material:
     second_rgb: Rgb = (0.5, 0.5, 0.5)
     colour_pattern: Pattern = field(default_factory=Pattern)
     glow: float = 0.0
+    finish: Finish | None = None
+    shine: float = 0.0

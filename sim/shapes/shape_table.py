@@ -54,6 +54,7 @@ class ShapeTable(NamedTuple):
         extent: (S, 2, 3) [m] least and greatest corner of a mesh, in the part's frame; 0 for other shapes.
         first_surface: (S,) number of the shape's first surface.
         surface_part: (M,) number of the part that a surface belongs to.
+        surface_shape: (M,) number of the shape that a surface belongs to.
     """
 
     kind: NDArray[np.int64]
@@ -65,6 +66,7 @@ class ShapeTable(NamedTuple):
     extent: NDArray[np.float64]
     first_surface: NDArray[np.int64]
     surface_part: NDArray[np.int32]
+    surface_shape: NDArray[np.int32]
 
 
 def make_shape_table(shapes: Sequence[VisualShape]) -> ShapeTable:
@@ -88,6 +90,7 @@ def make_shape_table(shapes: Sequence[VisualShape]) -> ShapeTable:
         extent=np.array([_extent(mesh) for mesh in meshes], np.float64).reshape(-1, 2, 3),
         first_surface=np.cumsum([0, *counts])[:-1].astype(np.int64),
         surface_part=np.repeat(part, counts).astype(np.int32),
+        surface_shape=np.repeat(np.arange(len(shapes)), counts).astype(np.int32),
     )
     for array in table:
         array.setflags(write=False)

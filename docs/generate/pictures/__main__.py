@@ -34,6 +34,8 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "thermal_steps": thermal.steps,
     "thermal_bars": thermal.bars,
     "thermal_mirror": thermal.mirror,
+    "thermal_gains": thermal.gains,
+    "thermal_faults": thermal.faults,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,

@@ -31,7 +31,7 @@ SCALE = 3
 LEAST_SHARE = 0.02  # hidden, from which it is said by whom
 NIGHT: Rgb = (24, 26, 32)
 TITLES = (
-    "thermal image, 24..36 °C, and what the tracker makes of it",
+    "thermal image as people are shown it, and what the tracker finds",
     "colour image, from a camera 6 cm beside",
     "truth: who, which part of the body, how much is visible",
     "truth: who is where, and who hides how much of whom",
@@ -45,7 +45,7 @@ def overview() -> Figure:
     show(
         thermal,
         draw_tracks(
-            enlarge(show_thermal(tick.observation.images["thermal"]), SCALE),
+            enlarge(show_thermal(tick.observation.images["thermal_scene"]), SCALE),
             tick.tracks,
             SCALE,
             tick.explanation,

@@ -55,9 +55,17 @@ def write_datasheet(
         odds=ODDS,
         images=describe_images(outfits),
         units=_units(outfits),
-        folders={folder: layer.what for outfit in outfits for folder, _, layer in image_folders(outfit)},
+        folders=_folders(outfits),
     )
     path.write_text(text, encoding="utf-8")
+
+
+def _folders(outfits: Iterable[Mapping[str, CameraConfig]]) -> dict[str, str]:
+    """Say what is in each folder of images, which may be one thing in one scenario and another in another."""
+    found: dict[str, dict[str, None]] = {}
+    for folder, _, layer in (images for outfit in outfits for images in image_folders(outfit)):
+        found.setdefault(folder, {})[layer.what] = None
+    return {folder: "; or ".join(whats) for folder, whats in found.items()}
 
 
 def _units(outfits: Iterable[Mapping[str, CameraConfig]]) -> dict[str, str]:

@@ -54,6 +54,13 @@ class _AnyPlace(Strict):
     doors: tuple[DoorSpec, ...] = Field(default=(), strict=False, description="openings in its walls")
     temperatures: TemperaturesSpec = Field(default=TemperaturesSpec(), description="of its surfaces")
     colours: ColoursSpec = Field(default=ColoursSpec(), description="of its surfaces")
+    floor_shine: float = Field(
+        default=0.3,
+        ge=0.0,
+        le=1.0,
+        description="how much of what the floor reflects it mirrors, from 0, a carpet, to 1, polished stone; "
+        "seen with `detail: full`",
+    )
 
 
 class RoomSpec(_AnyPlace):

@@ -24,6 +24,7 @@ from peopleboy.scenarios.files.schema.values import (
     Strict,
 )
 from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS
+from peopleboy.sim.cameras.electronics.thermal_presets import THERMAL_PRESETS
 from peopleboy.sim.cameras.kinds import KINDS
 
 Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
@@ -78,7 +79,55 @@ class _Camera(_AnyCamera):
 class ThermalCameraSpec(_Camera):
     """A camera that sees heat; by the name `thermal` it is the one that the tracker looks through."""
 
-    kind: Literal["thermal"] = Field(description="what it sees: heat, 24 to 36 degC in 8 bits")
+    kind: Literal["thermal"] = Field(
+        description="what it sees: heat, in 8 bits and in hundredths of a kelvin"
+    )
+    preset: Literal[*THERMAL_PRESETS] | None = Field(  # type: ignore[valid-type]
+        default=None,
+        description="what stands in for the keys that are left out: `uncooled`, with a plateau gain, "
+        "sharpened edges, columns, warm corners, drift and a shutter; `uncooled_film`, that by way of JPEG",
+    )
+    gain: Literal["fixed", "percentile", "plateau"] | None = Field(
+        default=None,
+        description="how 8-bit grey comes from temperature: `fixed`, the usual one, linear over `lowest_c` "
+        "to `highest_c`; `percentile`, linear over the span of the image; `plateau`, its histogram equalised "
+        "as far as a plateau allows",
+    )
+    lowest_c: float | None = Field(
+        default=None, ge=-40.0, le=160.0, description="of gain `fixed`: what is black; usually 24"
+    )
+    highest_c: float | None = Field(
+        default=None, ge=-40.0, le=160.0, description="of gain `fixed`: what is white; usually 36"
+    )
+    gain_follows_s: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=60.0,
+        description="time constant with which an automatic gain follows the images; usually 1; 0 for at once",
+    )
+    tail_percent: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=0.45,
+        description="of the pixels, what may lie outside an automatic gain's span at either end; usually 0.3",
+    )
+    least_span_k: float | None = Field(
+        default=None,
+        ge=0.5,
+        le=200.0,
+        description="what an automatic gain spreads over all greys at least; usually 5",
+    )
+    plateau_percent: float | None = Field(
+        default=None,
+        ge=0.01,
+        le=100.0,
+        description="of gain `plateau`: share of the pixels that 0.05 K count for at most; usually 0.5; 100 "
+        "equalises fully",
+    )
+    linear_share: Share | None = Field(
+        default=None,
+        description="of gain `plateau`: share of the greys that are linear over its span; usually 0.3",
+    )
     blur_px: float | None = Field(
         default=None, ge=0.0, le=20.0, description="blur of the optics, a standard deviation"
     )
@@ -90,6 +139,47 @@ class ThermalCameraSpec(_Camera):
     )
     dead_pixels: Share | None = Field(
         default=None, description="share of the pixels that read one value all the time"
+    )
+    column_noise_k: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=5.0,
+        description="offsets between columns that stay until the next calibration, a standard deviation; "
+        "usually 0",
+    )
+    vignetting_k: float | None = Field(
+        default=None, ge=0.0, le=10.0, description="how much warmer corners seem than the middle; usually 0"
+    )
+    offset_drift_k_per_min: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=20.0,
+        description="how fast all of the image drifts away after a calibration, a standard deviation; its "
+        "patches by half of that, its pixels by a tenth; usually 0",
+    )
+    shutter_every_s: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=3600.0,
+        description="time from one calibration, before a shutter, to the next; usually 0, for none",
+    )
+    shutter_lasts_s: float | None = Field(
+        default=None, ge=0.0, le=5.0, description="for how long the image stands still then; usually 0.4"
+    )
+    sharpening: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=5.0,
+        description="how much of what blur would take away is added in 8 bits; halos come with it; usually 0",
+    )
+    sharpening_px: float | None = Field(
+        default=None, gt=0.0, le=20.0, description="of that blur, a standard deviation; usually 1.5"
+    )
+    jpeg_quality: int | None = Field(
+        default=None,
+        ge=1,
+        le=100,
+        description="of the compression that the 8-bit image went through; usually none",
     )
 
 

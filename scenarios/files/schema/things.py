@@ -94,6 +94,13 @@ class ThingSpec(Strict):
         le=1.0,
         description="of its main surface; what is missing to 1 mirrors the surroundings",
     )
+    shine: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=1.0,
+        description="how much of what its main surface reflects it mirrors, from 0, dull, to 1, glass; seen "
+        "with `detail: full` in flat sides; left out, the kind's own",
+    )
     colour: Colour | None = Field(default=None, description="of its main surface; left out, the kind's own")
     pattern: PatternSpec = Field(
         default=PatternSpec(kind="plain"), description="of its main surface, seen by the colour camera"

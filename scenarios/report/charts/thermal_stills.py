@@ -1,4 +1,4 @@
-"""What the thermal camera saw at some frames of a run, with truth and tracks drawn in.
+"""What the thermal camera saw at some frames of a run, for people, with truth and tracks drawn in.
 
 The images are those of the run's folder if it was run with frames. Else the scene is played again with the
 commands that the robot was given, which gives the same images; where that is not possible, as with another
@@ -22,6 +22,7 @@ from peopleboy.scenarios.drawing.overlay import Picture, Plate, draw_tracks, dra
 from peopleboy.scenarios.report.findings.summary import RunFindings
 from peopleboy.scenarios.run_folder.explained import read_explanation
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.run_folder.tables import Row, track_of
 
 SCALE = 2
@@ -86,7 +87,7 @@ def _stored(run: FinishedRun, frames: Sequence[int]) -> dict[int, Thermal]:
     """Read the images that are in the folder."""
     images = {}
     for frame in frames:
-        path = run.folder / "thermal" / f"{frame:06d}.png"
+        path = run.folder / "thermal_scene" / image_file(frame)
         image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) if path.is_file() else None
         if image is not None:
             images[frame] = np.asarray(image, np.uint8)
@@ -101,7 +102,7 @@ def _again(run: FinishedRun, frames: Sequence[int]) -> dict[int, Thermal]:
     with suppress(BadInput):
         for tick in replay(run):
             if tick.frame in frames:
-                images[tick.frame] = tick.observation.images["thermal"]
+                images[tick.frame] = tick.observation.images["thermal_scene"]
             if tick.frame >= max(frames):
                 break
     return images

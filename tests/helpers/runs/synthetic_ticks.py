@@ -118,7 +118,7 @@ def make_tick(frame: int, track: Track | None = TRACK, hidden: float = 0.0, mode
     state = np.float32(rng.normal((160, 120, 20, 50, 3, 0, 0, 0, 0), 3.0, (300, 9)))
     cloud = Particles(state, np.float32(np.full(300, 1 / 300)))
     images = {
-        "thermal": thermal, "thermal_c": np.zeros((240, 320), np.float32),
+        "thermal": thermal, "thermal_c": np.zeros((240, 320), np.float32), "thermal_scene": thermal,
         "colour": rng.integers(90, 110, (240, 320, 3), np.uint8),
     }  # fmt: skip
     observation = Observation(

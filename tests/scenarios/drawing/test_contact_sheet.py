@@ -10,6 +10,7 @@ from PIL import Image
 from peopleboy.scenarios.drawing.contact_sheet import COLUMNS, MOMENTS, WIDTH_PX, ContactSheet, read_tiles
 from peopleboy.scenarios.drawing.key_moments import KeyMoments
 from peopleboy.scenarios.drawing.palette import track_colour
+from peopleboy.sim.robot.robot_config import RobotConfig
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.runs import synthetic_ticks as made
 
@@ -27,7 +28,7 @@ def pixels(path: Path) -> NDArray[np.uint8]:
 
 
 def chosen(frames: int = 75) -> KeyMoments:
-    moments = KeyMoments()
+    moments = KeyMoments(RobotConfig().cameras)
     for tick, events in made.make_run(frames):
         moments.add(tick, events)
     return moments
@@ -100,7 +101,7 @@ def test_moments_say_what_happened() -> None:
 
 
 def test_how_much_is_hidden_is_said_of_the_very_frame_that_is_shown() -> None:
-    moments = KeyMoments()
+    moments = KeyMoments(RobotConfig().cameras)
     run = made.make_run()
     detected, _ = run[4][1]
     run[4], run[27] = (run[4][0], []), (run[27][0], [detected])  # two frames before the most is hidden
@@ -111,7 +112,7 @@ def test_how_much_is_hidden_is_said_of_the_very_frame_that_is_shown() -> None:
 
 
 def test_what_nothing_happens_in_is_filled_evenly() -> None:
-    moments = KeyMoments()
+    moments = KeyMoments(RobotConfig().cameras)
     for frame in range(61, 661):
         moments.add(made.make_tick(frame), [])
     frames = [moment.frame for moment in moments.choose(9)]
@@ -119,7 +120,7 @@ def test_what_nothing_happens_in_is_filled_evenly() -> None:
 
 
 def test_a_long_run_keeps_few_moments() -> None:
-    moments = KeyMoments()
+    moments = KeyMoments(RobotConfig().cameras)
     tick, events = made.make_run(20)[19]
     for _ in range(5000):
         moments.add(tick, events)

@@ -69,6 +69,21 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         ("robot.cameras.rear: unknown key 'netd_c'", "did you mean 'netd_k'?"),
     ),
     "camera out of its limits": (camera(netd_k=-1.0), ("robot.cameras.rear.netd_k: must be at least 0",)),
+    "unknown gain": (camera(gain="plato"), ("robot.cameras.rear.gain: ", "'plato'", "'plateau'")),
+    "span that is empty": (
+        camera(lowest_c=36.0),
+        ("robot.cameras.rear.highest_c: 36.0 must be more than lowest_c, 36.0",),
+    ),
+    "tails that clip too much": (camera(tail_percent=2.0), ("robot.cameras.rear.tail_percent: ", "0.45")),
+    "shutter that never opens": (
+        camera(shutter_every_s=0.2),
+        ("robot.cameras.rear.shutter_every_s: 0.2 must be more than shutter_lasts_s, 0.4, or 0",),
+    ),
+    "compression of no quality": (camera(jpeg_quality=0), ("robot.cameras.rear.jpeg_quality: ", "1")),
+    "preset of another kind of camera": (
+        camera(preset="kinect"),
+        ("robot.cameras.rear.preset: ", "uncooled"),
+    ),
     "rate that does not divide": (
         camera(rate_hz=4),
         ("robot.cameras.rear.rate_hz: 4 must divide the control rate, 15 Hz; choose from 1, 3, 5, 15",),

@@ -300,7 +300,7 @@ def test_images_are_the_run_s_own_else_rendered_again_else_boxes_where_pybullet_
     run(scenario, RunOptions(seed=3, out=tmp_path / "run", frames=True, record=False), lambda *_: None)
     found = found_in(tmp_path / "run")
     own = show_frames(found, [2, 9])
-    (tmp_path / "run" / "thermal" / "000009.png").rename(tmp_path / "moved.png")
+    (tmp_path / "run" / "thermal_scene" / "000009.png").rename(tmp_path / "moved.png")
     again = show_frames(found, [2, 9])
     assert {still.origin for still in own.values()} == {Origin.FRAMES}
     assert [again[frame].origin for frame in (2, 9)] == [Origin.FRAMES, Origin.REPLAY]

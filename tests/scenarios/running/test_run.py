@@ -31,7 +31,7 @@ FOLDER = {
     "run.json", "scenario.yaml", "truth", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",
     "events.jsonl", "metrics.json", "contact_sheet.png",
 }  # fmt: skip
-FRAMES = {"thermal", "thermal16", "colour"}
+FRAMES = {"thermal", "thermal16", "thermal_scene", "colour"}
 
 
 def scene(**changes: object) -> dict[str, object]:
@@ -103,6 +103,11 @@ def test_a_fresh_process_gives_the_same_bytes_and_another_seed_does_not(
     assert first.keys() == other.keys()
     for name in ("thermal/000009.png", "colour/000009.png", "truth.parquet", "tracks.parquet"):
         assert first[name] != other[name]
+
+
+def test_it_is_said_by_which_span_the_tracker_got_its_grey(finished: Path) -> None:
+    about = json.loads((finished / "run.json").read_text(encoding="utf-8"))
+    assert about["gains"] == {"thermal": {"gain": "fixed", "lowest_c": 24.0, "highest_c": 36.0}}
 
 
 def test_the_resolved_scenario_gives_the_same_world_again(finished: Path, tmp_path: Path) -> None:

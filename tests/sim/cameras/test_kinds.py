@@ -57,11 +57,12 @@ def test_a_kind_is_added_by_one_entry(monkeypatch: pytest.MonkeyPatch) -> None:
     assert image[truth.instance == 1] == pytest.approx(255.0 * (1.0 - depth / 10.0), abs=1.0)
 
 
-def test_the_usual_cameras_have_the_folders_that_they_always_had() -> None:
+def test_the_usual_cameras_have_the_folders_that_they_should() -> None:
     folders = [folder for folder, _, _ in image_folders(RobotConfig().cameras)]
     assert folders == [
         "thermal",
         "thermal16",
+        "thermal_scene",
         "colour",
     ]
 

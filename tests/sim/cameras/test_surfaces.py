@@ -5,14 +5,17 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.cameras.surfaces import (
+    finish_at,
     make_material_table,
     part_from_pixel,
     pattern_value,
     smooth_variation,
     surface_point,
+    turn_of,
 )
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.shapes.finishes import Finish
 from peopleboy.sim.shapes.materials import Material, PatternKind
 
 PHASE = stream(0, "surface.variation").uniform(0.0, 1.0, (3, 3))
@@ -94,3 +97,42 @@ def test_no_two_parts_vary_alike_and_the_seed_repeats_them() -> None:
     again = make_material_table(materials, stream(4, "surface.variation"))
     assert np.array_equal(table.phase, again.phase)
     assert len({tuple(row) for row in table.phase}) == 3
+
+
+@given(x=st.floats(-2.0, 2.0), y=st.floats(-2.0, 2.0))
+@settings(deadline=None)
+def test_a_turn_is_that_of_the_arc_tangent(x: float, y: float) -> None:
+    if np.hypot(x, y) > 1e-3:
+        gap = turn_of(x, y) - np.arctan2(y, x) / (2.0 * np.pi)
+        assert abs(gap - round(gap)) < 2e-5
+
+
+def random_finish(rows: int, columns: int) -> Finish:
+    rng = np.random.default_rng(rows)
+    layers = {name: rng.uniform(0.0, 1.0, (rows, columns)) for name in ("kelvin", "light", "cover")}
+    return Finish(lowest_m=-0.2, texel_m=0.01, rgb=np.array([0.1, 0.2, 0.3]), **layers)
+
+
+@given(x=st.floats(-1.0, 1.0), y=st.floats(-1.0, 1.0), z=st.floats(-0.3, 0.4), part=st.sampled_from([0, 2]))
+@settings(deadline=None)
+def test_a_finish_is_linear_between_texels_and_closes_round_the_part(
+    x: float, y: float, z: float, part: int
+) -> None:
+    finishes = {0: random_finish(41, 24), 2: random_finish(31, 50)}
+    materials = [Material(temperature_c=20.0, finish=finishes.get(k)) for k in range(3)]
+    table = make_material_table(materials, stream(0, "surface.variation"))
+    assert table.finish[1, 0] < 0.0
+    finish = finishes[part]
+    rows, columns = finish.kelvin.shape
+    across, up = turn_of(x, y) * columns, np.clip((z + 0.2) / 0.01, 0.0, rows - 1.0)
+    found = finish_at(table.finish, table.texels, part, x, y, z)
+    for value, layer in zip(found, (finish.kelvin, finish.light, finish.cover), strict=True):
+        closed = np.concatenate([layer, layer, layer[:, :1]], axis=1)
+        column = [np.interp(across, np.arange(2 * columns + 1), row) for row in closed]
+        assert value == pytest.approx(np.interp(up, np.arange(rows), column), abs=0.006)
+
+
+def test_without_finishes_the_table_has_none() -> None:
+    table = make_material_table([Material(temperature_c=20.0)] * 2, stream(0, "surface.variation"))
+    assert table.finish.shape == (0, 8)
+    assert table.texels.shape == (0, 3)

@@ -94,8 +94,9 @@ def test_its_sheet_tells_each_camera_s_images_and_one_that_sees_nothing_warm_is_
 
 def test_an_image_without_content_is_found(rendered: Path) -> None:
     run = rendered / "set" / "tiny-0"
-    kept = {name: (run / name / "000001.png").read_bytes() for name in ("rear", "rear16")}
-    for name, dtype in (("rear", np.uint8), ("rear16", np.uint16)):
+    kinds = {"rear": np.uint8, "rear_scene": np.uint8, "rear16": np.uint16}
+    kept = {name: (run / name / "000001.png").read_bytes() for name in kinds}
+    for name, dtype in kinds.items():
         assert _check_images(run) == []
         cv2.imwrite(str(run / name / "000001.png"), np.full((120, 160), 7, dtype))
     assert _check_images(run) == ["rear: 000001.png has no content"]

@@ -1,0 +1,164 @@
+"""From temperatures to grey: which of them is black, which white, and how the greys between are shared out.
+
+A camera with automatic gain looks at the histogram of its image. Its tails tell the span; a linear gain maps
+that to greys, and plateau equalisation gives temperatures that many pixels have more of them, though no more
+than a plateau lets it. Greys 0 and 255 are left to the tails.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.cameras.camera_config import ThermalConfig
+
+Temperatures = NDArray[np.float32]
+Grey = NDArray[np.uint8]
+Bins = NDArray[np.float64]
+
+COLDEST_C: Final = -60.0
+BIN_K: Final = 0.05
+BINS: Final = 4800
+"""Bins of the histogram, from `COLDEST_C` up; what is colder or hotter is in the first or the last."""
+
+_BLACK, _WHITE = 1.0, 254.0  # of the span's ends, so that neither counts as clipped
+
+
+def encode_8bit(temperature_c: Temperatures, lowest_c: float = 24.0, highest_c: float = 36.0) -> Grey:
+    """Encode [degC] as grey: round((T - lowest) / (highest - lowest) * 255), clipped (T ch. 3)."""
+    grey = (temperature_c - np.float32(lowest_c)) * np.float32(255.0 / (highest_c - lowest_c))
+    return np.asarray(np.clip(np.rint(grey), 0.0, 255.0), np.uint8)
+
+
+class Gain:
+    """Gives one image after another as grey; what is automatic follows the images in time.
+
+    Args:
+        config: which gain, and its settings.
+    """
+
+    def __init__(self, config: ThermalConfig) -> None:
+        self._config = config
+        self._shares: Bins | None = None
+        self._span_c = (0.0, 0.0)
+        self._time_s = 0.0
+
+    def grey(self, temperature_c: Temperatures, time_s: float) -> Grey:
+        """Encode an (H, W) image [degC] that was taken at a time [s], not before the last one."""
+        config = self._config
+        if config.gain == "fixed":
+            return encode_8bit(temperature_c, config.lowest_c, config.highest_c)
+        self._follow(histogram(temperature_c), time_s)
+        low_c, high_c = self._span_c
+        if config.gain == "percentile" or self._shares is None:
+            return linear(temperature_c, *at_least(low_c, high_c, config.least_span_k))
+        rise = equalised(
+            self._shares,
+            low_c,
+            high_c,
+            config.plateau_percent / 100.0,
+            config.linear_share,
+            config.least_span_k,
+        )
+        return apply(temperature_c, grey_curve(rise))
+
+    def _follow(self, shares: Bins, time_s: float) -> None:
+        """Take in an image's histogram: the span grows at once, and shrinks with the time constant."""
+        low_c, high_c = span_of(shares, self._config.tail_percent / 100.0)
+        if self._shares is not None:
+            part = _part(time_s - self._time_s, self._config.gain_follows_s)
+            before_low, before_high = self._span_c
+            low_c = min(low_c, before_low + part * (low_c - before_low))
+            high_c = max(high_c, before_high + part * (high_c - before_high))
+            shares = self._shares + part * (shares - self._shares)
+        self._shares, self._span_c, self._time_s = shares, (low_c, high_c), time_s
+
+
+def histogram(temperature_c: Temperatures) -> Bins:
+    """Count an image [degC] into (`BINS`,) shares, which sum to 1."""
+    return _count(temperature_c.reshape(-1)) / temperature_c.size
+
+
+def span_of(shares: Bins, tail: float) -> tuple[float, float]:
+    """Give the span [degC] outside which lies at most a share `tail` at either end, to whole bins."""
+    below = np.cumsum(shares)
+    first = int(np.searchsorted(below, tail, side="right"))
+    last = int(np.searchsorted(below, below[-1] - tail, side="left"))
+    return COLDEST_C + BIN_K * min(first, BINS - 1), COLDEST_C + BIN_K * (min(last, BINS - 1) + 1)
+
+
+def at_least(low_c: float, high_c: float, least_k: float) -> tuple[float, float]:
+    """Widen a span about its middle to at least so many kelvin."""
+    more = max(least_k - (high_c - low_c), 0.0) / 2.0
+    return low_c - more, high_c + more
+
+
+def linear(temperature_c: Temperatures, low_c: float, high_c: float) -> Grey:
+    """Encode a span [degC] linearly as greys 1..254; 0 and 255 are left to what lies outside."""
+    edge = (high_c - low_c) / (_WHITE - _BLACK)
+    return encode_8bit(temperature_c, low_c - edge, high_c + edge)
+
+
+def equalised(
+    shares: Bins, low_c: float, high_c: float, plateau: float, linear_share: float, least_k: float
+) -> Bins:
+    """Give by how much grey rises over each bin, as shares of all greys: plateau equalisation.
+
+    No bin counts for more than the plateau, what is outside the span for nothing, and nothing rises more
+    steeply than if `least_k` took all greys; the sum is therefore 1 or less.
+
+    Args:
+        shares: (BINS,) of the image's pixels.
+        low_c: [degC] the span's lower end.
+        high_c: [degC] its upper end.
+        plateau: largest share that a bin counts for.
+        linear_share: of the greys that are shared out evenly over the span.
+        least_k: [K].
+    """
+    edges = COLDEST_C + BIN_K * np.arange(BINS)
+    inside = (edges > low_c - BIN_K / 2.0) & (edges < high_c - BIN_K / 2.0)
+    counted = np.minimum(shares, plateau) * inside
+    total = counted.sum()
+    evenly = inside / inside.sum()
+    rise = linear_share * evenly + (1.0 - linear_share) * (counted / total if total > 0.0 else evenly)
+    return np.asarray(np.minimum(rise, BIN_K / least_k))
+
+
+def grey_curve(rise: Bins) -> Bins:
+    """Give the grey at the (BINS + 1,) ends of bins, 1..254; what is left over is shared out at both ends."""
+    curve = np.concatenate([[0.0], np.cumsum(rise)])
+    curve += (1.0 - curve[-1]) / 2.0
+    return np.asarray(_BLACK + (_WHITE - _BLACK) * curve)
+
+
+def apply(temperature_c: Temperatures, curve: Bins) -> Grey:
+    """Look the greys of an (H, W) image [degC] up in a curve, linearly between the ends of bins."""
+    return _look_up(temperature_c.reshape(-1), curve.astype(np.float32)).reshape(temperature_c.shape)
+
+
+def _part(passed_s: float, follows_s: float) -> float:
+    """Share of the way to a new value that is gone in some time; all of it without a time constant."""
+    return 1.0 - math.exp(-passed_s / follows_s) if follows_s > 0.0 else 1.0
+
+
+@njit(cache=True)
+def _count(temperature_c: Temperatures) -> Bins:
+    counts = np.zeros(BINS)
+    for value in temperature_c:
+        place = (value - COLDEST_C) / BIN_K
+        counts[int(min(max(place, 0.0), BINS - 1.0))] += 1.0
+    return counts
+
+
+@njit(cache=True)
+def _look_up(temperature_c: Temperatures, curve: NDArray[np.float32]) -> Grey:
+    grey = np.empty(temperature_c.shape[0], np.uint8)
+    for i in range(temperature_c.shape[0]):
+        place = min(max((temperature_c[i] - COLDEST_C) / BIN_K, 0.0), BINS - 1e-3)
+        k = int(place)
+        grey[i] = np.uint8(curve[k] + (place - k) * (curve[k + 1] - curve[k]) + 0.5)
+    return grey

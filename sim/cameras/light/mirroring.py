@@ -1,0 +1,103 @@
+"""What shiny surfaces mirror, added to an image that is linear in light or radiance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.cameras.surfaces import part_from_pixel
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.rendering.reflections import EVERY, Reflection
+from peopleboy.sim.rendering.view import View
+
+Image = NDArray[np.float32]
+
+
+def add_reflections(
+    image: Image,
+    view: View,
+    camera: Pinhole,
+    world_from_part: Matrix,
+    reflections: Sequence[Reflection],
+    reflectance: NDArray[np.float64],
+    shine: NDArray[np.float64],
+    surroundings: NDArray[np.float64],
+    draw: Callable[[View, Matrix], Image],
+) -> None:
+    """Add what shiny surfaces mirror, in place of the surroundings that they are taken to mirror otherwise.
+
+    The share of light that is mirrored rises from normal to grazing by Schlick's approximation, times how
+    shiny the surface is. What it emits or scatters itself stays as it is.
+
+    Source: Schlick, An inexpensive BRDF model for physically-based rendering (1994), eq. 15.
+
+    Args:
+        image: (H, W, C).
+        view: what each pixel sees.
+        camera: the pinhole camera.
+        world_from_part: (P, 4, 4).
+        reflections: found in the same view.
+        reflectance: (P,) of each part for rays along its normal.
+        shine: (P,) of each part, 0..1.
+        surroundings: (C,) what is mirrored otherwise.
+        draw: gives the (h, w, C) image of a view by its part_from_pixel (P, 3, 4).
+    """
+    if view.surface is None:
+        return
+    for one in reflections:
+        matrices = part_from_pixel(camera, one.world_from_camera, world_from_part)
+        # The window's pixels are counted from its own corner, every other one.
+        matrices[:, :, 2] += one.left * matrices[:, :, 0] + one.top * matrices[:, :, 1]
+        matrices[:, :, :2] *= EVERY
+        _mix(
+            image, view.part, view.surface, one.is_surface, draw(one.view, matrices), one.view.part,
+            one.cosine, one.left, one.top, reflectance, shine, surroundings,
+        )  # fmt: skip
+
+
+@njit(cache=True, fastmath=True)
+def _mix(
+    image: Image,
+    part: NDArray[np.int32],
+    surface: NDArray[np.int32],
+    is_surface: NDArray[np.bool_],
+    mirrored: Image,
+    beyond: NDArray[np.int32],
+    cosine: NDArray[np.float32],
+    left: int,
+    top: int,
+    reflectance: NDArray[np.float64],
+    shine: NDArray[np.float64],
+    surroundings: NDArray[np.float64],
+) -> None:
+    """Add to each pixel of a mirror what the nearest pixels of the window see in it."""
+    channels = image.shape[2]
+    for v in range(beyond.shape[0]):
+        for u in range(beyond.shape[1]):
+            for c in range(channels):
+                mirrored[v, u, c] = mirrored[v, u, c] - surroundings[c] if beyond[v, u] >= 0 else 0.0
+    for row in range(top, min(top + 2 * beyond.shape[0] - 2, part.shape[0])):
+        j, y = (row - top) >> 1, (row - top + 1) >> 1
+        for column in range(left, min(left + 2 * beyond.shape[1] - 2, part.shape[1])):
+            i, x = (column - left) >> 1, (column - left + 1) >> 1
+            if beyond[j, i] < 0 and beyond[j, x] < 0 and beyond[y, i] < 0 and beyond[y, x] < 0:
+                continue
+            p = part[row, column]
+            if p < 0 or not is_surface[surface[row, column]]:
+                continue
+            share = 0.25 * shine[p] * mirrored_share(reflectance[p], cosine[j, i])
+            for c in range(channels):
+                more = mirrored[j, i, c] + mirrored[j, x, c] + mirrored[y, i, c] + mirrored[y, x, c]
+                image[row, column, c] = max(image[row, column, c] + share * more, 0.0)
+
+
+@njit(cache=True, fastmath=True)
+def mirrored_share(reflectance: float, cosine: float) -> float:
+    """The share of light that a smooth surface mirrors, by that along its normal and the angle to it."""
+    away = 1.0 - min(cosine, 1.0)
+    square = away * away
+    share: float = reflectance + (1.0 - reflectance) * square * square * away
+    return share

@@ -1,0 +1,1 @@
+"""How people look where everything is drawn finely: usual clothes, warmth, folds, faces, hair."""

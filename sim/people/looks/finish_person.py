@@ -1,0 +1,155 @@
+"""Put together how a person looks: warmth that follows the air, folds, a face, hair, and what is carried."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.sim.people.body.body_shapes import BAG_PART, PartGeometry
+from peopleboy.sim.people.body.clothes import COLOURS, Garment
+from peopleboy.sim.people.looks.cloth import OPEN, Worn, add_trimmings, paint_cloth, paint_shoes
+from peopleboy.sim.people.looks.faces import paint_face, paint_hair, paint_skin
+from peopleboy.sim.people.looks.sheets import Mesh, crumple, make_mesh
+from peopleboy.sim.people.looks.traits import draw_traits
+from peopleboy.sim.people.looks.warmth import ROOM_C, bare_c, cloth_c, share_of_skin, under_cloth_c
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.shapes.finishes import Finish
+from peopleboy.sim.shapes.materials import Material, Rgb
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
+
+_CLOTH_TEXEL_M, _SKIN_TEXEL_M, _FACE_TEXEL_M, _HAIR_TEXEL_M = 0.007, 0.010, 0.003, 0.006
+# Garments of a kind fit tightly or hang: deviation of how far they are from the air, as a share of that.
+_FIT = 0.15
+_SHIRT_C, _SHIRT_RGB = 30.2, COLOURS["white"]
+_FOLD_M = 0.12  # between folds round a part of 1 m; they grow by the root of its girth
+_COLD_HANDS = {"hand": 1.0, "foot": 0.8, "forearm": 0.4, "shin": 0.3}  # share by part
+
+
+class Finisher:
+    """Refines the looks of one person's parts.
+
+    In air of 21 degC the mean temperature of a part is, over many people, as it is without.
+    """
+
+    def __init__(self, config: PersonConfig, air_c: float, rng: np.random.Generator) -> None:
+        self._traits = draw_traits(config, air_c, rng)
+        clothes = config.clothes
+        names = (clothes.hair, clothes.shoes, clothes.bottom, clothes.top)
+        worn = [(garment, name) for (garment, _), name in zip(clothes.garments(), names, strict=True)]
+        self._worn = {part: (g, name) for g, name in worn for part in g.covers if name != "bald"}
+        self._fit = {name: _FIT * float(np.clip(rng.normal(), -2.0, 2.0)) for name in names}
+        self._stature_m = config.height_m
+        self._hair = clothes.hair
+        self._air_c, self._rng = air_c, rng
+
+    def finish(
+        self, materials: Mapping[str, Material], geometry: Mapping[str, PartGeometry]
+    ) -> dict[str, Material]:
+        """Refine looks by part, as `dress` gives them, of parts of these shapes."""
+        skin_rgb, hair_rgb = materials["head"].rgb, materials["hair"].rgb
+        brows = COLOURS["dark_brown"] if self._hair in ("bald", "cap") else hair_rgb
+        return {
+            part: self._finish_part(part, materials[part], shape, brows if part == "head" else skin_rgb)
+            for part, shape in geometry.items()
+        }
+
+    def _finish_part(self, part: str, material: Material, geometry: PartGeometry, second: Rgb) -> Material:
+        if part == BAG_PART:
+            return replace(material, temperature_c=self._air_c + material.temperature_c - ROOM_C)
+        bare = part.removeprefix("left_").removeprefix("right_")
+        if part not in self._worn:
+            skin_c = self._skin_c(material.temperature_c, part, bare)
+            finish = self._face(skin_c, geometry, second) if part == "head" else self._skin(bare, geometry)
+            return replace(material, temperature_c=skin_c, finish=finish)
+        garment, name = self._worn[part]
+        surface_c = self._surface_c(material.temperature_c, part, name)
+        finish = (
+            self._head_of_hair(surface_c, geometry, second)
+            if part == "hair"
+            else self._cloth(part, bare, garment, name, surface_c, geometry, second)
+        )
+        return replace(material, temperature_c=surface_c, finish=finish)
+
+    def _skin_c(self, at_room_c: float, part: str, bare: str) -> float:
+        own_k = self._traits.warmer_k + self._traits.hands_k * _COLD_HANDS.get(bare, 0.0)
+        return bare_c(at_room_c, part, self._air_c) + own_k
+
+    def _surface_c(self, at_room_c: float, part: str, name: str) -> float:
+        """[degC] of a garment's surface on this person."""
+        surface_c = cloth_c(at_room_c, part, self._air_c)
+        own_k = share_of_skin(at_room_c) * self._traits.warmer_k + self._fit[name] * (surface_c - self._air_c)
+        return surface_c + own_k
+
+    def _face(self, face_c: float, geometry: PartGeometry, hair: Rgb) -> Finish:
+        mesh, _ = _lay(geometry, _FACE_TEXEL_M)
+        return paint_face(mesh, self._stature_m, face_c, self._air_c, self._traits).finish(hair)
+
+    def _head_of_hair(self, hair_c: float, geometry: PartGeometry, scalp: Rgb) -> Finish:
+        mesh, _ = _lay(geometry, _HAIR_TEXEL_M)
+        share = float(np.clip((hair_c - self._air_c) / 8.5, -0.5, 2.0))
+        return paint_hair(mesh, self._stature_m, self._hair, share, self._traits, self._rng).finish(scalp)
+
+    def _skin(self, bare: str, geometry: PartGeometry) -> Finish:
+        mesh, depth_m = _lay(geometry, _SKIN_TEXEL_M)
+        cold_k = max(ROOM_C - self._air_c, 0.0)
+        tip_k = {"hand": -1.2 - 0.2 * cold_k + 0.5 * self._traits.hands_k, "shin": -1.0, "forearm": -0.6}
+        return paint_skin(
+            mesh, crumple(mesh, _fold_m(depth_m), self._rng), bare, tip_k.get(bare, 0.0)
+        ).finish()
+
+    def _cloth(
+        self,
+        part: str,
+        bare: str,
+        garment: Garment,
+        name: str,
+        surface_c: float,
+        geometry: PartGeometry,
+        skin: Rgb,
+    ) -> Finish:
+        mesh, depth_m = _lay(geometry, _CLOTH_TEXEL_M)
+        sheet = crumple(mesh, _fold_m(depth_m), self._rng)
+        worn = Worn(
+            part=bare,
+            garment=garment,
+            cloth_c=surface_c,
+            skin_c=under_cloth_c(part, self._air_c) + self._traits.warmer_k,
+            air_c=self._air_c,
+            half_depth_m=depth_m,
+            outward={"left": 1.0, "right": -1.0}.get(part.split("_")[0], 0.0),
+            under_c=self._surface_c(_SHIRT_C, part, name),
+        )
+        if bare == "foot":
+            return paint_shoes(mesh, sheet, worn).finish()
+        paint = paint_cloth(mesh, sheet, worn)
+        add_trimmings(paint, worn, self._traits, name)
+        return paint.finish(_SHIRT_RGB if name in OPEN else skin)
+
+
+def _fold_m(depth_m: float) -> float:
+    return float(_FOLD_M * (2.0 * np.pi * depth_m) ** 0.5)
+
+
+def _lay(geometry: PartGeometry, texel_m: float) -> tuple[Mesh, float]:
+    """Lay a grid round a part, and tell half its depth [m]."""
+    low, high = np.array([_reach(shape) for shape in geometry.shapes]).transpose(1, 0, 2)
+    least, most = low.min(axis=0), high.max(axis=0)
+    half = (most - least) / 2.0
+    round_m = 2.0 * np.pi * float(np.mean(half[:2]))
+    return make_mesh(float(least[2]), float(most[2]), round_m, texel_m), float(half[0])
+
+
+def _reach(shape: Shape) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Least and greatest corner (3,) [m] of a shape in its part's frame."""
+    at = np.array(shape.position)
+    half = np.full(3, shape.size[0])
+    if shape.kind == ShapeKind.BOX:
+        half = np.array(shape.size) / 2.0
+    elif shape.kind == ShapeKind.CAPSULE:
+        x, y, z, w = shape.orientation
+        axis = np.array([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])
+        half = np.abs(axis) * shape.size[0] / 2.0 + shape.size[1]
+    return at - half, at + half

@@ -1,0 +1,103 @@
+"""Crumpled cloth to be wrapped round a body: where it lies on, where it creases, how it shades."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Grid = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mesh:
+    """The grid of one part's finish, as `Finish` has it.
+
+    Attributes:
+        lowest_m: [m] z of the first row.
+        texel_m: [m] from row to row.
+        turn: (1, C) [rad] direction from +x of each column, within -pi..pi.
+        z: (R, 1) [m].
+        down: (R, 1) 0 in the top row, 1 in the lowest.
+    """
+
+    lowest_m: float
+    texel_m: float
+    turn: Grid
+    z: Grid
+    down: Grid
+
+    @property
+    def zeros(self) -> Grid:
+        """(R, C)."""
+        return np.zeros((self.z.shape[0], self.turn.shape[1]))
+
+    @property
+    def front(self) -> Grid:
+        """(1, C) 1 to the front, -1 to the back."""
+        return np.cos(self.turn)
+
+    @property
+    def left(self) -> Grid:
+        """(1, C) 1 to the left, -1 to the right."""
+        return np.sin(self.turn)
+
+
+def make_mesh(low_m: float, high_m: float, round_m: float, texel_m: float) -> Mesh:
+    """Lay a grid round a part that reaches from one height to another and is so far round [m]."""
+    rows = max(int(np.ceil((high_m - low_m) / texel_m)) + 1, 3)
+    columns = max(round(round_m / texel_m), 8)
+    turn = (2.0 * np.pi * np.arange(columns) / columns + np.pi) % (2.0 * np.pi) - np.pi
+    z: Grid = low_m + texel_m * np.arange(rows, dtype=np.float64)
+    return Mesh(low_m, texel_m, turn[None, :], z[:, None], 1.0 - np.linspace(0.0, 1.0, rows)[:, None])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sheet:
+    """Crumpled cloth on a grid: row 0 is lowest, columns close up.
+
+    Attributes:
+        touch: (R, C) about -1..1, high where the cloth lies on, low where it stands off.
+        crease: (R, C) 0..1, high along sharp folds.
+        relief: (R, C) slope of the folds, deviation 1: positive faces up.
+    """
+
+    touch: Grid
+    crease: Grid
+    relief: Grid
+
+
+def crumple(mesh: Mesh, fold_m: float, rng: np.random.Generator) -> Sheet:
+    """Draw the cloth of a grid, its folds so far apart [m], slanting across the part as they do on limbs."""
+    shape = mesh.zeros.shape
+    noise = [rng.standard_normal(shape) for _ in range(4)]
+    touch = _band(noise[0], mesh.texel_m, 3.0 * fold_m, 6.0 * fold_m, 0.0)
+    slanted = [_band(noise[k], mesh.texel_m, 2.4 * fold_m, fold_m, s) for k, s in ((1, 0.7), (2, -0.7))]
+    folds = _unit(slanted[0] + slanted[1])
+    rare = _band(noise[3], mesh.texel_m, 3.0 * fold_m, 3.0 * fold_m, 0.0)
+    crease = np.exp(-((folds / 0.22) ** 2)) / (1.0 + np.exp(-4.0 * rare))
+    return Sheet(np.tanh(1.2 * touch), crease, np.clip(_unit(np.gradient(folds, axis=0)), -2.5, 2.5))
+
+
+def streaks(mesh: Mesh, across_m: float, along_m: float, rng: np.random.Generator) -> Grid:
+    """Draw (R, C) streaks of deviation 1 along z, so wide and so long [m]: hair."""
+    return _band(rng.standard_normal(mesh.zeros.shape), mesh.texel_m, across_m, along_m, 0.0)
+
+
+def _band(noise: Grid, texel_m: float, across_m: float, along_m: float, slant: float) -> Grid:
+    """Keep waves of about these lengths [m] round and along the part, its crests sheared by a slant."""
+    rows, columns = noise.shape
+    # Twice as many rows keep top and bottom from being alike.
+    padded = np.concatenate([noise, noise[::-1]], axis=0)
+    along = np.fft.fftfreq(2 * rows, texel_m)[:, None]
+    across = np.fft.rfftfreq(columns, texel_m)[None, :]
+    frequency = np.hypot((across + slant * along * along_m / across_m) * across_m, along * along_m)
+    gain = np.exp(-0.5 * (np.log(np.maximum(frequency, 1e-6)) / 0.45) ** 2)
+    wave = np.fft.irfft2(np.fft.rfft2(padded) * gain, s=padded.shape)
+    return _unit(wave[:rows])
+
+
+def _unit(grid: Grid) -> Grid:
+    centred = grid - grid.mean()
+    return np.asarray(centred / max(float(centred.std()), 1e-9))

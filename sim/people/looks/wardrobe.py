@@ -1,0 +1,97 @@
+"""What people usually wear, by sex and by how warm it is: frequencies, each with a source or a reason."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from peopleboy.sim.people.body.anthropometry import Sex
+from peopleboy.sim.people.body.clothes import Clothes
+
+Shares = Mapping[str, float]
+
+# Bald: 7.7 % of men have hardly any hair or none (GfK for Apotheken Umschau, 944 men, 2014); women as good as
+# never. Long hair on most women, on few men: our own count in street scenes. Caps come by the weather.
+HAIR: Final[Mapping[Sex, Shares]] = {
+    "female": {"long": 0.72, "short": 0.28},
+    "male": {"short": 0.86, "bald": 0.077, "long": 0.063},
+}
+# Hair of central Europe is brown to dark blond in most people, red in few, grey in a fifth; the palette has
+# no more names than these.
+HAIR_COLOURS: Final[Shares] = {
+    "dark_brown": 0.36, "brown": 0.2, "blond": 0.2, "black": 0.08, "grey": 0.1, "light_grey": 0.06
+}  # fmt: skip
+# Skirts on one woman in eight indoors, more in warm air, on no man; shorts by the warmth: our choice.
+_BOTTOMS: Final[Mapping[Sex, Mapping[str, Shares]]] = {
+    "female": {
+        "cold": {"jeans": 0.55, "trousers": 0.25, "leggings": 0.16, "skirt": 0.04},
+        "mild": {"jeans": 0.48, "trousers": 0.26, "leggings": 0.14, "skirt": 0.12},
+        "warm": {"jeans": 0.26, "trousers": 0.16, "leggings": 0.12, "skirt": 0.2, "shorts": 0.26},
+    },
+    "male": {
+        "cold": {"jeans": 0.62, "trousers": 0.38},
+        "mild": {"jeans": 0.58, "trousers": 0.4, "shorts": 0.02},
+        "warm": {"jeans": 0.3, "trousers": 0.2, "shorts": 0.5},
+    },
+}
+# Who is out in the cold wears as much as the insulation that ISO 11079 asks for: a jacket below some 12 degC.
+_TOPS: Final[Mapping[str, Shares]] = {
+    "cold": {"jacket": 0.72, "fleece": 0.13, "wool_jumper": 0.09, "striped_jumper": 0.03, "lab_coat": 0.03},
+    "mild": {
+        "shirt": 0.27, "checked_shirt": 0.11, "t_shirt": 0.17, "printed_t_shirt": 0.06, "wool_jumper": 0.14,
+        "striped_jumper": 0.06, "fleece": 0.07, "jacket": 0.1, "lab_coat": 0.02,
+    },
+    "warm": {"t_shirt": 0.58, "printed_t_shirt": 0.18, "shirt": 0.16, "checked_shirt": 0.06, "jacket": 0.02},
+}  # fmt: skip
+_SHOES: Final[Mapping[str, Shares]] = {
+    "cold": {"boots": 0.55, "trainers": 0.25, "leather_shoes": 0.2},
+    "mild": {"trainers": 0.5, "leather_shoes": 0.34, "boots": 0.16},
+    "warm": {"trainers": 0.54, "sandals": 0.28, "leather_shoes": 0.18},
+}
+_CAPS: Final[Shares] = {"cold": 0.4, "mild": 0.05, "warm": 0.1}
+# Most clothes are black, white, grey or blue; bright ones are few.
+_TOP_COLOURS: Final[Shares] = {
+    "black": 0.2, "navy": 0.13, "white": 0.14, "grey": 0.14, "light_grey": 0.09, "blue": 0.07,
+    "light_blue": 0.06, "khaki": 0.04, "green": 0.04, "brown": 0.03, "red": 0.03, "pink": 0.01,
+    "purple": 0.01, "orange": 0.005, "yellow": 0.005,
+}  # fmt: skip
+_BOTTOM_COLOURS: Final[Mapping[str, Shares]] = {
+    "jeans": {"blue": 0.62, "navy": 0.16, "black": 0.16, "light_blue": 0.06},
+    "leggings": {"black": 0.8, "grey": 0.12, "navy": 0.08},
+    "": {
+        "black": 0.36, "grey": 0.18, "navy": 0.14, "khaki": 0.14, "brown": 0.08, "light_grey": 0.04,
+        "blue": 0.04, "white": 0.02,
+    },
+}  # fmt: skip
+_COLD_C, _WARM_C = 12.0, 25.0
+_EITHER_SIDE_K = 4.0
+
+
+def usual_clothes(rng: np.random.Generator, sex: Sex, air_c: float) -> Clothes:
+    """Draw clothes as people of a sex wear them in air of such a temperature [degC]."""
+    season = _season(rng, air_c)
+    bottom = _pick(rng, _BOTTOMS[sex][season])
+    hair = "cap" if rng.uniform() < _CAPS[season] else _pick(rng, HAIR[sex])
+    return Clothes(
+        top=_pick(rng, _TOPS[season]),
+        bottom=bottom,
+        shoes=_pick(rng, _SHOES[season]),
+        hair=hair,
+        top_colour=_pick(rng, _TOP_COLOURS),
+        bottom_colour=_pick(rng, _BOTTOM_COLOURS.get(bottom, _BOTTOM_COLOURS[""])),
+        hair_colour=None if hair == "bald" else _pick(rng, _TOP_COLOURS if hair == "cap" else HAIR_COLOURS),
+    )
+
+
+def _season(rng: np.random.Generator, air_c: float) -> str:
+    """People do not agree on what is cold or warm: some dress up or down a few kelvin earlier."""
+    felt_c = air_c + float(rng.uniform(-_EITHER_SIDE_K, _EITHER_SIDE_K))
+    if felt_c < _COLD_C:
+        return "cold"
+    return "warm" if felt_c > _WARM_C else "mild"
+
+
+def _pick(rng: np.random.Generator, shares: Shares) -> str:
+    return str(rng.choice(list(shares), p=np.array(list(shares.values())) / sum(shares.values())))

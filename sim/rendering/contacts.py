@@ -1,0 +1,156 @@
+"""What stands on a floor or near above it, sorted by place: for the soft shadows where things touch it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.geometry.vectors import compose
+from peopleboy.sim.shapes.shape_table import ShapeTable
+from peopleboy.sim.shapes.shapes import ShapeKind
+
+Array = NDArray[np.float64]
+
+REACH_M = 0.4  # farther from what stands there the floor gets all light
+_CELL_M = 0.25
+_MOST = 12  # what one cell holds
+_CELLS = 200  # the longer side of the grid has at most so many cells
+_HIGHEST_M = 0.3  # what hangs higher makes no shadow of this kind
+_FLAT_M = 0.01  # what ends nearer to the ground is floor
+_LEAST_M = 0.03  # what rises less makes none either
+
+_SPHERE = int(ShapeKind.SPHERE)
+_CAPSULE = int(ShapeKind.CAPSULE)
+_CYLINDER = int(ShapeKind.CYLINDER)
+_BOX = int(ShapeKind.BOX)
+_PLANE = int(ShapeKind.PLANE)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contacts:
+    """Footprints of what stands on the floor, in a grid over the place.
+
+    Attributes:
+        prints: (K, 9) [m] each a rounded rectangle: middle x and y, its axis x and y, half its length, half
+            its width, the radius by which it is wider all round, and how high it begins and ends.
+        corner: (2,) [m] x and y where the grid begins.
+        cell_m: [m] side of a cell.
+        count: (Y, X) how many reach a cell.
+        members: (Y, X, 12) which.
+        is_floor: (P,) parts that lie flat on the ground.
+    """
+
+    prints: Array
+    corner: Array
+    cell_m: float
+    count: NDArray[np.int64]
+    members: NDArray[np.int64]
+    is_floor: NDArray[np.bool_]
+
+
+def find_contacts(table: ShapeTable, world_from_part: Matrix, hidden: NDArray[np.bool_]) -> Contacts:
+    """Find the footprints of all shapes that begin less than 0.3 m above the floor and rise above it."""
+    prints, is_floor = _find_prints(table, world_from_part, hidden)
+    reach = prints[:, 4] + prints[:, 6] + prints[:, 5] + REACH_M
+    small = prints[reach < 12.0]
+    low = (small[:, :2] - reach[reach < 12.0, None]).min(axis=0, initial=math.inf)
+    high = (small[:, :2] + reach[reach < 12.0, None]).max(axis=0, initial=-math.inf)
+    if not len(small):
+        low = high = np.zeros(2)
+    cell = max(_CELL_M, float((high - low).max()) / _CELLS)
+    columns, rows = (int(n) + 1 for n in (high - low) / cell)
+    count = np.zeros((rows, columns), np.int64)
+    members = np.empty((rows, columns, _MOST), np.int64)
+    _sort(prints, low, cell, count, members)
+    return Contacts(prints, low, cell, count, members, is_floor)
+
+
+@njit(cache=True, error_model="numpy")
+def _find_prints(
+    table: ShapeTable, world_from_part: Array, hidden: NDArray[np.bool_]
+) -> tuple[Array, NDArray[np.bool_]]:
+    prints, pose, found = np.empty((len(table.kind), 9)), np.empty((3, 4)), 0
+    is_floor = np.zeros(len(hidden), np.bool_)
+    for shape in range(len(table.kind)):
+        part, kind, size = table.part[shape], table.kind[shape], table.size[shape]
+        if hidden[part]:
+            continue
+        compose(world_from_part[part], table.part_from_shape[shape], pose)
+        row = prints[found]
+        row[0], row[1], z = pose[0, 3], pose[1, 3], pose[2, 3]
+        row[2], row[3], row[4], row[5], row[6] = 1.0, 0.0, 0.0, 0.0, 0.0
+        if kind == _SPHERE:
+            row[6], up = size[0], size[0]
+        elif kind in (_CAPSULE, _CYLINDER):
+            level = math.hypot(pose[0, 2], pose[1, 2])
+            if level > 1e-6:
+                row[2], row[3] = pose[0, 2] / level, pose[1, 2] / level
+            row[4], row[6] = level * size[0] / 2.0, size[1]
+            round_end = 1.0 if kind == _CAPSULE else level
+            up = abs(pose[2, 2]) * size[0] / 2.0 + round_end * size[1]
+        elif kind == _BOX:
+            up = _print_box(pose, size, row)
+        else:
+            is_floor[part] |= kind == _PLANE
+            continue
+        row[7], row[8] = z - up, z + up
+        is_floor[part] |= abs(row[8]) <= _FLAT_M
+        if row[7] < _HIGHEST_M and row[8] > _LEAST_M:
+            found += 1
+    return prints[:found].copy(), is_floor
+
+
+@njit(cache=True, error_model="numpy")
+def _print_box(pose: Array, size: Array, row: Array) -> float:
+    """Set direction and halves of a box's footprint (9,); returns how far the box rises from its middle."""
+    longest, up = 0.0, 0.0
+    for i in range(3):
+        # The longest edge that is not upright gives the direction.
+        level = math.hypot(pose[0, i], pose[1, i]) * size[i]
+        if level > longest:
+            longest = level
+            row[2], row[3] = pose[0, i] * size[i] / level, pose[1, i] * size[i] / level
+    for i in range(3):
+        row[4] += abs(pose[0, i] * row[2] + pose[1, i] * row[3]) * size[i] / 2.0
+        row[5] += abs(pose[1, i] * row[2] - pose[0, i] * row[3]) * size[i] / 2.0
+        up += abs(pose[2, i]) * size[i] / 2.0
+    return up
+
+
+@njit(cache=True)
+def _sort(
+    prints: Array, corner: Array, cell: float, count: NDArray[np.int64], members: NDArray[np.int64]
+) -> None:
+    """Put each footprint down in all cells that it reaches."""
+    rows, columns = count.shape
+    half = math.sqrt(0.5) * cell
+    for k in range(len(prints)):
+        x, y = abs(prints[k, 2]), abs(prints[k, 3])
+        beyond = prints[k, 6] + REACH_M
+        wide = prints[k, 4] * x + prints[k, 5] * y + beyond
+        deep = prints[k, 4] * y + prints[k, 5] * x + beyond
+        left = max(math.floor((prints[k, 0] - wide - corner[0]) / cell), 0)
+        right = min(math.floor((prints[k, 0] + wide - corner[0]) / cell), columns - 1)
+        bottom = max(math.floor((prints[k, 1] - deep - corner[1]) / cell), 0)
+        top = min(math.floor((prints[k, 1] + deep - corner[1]) / cell), rows - 1)
+        for j in range(bottom, top + 1):
+            for i in range(left, right + 1):
+                at_x, at_y = corner[0] + (i + 0.5) * cell, corner[1] + (j + 0.5) * cell
+                if count[j, i] < members.shape[2] and gap(prints[k], at_x, at_y) < REACH_M + half:
+                    members[j, i, count[j, i]] = k
+                    count[j, i] += 1
+
+
+@njit(cache=True, fastmath=True)
+def gap(row: Array, x: float, y: float) -> float:
+    """Distance [m] from a place on the floor to a footprint (9,), 0 below it."""
+    dx, dy = x - row[0], y - row[1]
+    along = max(abs(dx * row[2] + dy * row[3]) - row[4], 0.0)
+    across = max(abs(dy * row[2] - dx * row[3]) - row[5], 0.0)
+    away: float = max(math.sqrt(along * along + across * across) - row[6], 0.0)
+    return away
