@@ -90,6 +90,8 @@ def _rendering() -> Iterator[BenchFigure]:
     yield BenchFigure(("rendering", "ray caster", "ms"), drawn.raycast_ms, "{:.2f} ms, 4 people, two views")
     yield BenchFigure(("rendering", "TinyRenderer", "ms"), drawn.bullet_ms, "{:.1f} ms, the same")
     yield BenchFigure(("rendering", "TinyRenderer", "ratio"), drawn.ratio, "{:.1f}", "at least 10")
+    yield BenchFigure(("rendering", "full detail", "ms"), drawn.full_ms, "{:.2f} ms, by the ray caster")
+    yield BenchFigure(("rendering", "full detail", "ratio"), drawn.full_ratio, "{:.2f}", "at most 1.5")
 
 
 def _tracker() -> Iterator[BenchFigure]:

@@ -1,9 +1,12 @@
-"""The ray caster against PyBullet's TinyRenderer: both camera images of a corridor, with full truth."""
+"""The ray caster against PyBullet's TinyRenderer: both camera images of a corridor, with full truth.
+
+Beside them the ray caster with all that full detail adds, on a polished floor.
+"""
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +20,7 @@ from peopleboy.sim.world import World
 # (x, y) [m] of the people in front of the robot, who walk on at the same pace.
 STARTS_M = ((3.0, 0.4), (4.2, -0.5), (5.5, 0.5), (7.5, -0.2))
 RENDERERS = ("raycast", "bullet")
+_SHINE = 0.5  # of the floor, where detail is full
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,24 +32,36 @@ class RenderTimes:
         bullet_ms: [ms] the same by TinyRenderer.
         raycast_truth_ms: [ms] of these, one camera's view and its truth by the ray caster.
         bullet_truth_ms: [ms] the same by TinyRenderer.
+        full_ms: [ms] both images and full truth by the ray caster with full detail.
     """
 
     raycast_ms: float
     bullet_ms: float
     raycast_truth_ms: float
     bullet_truth_ms: float
+    full_ms: float
 
     @property
     def ratio(self) -> float:
         """How many times faster the ray caster gives both images and the truth."""
         return self.bullet_ms / self.raycast_ms
 
+    @property
+    def full_ratio(self) -> float:
+        """How many times as long the ray caster takes with full detail."""
+        return self.full_ms / self.raycast_ms
+
 
 def render_times(instants: int = 40) -> RenderTimes:
     """Draw the same instants by both renderers in turn, and time each."""
-    times: dict[str, list[tuple[float, float]]] = {name: [] for name in RENDERERS}
-    with World(_corridor("raycast")) as cast, World(_corridor("bullet")) as drawn:
-        worlds = dict(zip(RENDERERS, (cast, drawn), strict=True))
+    cases = (*RENDERERS, "full")
+    times: dict[str, list[tuple[float, float]]] = {name: [] for name in cases}
+    with (
+        World(_corridor("raycast")) as cast,
+        World(_corridor("bullet")) as drawn,
+        World(_polished(_corridor("raycast"))) as full,
+    ):
+        worlds = dict(zip(cases, (cast, drawn, full), strict=True))
         for _ in range(instants + 2):
             for name, world in worlds.items():
                 world.step(0.5, 0.0)
@@ -55,12 +71,13 @@ def render_times(instants: int = 40) -> RenderTimes:
                 dict(world.observe().images)  # made only when asked for
                 times[name].append((time.process_time() - start, middle - start))
     # The first instants compile the kernels.
-    raycast, bullet = (1000.0 * np.median(times[name][2:], axis=0) for name in RENDERERS)
+    raycast, bullet, finest = (1000.0 * np.median(times[name][2:], axis=0) for name in cases)
     return RenderTimes(
         raycast_ms=float(raycast[0]),
         bullet_ms=float(bullet[0]),
         raycast_truth_ms=float(raycast[1]),
         bullet_truth_ms=float(bullet[1]),
+        full_ms=float(finest[0]),
     )
 
 
@@ -73,6 +90,17 @@ def _corridor(renderer: str) -> WorldConfig:
     return WorldConfig(place=place, people=people, renderer=renderer, robot=RobotConfig(at_m=(1.0, 0.0)))
 
 
+def _polished(config: WorldConfig) -> WorldConfig:
+    """The same world in full detail, with a floor that mirrors."""
+    fixtures = tuple(
+        replace(one, part=replace(one.part, material=replace(one.part.material, shine=_SHINE)))
+        if one.name == "floor" and one.part is not None
+        else one
+        for one in config.place.fixtures
+    )
+    return replace(config, detail="full", place=replace(config.place, fixtures=fixtures))
+
+
 if __name__ == "__main__":
     found = render_times()
     print(f"two images and truth: raycast {found.raycast_ms:.2f} ms, bullet {found.bullet_ms:.1f} ms")
@@ -80,3 +108,4 @@ if __name__ == "__main__":
         f"one view and truth: raycast {found.raycast_truth_ms:.2f} ms, bullet {found.bullet_truth_ms:.1f} ms"
     )
     print(f"ratio of the two images {found.ratio:.1f}")
+    print(f"full detail: {found.full_ms:.2f} ms, {found.full_ratio:.2f} times as long")

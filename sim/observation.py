@@ -36,8 +36,9 @@ class Observation(Senses):
     Attributes:
         images: of the cameras that take one at this instant, by the camera's name; each is made when it is
             first asked for, which must be before the next step or observation. A thermal camera, such as
-            `thermal`, gives (H, W) uint8 grey, linear over 24..36 degC, and as `thermal_c` (H, W) float32
-            [degC], the same before it is encoded; a colour camera, such as `colour`, (H, W, 3) uint8 sRGB;
+            `thermal`, gives (H, W) uint8 grey, by its gain, usually linear over 24..36 degC; as `thermal_c`
+            (H, W) float32 [degC], the same before it is encoded; as `thermal_scene` (H, W) uint8, for people
+            to look at; a colour camera, such as `colour`, (H, W, 3) uint8 sRGB;
             a depth camera, such as `depth`, (H, W) uint16 [mm] along the optical axis, 0 where none is read,
             and as `depth_colour` (H, W, 3) uint8 sRGB of the same pixels.
     """

@@ -20,6 +20,7 @@ from docs.generate.pictures import (
     runs,
     scene_model,
     thermal,
+    thermal_worlds,
     tracker,
 )
 from docs.generate.pictures.paper import save
@@ -36,6 +37,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "thermal_mirror": thermal.mirror,
     "thermal_gains": thermal.gains,
     "thermal_faults": thermal.faults,
+    "light": thermal_worlds.light,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,

@@ -60,9 +60,12 @@ def test_a_ball_fills_its_edge_pixels_by_the_share_of_their_area(x: float, y: fl
         table, fine, POSE, seen.scene.world_from_part, np.zeros(1, np.int64), np.zeros(1, np.bool_)
     ).part
     share = (parts == 0).reshape(CAMERA.height, 16, CAMERA.width, 16).mean(axis=(1, 3))
-    # Shares are known to some hundredths themselves.
-    assert np.abs(found - share).max() <= 0.25 + 0.03
-    assert found.sum() == pytest.approx(share.sum(), abs=0.6 + 0.02 * share.sum())
+    error = np.abs(found - share)
+    # A straight outline is off by a quarter at most; this one is bent, and shares are known to hundredths.
+    assert error.max() <= 0.3
+    assert error[(share > 0.0) & (share < 1.0)].mean() < 0.12
+    stairs = np.abs((seen.view.part == 0) - share)
+    assert (error**2).sum() < 0.5 * (stairs**2).sum()
 
 
 def test_where_box_and_floor_meet_both_have_their_share_and_all_else_keeps_its_value() -> None:
