@@ -16,12 +16,17 @@ from rich.table import Table
 
 from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.likeness.compare import compare_footage
 from peopleboy.scenarios.likeness.page import auc_words, write_comparison
 from peopleboy.scenarios.likeness.tell_apart import Told
+from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.scenarios.running.finished import is_finished
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.run_folder.camera_truth import gt_lines
+from peopleboy.scenarios.run_folder.image_files import image_file, write_png
+from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.sim.world import World
 
 OUT = Path("runs/realism")
 CLIP = click.Path(exists=True, file_okay=False, path_type=Path)
@@ -48,7 +53,7 @@ STRUCTURED = (
 """The library's scenes that are to look like real ones."""
 WORLDS = 24
 SEED = 100
-SCENE_S, WORLD_S = 8.0, 4.0
+SCENE_S, WORLD_S = 6.0, 3.0
 
 Data = dict[str, Any]
 Change = Callable[[Data], Data]
@@ -111,13 +116,23 @@ def steps() -> Iterator[tuple[str, list[tuple[Scenario, int]]]]:
 
 
 def film(scenarios: Sequence[tuple[Scenario, int]], folder: Path) -> None:
-    """Run what has not been run yet, with images."""
+    """Leave thermal pictures and boxes of what has not been filmed yet."""
     for scenario, seed in scenarios:
-        options = RunOptions(
-            seed=seed, out=folder / f"{scenario.name}-{seed}", frames=True, tracker="truth", record=False
-        )
-        if not is_finished(scenario, options):
-            run(scenario, options, lambda _tick, _frames: None)
+        clip = folder / f"{scenario.name}-{seed}"
+        if not clip.exists():
+            with whole(clip) as part:
+                _film(scenario, seed, part)
+
+
+def _film(scenario: Scenario, seed: int, clip: Path) -> None:
+    (clip / "thermal").mkdir(parents=True)
+    config = scenario.world(seed)
+    frames = round(scenario.duration_s * config.control_hz)
+    with World(config) as world, (clip / "gt.txt").open("w", encoding="utf-8") as truth:
+        eyes = make_eyes(ORACLE, seed, world.truth)
+        for tick in closed_loop(world, eyes, scenario.make_behaviour(), frames):
+            write_png(clip / "thermal" / image_file(tick.frame), tick.observation.images["thermal"])
+            truth.writelines(gt_lines(tick))
 
 
 def _changed(name: str, changes: Sequence[Change]) -> Scenario:

@@ -51,6 +51,19 @@ RANGES: Final[Mapping[str, Range]] = {
     "netd": Range(low=0.02, high=0.15, unit="K", what="noise that is new in every image"),
     "fixed_pattern": Range(low=0.01, high=0.12, unit="K", what="noise that is the same in every image"),
     "dead_pixels": Range(low=0.0, high=0.0005, unit="", what="share of dead pixels"),
+    "column_noise": Range(low=0.0, high=0.06, unit="K", what="noise of columns"),
+    "vignetting": Range(low=0.0, high=0.6, unit="K", what="how much warmer corners seem"),
+    "drift": Range(low=0.0, high=0.6, unit="K/min", what="drift of the thermal image"),
+    "gain_follows": Range(low=0.0, high=3.0, unit="s", what="how fast the gain follows the images"),
+    "tail": Range(low=0.05, high=0.4, unit="%", what="of the pixels, beyond the gain's span at either end"),
+    "least_span": Range(low=2.0, high=10.0, unit="K", what="the gain's least span"),
+    "plateau": Range(low=0.1, high=3.0, unit="%", what="plateau of a plateau gain"),
+    "linear_share": Range(low=0.1, high=0.8, unit="", what="linear share of a plateau gain"),
+    "sharpening": Range(low=0.0, high=1.2, unit="", what="sharpening"),
+    "shutter_every": Range(low=5.0, high=60.0, unit="s", what="time between shutters, where there is one"),
+    "jpeg_quality": Range(
+        low=60, high=95, unit="", what="quality of JPEG, where images went through it", is_whole=True
+    ),
     "heading_off": Range(
         low=-30.0, high=30.0, unit="deg", what="where the robot looks, beside a far point of the floor"
     ),
@@ -65,6 +78,7 @@ SHARES: Final[Mapping[str, Mapping[str, float]]] = {
     "place": {"room": 0.55, "corridor": 0.15, "l_corridor": 0.15, "t_corridor": 0.15},
     "door": {"open": 0.5, "closed": 0.5},
     "robot": {"stands": 0.5, "drives": 0.5},
+    "gain": {"percentile": 0.3, "plateau": 0.7},
     "command": {"straight": 0.4, "curve": 0.35, "turn": 0.15, "stop": 0.1},
     "posture": {
         "standing": 0.6, "sitting": 0.1, "bending": 0.1, "arms_crossed": 0.1, "arms_raised": 0.1,
@@ -83,6 +97,8 @@ ODDS: Final[Mapping[str, tuple[float, str]]] = {
     "hung": (0.35, "a thing is one that hangs on a wall, rather than one that stands"),
     "on_top": (0.5, "a small thing stands on a piece of furniture, if there is one"),
     "begins_in_view": (0.7, "somebody begins where the thermal camera looks at first"),
+    "has_shutter": (0.3, "the thermal camera has a shutter"),
+    "is_film": (0.4, "the thermal images went through JPEG"),
     "pauses": (0.25, "somebody stays a while at a point"),
     "looks_at_robot": (0.3, "somebody who stays looks at the robot"),
     "enters_later": (0.25, "somebody comes later"),
@@ -104,7 +120,7 @@ class Draws:
         spread = RANGES[name]
         if spread.is_whole:
             return int(self.rng.integers(int(spread.low), int(spread.high), endpoint=True))
-        return round(float(self.rng.uniform(spread.low, spread.high)), 2 if spread.high > 0.5 else 6)
+        return round(float(self.rng.uniform(spread.low, spread.high)), 2 if spread.high > 0.7 else 6)
 
     def count(self, name: str) -> int:
         """Draw from a range of whole numbers."""

@@ -32,7 +32,7 @@ def draw_cameras(draws: Draws) -> Data:
     ahead, _, _ = Pinhole().position_m
     height, pitch, angle = (draws.number(name) for name in ("camera_height", "pitch", "vertical_fov"))
     narrower = 2.0 * math.degrees(math.atan(math.tan(math.radians(angle / 2.0)) / COLOUR_ZOOM))
-    thermal = {
+    thermal: Data = {
         "kind": "thermal",
         "mount_m": [ahead, 0.0, height],
         "pitch_deg": pitch,
@@ -41,7 +41,16 @@ def draw_cameras(draws: Draws) -> Data:
         "netd_k": draws.number("netd"),
         "fixed_pattern_k": draws.number("fixed_pattern"),
         "dead_pixels": draws.number("dead_pixels"),
+        "column_noise_k": draws.number("column_noise"),
+        "vignetting_k": draws.number("vignetting"),
+        "offset_drift_k_per_min": draws.number("drift"),
+        "sharpening": draws.number("sharpening"),
+        **_draw_gain(draws),
     }
+    if draws.happens("has_shutter"):
+        thermal["shutter_every_s"] = draws.number("shutter_every")
+    if draws.happens("is_film"):
+        thermal["jpeg_quality"] = draws.count("jpeg_quality")
     colour = {
         "kind": "colour",
         "mount_m": [ahead, COLOUR_BASELINE_M, height],
@@ -49,6 +58,19 @@ def draw_cameras(draws: Draws) -> Data:
         "vertical_fov_deg": rounded(narrower),
     }
     return {"thermal": thermal, "colour": colour}
+
+
+def _draw_gain(draws: Draws) -> Data:
+    """Draw an automatic gain, so that the room is seen whatever its temperature is."""
+    gain: Data = {
+        "gain": draws.one_of("gain"),
+        "gain_follows_s": draws.number("gain_follows"),
+        "tail_percent": draws.number("tail"),
+        "least_span_k": draws.number("least_span"),
+    }
+    if gain["gain"] == "plateau":
+        gain |= {"plateau_percent": draws.number("plateau"), "linear_share": draws.number("linear_share")}
+    return gain
 
 
 def is_before(robot: Data, at: list[float]) -> bool:

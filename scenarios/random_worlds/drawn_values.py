@@ -15,6 +15,27 @@ Values = dict[str, list[float] | list[str]]
 """By name of what was drawn: a value, or as many as there are."""
 
 _BARS: Final = 6
+_CAMERA: Final[Mapping[str, str]] = {
+    "pitch": "pitch_deg",
+    "vertical_fov": "vertical_fov_deg",
+    "blur": "blur_px",
+    "netd": "netd_k",
+    "fixed_pattern": "fixed_pattern_k",
+    "dead_pixels": "dead_pixels",
+    "column_noise": "column_noise_k",
+    "vignetting": "vignetting_k",
+    "drift": "offset_drift_k_per_min",
+    "sharpening": "sharpening",
+    "gain": "gain",
+    "gain_follows": "gain_follows_s",
+    "tail": "tail_percent",
+    "least_span": "least_span_k",
+    "plateau": "plateau_percent",
+    "linear_share": "linear_share",
+    "shutter_every": "shutter_every_s",
+    "jpeg_quality": "jpeg_quality",
+}
+"""Keys of the thermal camera by the names of what is drawn."""
 
 
 def drawn_values(played: Mapping[str, Any]) -> Values:
@@ -56,12 +77,7 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
         "pause": [point["pause_s"] for point in points if point["pause_s"] > 0.0],
         "posture": [point["posture"] for point in points if point["pause_s"] > 0.0],
         "camera_height": [camera["mount_m"][2]],
-        "pitch": [camera["pitch_deg"]],
-        "vertical_fov": [camera["vertical_fov_deg"]],
-        "blur": [camera["blur_px"]],
-        "netd": [camera["netd_k"]],
-        "fixed_pattern": [camera["fixed_pattern_k"]],
-        "dead_pixels": [camera["dead_pixels"]],
+        **{name: [camera[key]] for name, key in _CAMERA.items() if key in camera},
         "robot": ["drives" if robot["behaviour"] == "scripted" else "stands"],
         "drive_speed": [one["linear_m_s"] for one in robot["commands"] if one["linear_m_s"] != 0.0],
         "drive_turn": [one["angular_deg_s"] for one in robot["commands"] if one["angular_deg_s"] != 0.0],
