@@ -34,6 +34,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "thermal_steps": thermal.steps,
     "thermal_bars": thermal.bars,
     "thermal_mirror": thermal.mirror,
+    "people_finely": thermal.finely,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,
