@@ -64,7 +64,7 @@ def test_the_cold_cools_hands_and_clothes() -> None:
 def at(finish: Finish, y: float, z: float, depth: float, layer: str = "kelvin") -> float:
     """The nearest texel to a point of the front."""
     turn = np.arctan2(y, depth) / (2.0 * np.pi) % 1.0
-    rows, columns = finish.kelvin.shape
+    columns = finish.kelvin.shape[1]
     row = round((z - finish.lowest_m) / finish.texel_m)
     return float(getattr(finish, layer)[row, round(turn * columns) % columns])
 
