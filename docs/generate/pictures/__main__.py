@@ -38,6 +38,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "thermal_gains": thermal.gains,
     "thermal_faults": thermal.faults,
     "light": thermal_worlds.light,
+    "people_finely": thermal.finely,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,

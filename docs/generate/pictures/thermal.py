@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,19 +13,39 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.moments import world_at
 from docs.generate.pictures.paper import panels, plot, show
-from peopleboy.sim.cameras.camera_config import ThermalConfig
+from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.electronics.drift import Drift
 from peopleboy.sim.cameras.electronics.eye import show_scene
 from peopleboy.sim.cameras.electronics.gain import Gain, encode_8bit
 from peopleboy.sim.cameras.electronics.output import compress, sharpen
 from peopleboy.sim.cameras.thermal import band_radiance, detect, make_detector, surface_image
-from peopleboy.sim.people.body.clothes import BOTTOMS, SKIN_C, TOPS
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.people.body.anthropometry import Sex
+from peopleboy.sim.people.body.clothes import BOTTOMS, SKIN_C, TOPS, Clothes
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.places.thing_kinds import KINDS
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.shapes.materials import Detail
+from peopleboy.sim.world import World
 
 SCALE = {"cmap": "inferno", "vmin": 18.0, "vmax": 38.0}
 ROOM_C = 21.0
 CLOTH, SKIN, PAINT = 0.95, 0.98, 0.93
+_THREE: tuple[tuple[str, tuple[float, float], Sex, float, Clothes], ...] = (
+    (
+        "ada",
+        (3.7, 0.75),
+        "female",
+        1.68,
+        Clothes(top="jacket", bottom="jeans", hair="long"),
+    ),
+    ("ben", (3.9, -0.02), "male", 1.80, Clothes(top="shirt", bottom="trousers", bottom_colour="khaki")),
+    ("cleo", (3.6, -0.62), "female", 1.64, Clothes(top="t_shirt", top_colour="grey", bottom="jeans")),
+)
 
 _USUAL = ThermalConfig(netd_k=0.03, fixed_pattern_k=0.02)  # noise takes most of a picture's bytes
 _PLATEAU = replace(_USUAL, gain="plateau")
@@ -37,7 +58,7 @@ Grey = NDArray[np.uint8]
 def steps() -> Figure:
     """One image on its way: surface temperature, radiance through the optics, noise, grey."""
     titles = ("surface temperature", "through emissivity and optics", "with the detector's noise", "8 bit")
-    figure, axes = panels(titles, 2.45)
+    figure, axes = panels(titles, 2.35)
     with world_at("crossing_4", 0, 4.0) as world:
         # The surfaces alone: what every part would look like if it were black and the lens perfect.
         config = world.config.robot.cameras["thermal"]
@@ -89,6 +110,46 @@ def mirror() -> Figure:
     axes.set(xlabel="surface temperature [°C]", ylabel="seems to be [°C]", xlim=(10, 60), ylim=(10, 60))
     axes.legend(frameon=False, loc="upper left", bbox_to_anchor=(0.1, 1.0))
     return figure
+
+
+def finely() -> Figure:
+    """Three people, plainly and in full detail, by the thermal and by the colour camera."""
+    titles = [
+        f"{camera}, detail: {detail}" for camera in ("thermal", "colour") for detail in get_args(Detail)
+    ]
+    figure, axes = panels(titles, 2.35)
+    for column, detail in enumerate(get_args(Detail)):
+        with World(_three(detail)) as world:
+            for _ in range(6):
+                world.step(0.0, 0.0)
+            images = dict(world.observe().images)
+        show(axes[column], images["thermal_c"], cmap="gray", vmin=18.0, vmax=35.5)
+        show(axes[2 + column], images["colour"])
+    return figure
+
+
+def _three(detail: Detail) -> WorldConfig:
+    """A man and two women who walk towards the robot, before cameras without noise."""
+    people = tuple(
+        PersonConfig(
+            name=name,
+            path=(Waypoint(at_m=at_m), Waypoint(at_m=(1.5, 0.5 * at_m[1]))),
+            clothes=clothes,
+            sex=sex,
+            height_m=height_m,
+        )
+        for name, at_m, sex, height_m, clothes in _THREE
+    )
+    camera = Pinhole(width=256, height=195, vertical_fov_rad=math.radians(27.0))
+    thermal = ThermalConfig(camera=camera, netd_k=0.0, fixed_pattern_k=0.0, dead_pixels=0.0)
+    colour = ColourConfig(camera=camera, read_noise=0.0, shot_noise=0.0)
+    return WorldConfig(
+        place=build_place(straight_corridor(20.0, 6.0)),
+        people=people,
+        robot=RobotConfig(at_m=(0.8, 0.0), cameras={"thermal": thermal, "colour": colour}),
+        seed=5,
+        detail=detail,
+    )
 
 
 def apparent_c(true_c: NDArray[np.float64], emissivity: NDArray[np.float64]) -> NDArray[np.float64]:

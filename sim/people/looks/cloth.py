@@ -54,7 +54,7 @@ class Worn:
 def paint_cloth(mesh: Mesh, sheet: Sheet, worn: Worn) -> Paint:
     """Paint the folds of a garment; its mean temperature stays."""
     paint = Paint(mesh)
-    touch = np.tanh(0.4 * sheet.touch + 1.2 * _hang(worn.part, worn.outward, mesh))
+    touch = np.tanh(0.4 * sheet.touch + 1.5 * _hang(worn.part, worn.outward, mesh))
     touch -= touch.mean()
     thin = math.exp(-worn.garment.thickness_m / _THIN_M)
     warm_k = _LIES_ON * thin * (worn.skin_c - worn.cloth_c)
@@ -79,9 +79,11 @@ def _hang(part: str, outward: float, mesh: Mesh) -> Grid:
     if part == "pelvis":
         return 0.4 * np.clip(-front, 0.0, 1.0) + 0.2 - 0.0 * down
     if part == "thigh":
-        return 0.6 * front * (1.0 - 0.5 * down) + 0.2 * out + 0.6 * (down > 0.85) * np.clip(front, 0.0, 1.0)
+        return 0.5 * front * (1.0 - 0.4 * down) + 0.2 * out
     if part == "shin":
-        return 0.5 * blob(front + 1.0, down - 0.3, 0.5, 0.2) - 0.8 * np.clip(down - 0.5, 0.0, 1.0) + 0.2
+        knee = 0.3 * front * np.clip(1.0 - 3.0 * down, 0.0, 1.0)
+        calf = 0.4 * blob(front + 1.0, down - 0.4, 0.5, 0.2)
+        return knee + calf - 0.8 * np.clip(down - 0.55, 0.0, 1.0) + 0.05
     if part == "upper_arm":
         return 0.9 * (1.0 - 2.2 * down) * (0.6 + 0.4 * out)
     return 0.3 * out - 0.0 * down
@@ -98,7 +100,7 @@ def _folded(part: str, mesh: Mesh) -> Grid:
         "upper_arm": ((0.15, 0.15), (1.0, 0.3)),
         "forearm": ((0.0, 0.35), (1.0, 0.15)),
     }.get(part, ())
-    return np.asarray(0.2 + sum(0.8 * np.exp(-(((mesh.down - at) / width) ** 2)) for at, width in joints))
+    return np.asarray(0.12 + sum(0.85 * np.exp(-(((mesh.down - at) / width) ** 2)) for at, width in joints))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -22,7 +22,7 @@ from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 _CLOTH_TEXEL_M, _SKIN_TEXEL_M, _FACE_TEXEL_M, _HAIR_TEXEL_M = 0.007, 0.010, 0.003, 0.006
 # Garments of a kind fit tightly or hang: deviation of how far they are from the air, as a share of that.
-_FIT = 0.15
+_FIT = 0.14
 _SHIRT_C, _SHIRT_RGB = 30.2, COLOURS["white"]
 _FOLD_M = 0.12  # between folds round a part of 1 m; they grow by the root of its girth
 _COLD_HANDS = {"hand": 1.0, "foot": 0.8, "forearm": 0.4, "shin": 0.3}  # share by part

@@ -1,5 +1,5 @@
+import itertools
 from collections import Counter
-from itertools import pairwise
 
 import pytest
 
@@ -51,7 +51,7 @@ def test_people_dress_for_the_weather(sex: str) -> None:
 def test_the_change_from_cold_to_warm_clothes_is_no_step() -> None:
     t_shirts = [share(draws("male", air_c), "top", "t_shirt") for air_c in (20.0, 23.0, 25.0, 27.0, 30.0)]
     assert t_shirts == sorted(t_shirts)
-    assert max(b - a for a, b in pairwise(t_shirts)) < 0.2
+    assert max(b - a for a, b in itertools.pairwise(t_shirts)) < 0.2
 
 
 def test_most_colours_are_muted_and_everything_is_in_the_catalogue() -> None:
