@@ -70,21 +70,33 @@ def _summed(people: Map, new: Map, covered: Map) -> Map:
     height, width = people.shape
     wide = width + 2 * MARGIN_PX
     sums = np.empty((height + 1, wide + 1, LAYERS), np.float32)
-    sums[0] = 0.0
+    sums[0] = np.float32(0.0)
+    for v in range(0, height, 2):
+        _add_along(people, new, covered, sums, v, min(v + 1, height - 1))
+    flat = sums.reshape(height + 1, -1)
     for v in range(height):
-        of_people, of_new, of_known = np.float32(0.0), np.float32(0.0), np.float32(0.0)
-        sums[v + 1, 0] = 0.0
-        u = width - 1 - (MARGIN_PX - 1) % width
-        for x in range(1, wide + 1):
-            known = np.float32(1.0) - covered[v, u]
-            of_people += people[v, u] * known
-            of_new += new[v, u] * known
-            of_known += known
-            sums[v + 1, x, PEOPLE] = sums[v, x, PEOPLE] + of_people
-            sums[v + 1, x, NEW] = sums[v, x, NEW] + of_new
-            sums[v + 1, x, KNOWN] = sums[v, x, KNOWN] + of_known
-            u = u + 1 if u + 1 < width else 0
+        above, here = flat[v], flat[v + 1]
+        for x in range(len(here)):
+            here[x] += above[x]
     return sums
+
+
+@njit(cache=True, nogil=True)
+def _add_along(people: Map, new: Map, covered: Map, sums: Map, one: int, other: int) -> None:
+    """Add up two rows from the left on, as each step has to wait for the one before in its own row only."""
+    width, zero, whole = people.shape[1], np.float32(0.0), np.float32(1.0)
+    a0, b0, c0, a1, b1, c1 = zero, zero, zero, zero, zero, zero
+    line0, line1 = sums[one + 1], sums[other + 1]
+    line0[0], line1[0] = zero, zero
+    u = width - 1 - (MARGIN_PX - 1) % width
+    for x in range(1, len(line0)):
+        known0, known1 = whole - covered[one, u], whole - covered[other, u]
+        a0, a1 = a0 + people[one, u] * known0, a1 + people[other, u] * known1
+        b0, b1 = b0 + new[one, u] * known0, b1 + new[other, u] * known1
+        c0, c1 = c0 + known0, c1 + known1
+        line0[x, PEOPLE], line0[x, NEW], line0[x, KNOWN] = a0, b0, c0
+        line1[x, PEOPLE], line1[x, NEW], line1[x, KNOWN] = a1, b1, c1
+        u = u + 1 if u + 1 < width else 0
 
 
 @njit(cache=True, nogil=True)

@@ -72,12 +72,15 @@ def _row(distance_m: Floats, height_m: float, calibration: PanoramaCalibration) 
 
 @njit(cache=True, nogil=True)
 def _worth(sums: Map, parts: Floats) -> Floats:
-    """Rate places: a body counts for, what lies before its feet and beside it against."""
+    """Rate places: a body counts for, what lies before its feet and beside it against; 0 if there is none."""
     worth = np.empty(len(parts))
     shares = np.empty(4)
     for n in range(len(parts)):
         shares[:] = 0.0
+        worth[n] = 0.0
         for part in range(4):
+            if part == 1 and shares[0] < _LEAST:  # all else only counts against
+                break
             left, right, top, bottom = parts[n, part]
             if bottom - top < 0.5:  # outside the image
                 continue
@@ -86,5 +89,6 @@ def _worth(sums: Map, parts: Floats) -> Floats:
             if part > 0 or known > _LEAST_KNOWN:
                 seen = between(sums, PEOPLE, left, right, top, bottom) / area
                 shares[part] = seen / max(known, 0.1)
-        worth[n] = shares[0] - shares[1] - 0.25 * (shares[2] + shares[3])
+        else:
+            worth[n] = shares[0] - shares[1] - 0.25 * (shares[2] + shares[3])
     return worth
