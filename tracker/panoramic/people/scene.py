@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.people.figure_patch import (
     KNOWN,
-    MARGIN_PX,
     FigureMap,
     Floats,
     Map,
@@ -74,7 +73,7 @@ class Scene:
         top, bottom = max(top + 0.5, 0.0), min(top + height + 0.5, float(self.calibration.height))
         if bottom - top < 1.0:
             return 0.0
-        left = left + 0.5 + 0.25 * width + MARGIN_PX
+        left = left + 0.5 + 0.25 * width
         known = between(self.figures.sums, KNOWN, left, left + 0.5 * width, top, bottom)
         return 1.0 - known / (0.5 * width * (bottom - top))
 

@@ -12,7 +12,6 @@ from numba import njit
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.people.figure_patch import (
     KNOWN,
-    MARGIN_PX,
     PEOPLE,
     FigureMap,
     Floats,
@@ -55,7 +54,7 @@ def _grid(calibration: PanoramaCalibration) -> tuple[Floats, Floats, Floats]:
     """Give bearings (N,), distances (N,), and (N, 4, 4) left, right, top, bottom [px] of the parts."""
     bearings, distances = np.tile(_BEARINGS, len(_RINGS)), np.repeat(_RINGS, len(_BEARINGS))
     width = calibration.width
-    middle = np.remainder((0.5 - bearings / math.tau) * width, width) + MARGIN_PX
+    middle = np.remainder((0.5 - bearings / math.tau) * width, width)
     parts = np.empty((len(bearings), len(_PARTS_M), 4))
     for part, (left, right, low, high) in enumerate(_PARTS_M):
         parts[:, part, 0] = middle - np.arctan2(left, distances) / math.tau * width
