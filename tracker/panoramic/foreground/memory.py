@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.panoramic.foreground.elementary import logarithm
-from peopleboy.tracker.panoramic.foreground.floor_rows import STEP_M, FloorRows
+from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows
 from peopleboy.tracker.panoramic.foreground.layers import BLOCK
 
 Linear = NDArray[np.float32]
+Pair = tuple[float, float]
+Triple = tuple[float, float, float]
 
 CHANNELS: Final = 6
 VARIANCE, AGE, DOUBT = 3, 4, 5
@@ -43,16 +45,14 @@ def move_along(memory: Linear, odometry: Odometry, floor: FloorRows) -> Linear:
 
     What was not in the image before has age 0. Turning shifts columns, whatever they show.
     """
-    return _moved(
-        memory, odometry.advance_m, odometry.aside_m, odometry.turn_rad, floor.distance_m, floor.row_at
-    )
+    way, row = (odometry.advance_m, odometry.aside_m), (floor.horizon, floor.slope, floor.offset_m)
+    return _moved(memory, way, odometry.turn_rad, floor.distance_m, row)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _moved(
-    memory: Linear, advance: float, aside: float, turn: float, distance: Linear, row_at: Linear
-) -> Linear:
+def _moved(memory: Linear, by_m: Pair, turn: float, distance: Linear, row_of: Triple) -> Linear:
     _, height, width = memory.shape
+    advance, aside = by_m
     moved = np.empty_like(memory)
     way = math.hypot(advance, aside)
     per_rad = width / math.tau
@@ -64,7 +64,7 @@ def _moved(
     for v in range(height):
         columns[:], rows[:] = np.float32(-turn * per_rad), np.float32(v)
         if way > 0.0:
-            _look_up(columns, rows, distance[v], along, across, row_at)
+            _look_up(columns, rows, distance[v], along, across, row_of)
         _find(columns, rows, height, corners, shares)
         for channel in range(CHANNELS):
             _interpolate(memory[channel].reshape(-1), corners, shares, moved[channel, v])
@@ -78,18 +78,17 @@ def _moved(
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def _look_up(
-    columns: Linear, rows: Linear, distance: np.float32, along: Linear, across: Linear, row_at: Linear
+    columns: Linear, rows: Linear, distance: np.float32, along: Linear, across: Linear, row_of: Triple
 ) -> None:
     """Tell where the floor of a row was: by how many columns (W,) more it lay aside, and in which rows (W,)."""
-    per_rad, per_m = np.float32(len(columns) / math.tau), np.float32(1.0 / STEP_M)
-    last = np.float32(len(row_at) - 1.01)
+    per_rad = np.float32(len(columns) / math.tau)
+    a, b, c = np.float32(row_of[0]), np.float32(row_of[1]), np.float32(row_of[2])
     for u in range(len(columns)):
         out = distance + along[u]
         slope = across[u] / max(out, np.float32(0.1))
         columns[u] -= per_rad * (slope - slope * slope * slope * np.float32(1.0 / 3.0))  # of the arctangent
-        at = min(math.sqrt(out * out + across[u] * across[u]) * per_m, last)
-        k = np.uint32(at)
-        rows[u] = row_at[k] + (at - np.float32(k)) * (row_at[k + np.uint32(1)] - row_at[k])
+        away = math.sqrt(out * out + across[u] * across[u])
+        rows[u] = (a * away + b) / (away + c)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
