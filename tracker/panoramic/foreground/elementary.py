@@ -1,4 +1,4 @@
-"""Logarithm and exponential for many pixels at once: a compiler lines them up where it can only call others."""
+"""Logarithm and exponential that a compiler can work out for many pixels at once."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MOST: Final = np.float32(87.0)  # whose exponential a float32 holds
 def logarithm(x: np.float32) -> np.float32:
     """Give the natural logarithm of a positive number, to 1e-6 or the rounding of a float32.
 
-    Of x = 2**e m, with m about 1, the logarithm of m is twice the inverse hyperbolic tangent of (m - 1) / (m + 1).
+    Of x = 2**e m, with m about 1, that of m is twice the inverse hyperbolic tangent of (m - 1) / (m + 1).
     """
     bits = np.float32(x).view(np.int32)
     m = np.int32((bits & _FRACTION) | _OF_ONE).view(np.float32)

@@ -23,8 +23,8 @@ class FloorRows:
     Each column is a pinhole camera's, so that the row of what is d away is (a d + b) / (d + c).
 
     Attributes:
-        distance_m: (H,) of the floor seen in the middle of each row [m], read-only; `FARTHEST_M` where there is
-            none.
+        distance_m: (H,) of the floor seen in the middle of each row [m], read-only; `FARTHEST_M` where there
+            is none.
         horizon: a, the row of what is infinitely far away.
         slope: b [m].
         offset_m: c [m].

@@ -1,8 +1,8 @@
 """The layers of the network that tells people from background, worked out with few operations and fast ones.
 
-Units are kept with a border round the image, which is 0 above and below, and goes on over the seam: so a step to
-a neighbour is the same step in memory everywhere. Below the image there are as many rows more as make whole
-blocks.
+Units are kept with a border round the image, which is 0 above and below, and goes on over the seam: so a step
+to a neighbour is the same step in memory everywhere. Below the image there are as many rows more as make
+whole blocks.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ BLOCK: Final = 4
 DILATIONS: Final = (1, 2, 4)
 """How many squares apart the nine are that each of the layers between first and last looks at."""
 UNITS_TOGETHER, INPUTS_TOGETHER = 4, 6
-"""So many units are worked out from so many inputs at a time: each number read from memory then serves as often
-as the processor can use it."""
+"""So many units are worked out from so many inputs at a time: each number read from memory then serves
+as often as the processor can use it."""
 
 _BORDER: Final = max(DILATIONS)
 _HIGH: Final = 4
@@ -38,7 +38,7 @@ _ROWS: Final = 8
 @njit(cache=True, fastmath={"contract"})
 def look_within(squares: Linear, weights: Linear, biases: Linear) -> Linear:
     """First layer: from (INPUTS, R, C) to units (U, R + ..., C + ...) with their border."""
-    inputs, rows, columns = squares.shape
+    _, rows, columns = squares.shape
     number = weights.shape[1]
     units = _bordered(number, rows, columns)
     sums = np.empty((number, _ROWS * columns), np.float32)
@@ -86,7 +86,7 @@ def look_round(units: Linear, rows: int, weights: Linear, biases: Linear, dilati
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
 def tell(units: Linear, squares: Linear, weights: Linear, biases: Linear) -> Linear:
     """Last layer: probabilities (H, W)."""
-    inputs, rows, columns = squares.shape
+    _, rows, columns = squares.shape
     number, _, wide = units.shape
     outputs = len(biases)
     told = np.empty((rows * BLOCK, columns * BLOCK), np.float32)
@@ -116,7 +116,7 @@ def _write_shares(line: Linear, a: Linear, b: Linear, bias: np.float32) -> None:
 
 @njit(cache=True, fastmath={"contract"})
 def _add_all(sums: Linear, count: int, inputs: Linear, start: int, weights: Linear, first: int) -> None:
-    """Add all inputs (K, ...), read on from a place in each, by weights from the first row on, to all sums."""
+    """Add all inputs (K, ...), read from a place in each, by weights from the first row on, to all sums."""
     at = np.empty(INPUTS_TOGETHER, np.int64)
     flat, line = inputs.reshape(-1), inputs.shape[1] * inputs.shape[2]
     for unit in range(0, sums.shape[0], UNITS_TOGETHER):
@@ -150,11 +150,11 @@ def _add(
     sum0, sum1, sum2, sum3 = sums[unit], sums[unit + 1], sums[unit + 2], sums[unit + 3]
     for u in range(np.uint64(count)):
         x, y, z = inputs[a + u], inputs[b + u], inputs[c + u]
-        k, l, m = inputs[d + u], inputs[e + u], inputs[f + u]
-        sum0[u] = sum0[u] + p0 * x + q0 * y + r0 * z + s0 * k + t0 * l + v0 * m
-        sum1[u] = sum1[u] + p1 * x + q1 * y + r1 * z + s1 * k + t1 * l + v1 * m
-        sum2[u] = sum2[u] + p2 * x + q2 * y + r2 * z + s2 * k + t2 * l + v2 * m
-        sum3[u] = sum3[u] + p3 * x + q3 * y + r3 * z + s3 * k + t3 * l + v3 * m
+        k, o, m = inputs[d + u], inputs[e + u], inputs[f + u]
+        sum0[u] = sum0[u] + p0 * x + q0 * y + r0 * z + s0 * k + t0 * o + v0 * m
+        sum1[u] = sum1[u] + p1 * x + q1 * y + r1 * z + s1 * k + t1 * o + v1 * m
+        sum2[u] = sum2[u] + p2 * x + q2 * y + r2 * z + s2 * k + t2 * o + v2 * m
+        sum3[u] = sum3[u] + p3 * x + q3 * y + r3 * z + s3 * k + t3 * o + v3 * m
 
 
 @njit(cache=True, fastmath={"contract"})
@@ -191,8 +191,9 @@ def _mixed_rows(units: Linear, dilation: int) -> Linear:
             row3, row4 = units[unit, top + 2 * dilation], units[unit, top + 3 * dilation]
             row5 = units[unit, top + 4 * dilation]
             left, right = _BORDER + block * wide, _BORDER + (block + 1) * wide
-            band0, band1, band2 = bands[0, unit, left:right], bands[1, unit, left:right], bands[2, unit, left:right]
-            band3, band4, band5 = bands[3, unit, left:right], bands[4, unit, left:right], bands[5, unit, left:right]
+            band0, band1 = bands[0, unit, left:right], bands[1, unit, left:right]
+            band2, band3 = bands[2, unit, left:right], bands[3, unit, left:right]
+            band4, band5 = bands[4, unit, left:right], bands[5, unit, left:right]
             for u in range(wide):
                 b, c, d, e = row1[u], row2[u], row3[u], row4[u]
                 band0[u] = np.float32(4.0) * row0[u] - np.float32(5.0) * c + e

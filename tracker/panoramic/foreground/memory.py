@@ -66,8 +66,7 @@ def _moved(memory: Linear, by_m: Pair, turn: float, distance: Linear, row_of: Tr
         if way > 0.0:
             _look_up(columns, rows, distance[v], along, across, row_of)
         _find(columns, rows, height, corners, shares)
-        for channel in range(CHANNELS):
-            _interpolate(memory[channel].reshape(-1), corners, shares, moved[channel, v])
+        _interpolate(memory, corners, shares, moved, v)
         doubt, age, more = moved[DOUBT, v], moved[AGE, v], np.float32(way / distance[v] * per_rad)
         for u in range(width):
             doubt[u] += more
@@ -80,7 +79,7 @@ def _moved(memory: Linear, by_m: Pair, turn: float, distance: Linear, row_of: Tr
 def _look_up(
     columns: Linear, rows: Linear, distance: np.float32, along: Linear, across: Linear, row_of: Triple
 ) -> None:
-    """Tell where the floor of a row was: by how many columns (W,) more it lay aside, and in which rows (W,)."""
+    """Tell by how many columns (W,) more the floor of a row lay aside, and in which rows (W,)."""
     per_rad = np.float32(len(columns) / math.tau)
     a, b, c = np.float32(row_of[0]), np.float32(row_of[1]), np.float32(row_of[2])
     for u in range(len(columns)):
@@ -93,7 +92,7 @@ def _look_up(
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def _find(columns: Linear, rows: Linear, height: int, corners: NDArray[np.uint32], shares: Linear) -> None:
-    """Tell which four pixels (4, W) of a plane places lie between, and how far to the right and low (2, W)."""
+    """Tell which four pixels (4, W) of a plane places lie between, and how far right and low (2, W)."""
     width = len(columns)
     wide, bottom = np.float32(width), np.float32(height - 1)
     for u in range(width):
@@ -110,14 +109,19 @@ def _find(columns: Linear, rows: Linear, height: int, corners: NDArray[np.uint32
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _interpolate(plane: Linear, corners: NDArray[np.uint32], shares: Linear, told: Linear) -> None:
-    """Read a plane between pixels."""
+def _interpolate(memory: Linear, corners: NDArray[np.uint32], shares: Linear, moved: Linear, v: int) -> None:
+    """Read all planes between pixels, and put that into line v."""
     top_left, top_right, low_left, low_right = corners[0], corners[1], corners[2], corners[3]
     right, low = shares[0], shares[1]
-    for u in range(len(told)):
-        a, b, c, d = plane[top_left[u]], plane[top_right[u]], plane[low_left[u]], plane[low_right[u]]
-        upper = a + right[u] * (b - a)
-        told[u] = upper + low[u] * (c + right[u] * (d - c) - upper)
+    flat, plane = memory.reshape(-1), np.uint64(memory.shape[1] * memory.shape[2])
+    for u in range(len(right)):
+        i, j = np.uint64(top_left[u]), np.uint64(top_right[u])
+        k, l = np.uint64(low_left[u]), np.uint64(low_right[u])  # noqa: E741
+        for channel in range(CHANNELS):
+            a, b, c, d = flat[i], flat[j], flat[k], flat[l]
+            upper = a + right[u] * (b - a)
+            moved[channel, v, u] = upper + low[u] * (c + right[u] * (d - c) - upper)
+            i, j, k, l = i + plane, j + plane, k + plane, l + plane  # noqa: E741
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -139,7 +143,11 @@ def compare(image: NDArray[np.uint8], memory: Linear) -> tuple[Linear, Linear]:
     squares = np.empty((BLOCK * BLOCK * CHANNELS, height // BLOCK, width // BLOCK), np.float32)
     novelty = np.empty((height, width), np.float32)
     colours, features = np.empty((3, width), np.float32), np.empty((CHANNELS, width), np.float32)
-    ring, square, steep = np.empty(width + 2, np.float32), np.empty(width, np.float32), np.empty(width, np.float32)
+    ring, square, steep = (
+        np.empty(width + 2, np.float32),
+        np.empty(width, np.float32),
+        np.empty(width, np.float32),
+    )
     for v in range(height):
         _split(image[v], colours)
         square[:], steep[:] = np.float32(0.0), np.float32(0.0)
@@ -255,7 +263,9 @@ def _approach(known: Linear, seen: Linear, rate: Linear, square: Linear) -> None
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _grow_old(memory: Linear, v: int, square: Linear, clear: Linear, rate: Linear, passed_s: np.float32) -> None:
+def _grow_old(
+    memory: Linear, v: int, square: Linear, clear: Linear, rate: Linear, passed_s: np.float32
+) -> None:
     """Bring variance, age and doubt of line v up to date."""
     variance, age, doubt = memory[VARIANCE, v], memory[AGE, v], memory[DOUBT, v]
     one, steady = np.float32(1.0), np.float32(passed_s / _VARIANCE_TAU_S)

@@ -93,7 +93,7 @@ def _planes(image: NDArray[np.uint8], subtraction: Subtraction) -> NDArray[np.ui
 
 @njit(cache=True)
 def _differs(planes: NDArray[np.uint8], mean: Floats, threshold: Floats) -> NDArray[np.uint8]:
-    """Tell where (H, W) any plane of an image (H, W, C) differs from the mean by more than its threshold: 1."""
+    """Give 1 where (H, W) a plane of an image (H, W, C) differs from the mean by more than its threshold."""
     height, width, count = planes.shape
     differs = np.zeros((height, width), np.uint8)
     for v in range(height):

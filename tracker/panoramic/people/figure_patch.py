@@ -92,7 +92,7 @@ def _add_down(people: Map, new: Map, covered: Map, above: Map, columns: Map) -> 
 
 @njit(cache=True, nogil=True)
 def _add_along(columns: Map, more: Map, line: Map, below: Map) -> None:
-    """Add up the columns of two rows from the left on: two, as each step waits for the one before in its row."""
+    """Add up the columns of two rows from the left on, as each step waits for the one before in its row."""
     a0, b0, c0 = np.float32(0.0), np.float32(0.0), np.float32(0.0)
     a1, b1, c1 = np.float32(0.0), np.float32(0.0), np.float32(0.0)
     for u in range(columns.shape[1]):

@@ -32,6 +32,7 @@ _PARTS_M: Final = np.array(
     [(0.15, -0.15, 0.05, 1.2), (0.25, -0.25, -0.35, -0.1), (0.5, 0.3, 0.05, 1.2), (-0.3, -0.5, 0.05, 1.2)]
 )
 _LEAST_KNOWN: Final = 0.3
+_LITTLE: Final = 0.1
 
 
 def promising_places(figures: FigureMap, most: int) -> Floats:
@@ -84,10 +85,12 @@ def _worth(sums: Map, parts: Floats) -> Floats:
             if bottom - top < 0.5:  # outside the image
                 continue
             area = (right - left) * (bottom - top)
+            seen = between(sums, PEOPLE, left, right, top, bottom) / area
+            if part == 0 and seen < _LEAST * _LITTLE:  # too few to be somebody, whatever is known
+                continue
             known = between(sums, KNOWN, left, right, top, bottom) / area
             if part > 0 or known > _LEAST_KNOWN:
-                seen = between(sums, PEOPLE, left, right, top, bottom) / area
-                shares[part] = seen / max(known, 0.1)
+                shares[part] = seen / max(known, _LITTLE)
         else:
             worth[n] = shares[0] - shares[1] - 0.25 * (shares[2] + shares[3])
     return worth
