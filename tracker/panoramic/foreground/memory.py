@@ -103,7 +103,7 @@ def _find(columns: Linear, rows: Linear, height: int, corners: NDArray[np.uint32
         a = a - width if a >= width else a
         b = a + 1 if a + 1 < width else 0
         top = np.int32(row) * width
-        low = min(np.int32(row) + 1, height - 1) * width
+        low = top + width if top + width < height * width else top
         corners[0, u], corners[1, u] = np.uint32(top + a), np.uint32(top + b)
         corners[2, u], corners[3, u] = np.uint32(low + a), np.uint32(low + b)
 

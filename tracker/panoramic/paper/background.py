@@ -108,5 +108,5 @@ def _smooth(mask: NDArray[np.uint8], median_px: int) -> Mask:
     if median_px > 1:
         half = median_px // 2
         ring = np.hstack([mask[:, -half:], mask, mask[:, :half]])
-        mask = cv2.medianBlur(ring, median_px)[:, half:-half]
+        return cv2.medianBlur(ring, median_px)[:, half:-half].astype(np.bool_)
     return mask.astype(np.bool_)
