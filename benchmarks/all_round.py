@@ -8,27 +8,32 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import islice
 from statistics import median
 from typing import Any, Final
 
 import click
+import cv2
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks.peers.detectors import Hog
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import Tick, closed_loop
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import Tick, closed_loop, make_frame
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.scenarios.running.engine.workers import Workers, chosen_workers
+from peopleboy.scenarios.studies.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.floor import Places, floor_squares
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
+from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
@@ -43,6 +48,17 @@ ONE_IMAGE: Final = "one image"
 
 ROUND: Final = "panoramic_round"
 FOLLOWED: Final = "anna"
+
+TIMED: Final = (
+    ("room_long", "panoramic-paper"),
+    ("panoramic_crossing", "panoramic"),
+    ("panoramic_moving", "panoramic"),
+)
+"""What is timed beside HOG: the paper's tracker, and ours on a robot that stands and one that drives."""
+_TIMED_FRAMES: Final = 600
+_HOG_EVERY: Final = 15
+_HOG_MS: Final = 80.0
+"""What HOG takes where times are scaled to: one machine's milliseconds say little of another's."""
 
 
 @dataclass(slots=True)
@@ -279,6 +295,9 @@ def main(scenarios: tuple[str, ...], seeds: int, laps: int, first: int, workers:
     for scenario, tracker, chosen in plan:
         table.add_row(scenario, tracker, *_figures([found[Play(scenario, tracker, seed)] for seed in chosen]))
     Console(width=140).print(table)
+    for scenario, tracker in TIMED:
+        if not scenarios or scenario in scenarios:
+            _print_time(scenario, tracker, first)
     if runs := [found[task] for task in tasks if task.scenario == ROUND]:
         _print_laps(runs)
 
@@ -300,6 +319,32 @@ def _figures(runs: Sequence[Played]) -> Iterable[str]:
     yield f"{scores.floor.inside:.1f}"
     yield f"{scores.floor.nees:.2f}"
     yield f"{median(run.update_ms for run in runs):.1f}"
+
+
+def time_beside_hog(scenario: str, tracker: str, seed: int) -> tuple[float, float]:
+    """Give the median times of a tracker's updates with a new panorama and of HOG, in turns [ms]."""
+    timed, hog = _Timed(_make(tracker, seed)), Hog(uses_colour=True)
+    loaded = load_scenario(scenario).mounting((*timed.cameras, COLOUR, THERMAL))
+    calibrations = calibrations_of(loaded.world(seed).robot.cameras)
+    before, hog_ms = None, []
+    cv2.setNumThreads(1)
+    for number, (_, seen) in enumerate(islice(blind_drive(loaded, seed), _TIMED_FRAMES)):
+        frame, before = make_frame(seen, calibrations, before), seen.odometry
+        timed.update(frame)
+        if number % _HOG_EVERY == 0:
+            drawn = replace(frame, images={name: frame.images[name] for name in (COLOUR, THERMAL)})
+            start = time.process_time()
+            hog.detect(drawn)
+            hog_ms.append(1000.0 * (time.process_time() - start))
+    return median(timed.spent_ms[1:]), median(hog_ms[1:])
+
+
+def _print_time(scenario: str, tracker: str, seed: int) -> None:
+    spent_ms, hog_ms = time_beside_hog(scenario, tracker, seed)
+    click.echo(
+        f"{scenario} {tracker}: {spent_ms:.2f} ms an image beside HOG's {hog_ms:.1f}, "
+        f"{_HOG_MS / hog_ms * spent_ms:.1f} where that takes {_HOG_MS:.0f}"
+    )
 
 
 def _print_laps(runs: Sequence[Played]) -> None:

@@ -71,6 +71,12 @@ class PanoramaCalibration:
         u = (0.5 - np.arctan2(y, x) / math.tau) * self.width - 0.5
         return np.stack([u, self.height - 0.5 - radius], axis=1)
 
+    def row(self, distance_m: float, height_m: float) -> float:
+        """Map what is so far away and so high in any direction to its row; NaN as `project` says."""
+        above = self.axis_rad - math.atan2(self.ring_height_m - height_m, distance_m - self.ring_radius_m)
+        is_before = abs(above) < math.pi / 2.0
+        return self.height - 0.5 - self.focal_px * math.tan(above) if is_before else math.nan
+
     def rays(self, pixels: Floats) -> Floats:
         """Give the unit directions (N, 3) in the robot's frame in which pixels (N, 2) look.
 

@@ -23,7 +23,7 @@ from peopleboy.scenarios.studies.foreground_learning.masked_film import MaskedFi
 from peopleboy.scenarios.studies.foreground_learning.play_films import collect, study, watch
 from peopleboy.scenarios.studies.foreground_learning.teach_network import Adam, first_network
 from peopleboy.tracker.frame import PANORAMA, Calibration
-from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
+from peopleboy.tracker.panoramic.foreground.layers import BLOCK
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 

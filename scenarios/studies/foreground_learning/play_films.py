@@ -14,7 +14,8 @@ from peopleboy.scenarios.studies.foreground_learning.masked_film import MaskedFi
 from peopleboy.scenarios.studies.foreground_learning.teach_network import Adam
 from peopleboy.tracker.frame import Calibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
-from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK, OUTPUTS
+from peopleboy.tracker.panoramic.foreground.layers import BLOCK
+from peopleboy.tracker.panoramic.foreground.mask_network import OUTPUTS
 from peopleboy.tracker.panoramic.foreground.network_file import ForegroundModel
 
 Linear = NDArray[np.float32]

@@ -9,7 +9,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.panoramic.foreground.mask_network import DILATIONS, INPUTS, OUTPUTS, MaskNetwork
+from peopleboy.tracker.panoramic.foreground.layers import DILATIONS
+from peopleboy.tracker.panoramic.foreground.mask_network import INPUTS, OUTPUTS, MaskNetwork
 
 Linear = NDArray[np.float32]
 Weights = dict[str, Linear]

@@ -12,33 +12,38 @@ from peopleboy.tracker.frame import Calibration
 
 Linear = NDArray[np.float32]
 
-STEP_M: Final = 0.01
 FARTHEST_M: Final = 40.0
+_THREE_M: Final = np.array([1.0, 2.0, 5.0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloorRows:
-    """The floor round the robot as the rows show it. Arrays are read-only.
+    """The floor round the robot as the rows show it.
+
+    Each column is a pinhole camera's, so that the row of what is d away is (a d + b) / (d + c).
 
     Attributes:
-        distance_m: (H,) of the floor seen in the middle of each row [m]; `FARTHEST_M` where there is none.
-        row_at: (N,) row of the floor at 0, 1, 2, ... times `STEP_M`.
+        distance_m: (H,) of the floor seen in the middle of each row [m], read-only; `FARTHEST_M` where there
+            is none.
+        horizon: a, the row of what is infinitely far away.
+        slope: b [m].
+        offset_m: c [m].
     """
 
     distance_m: Linear
-    row_at: Linear
+    horizon: float
+    slope: float
+    offset_m: float
 
 
 def floor_rows(calibration: Calibration, height: int) -> FloorRows:
     """Tell how the floor lies in the rows of a panorama with this calibration."""
-    ahead = np.arange(0.0, FARTHEST_M + STEP_M, STEP_M)
-    places = np.stack([ahead, np.zeros_like(ahead), np.zeros_like(ahead)], axis=1)
-    row_at = np.nan_to_num(calibration.project(places)[:, 1], nan=10.0 * height)
-    distance = np.interp(np.arange(height), row_at[::-1], ahead[::-1])
-    return FloorRows(distance_m=_frozen(distance), row_at=_frozen(row_at))
-
-
-def _frozen(array: NDArray[np.float64]) -> Linear:
-    kept = array.astype(np.float32)
-    kept.setflags(write=False)
-    return kept
+    zero, one = np.zeros(3), np.ones(3)
+    rows = calibration.project(np.stack([_THREE_M, zero, zero], axis=1))[:, 1]
+    lines = np.stack([_THREE_M, one, -rows], axis=1)
+    horizon, slope, offset = np.linalg.solve(lines, rows * _THREE_M).tolist()
+    below = np.arange(height) - horizon
+    nearest = np.maximum(below, 1e-6)  # rows above the horizon show no floor
+    distance = np.clip((slope - offset * (nearest + horizon)) / nearest, 0.0, FARTHEST_M).astype(np.float32)
+    distance.setflags(write=False)
+    return FloorRows(distance_m=distance, horizon=horizon, slope=slope, offset_m=offset)

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import Calibration, Odometry
 from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows, floor_rows
-from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
-from peopleboy.tracker.panoramic.foreground.memory import compare, first_memory, learn, move_along, novelty
+from peopleboy.tracker.panoramic.foreground.memory import compare, first_memory, learn, move_along
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
 from peopleboy.tracker.panoramic.panorama_view import view_of
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
@@ -33,6 +32,7 @@ class Foreground:
     Attributes:
         network: that judges.
         squares: (INPUTS, H / BLOCK, W / BLOCK) what it was told about the last image.
+        novelty: (H, W) how unlike the background each pixel of that is, 0..1; less if that is young.
     """
 
     def __init__(self, model: ForegroundModel | None = None) -> None:
@@ -40,6 +40,7 @@ class Foreground:
         model = shipped_model() if model is None else model
         self.network = model.network
         self.squares: Linear = np.zeros((0, 0, 0), np.float32)
+        self.novelty: Linear = np.zeros((0, 0), np.float32)
         self._view = model.view
         self._calibration: Calibration | None = None
         self._rows: FloorRows | None = None
@@ -66,7 +67,7 @@ class Foreground:
         """
         floor = self._floor(calibration, image)
         memory = self._brought_along(image, odometry, floor)
-        self.squares = compare(image, memory, BLOCK)
+        self.squares, self.novelty = compare(image, memory)
         told = self.network.probability(self.squares)
         learn(memory, image, told, max(time_s - self._time_s, _SHORTEST_S))
         self._memory, self._time_s = memory, time_s
@@ -78,12 +79,7 @@ class Foreground:
         shape = (self._view.height_px, self._view.width_px, 3)
         if self._memory is None:
             return np.zeros(shape, np.uint8)
-        return np.clip(np.rint(self._memory[..., :3]), 0, 255).astype(np.uint8)
-
-    @property
-    def novelty(self) -> Linear:
-        """How unlike the background each pixel (H, W) of the last image is, 0..1; less if that is young."""
-        return novelty(self.squares)
+        return np.clip(np.rint(self._memory[:3].transpose(1, 2, 0)), 0, 255).astype(np.uint8)
 
     def _brought_along(self, image: NDArray[np.uint8], odometry: Odometry | None, floor: FloorRows) -> Linear:
         """Bring the background to where the robot is now, as soon as it makes a difference."""

@@ -10,13 +10,17 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.panoramic.foreground.floor_rows import STEP_M, FloorRows
+from peopleboy.tracker.panoramic.foreground.elementary import logarithm
+from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows
+from peopleboy.tracker.panoramic.foreground.layers import BLOCK
 
 Linear = NDArray[np.float32]
+Pair = tuple[float, float]
+Triple = tuple[float, float, float]
 
 CHANNELS: Final = 6
 VARIANCE, AGE, DOUBT = 3, 4, 5
-"""Channels of a memory after red, green and blue [grey levels]: their variance [grey levels squared], for how
+"""Planes of a memory after red, green and blue [grey levels]: their variance [grey levels squared], for how
 long it has been seen [s], and by how many columns it may lie wrong if it is no floor [px]."""
 
 FIRST_VARIANCE: Final = 16.0
@@ -24,67 +28,104 @@ LEAST_VARIANCE: Final = 2.0
 _TAU_S: Final = 2.0  # a background that is seen adapts within this time,
 _VARIANCE_TAU_S: Final = 8.0
 _ABSORB_TAU_S: Final = 40.0  # and one that people seem to hide within this.
+_OLDEST_S: Final = 60.0
+_UNLIKE_FROM, _UNLIKE_TO = 0.8, 2.1  # two standard deviations, and eight
 
 
 def first_memory(image: NDArray[np.uint8]) -> Linear:
-    """Begin with an RGB image (H, W, 3), which may show people: (H, W, 6) memory of age 0."""
-    memory = np.zeros((*image.shape[:2], CHANNELS), np.float32)
-    memory[..., :VARIANCE] = image
-    memory[..., VARIANCE] = FIRST_VARIANCE
+    """Begin with an RGB image (H, W, 3), which may show people: (6, H, W) memory of age 0."""
+    memory = np.zeros((CHANNELS, *image.shape[:2]), np.float32)
+    memory[:VARIANCE] = image.transpose(2, 0, 1)
+    memory[VARIANCE] = FIRST_VARIANCE
     return memory
 
 
 def move_along(memory: Linear, odometry: Odometry, floor: FloorRows) -> Linear:
-    """Bring a memory (H, W, 6) to where the robot is now, as if all it shows were floor.
+    """Bring a memory (6, H, W) to where the robot is now, as if all it shows were floor.
 
     What was not in the image before has age 0. Turning shifts columns, whatever they show.
     """
-    return _moved(
-        memory, odometry.advance_m, odometry.aside_m, odometry.turn_rad, floor.distance_m, floor.row_at
-    )
+    way, row = (odometry.advance_m, odometry.aside_m), (floor.horizon, floor.slope, floor.offset_m)
+    return _moved(memory, way, odometry.turn_rad, floor.distance_m, row)
 
 
-@njit(cache=True, fastmath=True)
-def _moved(
-    memory: Linear, advance: float, aside: float, turn: float, distance: Linear, row_at: Linear
-) -> Linear:
-    height, width, _ = memory.shape
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _moved(memory: Linear, by_m: Pair, turn: float, distance: Linear, row_of: Triple) -> Linear:
+    _, height, width = memory.shape
+    advance, aside = by_m
     moved = np.empty_like(memory)
     way = math.hypot(advance, aside)
-    per_rad = width / (2.0 * math.pi)
-    shift = -turn * per_rad
+    per_rad = width / math.tau
     angle = math.pi - (np.arange(width) + 0.5) / per_rad + turn
-    along = advance * np.cos(angle) + aside * np.sin(angle)
-    across = aside * np.cos(angle) - advance * np.sin(angle)
+    along = (advance * np.cos(angle) + aside * np.sin(angle)).astype(np.float32)
+    across = (aside * np.cos(angle) - advance * np.sin(angle)).astype(np.float32)
+    columns, rows = np.empty(width, np.float32), np.empty(width, np.float32)
+    corners, shares = np.empty((4, width), np.uint32), np.empty((2, width), np.float32)
     for v in range(height):
+        columns[:], rows[:] = np.float32(-turn * per_rad), np.float32(v)
+        if way > 0.0:
+            _look_up(columns, rows, distance[v], along, across, row_of)
+        _find(columns, rows, height, corners, shares)
+        _interpolate(memory, corners, shares, moved, v)
+        doubt, age, more = moved[DOUBT, v], moved[AGE, v], np.float32(way / distance[v] * per_rad)
         for u in range(width):
-            off, row = np.float32(shift), np.float32(v)
-            if way > 0.0:
-                out = distance[v] + along[u]
-                slope = across[u] / max(out, 0.1)
-                off = np.float32(shift - per_rad * (slope - slope * slope * slope / 3.0))  # of the arctangent
-                at = min(math.sqrt(out * out + across[u] * across[u]) / STEP_M, len(row_at) - 1.001)
-                k = int(at)
-                row = row_at[k] + np.float32(at - k) * (row_at[k + 1] - row_at[k])
-            is_seen = -0.5 <= row <= height - 0.5
-            row = min(max(row, np.float32(0.0)), np.float32(height - 1))
-            left, top = math.floor(off), int(row)
-            right_share, low_share = off - np.float32(left), row - np.float32(top)
-            low = min(top + 1, height - 1)
-            a = (u + int(left)) % width
-            b = a + 1 if a + 1 < width else 0
-            for c in range(CHANNELS):
-                upper = memory[top, a, c] + right_share * (memory[top, b, c] - memory[top, a, c])
-                lower = memory[low, a, c] + right_share * (memory[low, b, c] - memory[low, a, c])
-                moved[v, u, c] = upper + low_share * (lower - upper)
-            moved[v, u, DOUBT] += way / distance[v] * per_rad
-            if not is_seen:
-                moved[v, u, AGE] = 0.0
+            doubt[u] += more
+            if rows[u] < np.float32(-0.5) or rows[u] > np.float32(height - 0.5):
+                age[u] = np.float32(0.0)
     return moved
 
 
-@njit(cache=True, fastmath=True)
-def compare(image: NDArray[np.uint8], memory: Linear, block: int) -> Linear:
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _look_up(
+    columns: Linear, rows: Linear, distance: np.float32, along: Linear, across: Linear, row_of: Triple
+) -> None:
+    """Tell by how many columns (W,) more the floor of a row lay aside, and in which rows (W,)."""
+    per_rad = np.float32(len(columns) / math.tau)
+    a, b, c = np.float32(row_of[0]), np.float32(row_of[1]), np.float32(row_of[2])
+    for u in range(len(columns)):
+        out = distance + along[u]
+        slope = across[u] / max(out, np.float32(0.1))
+        columns[u] -= per_rad * (slope - slope * slope * slope * np.float32(1.0 / 3.0))  # of the arctangent
+        away = math.sqrt(out * out + across[u] * across[u])
+        rows[u] = (a * away + b) / (away + c)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _find(columns: Linear, rows: Linear, height: int, corners: NDArray[np.uint32], shares: Linear) -> None:
+    """Tell which four pixels (4, W) of a plane places lie between, and how far right and low (2, W)."""
+    width = len(columns)
+    wide, bottom = np.float32(width), np.float32(height - 1)
+    for u in range(width):
+        left = np.floor(columns[u])
+        row = min(max(rows[u], np.float32(0.0)), bottom)
+        shares[0, u], shares[1, u] = columns[u] - left, row - np.floor(row)
+        a = np.int32(left - wide * np.floor(left / wide)) + np.int32(u)
+        a = a - width if a >= width else a
+        b = a + 1 if a + 1 < width else 0
+        top = np.int32(row) * width
+        low = top + width if top + width < height * width else top
+        corners[0, u], corners[1, u] = np.uint32(top + a), np.uint32(top + b)
+        corners[2, u], corners[3, u] = np.uint32(low + a), np.uint32(low + b)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _interpolate(memory: Linear, corners: NDArray[np.uint32], shares: Linear, moved: Linear, v: int) -> None:
+    """Read all planes between pixels, and put that into line v."""
+    top_left, top_right, low_left, low_right = corners[0], corners[1], corners[2], corners[3]
+    right, low = shares[0], shares[1]
+    flat, plane = memory.reshape(-1), np.uint64(memory.shape[1] * memory.shape[2])
+    for u in range(len(right)):
+        i, j = np.uint64(top_left[u]), np.uint64(top_right[u])
+        k, l = np.uint64(low_left[u]), np.uint64(low_right[u])  # noqa: E741
+        for channel in range(CHANNELS):
+            a, b, c, d = flat[i], flat[j], flat[k], flat[l]
+            upper = a + right[u] * (b - a)
+            moved[channel, v, u] = upper + low[u] * (c + right[u] * (d - c) - upper)
+            i, j, k, l = i + plane, j + plane, k + plane, l + plane  # noqa: E741
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def compare(image: NDArray[np.uint8], memory: Linear) -> tuple[Linear, Linear]:
     """Tell of each pixel of an image (H, W, 3) what it looks like, and how its memory does.
 
     These are its colour, by how many standard deviations it differs from the memory (their logarithm), and
@@ -93,48 +134,90 @@ def compare(image: NDArray[np.uint8], memory: Linear, block: int) -> Linear:
     tells.
 
     Returns:
-        (block * block * 6, H / block, W / block) the features by squares of pixels, a square's row by row.
+        squares: (BLOCK * BLOCK * 6, H / BLOCK, W / BLOCK) these features by squares of pixels, a square's row
+            by row.
+        novelty: (H, W) how unlike its background each pixel is, 0..1. It is 0 within two standard deviations,
+            and 1 from eight on, or less where the background is young.
     """
-    height, width, _ = image.shape
-    told = np.empty((block, block, 6, height // block, width // block), np.float32)
+    _, height, width = memory.shape
+    squares = np.empty((BLOCK * BLOCK * CHANNELS, height // BLOCK, width // BLOCK), np.float32)
+    novelty = np.empty((height, width), np.float32)
+    colours, features = np.empty((3, width), np.float32), np.empty((CHANNELS, width), np.float32)
+    ring, square, steep = (
+        np.empty(width + 2, np.float32),
+        np.empty(width, np.float32),
+        np.empty(width, np.float32),
+    )
     for v in range(height):
-        above, below = max(v - 1, 0), min(v + 1, height - 1)
-        for u in range(width):
-            left, right = u - 1 if u > 0 else width - 1, u + 1 if u < width - 1 else 0
-            square, steep = np.float32(0.0), np.float32(0.0)
-            pixel = told[v % block, u % block, :, v // block, u // block]
-            for c in range(3):
-                seen = np.float32(image[v, u, c])
-                pixel[c] = (seen - np.float32(128.0)) / np.float32(64.0)
-                off = seen - memory[v, u, c]
-                square += off * off
-                across = memory[v, right, c] - memory[v, left, c]
-                along = memory[below, u, c] - memory[above, u, c]
-                steep += across * across + along * along
-            age, doubt = memory[v, u, AGE], memory[v, u, DOUBT]
-            spread = np.float32(3.0) * memory[v, u, VARIANCE] + np.float32(0.025) * steep
-            pixel[3] = np.float32(0.5) * np.log(np.float32(1.0) + square / spread)
-            pixel[4] = age / (np.float32(1.0) + age)
-            pixel[5] = doubt / (np.float32(1.0) + doubt)
-    return told.reshape(block * block * 6, height // block, width // block)
+        _split(image[v], colours)
+        square[:], steep[:] = np.float32(0.0), np.float32(0.0)
+        for c in range(3):
+            _close(memory[c, v], ring)
+            above, below = memory[c, max(v - 1, 0)], memory[c, min(v + 1, height - 1)]
+            _differ(colours[c], ring, above, below, square, steep, features[c])
+        _judge(memory, v, square, steep, features[3:], novelty[v])
+        _cut(features, v, squares)
+    return squares, novelty
+
+
+@njit(cache=True, fastmath=True)
+def _split(line: NDArray[np.uint8], colours: Linear) -> None:
+    """Bring a line of pixels (W, 3) apart by colours (3, W)."""
+    red, green, blue = colours[0], colours[1], colours[2]
+    pixels, one = line.reshape(-1), np.uint64(1)
+    for u in range(np.uint64(len(line))):
+        at = np.uint64(3) * u
+        red[u], green[u], blue[u] = pixels[at], pixels[at + one], pixels[at + one + one]
 
 
 @njit(cache=True)
-def novelty(squares: Linear) -> Linear:
-    """Tell by the features that `compare` gives how unlike its background each pixel (H, W) is, 0..1.
+def _close(line: Linear, ring: Linear) -> None:
+    """Copy a line (W,) and the pixel beyond each of its ends (W + 2,)."""
+    width = len(line)
+    ring[0], ring[width + 1] = line[width - 1], line[0]
+    for u in range(width):
+        ring[u + 1] = line[u]
 
-    It is 0 within two standard deviations, and 1 from eight on, or less where the background is young.
-    """
-    block = round(math.sqrt(squares.shape[0] // 6))
-    _, rows, columns = squares.shape
-    told = np.empty((rows * block, columns * block), np.float32)
-    low, high = np.float32(0.8), np.float32(2.1)
-    for v in range(rows * block):
-        for u in range(columns * block):
-            first = ((v % block) * block + u % block) * 6
-            unlike, age = squares[first + 3 : first + 5, v // block, u // block]
-            told[v, u] = age * min(max((unlike - low) / (high - low), np.float32(0.0)), np.float32(1.0))
-    return told
+
+@njit(cache=True, fastmath=True)
+def _cut(features: Linear, v: int, squares: Linear) -> None:
+    """Cut features (6, W) of line v to squares."""
+    for channel in range(CHANNELS):
+        feature = features[channel]
+        first, row = v % BLOCK * BLOCK * CHANNELS + channel, v // BLOCK
+        told0, told1 = squares[first, row], squares[first + CHANNELS, row]
+        told2, told3 = squares[first + 2 * CHANNELS, row], squares[first + 3 * CHANNELS, row]
+        for u in range(np.uint64(len(told0))):
+            at = np.uint64(BLOCK) * u
+            told0[u], told1[u] = feature[at], feature[at + np.uint64(1)]
+            told2[u], told3[u] = feature[at + np.uint64(2)], feature[at + np.uint64(3)]
+
+
+@njit(cache=True, fastmath=True)
+def _differ(
+    seen: Linear, ring: Linear, above: Linear, below: Linear, square: Linear, steep: Linear, feature: Linear
+) -> None:
+    """Add up how a line's colour (W,) differs from what is known, a ring (W + 2), and how steep that is."""
+    left, middle, right = ring[:-2], ring[1:-1], ring[2:]
+    for u in range(len(seen)):
+        off = seen[u] - middle[u]
+        square[u] += off * off
+        over, along = right[u] - left[u], below[u] - above[u]
+        steep[u] += over * over + along * along
+        feature[u] = (seen[u] - np.float32(128.0)) / np.float32(64.0)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _judge(memory: Linear, v: int, square: Linear, steep: Linear, features: Linear, novelty: Linear) -> None:
+    """Judge the differences of line v by what is known of it: three features, and how new it is."""
+    variance, age, doubt = memory[VARIANCE, v], memory[AGE, v], memory[DOUBT, v]
+    off, old, doubtful = features[0], features[1], features[2]
+    one, low, wide = np.float32(1.0), np.float32(_UNLIKE_FROM), np.float32(_UNLIKE_TO - _UNLIKE_FROM)
+    for u in range(len(square)):
+        spread = np.float32(3.0) * variance[u] + np.float32(0.025) * steep[u]
+        unlike, share = np.float32(0.5) * logarithm(one + square[u] / spread), age[u] / (one + age[u])
+        off[u], old[u], doubtful[u] = unlike, share, doubt[u] / (one + doubt[u])
+        novelty[u] = share * min(max((unlike - low) / wide, np.float32(0.0)), one)
 
 
 @njit(cache=True, fastmath=True)
@@ -144,22 +227,52 @@ def learn(memory: Linear, image: NDArray[np.uint8], foreground: Linear, passed_s
     Time is in seconds, so that the rate of images does not matter. What is new is taken over at once, and
     a mean over all that was seen as long as it is younger than the time in which it adapts.
     """
-    height, width, _ = image.shape
-    absorbed = 1.0 - math.exp(-passed_s / _ABSORB_TAU_S)
+    _, height, width = memory.shape
+    colours = np.empty((3, width), np.float32)
+    clear, rate = np.empty(width, np.float32), np.empty(width, np.float32)
+    square = np.empty(width, np.float32)
     for v in range(height):
-        for u in range(width):
-            clear = (1.0 - foreground[v, u]) ** 4
-            age = memory[v, u, AGE]
-            rate = max(passed_s / (age + passed_s), 1.0 - math.exp(-passed_s / _TAU_S))
-            if age > 0.0:
-                rate = clear * rate + (1.0 - clear) * absorbed
-            square = 0.0
-            for c in range(3):
-                off = image[v, u, c] - memory[v, u, c]
-                square += off * off
-                memory[v, u, c] += np.float32(rate * off)
-            slowly = clear * min(rate, max(passed_s / (age + 1.0), passed_s / _VARIANCE_TAU_S))
-            variance = memory[v, u, VARIANCE] + slowly * (square / 3.0 - memory[v, u, VARIANCE])
-            memory[v, u, VARIANCE] = max(variance, np.float32(LEAST_VARIANCE))
-            memory[v, u, AGE] = min(age + clear * passed_s, np.float32(60.0))
-            memory[v, u, DOUBT] *= np.float32(1.0 - rate)
+        _split(image[v], colours)
+        _set_rates(foreground[v], memory[AGE, v], np.float32(passed_s), clear, rate)
+        square[:] = np.float32(0.0)
+        for c in range(3):
+            _approach(memory[c, v], colours[c], rate, square)
+        _grow_old(memory, v, square, clear, rate, np.float32(passed_s))
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _set_rates(foreground: Linear, age: Linear, passed_s: np.float32, clear: Linear, rate: Linear) -> None:
+    """Tell how surely a line's pixels are no person, and what share of them is taken over."""
+    one = np.float32(1.0)
+    absorbed = np.float32(1.0 - math.exp(-passed_s / _ABSORB_TAU_S))
+    least = np.float32(1.0 - math.exp(-passed_s / _TAU_S))
+    for u in range(len(age)):
+        free = (one - foreground[u]) * (one - foreground[u])
+        clear[u] = free = free * free
+        share = max(passed_s / (age[u] + passed_s), least)
+        rate[u] = free * share + (one - free) * absorbed if age[u] > np.float32(0.0) else share
+
+
+@njit(cache=True, fastmath=True)
+def _approach(known: Linear, seen: Linear, rate: Linear, square: Linear) -> None:
+    """Bring what is known of a line's colour nearer to what is seen, and add up by how much it was off."""
+    for u in range(len(known)):
+        off = seen[u] - known[u]
+        square[u] += off * off
+        known[u] += rate[u] * off
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _grow_old(
+    memory: Linear, v: int, square: Linear, clear: Linear, rate: Linear, passed_s: np.float32
+) -> None:
+    """Bring variance, age and doubt of line v up to date."""
+    variance, age, doubt = memory[VARIANCE, v], memory[AGE, v], memory[DOUBT, v]
+    one, steady = np.float32(1.0), np.float32(passed_s / _VARIANCE_TAU_S)
+    least, oldest = np.float32(LEAST_VARIANCE), np.float32(_OLDEST_S)
+    for u in range(len(square)):
+        slowly = clear[u] * min(rate[u], max(passed_s / (age[u] + one), steady))
+        now = variance[u] + slowly * (square[u] * np.float32(1.0 / 3.0) - variance[u])
+        variance[u] = max(now, least)
+        age[u] = min(age[u] + clear[u] * passed_s, oldest)
+        doubt[u] *= one - rate[u]

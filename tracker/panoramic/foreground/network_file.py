@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.panoramic.foreground.layers import BLOCK, DILATIONS
 from peopleboy.tracker.panoramic.foreground.mask_network import (
-    BLOCK,
-    DILATIONS,
     INPUTS,
     OUTPUTS,
     TOGETHER,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
@@ -66,8 +67,8 @@ class Background:
         if image.shape[:2] != self.mean.shape[:2]:
             (height, width), (rows, columns) = image.shape[:2], self.mean.shape[:2]
             raise BadInput(f"panorama is {width}x{height}, but its background {columns}x{rows}")
-        differs = np.abs(_planes(image, self.subtraction) - self.mean) > self.threshold
-        return _smooth(np.asarray(differs.any(axis=2)), self.subtraction.median_px)
+        differs = _differs(_planes(image, self.subtraction), self.mean, self.threshold)
+        return _smooth(differs, self.subtraction.median_px)
 
 
 def learn_background(empty: Sequence[NDArray[np.uint8]], subtraction: Subtraction = CLEAN) -> Background:
@@ -75,7 +76,7 @@ def learn_background(empty: Sequence[NDArray[np.uint8]], subtraction: Subtractio
 
     Source: OMNIVIS 2003, section 4.2.
     """
-    planes = np.stack([_planes(image, subtraction) for image in empty])
+    planes = np.stack([_planes(image, subtraction) for image in empty]).astype(np.float64)
     mean, count = planes.mean(axis=0), len(planes)
     differences = np.abs(planes - mean) * (count / (count - 1))  # from the mean of all others
     if subtraction.deviations is None:
@@ -85,15 +86,27 @@ def learn_background(empty: Sequence[NDArray[np.uint8]], subtraction: Subtractio
     return Background(mean=mean, threshold=threshold, subtraction=subtraction)
 
 
-def _planes(image: NDArray[np.uint8], subtraction: Subtraction) -> Floats:
+def _planes(image: NDArray[np.uint8], subtraction: Subtraction) -> NDArray[np.uint8]:
     planes = image if subtraction.is_colour else cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)[..., None]
-    return planes.astype(np.float64)
+    return np.ascontiguousarray(planes)
 
 
-def _smooth(mask: Mask, median_px: int) -> Mask:
+@njit(cache=True)
+def _differs(planes: NDArray[np.uint8], mean: Floats, threshold: Floats) -> NDArray[np.uint8]:
+    """Give 1 where (H, W) a plane of an image (H, W, C) differs from the mean by more than its threshold."""
+    height, width, count = planes.shape
+    differs = np.zeros((height, width), np.uint8)
+    for v in range(height):
+        for u in range(width):
+            for c in range(count):
+                differs[v, u] |= abs(planes[v, u, c] - mean[v, u, c]) > threshold[c]
+    return differs
+
+
+def _smooth(mask: NDArray[np.uint8], median_px: int) -> Mask:
     """Take the median over squares that go on across the seam."""
-    if median_px == 1:
-        return mask
-    half = median_px // 2
-    ring = np.pad(mask.astype(np.uint8), ((0, 0), (half, half)), mode="wrap")
-    return np.asarray(cv2.medianBlur(ring, median_px)[:, half:-half], np.bool_)
+    if median_px > 1:
+        half = median_px // 2
+        ring = np.hstack([mask[:, -half:], mask, mask[:, :half]])
+        return cv2.medianBlur(ring, median_px)[:, half:-half].astype(np.bool_)
+    return mask.astype(np.bool_)

@@ -27,17 +27,14 @@ LAYERS: Final = 3
 
 PATCH: Final = LAYERS * ACROSS * UP
 
-MARGIN_PX: Final = 120
-"""By how many columns sums go on beyond either side of the image."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FigureMap:
     """What one panorama shows of people, ready to be asked at any place.
 
     Attributes:
-        sums: (H + 1, W + 2 MARGIN_PX + 1, LAYERS) over the pixels above and left of each corner, around the
-            seam; of a pixel that is covered nothing counts.
+        sums: (H + 1, W + 1, LAYERS) over the pixels above and left of each corner; of a pixel that is covered
+            nothing counts.
         calibration: of the camera.
     """
 
@@ -68,23 +65,41 @@ class FigureMap:
 @njit(cache=True, nogil=True)
 def _summed(people: Map, new: Map, covered: Map) -> Map:
     height, width = people.shape
-    wide = width + 2 * MARGIN_PX
-    sums = np.empty((height + 1, wide + 1, LAYERS), np.float32)
-    sums[0] = 0.0
-    for v in range(height):
-        of_people, of_new, of_known = np.float32(0.0), np.float32(0.0), np.float32(0.0)
-        sums[v + 1, 0] = 0.0
-        u = width - 1 - (MARGIN_PX - 1) % width
-        for x in range(1, wide + 1):
-            known = np.float32(1.0) - covered[v, u]
-            of_people += people[v, u] * known
-            of_new += new[v, u] * known
-            of_known += known
-            sums[v + 1, x, PEOPLE] = sums[v, x, PEOPLE] + of_people
-            sums[v + 1, x, NEW] = sums[v, x, NEW] + of_new
-            sums[v + 1, x, KNOWN] = sums[v, x, KNOWN] + of_known
-            u = u + 1 if u + 1 < width else 0
+    sums = np.empty((height + 1, width + 1, LAYERS), np.float32)
+    sums[0], sums[:, 0] = np.float32(0.0), np.float32(0.0)
+    columns, more = np.zeros((LAYERS, width), np.float32), np.zeros((LAYERS, width), np.float32)
+    for v in range(0, height, 2):
+        _add_down(people[v], new[v], covered[v], more, columns)
+        if v + 1 < height:
+            _add_down(people[v + 1], new[v + 1], covered[v + 1], columns, more)
+            _add_along(columns, more, sums[v + 1], sums[v + 2])
+        else:
+            _add_along(columns, columns, sums[v + 1], sums[v + 1])
     return sums
+
+
+@njit(cache=True, nogil=True, fastmath={"contract"})
+def _add_down(people: Map, new: Map, covered: Map, above: Map, columns: Map) -> None:
+    """Add a row's pixels (W,) to what each column summed up to above (LAYERS, W)."""
+    of_people, of_new, of_known = columns[PEOPLE], columns[NEW], columns[KNOWN]
+    people_above, new_above, known_above = above[PEOPLE], above[NEW], above[KNOWN]
+    for u in range(len(people)):
+        known = np.float32(1.0) - covered[u]
+        of_people[u] = people_above[u] + people[u] * known
+        of_new[u] = new_above[u] + new[u] * known
+        of_known[u] = known_above[u] + known
+
+
+@njit(cache=True, nogil=True)
+def _add_along(columns: Map, more: Map, line: Map, below: Map) -> None:
+    """Add up the columns of two rows from the left on, as each step waits for the one before in its row."""
+    a0, b0, c0 = np.float32(0.0), np.float32(0.0), np.float32(0.0)
+    a1, b1, c1 = np.float32(0.0), np.float32(0.0), np.float32(0.0)
+    for u in range(columns.shape[1]):
+        a0, b0, c0 = a0 + columns[0, u], b0 + columns[1, u], c0 + columns[2, u]
+        a1, b1, c1 = a1 + more[0, u], b1 + more[1, u], c1 + more[2, u]
+        line[u + 1, 0], line[u + 1, 1], line[u + 1, 2] = a0, b0, c0
+        below[u + 1, 0], below[u + 1, 1], below[u + 1, 2] = a1, b1, c1
 
 
 @njit(cache=True, nogil=True)
@@ -103,7 +118,6 @@ def _patches(
     corners = np.empty((UP + 1, ACROSS + 1, LAYERS))
     for n in range(len(bearing)):
         middle = (0.5 - bearing[n] / math.tau) * width
-        middle += MARGIN_PX - math.floor(middle / width) * width
         reach = math.atan2(HALF_WIDTH_M, distance[n]) / math.tau * width
         step = 2.0 * reach / ACROSS
         rows = np.empty(UP + 1)
@@ -125,30 +139,36 @@ def _patches(
 
 @njit(cache=True, nogil=True)
 def between(sums: Map, layer: int, left: float, right: float, top: float, bottom: float) -> float:
-    """Add up a layer between corners, which may be inside pixels; columns count from the margin's first."""
+    """Add up a layer between corners, which may be inside pixels, and beyond the seam."""
     lower = _layer_at(sums, layer, right, bottom) - _layer_at(sums, layer, left, bottom)
     return float(lower - _layer_at(sums, layer, right, top) + _layer_at(sums, layer, left, top))
 
 
 @njit(cache=True, nogil=True)
 def _at(sums: Map, x: float, y: float, told: Floats) -> None:
-    """Interpolate sums between corners; beyond the image nothing is added."""
-    x = min(max(x, 0.0), sums.shape[1] - 1.0)
+    """Interpolate sums between corners; above and below the image nothing is added."""
+    width = sums.shape[1] - 1
+    turns = math.floor(x / width)
+    x -= turns * width
     y = min(max(y, 0.0), sums.shape[0] - 1.0)
-    i, j = min(int(x), sums.shape[1] - 2), min(int(y), sums.shape[0] - 2)
+    i, j = min(int(x), width - 1), min(int(y), sums.shape[0] - 2)
     a, b = x - i, y - j
     for layer in range(LAYERS):
-        upper = (1.0 - a) * sums[j, i, layer] + a * sums[j, i + 1, layer]
+        upper = (1.0 - a) * sums[j, i, layer] + a * sums[j, i + 1, layer] + turns * sums[j, width, layer]
         lower = (1.0 - a) * sums[j + 1, i, layer] + a * sums[j + 1, i + 1, layer]
+        lower += turns * sums[j + 1, width, layer]
         told[layer] = (1.0 - b) * upper + b * lower
 
 
 @njit(cache=True, nogil=True)
 def _layer_at(sums: Map, layer: int, x: float, y: float) -> float:
-    x = min(max(x, 0.0), sums.shape[1] - 1.0)
+    width = sums.shape[1] - 1
+    turns = math.floor(x / width)
+    x -= turns * width
     y = min(max(y, 0.0), sums.shape[0] - 1.0)
-    i, j = min(int(x), sums.shape[1] - 2), min(int(y), sums.shape[0] - 2)
+    i, j = min(int(x), width - 1), min(int(y), sums.shape[0] - 2)
     a, b = x - i, y - j
-    upper = (1.0 - a) * sums[j, i, layer] + a * sums[j, i + 1, layer]
+    upper = (1.0 - a) * sums[j, i, layer] + a * sums[j, i + 1, layer] + turns * sums[j, width, layer]
     lower = (1.0 - a) * sums[j + 1, i, layer] + a * sums[j + 1, i + 1, layer]
+    lower += turns * sums[j + 1, width, layer]
     return float((1.0 - b) * upper + b * lower)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
@@ -49,17 +50,12 @@ class Motion:
 
         Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 6.2.2.
         """
-        step = np.eye(4)
-        step[0, 2] = step[1, 3] = dt_s
-        noise = np.zeros((4, 4))
-        noise[0, 0] = noise[1, 1] = dt_s**3 / 3.0
-        noise[0, 2] = noise[2, 0] = noise[1, 3] = noise[3, 1] = dt_s**2 / 2.0
-        noise[2, 2] = noise[3, 3] = dt_s
-        return Motion(step @ self.state, step @ self.covariance @ step.T + restlessness * noise)
+        return Motion(*_later(self.state, self.covariance, dt_s, restlessness))
 
     def corrected(self, place_m: Floats, error_m2: Floats) -> Motion:
         """Take in a measured place (2,) [m] with an error of this covariance (2, 2) [m2]."""
-        gain = self.covariance[:, :2] @ np.linalg.inv(self.place_m2 + error_m2)
+        (a, b), (c, d) = (self.place_m2 + error_m2).tolist()
+        gain = self.covariance[:, :2] @ (np.array([[d, -b], [-c, a]]) / (a * d - b * c))
         state = self.state + gain @ (place_m - self.place_m)
         speed = float(np.hypot(state[2], state[3]))
         if speed > FASTEST_M_S:
@@ -72,3 +68,17 @@ class Motion:
         state = self.state.copy()
         state[2:] *= np.exp(-dt_s / tau_s)
         return Motion(state, self.covariance)
+
+
+@njit(cache=True, nogil=True)
+def _later(state: Floats, covariance: Floats, dt_s: float, restlessness: float) -> tuple[Floats, Floats]:
+    state, covariance = state.copy(), covariance.copy()
+    state[:2] += dt_s * state[2:]
+    covariance[:2] += dt_s * covariance[2:]
+    covariance[:, :2] += dt_s * covariance[:, 2:]
+    for k in range(2):
+        covariance[k, k] += restlessness * dt_s**3 / 3.0
+        covariance[k, k + 2] += restlessness * dt_s**2 / 2.0
+        covariance[k + 2, k] += restlessness * dt_s**2 / 2.0
+        covariance[k + 2, k + 2] += restlessness * dt_s
+    return state, covariance

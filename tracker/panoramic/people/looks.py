@@ -41,9 +41,19 @@ class Looks:
 
     def unlikeness(self, other: Looks) -> float:
         """Compare two people: mean squared difference in spreads, 0 for the same; NaN if nothing compares."""
-        away = (self.colours - other.colours) / (_SPREAD * (1.0 + self.colours))
-        is_known = ~np.isnan(away)
-        return float(np.mean(away[is_known] ** 2)) if is_known.any() else math.nan
+        return float(_unlikeness(self.colours, other.colours))
+
+
+@njit(cache=True, nogil=True)
+def _unlikeness(colours: Map, others: Map) -> float:
+    total, known = 0.0, 0
+    for band in range(BANDS):
+        for channel in range(3):
+            own = colours[band, channel]
+            away = (own - others[band, channel]) / (_SPREAD * (1.0 + own))
+            if not math.isnan(away):
+                total, known = total + away * away, known + 1
+    return total / known if known > 0 else math.nan
 
 
 NO_LOOKS: Final = Looks(np.full((BANDS, 3), np.nan, np.float32))
@@ -73,8 +83,7 @@ def look_at(
 
 
 def _rows(distance_m: float, calibration: PanoramaCalibration) -> NDArray[np.float64]:
-    places = np.stack([np.full(BANDS + 1, distance_m), np.zeros(BANDS + 1), BANDS_M], axis=1)
-    return calibration.project(places)[:, 1]
+    return np.array([calibration.row(distance_m, height) for height in BANDS_M.tolist()])
 
 
 @njit(cache=True, nogil=True)

@@ -28,8 +28,10 @@ class Network:
         """Give the outputs (N, outputs) for inputs (N, inputs)."""
         *hidden, (weights, bias) = self.layers
         for inner, inner_bias in hidden:
-            inputs = np.maximum(inputs @ inner + inner_bias, np.float32(0))
-        return np.asarray(inputs @ weights + bias, np.float32)
+            inputs = inputs @ inner
+            inputs += inner_bias
+            np.maximum(inputs, np.float32(0), out=inputs)
+        return inputs @ weights + bias
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,5 +75,8 @@ class PlaceModel:
 
 def with_distance(patches: Map, distance_m: NDArray[np.float64]) -> Map:
     """Append distances (N,), in two forms, to patches (N, PATCH): inputs (N, INPUTS) of the networks."""
-    far = np.minimum(distance_m, _FARTHEST_M) / _FARTHEST_M
-    return np.hstack([patches, np.stack([1.0 / distance_m, far], axis=1)]).astype(np.float32)
+    inputs = np.empty((len(patches), INPUTS), np.float32)
+    inputs[:, :PATCH] = patches
+    inputs[:, PATCH] = 1.0 / distance_m
+    inputs[:, PATCH + 1] = np.minimum(distance_m, _FARTHEST_M) / _FARTHEST_M
+    return inputs

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.people.figure_patch import (
     KNOWN,
-    MARGIN_PX,
     FigureMap,
     Floats,
     Map,
@@ -74,7 +73,7 @@ class Scene:
         top, bottom = max(top + 0.5, 0.0), min(top + height + 0.5, float(self.calibration.height))
         if bottom - top < 1.0:
             return 0.0
-        left = left + 0.5 + 0.25 * width + MARGIN_PX
+        left = left + 0.5 + 0.25 * width
         known = between(self.figures.sums, KNOWN, left, left + 0.5 * width, top, bottom)
         return 1.0 - known / (0.5 * width * (bottom - top))
 
@@ -90,8 +89,7 @@ class Scene:
 def person_box(bearing_rad: float, distance_m: float, calibration: PanoramaCalibration) -> Box:
     """Give the box [px] of somebody upright; one across the seam reaches beyond the right border."""
     width_m, height_m = BODY_M
-    feet_and_head = np.array([[distance_m, 0.0, 0.0], [distance_m, 0.0, height_m]])
-    (_, bottom), (_, top) = calibration.project(feet_and_head).tolist()
+    top, bottom = calibration.row(distance_m, height_m), calibration.row(distance_m, 0.0)
     width = 2.0 * math.atan2(width_m / 2.0, distance_m) / math.tau * calibration.width
     middle = (0.5 - bearing_rad / math.tau) * calibration.width - 0.5
     left = (middle - width / 2.0 + 0.5) % calibration.width - 0.5
@@ -100,11 +98,10 @@ def person_box(bearing_rad: float, distance_m: float, calibration: PanoramaCalib
 
 def _outline(distance_m: float, calibration: PanoramaCalibration) -> tuple[Floats, Floats]:
     """Give rows and half widths [px] of the outline, from its lower end up."""
-    halves, heights = np.array(_OUTLINE_M).T
-    away = np.full(len(heights), distance_m)
-    rows = calibration.project(np.stack([away, np.zeros_like(away), heights], axis=1))[:, 1]
-    lowest = calibration.height + 1.0
-    return np.nan_to_num(rows, nan=lowest), np.arctan2(halves, away) / math.tau * calibration.width
+    lowest, per_rad = calibration.height + 1.0, calibration.width / math.tau
+    rows = [calibration.row(distance_m, height) for _, height in _OUTLINE_M]
+    halves = [math.atan2(half, distance_m) * per_rad for half, _ in _OUTLINE_M]
+    return np.array([lowest if math.isnan(row) else row for row in rows]), np.array(halves)
 
 
 @njit(cache=True, nogil=True)

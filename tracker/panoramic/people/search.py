@@ -12,7 +12,6 @@ from numba import njit
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.people.figure_patch import (
     KNOWN,
-    MARGIN_PX,
     PEOPLE,
     FigureMap,
     Floats,
@@ -33,6 +32,7 @@ _PARTS_M: Final = np.array(
     [(0.15, -0.15, 0.05, 1.2), (0.25, -0.25, -0.35, -0.1), (0.5, 0.3, 0.05, 1.2), (-0.3, -0.5, 0.05, 1.2)]
 )
 _LEAST_KNOWN: Final = 0.3
+_LITTLE: Final = 0.1
 
 
 def promising_places(figures: FigureMap, most: int) -> Floats:
@@ -55,7 +55,7 @@ def _grid(calibration: PanoramaCalibration) -> tuple[Floats, Floats, Floats]:
     """Give bearings (N,), distances (N,), and (N, 4, 4) left, right, top, bottom [px] of the parts."""
     bearings, distances = np.tile(_BEARINGS, len(_RINGS)), np.repeat(_RINGS, len(_BEARINGS))
     width = calibration.width
-    middle = np.remainder((0.5 - bearings / math.tau) * width, width) + MARGIN_PX
+    middle = np.remainder((0.5 - bearings / math.tau) * width, width)
     parts = np.empty((len(bearings), len(_PARTS_M), 4))
     for part, (left, right, low, high) in enumerate(_PARTS_M):
         parts[:, part, 0] = middle - np.arctan2(left, distances) / math.tau * width
@@ -72,19 +72,25 @@ def _row(distance_m: Floats, height_m: float, calibration: PanoramaCalibration) 
 
 @njit(cache=True, nogil=True)
 def _worth(sums: Map, parts: Floats) -> Floats:
-    """Rate places: a body counts for, what lies before its feet and beside it against."""
+    """Rate places: a body counts for, what lies before its feet and beside it against; 0 if there is none."""
     worth = np.empty(len(parts))
     shares = np.empty(4)
     for n in range(len(parts)):
         shares[:] = 0.0
+        worth[n] = 0.0
         for part in range(4):
+            if part == 1 and shares[0] < _LEAST:  # all else only counts against
+                break
             left, right, top, bottom = parts[n, part]
             if bottom - top < 0.5:  # outside the image
                 continue
             area = (right - left) * (bottom - top)
+            seen = between(sums, PEOPLE, left, right, top, bottom) / area
+            if part == 0 and seen < _LEAST * _LITTLE:  # too few to be somebody, whatever is known
+                continue
             known = between(sums, KNOWN, left, right, top, bottom) / area
             if part > 0 or known > _LEAST_KNOWN:
-                seen = between(sums, PEOPLE, left, right, top, bottom) / area
-                shares[part] = seen / max(known, 0.1)
-        worth[n] = shares[0] - shares[1] - 0.25 * (shares[2] + shares[3])
+                shares[part] = seen / max(known, _LITTLE)
+        else:
+            worth[n] = shares[0] - shares[1] - 0.25 * (shares[2] + shares[3])
     return worth

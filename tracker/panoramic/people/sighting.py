@@ -90,7 +90,7 @@ class Onlooker:
             bearing_rad=bearing,
             distance_m=distance,
             place_m=self.pose.place(distance, bearing),
-            error_m2=axes @ np.diag(deviation**2) @ axes.T,
+            error_m2=(axes * deviation**2) @ axes.T,
         )
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
+from peopleboy.tracker.panoramic.foreground.layers import BLOCK, DILATIONS
+from peopleboy.tracker.panoramic.foreground.mask_network import INPUTS, OUTPUTS, MaskNetwork
 from peopleboy.tracker.panoramic.foreground.network_file import ForegroundModel
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 from tests.helpers.calls.refused import refused

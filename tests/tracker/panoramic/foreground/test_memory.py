@@ -6,7 +6,7 @@ import pytest
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.floor_rows import floor_rows
-from peopleboy.tracker.panoramic.foreground.mask_network import BLOCK
+from peopleboy.tracker.panoramic.foreground.layers import BLOCK
 from peopleboy.tracker.panoramic.foreground.memory import (
     AGE,
     DOUBT,
@@ -14,7 +14,6 @@ from peopleboy.tracker.panoramic.foreground.memory import (
     first_memory,
     learn,
     move_along,
-    novelty,
 )
 
 CAMERA = PanoramaCalibration(
@@ -47,24 +46,24 @@ def test_rows_of_the_floor_are_those_that_the_calibration_projects_it_to():
 def test_turning_by_whole_columns_shifts_the_memory_by_them(columns):
     memory = first_memory(floor_image(0, 0, 0))
     turned = move_along(memory, Odometry(turn_rad=columns * math.tau / 480), FLOOR)
-    np.testing.assert_allclose(turned, np.roll(memory, columns, axis=1), atol=0.05)
+    np.testing.assert_allclose(turned, np.roll(memory, columns, axis=2), atol=0.05)
 
 
 @pytest.mark.parametrize("pose", [(0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.08, -0.05, 0.2), (0.3, 0.0, -0.1)])
 def test_floor_lies_where_it_is_seen_after_a_movement(pose):
     memory = first_memory(floor_image(0, 0, 0))
     moved = move_along(memory, Odometry(advance_m=pose[0], aside_m=pose[1], turn_rad=pose[2]), FLOOR)
-    off = np.abs(moved[..., 0] - floor_image(*pose)[..., 0])[20:110]  # rows from 1.3 to 7 m
+    off = np.abs(moved[0] - floor_image(*pose)[..., 0])[20:110]  # rows from 1.3 to 7 m
     assert off.mean() < 1.5
-    assert np.abs(memory[..., 0].astype(float) - floor_image(*pose)[..., 0])[20:110].mean() > 5 * off.mean()
+    assert np.abs(memory[0].astype(float) - floor_image(*pose)[..., 0])[20:110].mean() > 5 * off.mean()
 
 
 def test_what_was_below_the_image_before_is_new():
     memory = first_memory(floor_image(0, 0, 0))
-    memory[..., AGE] = 5.0
+    memory[AGE] = 5.0
     moved = move_along(memory, Odometry(advance_m=-0.3), FLOOR)  # uncovers floor in front
-    assert moved[119, 240, AGE] == 0.0
-    assert moved[60, 240, AGE] == pytest.approx(5.0)
+    assert moved[AGE, 119, 240] == 0.0
+    assert moved[AGE, 60, 240] == pytest.approx(5.0)
 
 
 @pytest.mark.parametrize("rate_hz", [3, 15])
@@ -74,13 +73,13 @@ def test_an_empty_scene_is_known_within_seconds_whatever_the_rate_of_images(rate
     for _ in range(12 * rate_hz):
         noisy = np.clip(np.rint(scene + rng.normal(0, 3, scene.shape)), 0, 255).astype(np.uint8)
         learn(memory, noisy, nobody, 1 / rate_hz)
-    assert np.abs(memory[..., :3] - scene).mean() < 5
-    assert memory[..., AGE] == pytest.approx(12, rel=0.01)
+    assert np.abs(memory[:3] - scene.transpose(2, 0, 1)).mean() < 5
+    assert memory[AGE] == pytest.approx(12, rel=0.01)
 
 
 def test_what_people_hide_stays_and_is_absorbed_only_within_a_minute():
     memory, someone = first_memory(np.full((120, 480, 3), 90, np.uint8)), np.ones((120, 480), np.float32)
-    memory[..., AGE] = 10.0
+    memory[AGE] = 10.0
     red = np.zeros((120, 480, 3), np.uint8)
     red[..., 0] = 200
     for _ in range(15):
@@ -94,9 +93,9 @@ def test_what_people_hide_stays_and_is_absorbed_only_within_a_minute():
 def test_unlikeness_is_in_standard_deviations():
     image = np.full((120, 480, 3), 100, np.uint8)
     memory = first_memory(image)
-    memory[..., 3] = 25.0
+    memory[3] = 25.0
     image[50, 100] = 100 + 15  # three of them
-    unlike = compare(image, memory, BLOCK).reshape(BLOCK, BLOCK, 6, 30, 120)[:, :, 3]
+    unlike = compare(image, memory)[0].reshape(BLOCK, BLOCK, 6, 30, 120)[:, :, 3]
     assert unlike[50 % 4, 0, 50 // 4, 25] == pytest.approx(math.log(1 + 9) / 2, rel=1e-4)
     assert np.count_nonzero(unlike) == 1
 
@@ -105,9 +104,9 @@ def novelty_of(off_sd, age_s=1e9):
     """How new one pixel is that differs by so many standard deviations in each colour."""
     image = np.full((120, 480, 3), 100, np.uint8)
     memory = first_memory(image)
-    memory[..., 3], memory[..., AGE] = 25.0, age_s
+    memory[3], memory[AGE] = 25.0, age_s
     image[50, 101] = 100 + round(5 * off_sd)
-    told = novelty(compare(image, memory, BLOCK))
+    _, told = compare(image, memory)
     assert told.shape == (120, 480)
     assert np.count_nonzero(told) <= 1
     return float(told[50, 101])
@@ -128,13 +127,13 @@ def test_against_a_young_background_less_is_new():
 def test_before_a_patterned_floor_somebody_is_as_new_after_a_drive_as_before():
     floor = floor_image(0, 0, 0)
     memory = first_memory(floor)
-    memory[..., AGE] = 60.0
+    memory[AGE] = 60.0
     someone = floor.copy()
     someone[20:80, 200:220] += 40
     told = {}
     for doubt_px in (0.0, 25.0):
-        memory[..., DOUBT] = doubt_px
-        told[doubt_px] = novelty(compare(someone, memory, BLOCK))
+        memory[DOUBT] = doubt_px
+        _, told[doubt_px] = compare(someone, memory)
     assert np.array_equal(told[0.0], told[25.0])
     assert (told[25.0][20:80, 200:220] > 0.5).mean() > 0.99
     assert np.count_nonzero(told[25.0]) == np.count_nonzero(told[25.0][20:80, 200:220])
