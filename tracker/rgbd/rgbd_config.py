@@ -113,7 +113,7 @@ PRINTED: Final = RgbdConfig(
     sees_depth=False,
     least_far_score=0.0,
     least_near_score=0.0,
-    above=UDepthConfig(row_m=0.01, bridged_steps=0.0),
+    above=UDepthConfig(row_m=0.01, bridged_steps=0.0, has_walls=False),
     filter=FloorFilterConfig(sharpness=0.0, foreground_m=0.0, has_hold=False),
     hypotheses=HypothesesConfig(
         births=2,

@@ -41,7 +41,7 @@ def steps() -> Figure:
     for one in told.detections:
         _draw(depth, one.found.box, FOUND, "", dashed=not one.is_verified)
     _draw_rows(rows, frame, view, told)
-    _draw_above(above, told)
+    _draw_above(above, view, told)
     return figure
 
 
@@ -82,18 +82,21 @@ def _draw_rows(axes: Axes, frame: Frame, view: DepthView, told: RgbdExplanation)
     axes.set_title("v-disparity: floor and ceiling", fontsize=9)
 
 
-def _draw_above(axes: Axes, told: RgbdExplanation) -> None:
-    """Columns by depth, between floor and ceiling."""
+def _draw_above(axes: Axes, view: DepthView, told: RgbdExplanation) -> None:
+    """Columns by depth, between floor, ceiling and walls, which are lines in disparity."""
     counts = told.layout.counts
     depth_m = depths_m(FARTHEST_M / (len(counts) - 1))
     extent = (-0.5, counts.shape[1] - 0.5, 0.0, float(depth_m[-1]))
     axes.imshow(np.log1p(counts), cmap="gray_r", aspect="auto", origin="lower", extent=extent)
+    for wall in told.layout.walls:
+        columns = np.arange(wall.left, wall.right + 1.0)
+        axes.plot(columns, wall.depth_m(columns, view), color=LINE, lw=1.2)
     for one in told.detections:
         left, _, width, _ = one.found.box
         low = one.found.z_m - one.found.depth_m / 2.0
         _draw_flat(axes, (left, low, width, one.found.depth_m), dashed=not one.is_verified)
     axes.set(xlim=extent[:2], ylim=(NEAREST_M, 10.0), xlabel="column", ylabel="depth (m)")
-    axes.set_title("view from above: size of a human", fontsize=9)
+    axes.set_title("view from above: walls, and size of a human", fontsize=9)
 
 
 def _draw_flat(axes: Axes, box: tuple[float, ...], *, dashed: bool) -> None:

@@ -16,6 +16,7 @@ from peopleboy.tracker.rgbd.verification.window_model import people_detector, sh
 OURS: Final = RgbdConfig()
 DEFAULT, LITERAL = "default", "as printed"
 NO_CONNECTOR, NO_ODOMETRY = "no connector", "no odometry"
+NO_WALLS: Final = "walls left in"
 NO_DEPTH: Final = "no depth in the filters"
 OPENCV: Final = "OpenCV's far detector"
 COLOUR_ONLY: Final = replace(
@@ -32,6 +33,7 @@ CHOICES: Final[Mapping[str, RgbdConfig]] = {
     LITERAL: PRINTED,
     "printed size": replace(OURS, size=PRINTED_SIZE),
     NO_CONNECTOR: replace(OURS, above=replace(OURS.above, has_connector=False)),
+    NO_WALLS: replace(OURS, above=replace(OURS.above, has_walls=False)),
     "windows of colour alone": COLOUR_ONLY,
     "no verification": replace(OURS, has_verification=False),
     OPENCV: COLOUR_ONLY,

@@ -22,9 +22,11 @@ from peopleboy.tracker.rgbd.detection.u_depth import (
     u_depth,
 )
 from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine, find_ceiling, find_floor, v_disparity
+from peopleboy.tracker.rgbd.detection.walls import Wall, bands_mm, find_walls, tall_disparity, without
 from peopleboy.tracker.track import Box
 
 _MARGIN_M: Final = 0.08  # above the floor and below the ceiling that is theirs
+_TALL_M: Final = 2.1  # what reaches higher is no human
 _EMPTY_ROWS: Final = 4  # that a body may have
 _REACH_M: Final = 0.1  # SA 4.4.1: of an object's depth, that its readings may be off
 _REACH_STEPS: Final = 0.7  # the same in steps of the sensor, where these are coarser
@@ -56,12 +58,14 @@ class Layout:
 
     Attributes:
         floor, ceiling: their lines; the ceiling is None where none is in view.
-        counts: (D, W) readings by depth and column between them.
+        walls: their lines; none where they are not looked for.
+        counts: (D, W) readings by depth and column between all of them.
         detections: what has the size of a human, the nearest first.
     """
 
     floor: HeightLine
     ceiling: HeightLine | None
+    walls: tuple[Wall, ...]
     counts: Ints
     detections: tuple[PreDetection, ...]
 
@@ -84,11 +88,14 @@ class PreDetector:
         floor = find_floor(counts, view) or HeightLine(view.horizon_px / view.focal_px, view.height_m)
         ceiling = find_ceiling(counts, view)
         first, last = self._row_limits(floor, ceiling, view)
+        walls: tuple[Wall, ...] = ()
+        if self.config.has_walls:
+            walls, depth = self._without_walls(depth, first, floor, view)
         above = u_depth(depth, first, last, self.config.row_m)
         pieces = find_pieces(above, self.config)
         rated = [self._rate(piece, depth, first, last, floor, view) for piece in pieces]
         likely = [one for one in rated if one is not None and one.probability > self.size.least]
-        return Layout(floor, ceiling, above, tuple(likely))
+        return Layout(floor, ceiling, walls, above, tuple(likely))
 
     def _row_limits(
         self, floor: HeightLine, ceiling: HeightLine | None, view: DepthView
@@ -98,6 +105,15 @@ class PreDetector:
         if ceiling is None:
             return np.full_like(last, -1.0), last
         return ceiling.raised(-_MARGIN_M).rows(depth_m, view), last
+
+    def _without_walls(
+        self, depth: Depth, first: Floats, floor: HeightLine, view: DepthView
+    ) -> tuple[tuple[Wall, ...], Depth]:
+        """Find walls by what stands above people's heads; give the image (H, W) without them, too."""
+        heads = floor.raised(_TALL_M).rows(depths_m(self.config.row_m), view)
+        tall = tall_disparity(depth, first, heads, self.config.row_m, view)
+        walls = find_walls(tall, view)
+        return walls, without(depth, *bands_mm(walls, tall, self.config.wall_m, view))
 
     def _rate(
         self, piece: Piece, depth: Depth, first: Floats, last: Floats, floor: HeightLine, view: DepthView

@@ -20,7 +20,9 @@ FARTHEST_M: Final = 10.0
 STEP_1_M: Final = 0.00287  # between two depths that the sensor can tell apart at 1 m; grows with the square
 _LEAST_PX: Final = 10  # SA 4.4.1: cells with more readings are kept
 _LEAST_MASS: Final = 100
-_FRINGE_M: Final = 9.7  # what is farther may be the near fringe of a wall that the sensor does not reach
+# What is farther may be the near fringe of a wall that the sensor does not reach; hardly so without walls.
+_FRINGE_M: Final = 9.7
+_FRINGE_WITHOUT_WALLS_M: Final = 9.9
 # SA 4.4.1: gaps of 2, 4, 6 or 10 rows are bridged; where each begins is not printed.
 _ZONES_M: Final = np.array([2.6, 3.7, 4.6])
 _GAPS: Final = np.array([2, 4, 6, 10])
@@ -55,12 +57,16 @@ class UDepthConfig:
         bridged_steps: [steps of the sensor] that a bridged gap reaches at least; beyond 8 m the printed gaps
             are narrower than one, and everything falls apart.
         trimmed: share of a piece's readings left out at either end of its extents.
+        has_walls: whether walls are found as planes and left out, so that who walks beside one is apart.
+        wall_m: [m] square to a wall within which readings are its own.
     """
 
     row_m: float = 0.02
     has_connector: bool = True
     bridged_steps: float = 1.2
     trimmed: float = 0.015
+    has_walls: bool = True
+    wall_m: float = 0.1
 
 
 def u_depth(depth: Depth, first_row: Floats, last_row: Floats, row_m: float) -> Ints:
@@ -89,7 +95,8 @@ def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[Piece, ...]:
     number, labels, boxes, _ = cv2.connectedComponentsWithStats(kept, connectivity=8, ltype=cv2.CV_32S)
     rows = _extents(counts, np.asarray(labels, np.int32), np.array(boxes, np.int32), number, config.trimmed)
     found = [_piece(row, config.row_m) for row in rows.tolist()]
-    likely = [one for one in found if one.mass >= _LEAST_MASS and one.depth_m < _FRINGE_M]
+    fringe_m = _FRINGE_WITHOUT_WALLS_M if config.has_walls else _FRINGE_M
+    likely = [one for one in found if one.mass >= _LEAST_MASS and one.depth_m < fringe_m]
     return tuple(sorted(likely, key=lambda piece: piece.depth_m))
 
 

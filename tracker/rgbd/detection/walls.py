@@ -1,0 +1,180 @@
+"""Walls as straight lines in the u-disparity image, taken out of the depth image as the floor is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
+from peopleboy.tracker.rgbd.detection.u_depth import FARTHEST_M, NEAREST_M, STEP_1_M
+
+_EVERY_U: Final = 4  # columns of which one is looked at
+_EVERY_V: Final = 2
+_LEAST_READINGS: Final = 4  # of a column, for it to show something tall
+_OFF_PX: Final = 0.2  # disparity by which a column may be off its wall
+_LEAST_COLUMNS: Final = 10  # of those that are looked at
+_LEAST_M: Final = 0.8  # length of a wall
+_MOST_WALLS: Final = 6
+_SPANS: Final = (6, 16, 40)  # between the two columns through which a line is tried
+_CORNER_PX: Final = 12  # by which a wall goes on beyond the columns that are surely its own
+_BEHIND_M: Final = FARTHEST_M + 1.0  # the near fringe of what is farther is not in reach
+_STEPS: Final = 1.1  # of the sensor, by which readings of a wall may be off, too
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wall:
+    """A vertical plane: disparity is linear in the column.
+
+    Attributes:
+        slope: disparity by column [px/px].
+        offset_px: disparity at the principal point [px].
+        left, right: first and last column in which it shows above people's heads [px].
+    """
+
+    slope: float
+    offset_px: float
+    left: int
+    right: int
+
+    def disparity(self, columns: Floats, view: DepthView) -> Floats:
+        """Give the disparity [px] in columns; not positive where they do not meet the plane."""
+        return np.asarray(self.offset_px + self.slope * (columns - view.centre_u))
+
+    def depth_m(self, columns: Floats, view: DepthView) -> Floats:
+        """Give the depth [m] in columns; at least 1000 m where they do not meet the plane."""
+        disparity = np.maximum(self.disparity(columns, view), view.disparity_px_m / 1000.0)
+        return np.asarray(view.disparity_px_m / disparity)
+
+    def square_px(self, view: DepthView) -> float:
+        """Give the disparity [px] that it had if the camera were turned to it."""
+        return float(np.hypot(self.slope * view.focal_px, self.offset_px))
+
+
+def tall_disparity(
+    depth: Depth, first_row: Floats, last_row: Floats, row_m: float, view: DepthView
+) -> Floats:
+    """Give the middle disparity (W,) [px] of what stands above people's heads, NaN where nothing does.
+
+    Only every fourth column is looked at.
+
+    Args:
+        depth: (H, W) [mm].
+        first_row: (D,) [px] first image row that counts at each depth, below the ceiling.
+        last_row: (D,) [px] last one, above people's heads.
+        row_m: [m] of depth in a row.
+        view: of the camera.
+    """
+    limits = [np.clip(rows, -1.0, depth.shape[0]) for rows in (first_row, last_row)]
+    return _middle(depth, limits[0], limits[1], round(1000.0 * row_m), 1000.0 * view.disparity_px_m)
+
+
+def find_walls(tall: Floats, view: DepthView) -> tuple[Wall, ...]:
+    """Find the lines that most columns (W,) of disparities are on, the longest first."""
+    columns = np.flatnonzero(np.isfinite(tall))
+    walls: list[Wall] = []
+    while len(columns) >= _LEAST_COLUMNS and len(walls) < _MOST_WALLS:
+        u, disparity = np.asarray(columns - view.centre_u, np.float64), tall[columns]
+        on = _strongest(u, disparity)
+        if np.count_nonzero(on) < _LEAST_COLUMNS:
+            break
+        slope, offset = np.polyfit(u[on], disparity[on], 1).tolist()
+        left, right = columns[on][[0, -1]].tolist()
+        walls.append(Wall(slope=slope, offset_px=offset, left=left, right=right))
+        columns = columns[~on & (np.abs(offset + slope * u - disparity) >= _OFF_PX)]
+    return tuple(wall for wall in walls if _length_m(wall, view) >= _LEAST_M)
+
+
+def bands_mm(
+    walls: tuple[Wall, ...], tall: Floats, off_m: float, view: DepthView
+) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
+    """Give the nearest and the farthest depth (K, W) [mm] of each wall by column; 0 and 0 where it is not.
+
+    It is in the columns in which it shows above people's heads, a little beyond them, as corners are frayed,
+    and in those next to them in which nothing tall is seen.
+
+    Args:
+        walls: what was found.
+        tall: (W,) [px] disparities in which they were found.
+        off_m: [m] square to a wall, by which what belongs to it may be off.
+        view: of the camera.
+    """
+    limits = np.zeros((2, len(walls), len(tall)))
+    columns = np.arange(len(tall), dtype=np.float64)
+    looked = np.flatnonzero(np.isfinite(tall))
+    apart = np.abs(looked[:, None] - columns)  # (L, W)
+    for k, wall in enumerate(walls):
+        shows = np.abs(wall.disparity(columns[looked], view) - tall[looked]) < _OFF_PX
+        depth_m = wall.depth_m(columns, view)
+        here = shows[apart.argmin(axis=0)] | (apart[shows].min(axis=0) <= _CORNER_PX)
+        here &= (depth_m > NEAREST_M) & (depth_m < _BEHIND_M)
+        along_ray_m = off_m * wall.square_px(view) * depth_m / view.disparity_px_m
+        reach = along_ray_m + _STEPS * STEP_1_M * depth_m**2
+        limits[:, k, here] = np.stack([depth_m - reach, depth_m + reach])[:, here]
+    near, far = np.clip(1000.0 * limits, 0.0, 65535.0).astype(np.uint16)
+    return near, far
+
+
+def _length_m(wall: Wall, view: DepthView) -> float:
+    ends = np.array([wall.left, wall.right], np.float64)
+    z = wall.depth_m(ends, view)
+    return float(np.hypot(np.diff((ends - view.centre_u) * z / view.focal_px), np.diff(z))[0])
+
+
+def _strongest(u: Floats, disparity: Floats) -> NDArray[np.bool_]:
+    slope, offset = _try_lines(u, disparity, np.array(_SPANS))
+    return np.asarray(np.abs(offset + slope * u - disparity) < _OFF_PX)
+
+
+@njit(cache=True, nogil=True)
+def without(depth: Depth, near_mm: NDArray[np.uint16], far_mm: NDArray[np.uint16]) -> Depth:
+    """Leave out the readings (H, W) that lie within any of each column's limits (K, W)."""
+    kept = depth.copy()
+    for k in range(len(near_mm)):
+        near, far = near_mm[k], far_mm[k]
+        for v in range(depth.shape[0]):
+            for u in range(depth.shape[1]):
+                if near[u] <= kept[v, u] <= far[u]:
+                    kept[v, u] = 0
+    return kept
+
+
+@njit(cache=True, nogil=True)
+def _try_lines(u: Floats, disparity: Floats, spans: NDArray[np.int64]) -> tuple[float, float]:
+    """Try lines through pairs of columns; give slope and offset of the one that most are on."""
+    most, best = -1, (0.0, 0.0)
+    for span in spans:
+        for first in range(0, len(u) - span, 2):
+            last = first + span
+            slope = (disparity[last] - disparity[first]) / (u[last] - u[first])
+            offset = disparity[first] - slope * u[first]
+            count = 0
+            for k in range(len(u)):
+                if abs(offset + slope * u[k] - disparity[k]) < _OFF_PX:
+                    count += 1
+            if count > most:
+                most, best = count, (slope, offset)
+    return best
+
+
+@njit(cache=True, nogil=True)
+def _middle(depth: Depth, first_row: Floats, last_row: Floats, row_mm: int, disparity_px_mm: float) -> Floats:
+    height, width = depth.shape
+    middle = np.full(width, np.nan)
+    found = np.empty(height, np.uint16)
+    lowest = min(height - 1, int(last_row.max()))
+    for u in range(0, width, _EVERY_U):
+        count = 0
+        for v in range(0, lowest + 1, _EVERY_V):
+            reading = depth[v, u]
+            row = reading // row_mm
+            if reading > 0 and row < len(first_row) and first_row[row] <= v <= last_row[row]:
+                found[count] = reading
+                count += 1
+        if count >= _LEAST_READINGS:
+            middle[u] = disparity_px_mm / np.sort(found[:count])[count // 2]
+    return middle
