@@ -69,7 +69,7 @@ def show_frames(found: RunFindings, frames: Sequence[int]) -> dict[int, DrawnFra
 def images_of(
     run: FinishedRun, frames: Sequence[int], image: str
 ) -> tuple[dict[int, NDArray[np.uint8]], dict[int, Origin]]:
-    """Get a camera's images, grey or RGB, at some frames (from 1) of a run, as far as that can be, and whence."""
+    """Get a camera's images, grey or RGB, at some frames (from 1) of a run, and where each is from."""
     stored = _stored(run, frames, image)
     missing = [frame for frame in frames if frame not in stored]
     has_physics = find_spec("pybullet") is not None
