@@ -12,8 +12,10 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.palette import TRACK_COLOURS
 from peopleboy.scenarios.export.image_words import describe_images
 from peopleboy.scenarios.report import tables
+from peopleboy.scenarios.report.attention_strip import attention_strip
 from peopleboy.scenarios.report.charts.error_curves import draw_error_curves
 from peopleboy.scenarios.report.charts.thermal_stills import Origin
+from peopleboy.scenarios.report.charts.thing_timelines import draw_things
 from peopleboy.scenarios.report.charts.timelines import swatch, timelines
 from peopleboy.scenarios.report.charts.ways import draw_ways
 from peopleboy.scenarios.report.columns import Column, lacking, read_columns
@@ -77,6 +79,8 @@ def render(columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: 
         drives={title: tables.drive_figures(columns, name) for name, title in _DRIVES.items()},
         curves=draw_error_curves(columns),
         plans=[(column.label, draw_ways(column.found, column.label)) for column in singles],
+        attended=[(column.label, attention_strip(column.found)) for column in singles],
+        things=[(column, draw_things(column.found, column.label)) for column in singles],
         has_moves=any(tables.moves(column.found).rows for column in singles),
         has_modes=any(len(tables.modes(column.found).rows) > 1 for column in singles),
         sheets=[(column.label, contact_sheet(column.found.run)) for column in singles],

@@ -72,7 +72,7 @@ def contact_sheet(run: FinishedRun) -> list[PagePicture]:
         tiles = [(tile.picture, tile.words) for tile in read_tiles(run.folder / "contact_sheet.png")]
     except BadInput:
         return []
-    return [PagePicture(_jpeg(np.asarray(picture), _TILE_QUALITY), said, said) for picture, said in tiles]
+    return [PagePicture(page_jpeg(np.asarray(picture), _TILE_QUALITY), said, said) for picture, said in tiles]
 
 
 def _stills(found: RunFindings, moments: Sequence[BadMoment]) -> dict[int, DrawnFrame]:
@@ -97,9 +97,10 @@ def _pictured(moment: BadMoment, whose: str, stills: _Stills, is_beside: bool) -
     for label, still in seen:
         words = f"{moment.title}, thermal image at {still.time_s:.1f} s, {label}"
         caption = f"{seconds(still.time_s)}{f', {label}' if is_beside else ''}"
-        pictures.append(PagePicture(_jpeg(still.picture, _JPEG_QUALITY), words, caption))
+        pictures.append(PagePicture(page_jpeg(still.picture, _JPEG_QUALITY), words, caption))
     return PicturedMoment(moment, whose, pictures, list(dict.fromkeys(still.origin for _, still in seen)))
 
 
-def _jpeg(image: NDArray[np.uint8], quality: int) -> str:
+def page_jpeg(image: NDArray[np.uint8], quality: int) -> str:
+    """Give an image as an address for a page."""
     return f"data:image/jpeg;base64,{base64.b64encode(encode_jpeg(image, quality)).decode()}"

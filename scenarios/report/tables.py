@@ -12,6 +12,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.event_wording import describe_move
+from peopleboy.scenarios.report.charts.thing_timelines import THING
 from peopleboy.scenarios.report.columns import Column
 from peopleboy.scenarios.report.findings.sentences import seconds, spoken
 from peopleboy.scenarios.report.findings.summary import RunFindings, headline
@@ -23,7 +24,6 @@ from peopleboy.sim.truth.thing_events import Move
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
 from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, Figure
 
-THING = "thing "  # how the kinds of their events begin
 LONGEST = 40  # runs that are listed one by one
 _FEWEST_PAIRS = 3  # runs of the same scenario and seed, for an interval of their differences
 

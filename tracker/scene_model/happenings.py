@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -60,25 +60,34 @@ class Ledger:
 
     def finished(self, time_s: float) -> list[Happening]:
         """Tell what is left, as nothing will follow."""
-        return self._news(time_s, is_over=True)
+        return self._news(time_s, (), is_over=True)
 
-    def told(self, time_s: float, come: Sequence[Thing], gone: Sequence[Thing]) -> list[Happening]:
+    def told(
+        self, time_s: float, come: Sequence[Thing], gone: Sequence[Thing], unseen: Container[int] = ()
+    ) -> list[Happening]:
         """Take in what settled and what left, and tell what is clear by now.
 
-        What left before it was told was only held still by somebody who carries it.
+        What left before it was told was only held still by somebody who carries it. What is hidden again
+        waits, as it may have left.
+
+        Args:
+            time_s: of the frame [s].
+            come: what settled with it.
+            gone: what left with it.
+            unseen: ids of things that are hidden.
         """
         halted = {one.thing.id for one in self._come} & {one.id for one in gone}
         self._come = [one for one in self._come if one.thing.id not in halted]
         self._come += [_Half(one, time_s) for one in come]
         news = [one for one in gone if one.id not in halted and not self._was_person(one)]
         self._gone += [_Half(one, time_s) for one in news]
-        return self._news(time_s, is_over=False)
+        return self._news(time_s, unseen, is_over=False)
 
-    def _news(self, time_s: float, *, is_over: bool) -> list[Happening]:
+    def _news(self, time_s: float, unseen: Container[int], *, is_over: bool) -> list[Happening]:
         config, happenings = self._config, list[Happening]()
         for half in self._come:
             waited_s = math.inf if is_over else time_s - half.since_s
-            if waited_s < config.hold_s and self._is_held(half.thing):
+            if half.thing.id in unseen or (waited_s < config.hold_s and self._is_held(half.thing)):
                 continue
             origin = self._origin(half.thing)
             if origin is not None:

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.tracker.scene_model.evening import evened
 from peopleboy.tracker.scene_model.readings import Readings
 from peopleboy.tracker.scene_model.scene import Metres
 
@@ -34,10 +35,13 @@ _TIMES = (_BACK_SEEN, _FRONT_SINCE, _FRONT_SEEN, _OTHER_SINCE, _PAST_SEEN, _PAST
 
 _IS_BACK, _IS_FRONT, _IS_NEITHER = 0.0, 1.0, 2.0
 _FORGET: Final = 3000.0  # readings from which on a mean follows the newest ones
-_OUTLIER: Final = 1.5  # reaches from a mean; what smoothing removed does not go into it
+# From a mean; what smoothing removed does not go into it. A limit in metres alone would move a noisy one.
+_OUTLIER: Final = np.float32(1.5)  # reaches
+_OUTLIER_DEVIATIONS: Final = np.float32(3.75)
 _FEW, _OFTENER, _FLIPPED = 25.0, 2.0, 3.0
 _LEAST: Final = 8.0  # readings of a surface that agree with their neighbours
 _SURE: Final = 0.2  # share of them
+_PLANE_DEVIATIONS: Final = np.float32(2.5)  # of a mean, within which neighbours are of one plane
 
 
 class Layers:
@@ -64,11 +68,18 @@ class Layers:
         """(H, W) depth of what is taken for background [m]; 0 where nothing was ever read."""
         return inverted(self._state[_BACK])
 
-    @property
-    def surface_m(self) -> Metres:
-        """(H, W) the same, 0 also where light of several surfaces mixes, or hardly anything is read."""
-        sure, count = self._state[_BACK_SURE], self._state[_BACK_COUNT]
-        return np.where((sure > _SURE * count) & (sure >= _LEAST), self.background_m, np.float32(0.0))
+    def surface_m(self, noise: Metres) -> Metres:
+        """Give (H, W) the background [m], made even where it is of one plane.
+
+        It is 0 also where light of several surfaces mixes, or hardly anything is read.
+
+        Args:
+            noise: (H, W) standard deviation of a reading of inverse depth [1/m].
+        """
+        inverse, sure, count = self._state[_BACK], self._state[_BACK_SURE], self._state[_BACK_COUNT]
+        is_sure = (sure > _SURE * count) & (sure >= _LEAST)
+        doubt = _PLANE_DEVIATIONS * noise / np.sqrt(np.maximum(count, np.float32(1.0)))
+        return inverted(np.where(is_sure, evened(inverse, is_sure, doubt), np.float32(0.0)))
 
     @property
     def is_known(self) -> Bools:
@@ -148,7 +159,9 @@ class Layers:
             confirm: readings in a row that are believed.
         """
         raw, smooth, mixed = readings.raw_m, readings.smooth_m, readings.is_mixed
-        _sort(self._state, raw, smooth, mixed, reach_m, ignored, np.float32(time_s), np.float32(confirm))
+        wide = np.maximum(_OUTLIER * reach_m, _OUTLIER_DEVIATIONS * readings.noise * smooth**2)
+        now, enough = np.float32(time_s), np.float32(confirm)
+        _sort(self._state, raw, smooth, mixed, reach_m, wide, ignored, now, enough)
 
 
 def inverted(values: Metres) -> Metres:
@@ -157,34 +170,35 @@ def inverted(values: Metres) -> Metres:
 
 
 @njit(cache=True, nogil=True)
-def _sort(state, raw, smooth, mixed, reach, ignored, now, confirm):  # type: ignore[no-untyped-def]
+def _sort(state, raw, smooth, mixed, reach, wide, ignored, now, confirm):  # type: ignore[no-untyped-def]
     height, width = raw.shape
     for v in range(height):
         for u in range(width):
             if smooth[v, u] > 0.0 and not ignored[v, u]:
-                _take(state, v, u, raw[v, u], smooth[v, u], mixed[v, u], reach[v, u], now, confirm)
+                near, far = reach[v, u], wide[v, u]
+                _take(state, v, u, raw[v, u], smooth[v, u], mixed[v, u], near, far, now, confirm)
 
 
 @njit(cache=True, nogil=True)
-def _take(state, v, u, raw, z, is_mixed, near, now, confirm):  # type: ignore[no-untyped-def]
+def _take(state, v, u, raw, z, is_mixed, near, wide, now, confirm):  # type: ignore[no-untyped-def]
     reading = 1.0 / raw
     if state[_BACK_COUNT, v, u] == 0.0:
         state[_BACK, v, u], state[_BACK_COUNT, v, u], state[_BACK_SEEN, v, u] = reading, 1.0, now
         return
     if state[_FRONT_COUNT, v, u] > 0.0 and abs(z - 1.0 / state[_FRONT, v, u]) < near:
-        _see_front(state, v, u, z, reading, near, now)
+        _see_front(state, v, u, z, reading, near, wide, now)
     elif abs(z - 1.0 / state[_BACK, v, u]) < near:
-        _see_back(state, v, u, reading, is_mixed, near, now, confirm)
+        _see_back(state, v, u, reading, is_mixed, wide, now, confirm)
     else:
-        _see_other(state, v, u, z, reading, near, now)
+        _see_other(state, v, u, z, reading, near, wide, now)
         if state[_OTHER_COUNT, v, u] >= confirm:
             _believe(state, v, u, now)
 
 
 @njit(cache=True, nogil=True)
-def _see_front(state, v, u, z, reading, near, now):  # type: ignore[no-untyped-def]
+def _see_front(state, v, u, z, reading, near, wide, now):  # type: ignore[no-untyped-def]
     """See a thing; what was background at first may have been an outlier, or the far side of an edge."""
-    _add(state, _FRONT, v, u, reading, near)
+    _add(state, _FRONT, v, u, reading, wide)
     state[_FLIPS, v, u] += state[_KIND, v, u] == _IS_BACK
     state[_FRONT_SEEN, v, u], state[_GONE, v, u], state[_OTHER_COUNT, v, u] = now, 0.0, 0.0
     state[_KIND, v, u] = _IS_FRONT
@@ -197,9 +211,9 @@ def _see_front(state, v, u, z, reading, near, now):  # type: ignore[no-untyped-d
 
 
 @njit(cache=True, nogil=True)
-def _see_back(state, v, u, reading, is_mixed, near, now, confirm):  # type: ignore[no-untyped-def]
+def _see_back(state, v, u, reading, is_mixed, wide, now, confirm):  # type: ignore[no-untyped-def]
     """See the background; a thing that is remembered there is gone after some readings in a row."""
-    _add(state, _BACK, v, u, reading, near)
+    _add(state, _BACK, v, u, reading, wide)
     state[_BACK_SURE, v, u] += not is_mixed
     state[_KIND, v, u], state[_OTHER_COUNT, v, u] = _IS_BACK, 0.0
     state[_GONE, v, u] += 1.0
@@ -208,10 +222,10 @@ def _see_back(state, v, u, reading, is_mixed, near, now, confirm):  # type: igno
 
 
 @njit(cache=True, nogil=True)
-def _see_other(state, v, u, z, reading, near, now):  # type: ignore[no-untyped-def]
+def _see_other(state, v, u, z, reading, near, wide, now):  # type: ignore[no-untyped-def]
     state[_KIND, v, u] = _IS_NEITHER
     if state[_OTHER_COUNT, v, u] > 0.0 and abs(z - 1.0 / state[_OTHER, v, u]) < near:
-        _add(state, _OTHER, v, u, reading, near)
+        _add(state, _OTHER, v, u, reading, wide)
     else:
         state[_OTHER, v, u], state[_OTHER_COUNT, v, u], state[_OTHER_SINCE, v, u] = reading, 1.0, now
 
@@ -236,9 +250,9 @@ def _believe(state, v, u, now):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _add(state, mean, v, u, reading, near):  # type: ignore[no-untyped-def]
+def _add(state, mean, v, u, reading, wide):  # type: ignore[no-untyped-def]
     """Take a raw reading into a mean, whose number of readings is beside it."""
     count = mean + 1
-    if abs(1.0 / reading - 1.0 / state[mean, v, u]) < _OUTLIER * near:
+    if abs(1.0 / reading - 1.0 / state[mean, v, u]) < wide:
         state[mean, v, u] += (reading - state[mean, v, u]) / min(state[count, v, u] + 1.0, _FORGET)
     state[count, v, u] += 1.0

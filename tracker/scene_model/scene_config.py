@@ -79,6 +79,7 @@ class ThingsConfig:
         pair_s: [s] from a thing's vanishing until it appears elsewhere, at most.
         wait_s: [s] for which a change is held back for its other half.
         hold_s: [s] for which what appears beside somebody may still be in their hands.
+        unseen_s: [s] out of sight from which on nothing new is told of a thing.
         size_ratio: of areas and heights of what may be the same thing.
         colour: distance of mean colours, of 255, that halves how alike two things are.
         hand_m: [m] from a person on the floor to what they move.
@@ -97,6 +98,7 @@ class ThingsConfig:
     pair_s: float = 15.0
     wait_s: float = 1.5
     hold_s: float = 2.5
+    unseen_s: float = 0.5
     size_ratio: float = 2.5
     colour: float = 40.0
     hand_m: float = 1.3

@@ -141,8 +141,8 @@ class SceneModel:
 
     def _added(self) -> Pose:
         """Put what stands here onto the map."""
-        assert self._geometry is not None  # there was a frame
-        return self._map.add(Surface.of(self._layers.surface_m, self._geometry), self._pose)
+        assert self._newest is not None  # there was a frame
+        return self._map.add(Surface.of(self._newest.background_m, self.geometry), self._pose)
 
     def _learned(self, frame: Frame, geometry: Geometry) -> VistaScene:
         config, layers = self.config, self._layers
@@ -181,7 +181,8 @@ class SceneModel:
         come, left = self._standing.update(*standing(self._layers, config), moment, self._ids)
         behind = ThingMoment(frame.time_s, geometry, self._colours.update(colour, self._layers, frame.time_s))
         through, _ = self._opened.update(*opened(self._layers, config), behind, self._ids)
-        happenings = self._ledger.told(frame.time_s, come, [*left, *through])
+        unseen = self._standing.unseen(frame.time_s)
+        happenings = self._ledger.told(frame.time_s, come, [*left, *through], unseen)
         for one in happenings:
             if one.change is Change.MOVED:
                 self._rename(one)
@@ -209,7 +210,7 @@ class SceneModel:
         self._label_carried(things, readings, reach, people)
         return VistaScene(
             time_s=time_s,
-            background_m=layers.surface_m,
+            background_m=layers.surface_m(readings.noise),
             people=people.labels,
             things=things,
             persons=tuple(self._placed(one) for one in people.persons),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -46,7 +47,7 @@ class Thing:
         span_s: between which times it changed [s].
         seen_s: when it was seen last [s].
         steady_s, steady_px: since when it has not grown, and its pixels then.
-        is_settled: whether it stayed as it is for long enough.
+        settled_s, settled_px: when it had stayed as it is for long enough, and its pixels then.
         is_gone: whether it left.
     """
 
@@ -65,8 +66,14 @@ class Thing:
     seen_s: float
     steady_s: float
     steady_px: int
-    is_settled: bool = False
+    settled_s: float = math.inf
+    settled_px: int = 0
     is_gone: bool = False
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether it stayed as it is for long enough."""
+        return self.settled_s < math.inf
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,13 +113,13 @@ class ThingPieces:
         self.owner[~mask | (span.last_s > self._changed)] = 0
         self._changed = span.last_s.copy()
         if not mask.any():
-            return [], self._left(set(), mask, moment)
+            return [], self._left(set(), mask, depth_m, moment)
         labels, count = pieces_of(mask, depth_m, config.gap_m, span)
         inner = cv2.erode(mask.astype(np.uint8), _AROUND) > 0
         cores = np.bincount(labels[inner], minlength=count + 1)
         parts: dict[int, list[Pixels]] = {}
         for label, pixels in sorted(pixels_by_label(labels, count), key=lambda one: -len(one[1])):
-            number = self._owner_of(pixels)
+            number = self._owner_of(pixels, span)
             if number is None:
                 number = self._shown_again(pixels, depth_m)
             if number is None and len(pixels) >= _FEWEST_PX:
@@ -139,26 +146,35 @@ class ThingPieces:
             self.things[number] = thing = self._measured(number, pixels, depth_m, span, moment, known)
             if thing.is_settled and not (known is not None and known.is_settled):
                 settled.append(thing)
-        return settled, self._left(set(parts), mask, moment)
+        return settled, self._left(set(parts), mask, depth_m, moment)
 
     def rename(self, old: int, new: int) -> None:
         """Call a thing by the id of the object that it turned out to be."""
         self.owner[self.owner == old] = new
         self.things[new] = replace(self.things.pop(old), id=new)
 
+    def unseen(self, time_s: float) -> set[int]:
+        """Give the ids of things that somebody or something hides since a while before a time [s]."""
+        return {k for k, one in self.things.items() if time_s - one.seen_s > self._config.unseen_s}
+
     def newest(self) -> Thing | None:
         """Give the newest thing that has not settled; None for none."""
         open_ones = [one for one in self.things.values() if not one.is_settled]
         return max(open_ones, key=lambda one: one.id, default=None)
 
-    def _owner_of(self, pixels: Pixels) -> int | None:
-        """Find the thing that a piece was part of until now."""
-        owners = np.bincount(self.owner.ravel()[pixels])
+    def _owner_of(self, pixels: Pixels, span: Span) -> int | None:
+        """Find the thing that a piece was part of until now; what came after it settled is none of it."""
+        owner = self.owner.ravel()[pixels]
+        owners = np.bincount(owner)
         if len(owners) < 2:
             return None
         best = int(owners[1:].argmax()) + 1
-        is_own = best in self.things and owners[best] >= _OWN * min(len(pixels), self.things[best].most)
-        return best if is_own and not self.things[best].is_gone else None
+        thing = self.things.get(best)
+        if thing is None or thing.is_gone:
+            return None
+        own = np.count_nonzero((owner == best) & (span.first_s.ravel()[pixels] <= thing.settled_s))
+        most = thing.settled_px if thing.is_settled else thing.most
+        return best if own >= _OWN * min(len(pixels), most) else None
 
     def _shown_again(self, pixels: Pixels, depth_m: Metres) -> int | None:
         """Find the thing that something else stood before until now."""
@@ -214,17 +230,19 @@ class ThingPieces:
         config, time_s, count = self._config, moment.time_s, len(pixels)
         has_changed = known is None or abs(count - known.steady_px) > config.growth * known.steady_px
         steady_s = time_s if has_changed or known is None else known.steady_s
-        if known is not None and known.is_settled and count <= known.most:
+        first, last = (
+            float(np.median(span.first_s.ravel()[pixels])),
+            float(np.median(span.last_s.ravel()[pixels])),
+        )
+        if known is not None and known.is_settled and (count <= known.most or first > known.settled_s):
             return replace(known, pixels=count, seen_s=float(np.median(span.seen_s.ravel()[pixels])))
         points = moment.geometry.points(pixels, depth_m)
         low, high = np.quantile(points[:, 2], [0.02, 0.98]).tolist()
         rows, columns = np.divmod(pixels, depth_m.shape[1])
         left, top = int(columns.min()), int(rows.min())
         x, y, z = np.median(points, axis=0).tolist()
-        first, last = (
-            float(np.median(span.first_s.ravel()[pixels])),
-            float(np.median(span.last_s.ravel()[pixels])),
-        )
+        was_settled = known is not None and known.is_settled
+        settles = not was_settled and time_s - steady_s >= config.settled_s
         return Thing(
             id=number,
             box=(float(left), float(top), float(columns.max() - left + 1), float(rows.max() - top + 1)),
@@ -243,17 +261,19 @@ class ThingPieces:
             seen_s=float(np.median(span.seen_s.ravel()[pixels])),
             steady_s=steady_s,
             steady_px=count if has_changed or known is None else known.steady_px,
-            is_settled=(known is not None and known.is_settled) or time_s - steady_s >= config.settled_s,
+            settled_s=time_s if settles else math.inf if known is None else known.settled_s,
+            settled_px=count if settles or known is None else known.settled_px,
         )
 
-    def _left(self, present: set[int], mask: Bools, moment: ThingMoment) -> list[Thing]:
+    def _left(self, present: set[int], mask: Bools, depth_m: Metres, moment: ThingMoment) -> list[Thing]:
         """Find the things of which too little is left; forget those that never settled."""
         left = []
         for number, thing in list(self.things.items()):
             is_less = number not in present or thing.pixels < self._config.left * thing.most
             if thing.is_gone or not is_less:
                 continue
-            if thing.is_settled and mask.ravel()[thing.where].mean() > _COVERED:
+            before = depth_m.ravel()[thing.where] < thing.depth_m + self._config.gap_m
+            if thing.is_settled and (mask.ravel()[thing.where] & before).mean() > _COVERED:
                 continue  # something else stands before it
             if not thing.is_settled:
                 del self.things[number]

@@ -26,6 +26,7 @@ from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.run_folder.tables import Row, track_of
 
 SCALE = 2
+_SCENE = "thermal_scene"
 _EMPTY = np.full((240, 320), 40, np.uint8)
 
 Thermal = NDArray[np.uint8]
@@ -58,17 +59,24 @@ class _Truth(NamedTuple):
 
 def show_frames(found: RunFindings, frames: Sequence[int]) -> dict[int, DrawnFrame]:
     """Draw some frames (from 1) of a run."""
-    stored = _stored(found.run, frames)
-    missing = [frame for frame in frames if frame not in stored]
-    has_physics = find_spec("pybullet") is not None
-    again = _again(found.run, missing) if missing and has_physics else {}
-    origins = dict.fromkeys(frames, Origin.CHANGED if has_physics else Origin.NO_PHYSICS)
-    origins |= dict.fromkeys(again, Origin.REPLAY) | dict.fromkeys(stored, Origin.FRAMES)
-    images = stored | again
+    images, origins = images_of(found.run, frames, _SCENE)
     return {
         frame: DrawnFrame(_draw(found, frame, images.get(frame, _EMPTY)), found.run.time_s(frame), origin)
         for frame, origin in origins.items()
     }
+
+
+def images_of(
+    run: FinishedRun, frames: Sequence[int], image: str
+) -> tuple[dict[int, NDArray[np.uint8]], dict[int, Origin]]:
+    """Get a camera's images, grey or RGB, at some frames (from 1) of a run, and where each is from."""
+    stored = _stored(run, frames, image)
+    missing = [frame for frame in frames if frame not in stored]
+    has_physics = find_spec("pybullet") is not None
+    again = _again(run, missing, image) if missing and has_physics else {}
+    origins = dict.fromkeys(frames, Origin.CHANGED if has_physics else Origin.NO_PHYSICS)
+    origins |= dict.fromkeys(again, Origin.REPLAY) | dict.fromkeys(stored, Origin.FRAMES)
+    return stored | again, origins
 
 
 def _draw(found: RunFindings, frame: int, image: Thermal) -> Picture:
@@ -83,26 +91,26 @@ def _draw(found: RunFindings, frame: int, image: Thermal) -> Picture:
     return draw_truth(canvas, people, SCALE, plates=plates)
 
 
-def _stored(run: FinishedRun, frames: Sequence[int]) -> dict[int, Thermal]:
+def _stored(run: FinishedRun, frames: Sequence[int], image: str) -> dict[int, NDArray[np.uint8]]:
     """Read the images that are in the folder."""
     images = {}
     for frame in frames:
-        path = run.folder / "thermal_scene" / image_file(frame)
-        image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) if path.is_file() else None
-        if image is not None:
-            images[frame] = np.asarray(image, np.uint8)
+        path = run.folder / image / image_file(frame)
+        found = cv2.imread(str(path), cv2.IMREAD_UNCHANGED) if path.is_file() else None
+        if found is not None:
+            images[frame] = np.ascontiguousarray(found[..., ::-1] if found.ndim == 3 else found, np.uint8)
     return images
 
 
-def _again(run: FinishedRun, frames: Sequence[int]) -> dict[int, Thermal]:
+def _again(run: FinishedRun, frames: Sequence[int], image: str) -> dict[int, NDArray[np.uint8]]:
     """Play the scene again as far as the last frame wanted, or until it goes another way."""
     from peopleboy.scenarios.export.replay import replay
 
     images = {}
     with suppress(BadInput):
         for tick in replay(run):
-            if tick.frame in frames:
-                images[tick.frame] = tick.observation.images["thermal_scene"]
+            if tick.frame in frames and image in tick.observation.images:
+                images[tick.frame] = tick.observation.images[image]
             if tick.frame >= max(frames):
                 break
     return images

@@ -34,6 +34,7 @@ _LOOKS: Final[dict[str, dict[str, Any]]] = {
     "adrift": {"fc": "#ffffff", "ec": "#7a6a00", "lw": 1.1, "ls": (0, (2.2, 1.4))},
     "missed": {"fc": "#ffffff", "ec": "#d55e00", "lw": 0.8},
     "stray": {"fc": "#f2d4c2", "ec": "#a83c00", "lw": 0.8},
+    "stands": {"fc": "#eef1f4", "ec": "#b9c4cf", "lw": 0.8},
     "mode0": {"fc": "#d8dee6"},
     "mode1": {"fc": "#bcd6c9"},
     "mode2": {"fc": "#e6d7ae"},
@@ -222,7 +223,7 @@ def _timeline(columns: Sequence[Column]) -> list[PersonTimeline]:
     groups = [group for group in groups if group[1]]
     people = []
     for number, (name, rows, hidden) in enumerate(groups, start=1):
-        drawn = _draw(first, rows, name, columns[0].label, has_axis=number == len(groups))
+        drawn = draw_rows(first, rows, name, columns[0].label, has_axis=number == len(groups))
         people.append(PersonTimeline(name, drawn, hidden))
     return people
 
@@ -233,20 +234,21 @@ def _is_same_world(columns: Sequence[Column]) -> bool:
     return all(of_run == views[0] for of_run in views)
 
 
-def _draw(
+def draw_rows(
     found: RunFindings, rows: Sequence[TimelineRow], name: str, label: str, *, has_axis: bool
 ) -> Markup:
+    """Draw the rows of somebody or something of a run, wide for desks and narrow for phones."""
     duration_s = found.run.frames / found.run.rate_hz
     words = f"{name}, {'. '.join(row.words for row in rows)}"
     wide, narrow = (
-        inline(_draw_rows(rows, duration_s, width, has_axis=has_axis), f"{label}, {name}, {width}", words)
+        inline(_figure_of(rows, duration_s, width, has_axis=has_axis), f"{label}, {name}, {width}", words)
         for width in (_WIDE, _NARROW)
     )
     return Markup('<div class="wide">{}</div><div class="narrow">{}</div>').format(wide, narrow)
 
 
 @lettered
-def _draw_rows(rows: Sequence[TimelineRow], duration_s: float, width: float, *, has_axis: bool) -> Figure:
+def _figure_of(rows: Sequence[TimelineRow], duration_s: float, width: float, *, has_axis: bool) -> Figure:
     foot = _AXIS if has_axis else 1.0
     tall, across = len(rows) * _ROW, width - _LABELS - _RIGHT
     height = _ABOVE + tall + foot

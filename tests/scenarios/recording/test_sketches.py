@@ -20,6 +20,10 @@ from peopleboy.scenarios.recording.sketches import (
 )
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.tracker.attention.people.attended import Attended
+from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.attention.people.views import View
+from peopleboy.tracker.frame import COLOUR
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
@@ -105,3 +109,15 @@ def test_of_the_handover_the_panoramas_part_is_drawn() -> None:
 
 def test_of_other_explanations_nothing_is_drawn() -> None:
     assert explained_sketches(object(), (), {}) == {}
+
+
+def test_of_attention_the_focus_and_the_score_of_every_place_are_drawn() -> None:
+    image = np.full((240, 320, 3), (120, 125, 130), np.uint8)
+    image[60:210, 100:160] = (200, 40, 40)
+    attended = Attended.learned(2, View(COLOUR, image, (100.0, 60.0, 60.0, 150.0)))
+    sketch = explained_sketches(AttentiveExplanation(None, {}, attended), [], {})[COLOUR]
+    assert sketch.background is not None
+    assert sketch.background.shape == (240, 320)
+    assert np.unravel_index(sketch.background.argmax(), (240, 320))[1] == pytest.approx(130, abs=12)
+    assert len(sketch.lines) == len(sketch.colour) >= 3
+    assert tuple(sketch.colour[0]) == track_colour(2)

@@ -27,7 +27,9 @@ def test_the_background_is_the_mean_of_raw_inverse_depths() -> None:
     layers = Layers(*SIZE)
     seen = [4.0, 4.02, 3.98, 4.01, 3.99] * 4
     see(layers, seen)
-    assert layers.surface_m == pytest.approx(1.0 / np.mean(1.0 / np.array(seen)), abs=1e-5)
+    assert layers.surface_m(np.full(SIZE, 1e-3, np.float32)) == pytest.approx(
+        1.0 / np.mean(1.0 / np.array(seen)), abs=1e-5
+    )
 
 
 def test_what_is_farther_becomes_background_only_after_five_readings_in_a_row() -> None:

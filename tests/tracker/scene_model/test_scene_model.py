@@ -76,6 +76,25 @@ def test_things_that_look_different_are_not_one_that_was_moved() -> None:
     assert {one.change for one in happenings} == {Change.VANISHED, Change.APPEARED}
 
 
+def test_what_swings_to_another_place_bit_by_bit_is_told_to_have_moved() -> None:
+    swing = [Screen(far, 1.0, 0.55 - 1.05 / far, 0.0, 1.0) for far in np.linspace(3.5, 4.6, 25)]
+    film = [[]] * 20 + [[swing[0]]] * 40 + [[one] for one in swing] + [[swing[-1]]] * 60
+    happenings = told(watch(SceneModel(SceneConfig()), film))
+    assert happenings[0].change is Change.APPEARED
+    moved = [one for one in happenings if one.change is Change.MOVED]
+    assert len(moved) == 1
+    assert moved[0].to_m is not None
+    assert moved[0].to_m[0] == pytest.approx(4.6, abs=0.1)
+
+
+def test_what_somebody_holds_still_and_takes_along_was_never_put_down() -> None:
+    near, held = at(PERSON, 0.6), replace(BOX, ahead_m=4.0, foot_m=0.9, top_m=1.3)
+    before = replace(PERSON, ahead_m=3.0, left_m=0.3, right_m=-0.3)
+    come = [[at(PERSON, way)] for way in np.linspace(2.2, 0.6, 20)]
+    film = [[]] * 20 + come + [[near, held]] * 30 + [[before]] * 60 + [[]] * 60
+    assert told(watch(SceneModel(SceneConfig()), film)) == []
+
+
 def test_the_static_scene_has_neither_people_nor_things() -> None:
     scene = watch(SceneModel(SceneConfig()), visit([], [BOX]))[-1]
     empty, _ = true_depth([])

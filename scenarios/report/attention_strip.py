@@ -1,0 +1,110 @@
+"""A strip of a page: where attention would look when its person was learned, lost, away, and found again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.palette import track_colour
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.report.charts.thermal_stills import images_of
+from peopleboy.scenarios.report.findings.sentences import seconds
+from peopleboy.scenarios.report.findings.summary import RunFindings
+from peopleboy.scenarios.report.pictures import PagePicture, page_jpeg
+from peopleboy.tracker.attention.attend import Focus
+from peopleboy.tracker.attention.people.attended import Attended
+from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
+from peopleboy.tracker.attention.people.views import LOOKED_AT, View, box_in
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.track import Box, Status
+
+_ATTENTIVE: Final = "attentive"  # how the names of such trackers begin
+_QUALITY: Final = 80
+_THICK: Final = 2
+
+
+class _Learned(NamedTuple):
+    frame: int
+    number: int
+    camera: str
+    box: Box
+
+
+def attention_strip(found: RunFindings) -> list[PagePicture]:
+    """Draw the key moments of the person on whom attention is: each image beside the score of every place.
+
+    There are none for other trackers, for people who were never seen well, and where no images can be had.
+    """
+    if not found.run.about.tracker.startswith(_ATTENTIVE):
+        return []
+    try:
+        learned = _learned(found)
+    except BadInput:
+        return []
+    if learned is None:
+        return []
+    moments = {learned.frame: "learned", **_absence(found, learned)}
+    images, _ = images_of(found.run, list(moments), learned.camera)
+    if learned.frame not in images:
+        return []
+    return list(_pictures(found, learned, moments, images))
+
+
+def _learned(found: RunFindings) -> _Learned | None:
+    """Find the person who was seen well first, and the first image in which it was known."""
+    calibrations = calibrations_of(found.run.robot.cameras)
+    camera = next((name for name in LOOKED_AT if name in calibrations), None)
+    seen: dict[int, int] = {}
+    for number, tracks in sorted(found.files.tracks_by_frame().items()):
+        frame = Frame(images={}, calibrations=calibrations, time_s=found.run.time_s(number))
+        for track in tracks:
+            box = box_in(camera, track, frame) if camera and track.status is Status.TRACKED else None
+            if camera is not None and box is not None:
+                seen[track.id] = seen.get(track.id, 0) + 1
+                if seen[track.id] >= AttentiveConfig().learned_images:
+                    return _Learned(number, track.id, camera, box)
+    return None
+
+
+def _absence(found: RunFindings, learned: _Learned) -> dict[int, str]:
+    """Name the frames of the person's longest absence: its start, its middle, and its end."""
+    who = f"track {learned.number}"
+    lines = [line for line in found.run.events if line.who == who and line.frame > learned.frame]
+    ends = [line.frame for line in lines if line.kind == "re-identified"]
+    lost = [line.frame for line in lines if line.kind == "lost"]
+    away = [(next((end for end in ends if end > start), found.run.frames), start) for start in lost]
+    if not away:
+        return {found.run.frames: "at the end"}
+    end, start = max(away, key=lambda one: one[0] - one[1])
+    return {start: "lost", (start + end) // 2: "away", end: "found again" if end in ends else "at the end"}
+
+
+def _pictures(
+    found: RunFindings, learned: _Learned, moments: Mapping[int, str], images: Mapping[int, NDArray[np.uint8]]
+) -> Iterator[PagePicture]:
+    start = Attended.learned(learned.number, View(learned.camera, images[learned.frame], learned.box))
+    for frame, what in moments.items():
+        if frame in images:
+            focus = Attended(start.number, start.camera, start.look, images[frame]).focus()
+            caption = f"{seconds(found.run.time_s(frame))}, {what}: at most {focus.score:.2f}"
+            picture = page_jpeg(_drawn(images[frame], focus, track_colour(learned.number)), _QUALITY)
+            yield PagePicture(picture, f"image, and score of every place, {caption}", caption)
+
+
+def _drawn(image: NDArray[np.uint8], focus: Focus, colour: Sequence[int]) -> NDArray[np.uint8]:
+    """Lay an image (H, W, 3) and its scores beside each other, with a cross and a box at the focus."""
+    height, width = image.shape[:2]
+    grey = np.rint(255.0 * np.sqrt(np.clip(focus.scores, 0.0, 1.0))).astype(np.uint8)
+    scores = cv2.applyColorMap(cv2.resize(grey, (width, height)), cv2.COLORMAP_INFERNO)[..., ::-1]
+    both = [np.ascontiguousarray(one) for one in (image, scores)]
+    left, top, across, down = (round(edge) for edge in focus.box)
+    place = round(focus.place[0]), round(focus.place[1])
+    for one in both:
+        cv2.rectangle(one, (left, top), (left + across, top + down), tuple(colour), _THICK)
+        cv2.drawMarker(one, place, tuple(colour), cv2.MARKER_CROSS, 4 * _THICK * _THICK, _THICK)
+    return np.concatenate(both, axis=1)
