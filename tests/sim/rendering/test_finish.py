@@ -61,9 +61,11 @@ def test_a_ball_fills_its_edge_pixels_by_the_share_of_their_area(x: float, y: fl
     ).part
     share = (parts == 0).reshape(CAMERA.height, 16, CAMERA.width, 16).mean(axis=(1, 3))
     error = np.abs(found - share)
-    # A straight outline is off by a quarter at most; this one is bent, and shares are known to hundredths.
-    assert error.max() <= 0.3
-    assert error[(share > 0.0) & (share < 1.0)].mean() < 0.12
+    is_edge = (share > 0.0) & (share < 1.0)
+    # Where a bent outline only dips into a pixel, its neighbours' middles may all show the same.
+    assert error.max() <= 0.35
+    assert np.quantile(error[is_edge], 0.9) <= 0.25
+    assert error[is_edge].mean() < 0.12
     stairs = np.abs((seen.view.part == 0) - share)
     assert (error**2).sum() < 0.5 * (stairs**2).sum()
 
