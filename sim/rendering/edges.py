@@ -234,7 +234,9 @@ def _find_sources(
 @njit(cache=True)
 def _is_own(seen: int, one: int, second: int, shape: int, own_shape: int) -> bool:
     """Whether what a ray meets looks like the first of two pieces: another face of a box does, too."""
-    return seen == one or seen == _UNKNOWN or (seen != second and shape == own_shape)
+    if seen == one:
+        return True
+    return seen == _UNKNOWN or (seen != second and shape == own_shape)
 
 
 @njit(cache=True)

@@ -60,13 +60,15 @@ def test_a_ball_fills_its_edge_pixels_by_the_share_of_their_area(x: float, y: fl
         table, fine, POSE, seen.scene.world_from_part, np.zeros(1, np.int64), np.zeros(1, np.bool_)
     ).part
     share = (parts == 0).reshape(CAMERA.height, 16, CAMERA.width, 16).mean(axis=(1, 3))
+    # A pixel at the border has too few neighbours.
+    share, found = share[1:-1, 1:-1], found[1:-1, 1:-1]
     error = np.abs(found - share)
     is_edge = (share > 0.0) & (share < 1.0)
-    # Where a bent outline only dips into a pixel, its neighbours' middles may all show the same.
+    # Of bent or slanted outlines four rays may know a little less than of others.
     assert error.max() <= 0.35
     assert np.quantile(error[is_edge], 0.9) <= 0.25
     assert error[is_edge].mean() < 0.12
-    stairs = np.abs((seen.view.part == 0) - share)
+    stairs = np.abs((seen.view.part == 0)[1:-1, 1:-1] - share)
     assert (error**2).sum() < 0.5 * (stairs**2).sum()
 
 
