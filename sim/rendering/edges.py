@@ -26,10 +26,10 @@ from peopleboy.sim.shapes.shapes import ShapeKind
 
 Array = NDArray[np.float64]
 Pixels = NDArray[np.int32]
+Four = tuple[int, int, int, int]
 
 # [px] where rays go through a pixel, from its middle.
 _RAYS = np.array([(-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375)])
-_TOWARDS = np.sign(_RAYS).astype(np.int64)
 # The neighbourhood, nearest first.
 _AROUND = np.array([(0, 0), (0, -1), (-1, 0), (1, 0), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1)])
 
@@ -173,45 +173,105 @@ def _differ(one: NDArray[np.float32], other: NDArray[np.float32], contrast: np.f
 def _find_sources(
     pixel: Pixels, depth: NDArray[np.float32], piece: Pixels, shapes: Shapes, lens: Lens
 ) -> Pixels:
-    """(E, 4) the numbers of the pixels that look like what each ray meets."""
-    sources = np.empty((len(pixel), len(_RAYS)), np.int32)
-    around = np.empty((9, 2), np.int64)
-    near, nearest = np.empty(9, np.int64), np.empty(9)
+    """(E, 4) the numbers of the pixels that look like what each ray meets.
+
+    Nearly everywhere there are but two pieces. Then no array is passed to a kernel: to pass three costs as
+    much as to try a ray.
+    """
     kind, size, first_surface, shape_of, piece_of, pose = shapes
-    flat_depth = depth.reshape(-1)
+    z = depth.reshape(-1)
+    sources = np.empty((len(pixel), len(_RAYS)), np.int32)
+    around, near, nearest = np.empty((9, 2), np.int64), np.empty(9, np.int64), np.empty(9)
     for i in range(len(pixel)):
-        v, u = pixel[i] // lens.width, pixel[i] % lens.width
-        known = _look_around(v, u, piece, around)
-        count, last = _shapes_of(known, around, flat_depth, shape_of, near, nearest)
-        for j in range(count):
-            if kind[near[j]] == _MESH:
-                count = 0
-                last = _UNKNOWN
+        own = pixel[i]
+        v, u = own // lens.width, own % lens.width
+        up, down = max(v - 1, 0), min(v + 1, lens.height - 1)
+        left, right = max(u - 1, 0), min(u + 1, lens.width - 1)
+        one = piece[v, u]
+        beside = (piece[v, left], piece[up, u], piece[v, right], piece[down, u])
+        askew = (piece[up, left], piece[up, right], piece[down, left], piece[down, right])
+        second, at = _second(one, beside, askew)
+        known, other = 0, own
+        if at < 0:
+            known = _look_around(v, u, piece, around)
+            count, last = _shapes_of(known, around, z, shape_of, near, nearest)
+        else:
+            # Rows and columns in the order of `beside` and `askew`.
+            row, column = (v, up, v, down, up, up, down, down), (left, u, right, u, left, right, left, right)
+            other = row[at] * lens.width + column[at]
+            near[0], near[1], nearest[0], nearest[1], count, last = _in_order(
+                one, second, shape_of[one], shape_of[second], z[own], z[other]
+            )
         for k in range(len(_RAYS)):
-            if not _is_open(piece, v, u, _TOWARDS[k, 1], _TOWARDS[k, 0]):
-                sources[i, k] = pixel[i]
-                continue
-            x = (u + _RAYS[k, 0] - lens.centre_u) / lens.focal
-            y = (v + _RAYS[k, 1] - lens.centre_v) / lens.focal
-            best, seen = math.inf, last
-            for j in range(count):
-                if best < _NEARER * nearest[j]:
-                    break
-                shape = near[j]
-                t, surface = _try(pose, kind, size, shape, x, y)
-                if t < best:
-                    best, seen = t, piece_of[first_surface[shape] + surface]
-            sources[i, k] = _place_of(seen, known, around, shape_of)
+            best, seen = math.inf, one
+            if _is_open(k, one, beside, askew):
+                x = (u + _RAYS[k, 0] - lens.centre_u) / lens.focal
+                y = (v + _RAYS[k, 1] - lens.centre_v) / lens.focal
+                seen = last
+                for j in range(count):
+                    if best < _NEARER * nearest[j]:
+                        break
+                    s = near[j]
+                    if kind[s] == _MESH:
+                        best, seen = 0.0, _UNKNOWN
+                    o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
+                    d = (
+                        pose[s, 0, 0] * x + pose[s, 0, 1] * y + pose[s, 0, 2],
+                        pose[s, 1, 0] * x + pose[s, 1, 1] * y + pose[s, 1, 2],
+                        pose[s, 2, 0] * x + pose[s, 2, 1] * y + pose[s, 2, 2],
+                    )
+                    t, surface = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
+                    if t < best:
+                        best, seen = t, piece_of[first_surface[s] + surface]
+            if known:
+                sources[i, k] = _place_of(seen, known, around, shape_of)
+            else:
+                is_own = _is_own(seen, one, second, shape_of[seen], shape_of[one])
+                sources[i, k] = own if is_own else other
     return sources
 
 
 @njit(cache=True)
-def _is_open(piece: Pixels, v: int, u: int, down: int, right: int) -> bool:
-    """Whether a pixel shows something else than those next to one of its quarters."""
-    height, width = piece.shape
-    below, beside = min(max(v + down, 0), height - 1), min(max(u + right, 0), width - 1)
-    one = piece[v, u]
-    return bool((piece[below, u] != one) | (piece[v, beside] != one) | (piece[below, beside] != one))
+def _is_own(seen: int, one: int, second: int, shape: int, own_shape: int) -> bool:
+    """Whether what a ray meets looks like the first of two pieces: another face of a box does, too."""
+    if seen == one:
+        return True
+    return seen == _UNKNOWN or (seen != second and shape == own_shape)
+
+
+@njit(cache=True)
+def _is_open(ray: int, one: int, beside: Four, askew: Four) -> bool:
+    """Whether those next to the quarter of a ray show something else than the pixel does."""
+    side, end = 3 * (ray // 2) + 1 - ray // 2, 2 * (ray % 2)
+    return bool((beside[side] != one) | (beside[end] != one) | (askew[ray] != one))
+
+
+@njit(cache=True)
+def _in_order(
+    one: int, second: int, shape: int, other_shape: int, z: float, other_z: float
+) -> tuple[int, int, float, float, int, int]:
+    """The shapes of two pieces, the nearer first, their depths, how many are to be tried, and what is last.
+
+    The last is the piece that is seen where they are missed; it may be nothing, or unknown.
+    """
+    if other_z < z:
+        one, second, shape, other_shape, z, other_z = second, one, other_shape, shape, other_z, z
+    if second == _NONE or other_z > _BEHIND * z:
+        return shape, shape, z, z, 1, second
+    return shape, other_shape, z, other_z, 1 if shape == other_shape else 2, _UNKNOWN
+
+
+@njit(cache=True)
+def _second(one: int, beside: Four, askew: Four) -> tuple[int, int]:
+    """The only other piece in a neighbourhood, and where it is first; -1 for where if there are more."""
+    found, at = _UNKNOWN, -1
+    for j in range(8):
+        here = beside[j] if j < 4 else askew[j - 4]
+        if here != one and here != found:
+            if at >= 0:
+                return found, -1
+            found, at = here, j
+    return found, at
 
 
 @njit(cache=True)
@@ -272,20 +332,6 @@ def _shapes_of(
         if shape_of[around[j, 0]] == shapes[count - 1]:
             last, pieces = around[j, 0], pieces + 1
     return (count - 1, last) if pieces == 1 else (count, _UNKNOWN)
-
-
-@njit(cache=True, error_model="numpy")
-def _try(
-    pose: Array, kind: NDArray[np.int64], size: Array, shape: int, x: float, y: float
-) -> tuple[float, int]:
-    """Where the ray (x, y, 1) of the camera meets a shape; arguments as in `Shapes`."""
-    o = (pose[shape, 0, 3], pose[shape, 1, 3], pose[shape, 2, 3])
-    d = (
-        pose[shape, 0, 0] * x + pose[shape, 0, 1] * y + pose[shape, 0, 2],
-        pose[shape, 1, 0] * x + pose[shape, 1, 1] * y + pose[shape, 1, 2],
-        pose[shape, 2, 0] * x + pose[shape, 2, 1] * y + pose[shape, 2, 2],
-    )
-    return hit_shape(kind[shape], (size[shape, 0], size[shape, 1], size[shape, 2]), o, d)
 
 
 @njit(cache=True)

@@ -126,8 +126,7 @@ def _reflect(seen: Seen, camera: Pinhole, mirror: _Mirror, is_mirrored: Mask) ->
     householder[:3, :3] -= 2.0 * np.outer(mirror.normal, mirror.normal)
     householder[:3, 3] = 2.0 * mirror.offset * mirror.normal
     pose = householder @ seen.world_from_camera
-    height = scene.world_from_part[:, :3, 3] @ mirror.normal - mirror.offset
-    hidden = scene.hidden | (height <= 0.0)
+    hidden = scene.hidden | ~_is_before(scene.table, scene.world_from_part, mirror.normal, mirror.offset)
     wanted = is_mirrored & ~hidden
     if not wanted.any():
         return None
@@ -152,6 +151,19 @@ def _reflect(seen: Seen, camera: Pinhole, mirror: _Mirror, is_mirrored: Mask) ->
     plane = (float(up[0]), float(up[1]), float(up[2]), away)
     is_any = _keep(beyond.part, beyond.depth, wanted, plane, lens, cosine)
     return Reflection(left, top, beyond, pose, cosine, is_surface) if is_any else None
+
+
+@njit(cache=True, error_model="numpy")
+def _is_before(table: ShapeTable, world_from_part: Array, normal: Array, offset: float) -> Mask:
+    """(P,) whether the middle of any of a part's shapes lies on the side of a plane to which it faces."""
+    is_before = np.zeros(len(world_from_part), np.bool_)
+    pose = np.empty((3, 4))
+    for shape in range(len(table.kind)):
+        part = table.part[shape]
+        compose(world_from_part[part], table.part_from_shape[shape], pose)
+        height = pose[0, 3] * normal[0] + pose[1, 3] * normal[1] + pose[2, 3] * normal[2]
+        is_before[part] |= height > offset
+    return is_before
 
 
 @njit(cache=True)

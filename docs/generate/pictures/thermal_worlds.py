@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import get_args
 
 from matplotlib.figure import Figure
 
@@ -20,7 +21,7 @@ def light() -> Figure:
     """People and their mirror images on a polished floor, in plain and in full detail."""
     titles = ("plain, colour", "full, colour", "plain, thermal", "full, thermal")
     figure, axes = panels(titles, 2.7)
-    for at, detail in enumerate(("plain", "full")):
+    for at, detail in enumerate(get_args(Detail)):
         images = _images("crossing_4", 4.0, detail)
         show(axes[at], images["colour"][WINDOW])
         show(axes[2 + at], images["thermal_c"][WINDOW], **SCALE)

@@ -18,7 +18,8 @@ Array = NDArray[np.float64]
 _EVERY = 4  # pixels between those whose light is reckoned, in row and column
 _LEAST_WIDE_M = 0.05  # takes part in the sum, so that a stick takes some light, too
 _SLOWLY_M = 0.12  # a gap of this height below something halves its shadow
-_DEEPEST = 0.75  # share of light that is lost at most
+_DEEPEST = 0.85  # share of the light from all around that is lost at most
+_ALL_AROUND = 0.6  # share of a floor's light that comes from all around, and not from the lamps above
 
 
 def add_contact_shadows(
@@ -91,7 +92,7 @@ def _light(
     for k in range(count[j, i]):
         row = prints[members[j, i, k]]
         light *= 1.0 - lost_light(row, gap(row, x + corner[0], y + corner[1]))
-    return max(light, 1.0 - _DEEPEST)
+    return 1.0 - _ALL_AROUND * min(1.0 - light, _DEEPEST)
 
 
 @njit(cache=True, fastmath=True)

