@@ -23,6 +23,7 @@ from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.handling import Handling
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.places.painting.paint_place import paint_place
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.full_detail import FullDetail
@@ -230,7 +231,12 @@ class World:
             robot_material(key.link_name) if key.name == ROBOT else materials[key.name] for key in keys
         ]
         self._table = make_shape_table(bullet.visual_shapes())
-        self._materials = make_material_table(part_materials, stream(config.seed, "surface.variation"))
+        paintings = paint_place(config.place, config.seed) if config.detail == "full" else {}
+        self._materials = make_material_table(
+            part_materials,
+            stream(config.seed, "surface.variation"),
+            [paintings.get(key.name) for key in keys],
+        )
         self._truth_maker = TruthMaker(keys, self._crowd, part_materials, config.place.movers)
         self._rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._glimpse)
 

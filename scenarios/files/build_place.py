@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput, Key, found_in
 from peopleboy.scenarios.files.moves.move_things import make_movers
 from peopleboy.scenarios.files.place_things import make_things, resolve_colour
-from peopleboy.scenarios.files.schema.place import CorridorSpec, DoorSpec, LCorridorSpec, PlaceSpec, RoomSpec
+from peopleboy.scenarios.files.schema.place import (
+    CorridorSpec,
+    DoorSpec,
+    LCorridorSpec,
+    PlaceSpec,
+    RoomSpec,
+    StreetSpec,
+    SunSpec,
+    TemperaturesSpec,
+)
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.scenarios.files.schema.values import Colour
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.places.floor_plan import Door, FloorPlan, check_doors
-from peopleboy.sim.places.place import Place
+from peopleboy.sim.places.place import Fixture, Place, Sun
 from peopleboy.sim.places.rooms import Surfaces, build_place, l_corridor, straight_corridor, t_corridor
+from peopleboy.sim.places.scenery.street import StreetLook, street_shell
 from peopleboy.sim.shapes.materials import Material
 
 
@@ -51,14 +62,17 @@ def make_place(spec: ScenarioSpec, folder: Path) -> Place:
     """
     plan = make_floor_plan(spec.place)
     built = make_things(spec, plan, folder)
+    surfaces = _surfaces(spec.place, plan)
     return build_place(
         plan,
         height_m=spec.place.height_m,
-        surfaces=_surfaces(spec.place, plan),
+        surfaces=surfaces,
+        shell=_street(spec.place, plan, surfaces) if isinstance(spec.place, StreetSpec) else None,
         things=tuple(f for fixtures in built.values() for f in fixtures),
         surroundings_c=spec.place.temperatures.surroundings_c,
         light=tuple((step.at_s, step.level) for step in spec.lights) or ((0.0, 1.0),),
         movers=make_movers(spec, plan, built),
+        sun=None if spec.place.sun is None else _sun(spec.place.sun),
     )
 
 
@@ -74,7 +88,7 @@ def check_wall(plan: FloorPlan, key: Key, name: str) -> None:
 
 
 def _areas(spec: PlaceSpec) -> FloorPlan:
-    if isinstance(spec, RoomSpec | CorridorSpec):
+    if isinstance(spec, RoomSpec | CorridorSpec | StreetSpec):
         return straight_corridor(spec.length_m, spec.width_m)
     if isinstance(spec, LCorridorSpec):
         _check_longer(spec.first_m, "first_m", spec.width_m)
@@ -101,6 +115,32 @@ def _door(spec: DoorSpec) -> Door:
     )
 
 
+def _street(spec: StreetSpec, plan: FloorPlan, surfaces: Surfaces) -> tuple[Fixture, ...]:
+    """The shell of a street.
+
+    Raises:
+        BadInput: a door where no house is.
+    """
+    houses = {"both": ("north", "south"), "none": ()}.get(spec.houses, (spec.houses,))
+    for index, door in enumerate(spec.doors):
+        if door.wall not in houses:
+            raise BadInput(
+                f"there is no house in the {door.wall}; houses is {spec.houses!r}",
+                key=("place", "doors", index, "wall"),
+            )
+    look = StreetLook(houses=frozenset(houses), house_m=spec.house_m, sky_c=spec.sky_c)
+    return street_shell(plan, look, surfaces)
+
+
+def _sun(spec: SunSpec) -> Sun:
+    return Sun(
+        azimuth_rad=math.radians(spec.azimuth_deg),
+        elevation_rad=math.radians(spec.elevation_deg),
+        warms_k=spec.warms_k,
+        brightens=spec.brightens,
+    )
+
+
 def _surfaces(spec: PlaceSpec, plan: FloorPlan) -> Surfaces:
     usual, temperatures, colours = Surfaces(), spec.temperatures, spec.colours
     walls = _material(usual.walls, temperatures.walls_c, colours.walls)
@@ -110,12 +150,17 @@ def _surfaces(spec: PlaceSpec, plan: FloorPlan) -> Surfaces:
         floor=replace(_material(usual.floor, temperatures.floor_c, colours.floor), shine=spec.floor_shine),
         ceiling=_material(usual.ceiling, temperatures.ceiling_c, colours.ceiling),
         walls=walls,
-        door=_material(usual.door, usual.door.temperature_c, colours.doors),
+        door=_material(usual.door, _door_c(temperatures), colours.doors),
         named={
             name: replace(walls, temperature_c=temperature)
             for name, temperature in temperatures.single_walls_c.items()
         },
     )
+
+
+def _door_c(temperatures: TemperaturesSpec) -> float:
+    """How warm closed doors are: as the air [degC]."""
+    return 21.0 if temperatures.air_c is None else temperatures.air_c
 
 
 def _material(usual: Material, temperature_c: float, colour: Colour | None) -> Material:

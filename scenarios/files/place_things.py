@@ -74,7 +74,9 @@ def make_things(spec: ScenarioSpec, plan: FloorPlan, folder: Path) -> Built:
     built: dict[str, tuple[Fixture, ...]] = {}
     for index, (name, thing) in enumerate(zip(name_things(spec.things), spec.things, strict=True)):
         with found_in("things", index):
-            built[name] = _make_thing(name, thing, spec.place.height_m, plan, built, folder)
+            built[name] = _make_thing(
+                name, thing, spec.place.height_m, spec.place.temperatures.air_c, plan, built, folder
+            )
     return built
 
 
@@ -85,7 +87,13 @@ def extent_of(fixtures: Sequence[Fixture]) -> Extent:
 
 
 def _make_thing(
-    name: str, spec: ThingSpec, ceiling_m: float, plan: FloorPlan, built: Built, folder: Path
+    name: str,
+    spec: ThingSpec,
+    ceiling_m: float,
+    air_c: float | None,
+    plan: FloorPlan,
+    built: Built,
+    folder: Path,
 ) -> tuple[Fixture, ...]:
     urdf = _find_urdf(spec, folder)
     extent = _usual_extent(spec, ceiling_m) if urdf is None else _urdf_extent(urdf) * spec.scale
@@ -104,6 +112,7 @@ def _make_thing(
             facing_rad=stance.facing,
             size_m=None if urdf is not None else (depth, width, height),
             temperature_c=spec.temperature_c,
+            air_c=air_c,
             emissivity=spec.emissivity,
             shine=spec.shine,
             rgb=None if spec.colour is None else resolve_colour(spec.colour),

@@ -11,6 +11,7 @@ from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, Light
 from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows
 from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
+from peopleboy.sim.cameras.paintings import painted
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
     finish_at,
@@ -43,6 +44,8 @@ def _radiance_image(
     phase: NDArray[np.float64],
     finish: NDArray[np.float64],
     texels: NDArray[np.float32],
+    paint: NDArray[np.float64],
+    paint_texels: NDArray[np.float32],
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
@@ -57,6 +60,8 @@ def _radiance_image(
             x, y, z = surface_point(matrices, p, u, v, depth[v, u])
             second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
+            if paint[p, 0] >= 0.0:
+                shade *= painted(paint, paint_texels, p, x, y, z)[1]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
             if has_finish and finish[p, 0] >= 0.0:
@@ -117,7 +122,7 @@ def colour_image(
         return _radiance_image(
             one.part, one.depth, one.normal, matrices,
             materials.colour, materials.kind, materials.period, materials.phase,
-            materials.finish, materials.texels, LIGHT, level,
+            materials.finish, materials.texels, materials.paint, materials.paint_texels, LIGHT, level,
         )  # fmt: skip
 
     image = draw(view, part_from_pixel(camera, world_from_camera, world_from_part))

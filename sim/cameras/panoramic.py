@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import hat_integral
 from peopleboy.sim.cameras.colour import LIGHT, shade_of
+from peopleboy.sim.cameras.paintings import painted
 from peopleboy.sim.cameras.surfaces import MaterialTable, finish_at, pattern_value
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
@@ -51,7 +52,7 @@ def panorama_image(
     image = _radiance_image(
         view.part, view.depth, view.normal, part_from_camera, directions, slopes,
         camera.mirror.ring_radius_m, materials.colour, materials.kind, materials.period, materials.phase,
-        materials.finish, materials.texels, LIGHT, light,
+        materials.finish, materials.texels, materials.paint, materials.paint_texels, LIGHT, light,
     )  # fmt: skip
     return shift_blur(image, abs(turned_rad) / math.tau * camera.width)
 
@@ -80,6 +81,8 @@ def _radiance_image(
     phase: Matrix,
     finish: NDArray[np.float64],
     texels: NDArray[np.float32],
+    paint: Matrix,
+    paint_texels: NDArray[np.float32],
     light: Matrix,
     level: float,
 ) -> Linear:
@@ -95,6 +98,8 @@ def _radiance_image(
             x, y, z = map_point(part_from_camera[p], out * directions[u, 0], down, out * directions[u, 1])
             second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
+            if paint[p, 0] >= 0.0:
+                shade *= painted(paint, paint_texels, p, x, y, z)[1]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
             if has_finish and finish[p, 0] >= 0.0:

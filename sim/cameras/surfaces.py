@@ -14,9 +14,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.sim.cameras.paintings import make_paint_table
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.shapes.finishes import Finish
 from peopleboy.sim.shapes.materials import Material, PatternKind
+from peopleboy.sim.shapes.paintings import Painting
 
 # Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
 _OFFSET = 0.137
@@ -41,6 +43,7 @@ class MaterialTable:
             a metre, and colour; (0, 8) if no part has one.
         texels: (N, 3) kelvin, light and cover of all finishes.
         shine: (P,) how much of what is reflected is mirrored, 0..1.
+        paint, paint_texels: paintings, as `make_paint_table` gives them.
     """
 
     thermal: NDArray[np.float64]
@@ -51,11 +54,18 @@ class MaterialTable:
     finish: NDArray[np.float64]
     texels: NDArray[np.float32]
     shine: NDArray[np.float64]
+    paint: NDArray[np.float64]
+    paint_texels: NDArray[np.float32]
 
 
-def make_material_table(materials: Sequence[Material], rng: np.random.Generator) -> MaterialTable:
+def make_material_table(
+    materials: Sequence[Material],
+    rng: np.random.Generator,
+    paintings: Sequence[Painting | None] | None = None,
+) -> MaterialTable:
     """Put the looks of all parts into arrays; the generator draws each part's phase of variation."""
     finish, texels = _lay_out([material.finish for material in materials])
+    paint, paint_texels = make_paint_table([None] * len(materials) if paintings is None else paintings)
     return MaterialTable(
         thermal=np.array(
             [
@@ -74,6 +84,8 @@ def make_material_table(materials: Sequence[Material], rng: np.random.Generator)
         finish=finish,
         texels=texels,
         shine=np.array([k.shine for k in materials], np.float64),
+        paint=paint,
+        paint_texels=paint_texels,
     )
 
 

@@ -18,6 +18,7 @@ from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
+from peopleboy.sim.cameras.paintings import painted
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
     finish_at,
@@ -88,6 +89,8 @@ def _radiance_image(
     phase: NDArray[np.float64],
     finish: NDArray[np.float64],
     texels: NDArray[np.float32],
+    paint: NDArray[np.float64],
+    paint_texels: NDArray[np.float32],
     table: NDArray[np.float64],
     surroundings: float,
     span: tuple[float, float],
@@ -102,11 +105,14 @@ def _radiance_image(
                 image[v, u] = surroundings
                 continue
             temperature = thermal[p, 0]
+            is_painted = paint[p, 0] >= 0.0
             is_finished = has_finish and finish[p, 0] >= 0.0
-            if is_finished or thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
+            if is_painted or is_finished or thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
                 temperature += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
                 temperature += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
+                if is_painted:
+                    temperature += painted(paint, paint_texels, p, x, y, z)[0]
                 if is_finished:
                     temperature += finish_at(finish, texels, p, x, y, z)[0]
             emitted = _look_up(table, span[0], span[1], temperature)
@@ -185,8 +191,8 @@ def surface_image(
     def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
         return _radiance_image(
             one.part, one.depth, matrices, materials.thermal, materials.kind, materials.period,
-            materials.phase, materials.finish, materials.texels, _RADIANCE, surroundings,
-            (_LOWEST_C, _HIGHEST_C),
+            materials.phase, materials.finish, materials.texels, materials.paint, materials.paint_texels,
+            _RADIANCE, surroundings, (_LOWEST_C, _HIGHEST_C),
         )  # fmt: skip
 
     radiance = draw(view, part_from_pixel(config.camera, world_from_camera, world_from_part))

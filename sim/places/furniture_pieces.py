@@ -6,7 +6,7 @@ Builders as in `warm_pieces`: size [m], temperature [degC] and colour of the mai
 from __future__ import annotations
 
 from peopleboy.sim.places.pieces import SINK_M, STEEL, WHITE, Piece, ball, standing_box, tube
-from peopleboy.sim.shapes.materials import Rgb
+from peopleboy.sim.shapes.materials import Covering, Rgb
 from peopleboy.sim.shapes.shapes import Vector
 
 # Middle of each ball of leaves, in radii sideways and as a share of the height, and its share of the radius.
@@ -39,6 +39,7 @@ def window(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
             emissivity=0.9,
             glow=0.4,
             shine=1.0,
+            covering=Covering.GLASS,
         ),
         Piece(name="frame", shapes=frame, temperature_c=temperature + 2.5, rgb=WHITE),
     )

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from peopleboy.sim.shapes.materials import Pattern, Rgb
+from peopleboy.sim.shapes.materials import Covering, Pattern, Rgb
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 # Feet reach this far into the floor and backs into the wall, so that no two faces lie in one plane.
@@ -35,6 +35,9 @@ class Piece:
     pattern: Pattern = field(default_factory=Pattern)
     is_solid: bool = True
     shine: float = 0.0
+    covering: Covering = Covering.BARE
+    gradient_k_per_m: float = 0.0
+    uneven_k: float = 0.0
 
 
 def box(size: Vector, position: Vector) -> Shape:

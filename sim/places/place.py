@@ -41,6 +41,23 @@ class Fixture:
     is_solid: bool = True
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sun:
+    """The sun over a place.
+
+    Attributes:
+        azimuth_rad: [rad] where it stands, from +x towards +y.
+        elevation_rad: [rad] above the horizon.
+        warms_k: [K] how much warmer it makes what it shines on.
+        brightens: how much brighter, as a share of the light without it.
+    """
+
+    azimuth_rad: float
+    elevation_rad: float
+    warms_k: float
+    brightens: float
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Place:
     """A room or corridor with everything that stands in it, or is moved there.
@@ -54,6 +71,7 @@ class Place:
         surroundings_c: [degC] what surfaces of low emissivity mirror.
         light: (time [s], level) steps of the room's light; level 1 is full, 0 is dark.
         movers: the things to which something happens.
+        sun: the sun, where it shines in; only `detail: full` shows it.
     """
 
     fixtures: tuple[Fixture, ...]
@@ -63,6 +81,7 @@ class Place:
     surroundings_c: float = 21.0
     light: tuple[tuple[float, float], ...] = ((0.0, 1.0),)
     movers: tuple[Mover, ...] = ()
+    sun: Sun | None = None
 
     def obstacles_at(self, time_s: float) -> NDArray[np.float64]:
         """(K, 4) [m] as `obstacles`, with what is moved where it is at a time."""

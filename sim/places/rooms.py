@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from peopleboy.sim.places.extent import fixture_extent
 from peopleboy.sim.places.floor_plan import Door, FloorPlan, Wall, check_doors
 from peopleboy.sim.places.moving import Mover
-from peopleboy.sim.places.place import Fixture, Place, is_in_the_way
+from peopleboy.sim.places.place import Fixture, Place, Sun, is_in_the_way
 from peopleboy.sim.places.rectangle import Rectangle
-from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind
+from peopleboy.sim.shapes.materials import Covering, Material, Pattern, PatternKind
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
 # Blocks that meet run this far into each other, so that no two faces lie in one plane.
@@ -41,6 +41,7 @@ class Surfaces:
             rgb=(0.42, 0.36, 0.30),
             second_rgb=(0.36, 0.31, 0.26),
             colour_pattern=Pattern(kind=PatternKind.CHECKS, period_m=1.0),
+            covering=Covering.FLOORING,
         )
     )
     ceiling: Material = field(
@@ -50,6 +51,7 @@ class Surfaces:
             variation_k=0.3,
             variation_m=3.0,
             rgb=(0.80, 0.80, 0.78),
+            covering=Covering.CEILING,
         )
     )
     walls: Material = field(
@@ -59,6 +61,7 @@ class Surfaces:
             variation_k=0.5,
             variation_m=1.8,
             rgb=(0.72, 0.69, 0.60),
+            covering=Covering.PLASTER,
         )
     )
     door: Material = field(
@@ -115,12 +118,14 @@ def build_place(
     *,
     height_m: float = 2.7,
     surfaces: Surfaces | None = None,
+    shell: tuple[Fixture, ...] | None = None,
     things: tuple[Fixture, ...] = (),
     surroundings_c: float = 21.0,
     light: tuple[tuple[float, float], ...] = ((0.0, 1.0),),
     movers: tuple[Mover, ...] = (),
+    sun: Sun | None = None,
 ) -> Place:
-    """Build the shell of a place and put things into it, some of which are moved.
+    """Build the shell of a place, unless one is given, and put things into it, some of which are moved.
 
     No two visible faces of the shell lie in one plane and overlap, and the inside is closed all around:
     a ray from any point of the floor plan meets a surface.
@@ -130,7 +135,7 @@ def build_place(
     """
     check_doors(plan)
     materials = Surfaces() if surfaces is None else surfaces
-    fixtures = (*_shell(plan, height_m, materials), *things)
+    fixtures = (*(_shell(plan, height_m, materials) if shell is None else shell), *things)
     moved = {mover.name for mover in movers}
     names, boxes = obstacles(tuple(f for f in fixtures if f.name.split("/")[0] not in moved))
     bounds = plan.bounds()
@@ -142,6 +147,7 @@ def build_place(
         surroundings_c=surroundings_c,
         light=light,
         movers=movers,
+        sun=sun,
     )
 
 
@@ -175,12 +181,15 @@ def _shell(plan: FloorPlan, height_m: float, materials: Surfaces) -> tuple[Fixtu
         block_fixture("floor", outside, -2.0 * SINK_M, 0.0, materials.floor),
         block_fixture("ceiling", outside, height_m, height_m + 2.0 * SINK_M, materials.ceiling),
         *walls,
-        *(_door(plan, number, door, height_m, materials) for number, door in enumerate(plan.doors, start=1)),
+        *(
+            build_door(plan, number, door, height_m, materials)
+            for number, door in enumerate(plan.doors, start=1)
+        ),
     )
 
 
-def _door(plan: FloorPlan, number: int, door: Door, height_m: float, materials: Surfaces) -> Fixture:
-    """The lintel over an open door, or the leaf of a closed one."""
+def build_door(plan: FloorPlan, number: int, door: Door, height_m: float, materials: Surfaces) -> Fixture:
+    """Build the lintel over an open door, up to a height [m], or the leaf of a closed one."""
     wall, opening = plan.wall(door.wall), plan.opening(door)
     nx, ny = (abs(part) for part in wall.side.value)
     if door.is_open:

@@ -11,6 +11,7 @@ from peopleboy.sim.places.thing_kinds import KINDS, Kind
 from peopleboy.sim.shapes.materials import Material, Pattern, Rgb
 from peopleboy.sim.shapes.shapes import Part, Vector
 
+_USUAL_AIR_C = 21.0  # for which the kinds' temperatures are given
 _SHADE = 0.45  # brightness of a pattern's second colour, as a share of the first
 
 
@@ -26,6 +27,8 @@ class Thing:
         facing_rad: [rad] heading of its front.
         size_m: depth, width, height [m]; None takes the kind's own.
         temperature_c: [degC] of its main surface; None takes the kind's own.
+        air_c: [degC] of the air, followed by what is not heated and has no temperature of its own; None
+            leaves all as it is in a room of 21 degC.
         emissivity: of its main surface.
         shine: of its main surface, see `Material`; None takes the kind's own.
         rgb: linear reflectance of its main surface; None takes the kind's own, a URDF its file's.
@@ -40,6 +43,7 @@ class Thing:
     facing_rad: float = 0.0
     size_m: Vector | None = None
     temperature_c: float | None = None
+    air_c: float | None = None
     emissivity: float = 0.93
     shine: float | None = None
     rgb: Rgb | None = None
@@ -84,7 +88,11 @@ def _pieces(thing: Thing, kind: Kind) -> tuple[Piece, ...]:
     """The pieces of a thing; emissivity, shine and pattern go to the first, the main one."""
     size = kind.size_m if thing.size_m is None else thing.size_m
     rgb = kind.rgb if thing.rgb is None else thing.rgb
-    main, *others = kind.build(size, _given(thing.temperature_c, kind.temperature_c), rgb)
+    warmer_k = 0.0 if thing.air_c is None else thing.air_c - _USUAL_AIR_C
+    usual_c = kind.temperature_c if kind.is_heated else kind.temperature_c + warmer_k
+    main, *others = kind.build(size, _given(thing.temperature_c, usual_c), rgb)
+    if kind.is_heated:
+        others = [replace(piece, temperature_c=piece.temperature_c + warmer_k) for piece in others]
     shine = _given(thing.shine, main.shine)
     return (replace(main, emissivity=thing.emissivity, shine=shine, pattern=thing.pattern), *others)
 
@@ -105,4 +113,7 @@ def _material(piece: Piece) -> Material:
         colour_pattern=piece.pattern,
         glow=piece.glow,
         shine=piece.shine,
+        covering=piece.covering,
+        gradient_k_per_m=piece.gradient_k_per_m,
+        uneven_k=piece.uneven_k,
     )

@@ -36,7 +36,17 @@ def radiator(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         standing_box(0.6 * depth, 0.6 * pitch, 0.0, height, x=0.7 * depth, y=(k + 0.5) * pitch - width / 2.0)
         for k in range(count)
     )
-    return (Piece(name="panel", shapes=(panel, *ribs), temperature_c=temperature, rgb=rgb, variation_k=1.5),)
+    return (
+        Piece(
+            name="panel",
+            shapes=(panel, *ribs),
+            temperature_c=temperature,
+            rgb=rgb,
+            variation_k=1.5,
+            gradient_k_per_m=14.0,
+            uneven_k=1.0,
+        ),
+    )
 
 
 def pipe(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:

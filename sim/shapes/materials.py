@@ -22,6 +22,21 @@ class PatternKind(IntEnum):
     SPECKLE = 4  # irregular blotches
 
 
+class Covering(IntEnum):
+    """What covers a surface, which `detail: full` paints."""
+
+    BARE = 0
+    PLASTER = 1  # inner walls
+    FLOORING = 2
+    CEILING = 3
+    STREET = 4  # pavement and road
+    FACADE = 5  # storeys of windows
+    SKY = 6
+    SKYLINE = 7  # far houses and trees before the sky
+    LEAVES = 8
+    GLASS = 9  # lets the sun in
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pattern:
     """A pattern and its period: the width of a pair of stripes, or the height of a patch [m]."""
@@ -49,6 +64,9 @@ class Material:
         finish: what the surface carries beside; None for nothing.
         shine: how much of what the surface reflects it mirrors as a mirror does, 0..1: 0 is dull, 1 is glass.
             Only images of full detail show it.
+        covering: what `detail: full` paints on it.
+        gradient_k_per_m: [K/m] how much warmer it is above than below, by `detail: full`.
+        uneven_k: [K] deviation of its temperature over all scales, by `detail: full`.
     """
 
     temperature_c: float
@@ -63,3 +81,6 @@ class Material:
     glow: float = 0.0
     finish: Finish | None = None
     shine: float = 0.0
+    covering: Covering = Covering.BARE
+    gradient_k_per_m: float = 0.0
+    uneven_k: float = 0.0

@@ -1,0 +1,56 @@
+"""All paintings of a world as one table, and what they add where a pixel falls (a numba kernel)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.shapes.paintings import Painting, Unrolling
+
+_LEVEL = int(Unrolling.LEVEL)
+
+
+def make_paint_table(
+    paintings: Sequence[Painting | None],
+) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+    """Put the paintings of all P parts into arrays.
+
+    Returns:
+        (P, 7) first texel (-1 for a part without a painting), unrolling, origin across and up [m], texels a
+        metre, columns, rows; and (N, 2) texels: what is added [K], factor on light.
+    """
+    rows = np.full((len(paintings), 7), -1.0)
+    texels, first = [np.zeros((0, 2), np.float32)], 0
+    for row, painting in zip(rows, paintings, strict=True):
+        if painting is not None:
+            height, width = painting.kelvin.shape
+            row[:] = first, painting.unrolling, *painting.origin_m, 1.0 / painting.texel_m, width, height
+            texels.append(np.stack([painting.kelvin.ravel(), painting.light.ravel()], axis=1))
+            first += height * width
+    return rows, np.concatenate(texels)
+
+
+@njit(cache=True, fastmath=True)
+def painted(
+    paint: NDArray[np.float64], texels: NDArray[np.float32], part: int, x: float, y: float, z: float
+) -> tuple[float, float]:
+    """Return what the painting of a part adds [K], and its factor on light, at a point [m] of the part.
+
+    Between the middles of texels it is linear; beyond the edge the nearest texel counts.
+    """
+    across, up = (x, y) if int(paint[part, 1]) == _LEVEL else (x + y, z)
+    columns, rows = int(paint[part, 5]), int(paint[part, 6])
+    u = min(max((across - paint[part, 2]) * paint[part, 4], 0.0), columns - 1.001)
+    v = min(max((up - paint[part, 3]) * paint[part, 4], 0.0), rows - 1.001)
+    left, low = int(u), int(v)
+    a, b = u - left, v - low
+    at = int(paint[part, 0]) + low * columns + left
+    c, d, e, f = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
+    above = at + columns
+    return (
+        c * texels[at, 0] + d * texels[at + 1, 0] + e * texels[above, 0] + f * texels[above + 1, 0],
+        c * texels[at, 1] + d * texels[at + 1, 1] + e * texels[above, 1] + f * texels[above + 1, 1],
+    )

@@ -1,0 +1,137 @@
+"""The flat grids that surfaces are painted on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.places.extent import Extent, shape_extents
+from peopleboy.sim.places.painting.noise import Clouds
+from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.shapes.paintings import Painting, Unrolling
+
+Array = NDArray[np.float64]
+
+_FINEST_M, _MOST_TEXELS = 0.025, 300_000
+_FINEST_OF_THINGS_M, _TEXELS_OF_THINGS = 0.01, 20_000
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Fresco:
+    """A surface to be painted, of H rows upward and W columns across, with what was painted so far.
+
+    Attributes:
+        unrolling: how it lies on the part.
+        origin_m: [m] of the first texel, in the part's frame.
+        texel_m: [m].
+        across: (1, W) [m] from the left edge to the right one.
+        up: (H, 1) [m] from the lower edge to the upper one.
+        size: (W, H) of the surface [m].
+        world: (H, W, 3) [m] points in the world; of what has several sides, of a plane through its middle.
+        clouds: noise to draw from.
+        rng: of all else that is drawn.
+        air_k: [K] how much warmer the air is than the surface.
+        kelvin, light: (H, W) so far.
+    """
+
+    unrolling: Unrolling
+    origin_m: tuple[float, float]
+    texel_m: float
+    across: Array
+    up: Array
+    size: tuple[float, float]
+    world: Array
+    clouds: Clouds
+    rng: np.random.Generator
+    air_k: float
+    kelvin: Array
+    light: Array
+
+    def cloudy(self, metres: float) -> Array:
+        """(H, W) noise of deviation 1, its largest blotches so many metres wide, from a place of its own."""
+        x, y = self.rng.uniform(0.0, 100.0, 2)
+        return self.clouds.at(self.across + x, self.up + y, metres)
+
+    def strip(self, distance: Array, half_m: float | Array, soft_m: float) -> Array:
+        """1 where a distance [m] is below a half width, 0 beyond; between them over a soft edge."""
+        return np.clip((half_m + soft_m - np.abs(distance)) / (soft_m + 0.5 * self.texel_m), 0.0, 1.0)
+
+    def lines(self, along: Array, pitch_m: float, width_m: float) -> Array:
+        """1 on lines that repeat every so often [m] along a coordinate, else 0."""
+        off = np.abs((along + 0.5 * pitch_m) % pitch_m - 0.5 * pitch_m)
+        return self.strip(off, 0.5 * width_m, 0.6 * self.texel_m)
+
+    def cells(self, across_m: float, up_m: float) -> Array:
+        """(H, W) a number of deviation 1 for each cell of a grid, the same all over the cell."""
+        column, row = np.floor(self.across / across_m).astype(int), np.floor(self.up / up_m).astype(int)
+        drawn = self.rng.standard_normal((row.max() + 1, column.max() + 1))
+        return np.asarray(drawn[row, column])
+
+    def painting(self) -> Painting:
+        """What was painted."""
+        kelvin, light = self.kelvin.astype(np.float32), self.light.astype(np.float32)
+        return Painting(
+            unrolling=self.unrolling, origin_m=self.origin_m, texel_m=self.texel_m, kelvin=kelvin, light=light
+        )
+
+
+def begin(
+    fixture: Fixture, clouds: Clouds, rng: np.random.Generator, *, is_shell: bool, air_k: float
+) -> Fresco:
+    """Begin a fresco on a fixture; floors and ceilings lie, all else stands."""
+    extents = np.array(shape_extents(fixture))
+    low, high = extents[:, 0].min(axis=0), extents[:, 1].max(axis=0)
+    is_level = is_shell and high[2] - low[2] < 0.5 * min(high[0] - low[0], high[1] - low[1])
+    start, size = _span(low, high, is_level=is_level)
+    texel = _texel(size, is_shell=is_shell)
+    columns, rows = (max(int(np.ceil(side / texel)), 2) for side in size)
+    across: Array = (np.arange(columns, dtype=np.float64) + 0.5) * texel
+    up: Array = (np.arange(rows, dtype=np.float64) + 0.5) * texel
+    return Fresco(
+        unrolling=Unrolling.LEVEL if is_level else Unrolling.UPRIGHT,
+        origin_m=(start[0] + 0.5 * texel, start[1] + 0.5 * texel),
+        texel_m=texel,
+        across=across[None, :],
+        up=up[:, None],
+        size=size,
+        world=_world(fixture, (low, high), start[0] + across, start[1] + up, is_level=is_level),
+        clouds=clouds,
+        rng=rng,
+        air_k=air_k,
+        kelvin=np.zeros((rows, columns)),
+        light=np.ones((rows, columns)),
+    )
+
+
+def _span(low: Array, high: Array, *, is_level: bool) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Where the surface starts, and its size, both across and up [m]."""
+    if is_level:
+        return (low[0], low[1]), (high[0] - low[0], high[1] - low[1])
+    across = low[0] + low[1], high[0] + high[1]
+    return (across[0], low[2]), (across[1] - across[0], high[2] - low[2])
+
+
+def _texel(size: tuple[float, float], *, is_shell: bool) -> float:
+    finest, most = (_FINEST_M, _MOST_TEXELS) if is_shell else (_FINEST_OF_THINGS_M, _TEXELS_OF_THINGS)
+    return max(finest, float(np.sqrt(size[0] * size[1] / most)))
+
+
+def _world(
+    fixture: Fixture, extent: Extent | tuple[Array, Array], u: Array, v: Array, *, is_level: bool
+) -> Array:
+    """(H, W, 3) points of the surface: of a floor its top, of a ceiling its underside, else the middle."""
+    low, high = extent
+    own = np.zeros((len(v), len(u), 3))
+    if is_level:
+        own[..., 0], own[..., 1] = u[None, :], v[:, None]
+        own[..., 2] = high[2] if fixture.position[2] < 1.0 else low[2]
+    else:
+        along = 0 if high[0] - low[0] >= high[1] - low[1] else 1
+        middle = 0.5 * (low + high)
+        own[..., along], own[..., 1 - along] = u[None, :] - middle[1 - along], middle[1 - along]
+        own[..., 2] = v[:, None]
+    pose = pose_matrices(fixture.position, fixture.orientation)
+    return own @ pose[:3, :3].T + pose[:3, 3]

@@ -1,0 +1,124 @@
+"""Paint a whole place: every surface by its covering, then what things and the sun do to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from peopleboy.sim.places.extent import Extent, fixture_extent
+from peopleboy.sim.places.painting.fresco import Fresco, begin
+from peopleboy.sim.places.painting.indoors import paint_ceiling, paint_flooring, paint_plaster
+from peopleboy.sim.places.painting.noise import Clouds, draw_clouds
+from peopleboy.sim.places.painting.outdoors import (
+    paint_facade,
+    paint_leaves,
+    paint_sky,
+    paint_skyline,
+    paint_street,
+)
+from peopleboy.sim.places.painting.sunlight import shine_on
+from peopleboy.sim.places.painting.things import paint_thing
+from peopleboy.sim.places.painting.warmth import frame_doors, warm_by
+from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.shapes.materials import Covering, Material
+from peopleboy.sim.shapes.paintings import Painting
+
+_PAINTERS: Mapping[Covering, Callable[[Fresco], None]] = {
+    Covering.PLASTER: paint_plaster,
+    Covering.FLOORING: paint_flooring,
+    Covering.CEILING: paint_ceiling,
+    Covering.STREET: paint_street,
+    Covering.FACADE: paint_facade,
+    Covering.SKY: paint_sky,
+    Covering.SKYLINE: paint_skyline,
+    Covering.LEAVES: paint_leaves,
+}
+_OFFSET_K = 0.9  # deviation of whole surfaces: another wall behind, another load, another make
+_SHELL = (Covering.PLASTER, Covering.FLOORING, Covering.CEILING, Covering.STREET, Covering.FACADE)
+_FLAT = (*_SHELL, Covering.SKY, Covering.SKYLINE)
+
+
+def paint_place(place: Place, seed: int) -> dict[str, Painting]:
+    """Paint every fixture of a place that has parts; paintings by the fixture's name.
+
+    Each draws from a stream of its own, so that another thing in the room changes no wall.
+    """
+    clouds = draw_clouds(stream(seed, "painting.clouds"))
+    parts = [(f, f.part.material) for f in place.fixtures if f.part is not None]
+    moved = {mover.name for mover in place.movers}
+    things = [
+        (fixture, material)
+        for fixture, material in parts
+        if material.covering not in _FLAT and fixture.name.split("/")[0] not in moved
+    ]
+    return {
+        fixture.name: _paint(fixture, material, place, things, clouds, seed) for fixture, material in parts
+    }
+
+
+def _paint(
+    fixture: Fixture,
+    material: Material,
+    place: Place,
+    things: Sequence[tuple[Fixture, Material]],
+    clouds: Clouds,
+    seed: int,
+) -> Painting:
+    rng = stream(seed, f"painting.{fixture.name}")
+    fresco = begin(
+        fixture,
+        clouds,
+        rng,
+        is_shell=material.covering in _FLAT,
+        air_k=place.surroundings_c - material.temperature_c,
+    )
+    painter = _PAINTERS.get(material.covering)
+    if painter is None:
+        paint_thing(fresco, material)
+    else:
+        painter(fresco)
+    fresco.kelvin += _OFFSET_K * rng.standard_normal()
+    if material.covering in _SHELL:
+        frame_doors(fresco, _doorways(place))
+        extents = [(fixture_extent(thing), other.temperature_c) for thing, other in things]
+        warm_by(fresco, material.temperature_c, extents)
+        if place.sun is not None and material.covering is not Covering.CEILING:
+            shine_on(fresco, place.sun, *_sun_ways(place, things))
+    return fresco.painting()
+
+
+def _doorways(place: Place) -> list[Extent]:
+    """The boxes of all doors, from the floor up to where their leaf ends or their lintel begins."""
+    found = []
+    for fixture in place.fixtures:
+        if fixture.name.endswith(("/leaf", "/lintel")) and fixture.name.startswith("door_"):
+            low, high = fixture_extent(fixture)
+            top = high[2] if fixture.name.endswith("/leaf") else low[2]
+            found.append(np.array([[low[0], low[1], 0.0], [high[0], high[1], top]]))
+    return found
+
+
+def _sun_ways(place: Place, things: Sequence[tuple[Fixture, Material]]) -> tuple[list[Extent], list[Extent]]:
+    """What the sun gets in by, and what keeps it out."""
+    panes = [
+        fixture_extent(f) for f, m in things if m.covering is Covering.GLASS and f.name.endswith("/pane")
+    ]
+    is_open = any(m.covering is Covering.STREET for m in _materials(place))
+    walls = [fixture_extent(f) for f in place.fixtures if is_open and f.name.startswith("wall_")]
+    walls = [wall for wall in walls if _is_thin(wall)] if is_open else []
+    others = [
+        fixture_extent(f)
+        for f, m in things
+        if m.covering is not Covering.GLASS and not f.name.endswith("/frame")
+    ]
+    return ([] if is_open else panes), [*others, *walls]
+
+
+def _materials(place: Place) -> list[Material]:
+    return [fixture.part.material for fixture in place.fixtures if fixture.part is not None]
+
+
+def _is_thin(extent: Extent) -> bool:
+    return bool(np.prod((extent[1] - extent[0])[:2]) < 500.0)

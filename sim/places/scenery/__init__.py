@@ -1,0 +1,1 @@
+"""What stands in kitchens, workshops, garages and streets, and the street itself."""

@@ -1,0 +1,330 @@
+"""What runs warm in kitchens, halls and workshops, and what stands about there.
+
+Builders as in `warm_pieces`: size [m], temperature [degC] and colour of the main piece, which comes first.
+"""
+
+from __future__ import annotations
+
+import math
+
+from peopleboy.sim.places.pieces import ALONG_Y, BLACK, SINK_M, STEEL, Piece, ball, box, standing_box, tube
+from peopleboy.sim.shapes.materials import Covering, Rgb
+from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
+
+ALONG_X: Quaternion = (0.0, math.sin(math.pi / 4.0), 0.0, math.cos(math.pi / 4.0))
+
+
+def capsule(length: float, radius: float, position: Vector, orientation: Quaternion) -> Shape:
+    """A capsule by the length between its caps, radius and middle [m]."""
+    return Shape(
+        kind=ShapeKind.CAPSULE, size=(length, radius, 0.0), position=position, orientation=orientation
+    )
+
+
+def kettle(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A kettle that has boiled, on its base."""
+    depth, width, height = size
+    radius, x = 0.5 * width, 0.5 * (width - depth)
+    jug = tube(0.8 * height, 0.92 * radius, (x, 0.0, 0.55 * height))
+    lid = tube(0.06 * height, 0.5 * radius, (x, 0.0, 0.97 * height))
+    base = tube(0.16 * height, radius, (x, 0.0, 0.08 * height - SINK_M))
+    handle = standing_box(0.02, 0.025, 0.3 * height, 0.9 * height, x=0.5 * depth - 0.01)
+    bridge = standing_box(depth - width, 0.02, 0.82 * height, 0.88 * height, x=0.5 * width - 0.006)
+    return (
+        Piece(
+            name="jug",
+            shapes=(jug,),
+            temperature_c=temperature,
+            rgb=rgb,
+            gradient_k_per_m=-60.0,
+            uneven_k=2.0,
+        ),
+        Piece(name="base", shapes=(base, handle, bridge, lid), temperature_c=28.0, rgb=BLACK),
+    )
+
+
+def fridge(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A fridge over a freezer: cool doors, cold seals, and warm air from below."""
+    depth, width, height = size
+    body = standing_box(depth - 0.02, width, 0.09, height, x=-0.01)
+    seals = tuple(
+        box((0.012, width - 0.04, 0.02), (depth / 2.0 - 0.015, 0.0, at * height)) for at in (0.36, 0.985)
+    )
+    grille = standing_box(depth - 0.05, width - 0.02, -SINK_M, 0.1)
+    handles = tuple(
+        standing_box(0.03, 0.025, low * height, high * height, x=depth / 2.0, y=0.38 * width)
+        for low, high in ((0.2, 0.34), (0.4, 0.6))
+    )
+    return (
+        Piece(
+            name="body",
+            shapes=(body,),
+            temperature_c=temperature,
+            rgb=rgb,
+            gradient_k_per_m=-1.2,
+            uneven_k=0.4,
+        ),
+        Piece(name="seals", shapes=seals, temperature_c=temperature - 4.5, rgb=STEEL, is_solid=False),
+        Piece(name="grille", shapes=(grille,), temperature_c=33.0, rgb=BLACK, uneven_k=1.5),
+        Piece(name="handles", shapes=handles, temperature_c=temperature, rgb=STEEL, is_solid=False),
+    )
+
+
+def oven(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A stove: a hot pane in front, and on top plates, one of them hot."""
+    depth, width, height = size
+    pane = standing_box(0.02, 0.7 * width, 0.28 * height, 0.68 * height, x=depth / 2.0 - 0.008)
+    body = standing_box(depth - 0.02, width, -SINK_M, height - 0.02, x=-0.01)
+    plates = tuple(
+        tube(0.02, 0.16 * width, (sx * 0.22 * depth, sy * 0.24 * width, height - 0.012))
+        for sx in (-1.0, 1.0)
+        for sy in (-1.0, 1.0)
+    )
+    rail = box((0.02, 0.8 * width, 0.02), (depth / 2.0 + 0.02, 0.0, 0.76 * height))
+    return (
+        Piece(
+            name="glass", shapes=(pane,), temperature_c=temperature, rgb=BLACK, uneven_k=2.0, is_solid=False
+        ),
+        Piece(name="body", shapes=(body,), temperature_c=26.0, rgb=rgb, gradient_k_per_m=6.0, uneven_k=0.6),
+        Piece(
+            name="hot_plate", shapes=plates[:1], temperature_c=temperature + 25.0, rgb=BLACK, is_solid=False
+        ),
+        Piece(name="plates", shapes=plates[1:], temperature_c=29.0, rgb=BLACK, is_solid=False),
+        Piece(name="rail", shapes=(rail,), temperature_c=27.0, rgb=STEEL, is_solid=False),
+    )
+
+
+def screen(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A large flat screen on a wall, warmest above."""
+    depth, width, height = size
+    glass = standing_box(0.5 * depth, width - 0.03, 0.015, height - 0.015, x=0.75 * depth + 0.002)
+    case = standing_box(0.8 * depth + SINK_M, width, 0.0, height, x=0.4 * depth - SINK_M / 2.0)
+    return (
+        Piece(
+            name="glass", shapes=(glass,), temperature_c=temperature, rgb=rgb, glow=0.7, gradient_k_per_m=5.0,
+            uneven_k=0.9,
+        ),
+        Piece(name="case", shapes=(case,), temperature_c=temperature - 3.0, rgb=BLACK),
+    )  # fmt: skip
+
+
+def vending_machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A vending machine: a lit cool pane, and below it warm air and a slot."""
+    depth, width, height = size
+    pane = standing_box(
+        0.02, 0.62 * width, 0.34 * height, 0.93 * height, x=depth / 2.0 - 0.005, y=0.12 * width
+    )
+    panel = standing_box(
+        0.02, 0.16 * width, 0.45 * height, 0.8 * height, x=depth / 2.0 - 0.004, y=-0.36 * width
+    )
+    grille = standing_box(0.02, 0.8 * width, 0.04, 0.16 * height, x=depth / 2.0 - 0.003)
+    body = standing_box(depth - 0.01, width, -SINK_M, height, x=-0.005)
+    return (
+        Piece(
+            name="body", shapes=(body,), temperature_c=temperature, rgb=rgb, gradient_k_per_m=2.0,
+            uneven_k=0.6,
+        ),
+        Piece(
+            name="window", shapes=(pane,), temperature_c=temperature - 6.0, rgb=(0.7, 0.75, 0.8), glow=0.6,
+            emissivity=0.87, gradient_k_per_m=2.0, uneven_k=0.8, is_solid=False,
+        ),
+        Piece(name="panel", shapes=(panel,), temperature_c=34.0, rgb=BLACK, glow=0.2, is_solid=False),
+        Piece(name="grille", shapes=(grille,), temperature_c=38.0, rgb=BLACK, uneven_k=2.0, is_solid=False),
+    )  # fmt: skip
+
+
+def machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A machine tool: a bed, a head stock, and a hot motor with ribs behind."""
+    depth, width, height = size
+    bed = (
+        standing_box(depth, 0.9 * width, 0.04, 0.5 * height),
+        standing_box(0.9 * depth, width, -SINK_M, 0.06),
+        standing_box(0.7 * depth, 0.18 * width, 0.45 * height, 0.7 * height, y=-0.35 * width),
+    )
+    head = standing_box(0.85 * depth, 0.34 * width, 0.48 * height, height, y=0.33 * width)
+    radius = 0.16 * height
+    motor = tube(0.36 * width, radius, (0.2 * depth, 0.0, 0.5 * height + radius), ALONG_Y)
+    ribs = tuple(
+        tube(0.015, 1.12 * radius, (0.2 * depth, (k - 2.5) * 0.05 * width, 0.5 * height + radius), ALONG_Y)
+        for k in range(6)
+    )
+    panel = standing_box(0.04, 0.2 * width, 0.72 * height, 0.94 * height, x=0.44 * depth, y=0.33 * width)
+    return (
+        Piece(name="motor", shapes=(motor, *ribs), temperature_c=temperature, rgb=STEEL, uneven_k=2.5),
+        Piece(
+            name="bed",
+            shapes=bed,
+            temperature_c=22.0,
+            rgb=rgb,
+            emissivity=0.85,
+            gradient_k_per_m=4.0,
+            uneven_k=0.8,
+        ),
+        Piece(name="head", shapes=(head,), temperature_c=27.5, rgb=rgb, gradient_k_per_m=5.0, uneven_k=1.2),
+        Piece(name="panel", shapes=(panel,), temperature_c=31.0, rgb=BLACK, glow=0.2, is_solid=False),
+    )
+
+
+def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A pane from floor to top in a frame of posts, which mirrors who walks past."""
+    depth, width, height = size
+    pane = standing_box(0.4 * depth, width - 0.02, 0.02, height - 0.02)
+    count = max(round(width / 1.2), 1)
+    posts = tuple(
+        standing_box(0.9 * depth, 0.06, -SINK_M, height - 0.004, y=(k / count - 0.5) * (width - 0.062))
+        for k in range(min(count, 13) + 1)
+    )
+    rails = (
+        standing_box(depth, width, -SINK_M / 2.0, 0.06),
+        standing_box(depth, width, height - 0.06, height),
+    )
+    return (
+        Piece(
+            name="pane", shapes=(pane,), temperature_c=temperature, rgb=rgb, emissivity=0.85, uneven_k=0.5,
+            gradient_k_per_m=0.8, covering=Covering.GLASS,
+        ),
+        Piece(
+            name="frame", shapes=(*posts, *rails), temperature_c=temperature + 1.5, rgb=STEEL, emissivity=0.7
+        ),
+    )  # fmt: skip
+
+
+def counter(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A counter or kitchen unit: doors below a board."""
+    depth, width, height = size
+    doors = max(2, min(round(width / 0.6), 12))
+    pitch = width / doors
+    fronts = tuple(
+        standing_box(
+            0.03, pitch - 0.02, 0.12, height - 0.06, x=depth / 2.0 - 0.03, y=(k + 0.5) * pitch - width / 2.0
+        )
+        for k in range(doors)
+    )
+    body = standing_box(depth - 0.06, width - 0.02, -SINK_M, height - 0.03, x=-0.02)
+    board = standing_box(depth, width, height - 0.04, height)
+    return (
+        Piece(
+            name="fronts",
+            shapes=fronts,
+            temperature_c=temperature,
+            rgb=rgb,
+            uneven_k=0.4,
+            gradient_k_per_m=0.8,
+        ),
+        Piece(name="body", shapes=(body,), temperature_c=temperature - 1.0, rgb=BLACK, gradient_k_per_m=1.0),
+        Piece(name="board", shapes=(board,), temperature_c=temperature + 0.6, rgb=STEEL, uneven_k=0.7),
+    )
+
+
+def dog(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A dog that stands: as warm as a person, and half as tall as a child."""
+    depth, width, height = size
+    radius, back = 0.42 * width, 0.62 * height
+    trunk = capsule(0.42 * depth, radius, (-0.04 * depth, 0.0, back), ALONG_X)
+    legs = tuple(
+        tube(back + SINK_M, 0.13 * width, (x * depth, y * width, 0.5 * (back - SINK_M)))
+        for x in (-0.27, 0.19)
+        for y in (-0.24, 0.24)
+    )
+    neck = ball(0.36 * width, (0.25 * depth, 0.0, 0.78 * height))
+    head = ball(0.4 * width, (0.32 * depth, 0.0, height - 0.4 * width))
+    muzzle = capsule(0.1 * depth, 0.17 * width, (0.43 * depth, 0.0, height - 0.48 * width), ALONG_X)
+    tail = capsule(0.14 * depth, 0.08 * width, (-0.41 * depth, 0.0, 0.78 * height), ALONG_X)
+    return (
+        Piece(name="fur", shapes=(trunk, neck, tail), temperature_c=temperature, rgb=rgb, uneven_k=1.0),
+        Piece(name="legs", shapes=legs, temperature_c=temperature - 1.5, rgb=rgb, uneven_k=0.8),
+        Piece(name="head", shapes=(head, muzzle), temperature_c=temperature + 2.5, rgb=rgb, uneven_k=1.0),
+    )
+
+
+def bench(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A bench of boards with a back."""
+    depth, width, height = size
+    pitch = (depth - 0.06) / 3.0
+    boards = tuple(
+        standing_box(pitch - 0.02, width, 0.42, 0.46, x=-depth / 2.0 + 0.06 + (k + 0.5) * pitch)
+        for k in range(3)
+    )
+    backs = tuple(
+        standing_box(0.03, width - 0.01, low, low + 0.1, x=-depth / 2.0 + 0.015)
+        for low in (0.55, height - 0.1)
+    )
+    legs = tuple(
+        standing_box(depth - 0.07, 0.05, -SINK_M, 0.43, x=0.01, y=y * width) for y in (-0.4, 0.4)
+    ) + tuple(
+        standing_box(0.025, 0.05, -SINK_M, height - 0.02, x=-depth / 2.0 + 0.04, y=y * width)
+        for y in (-0.38, 0.38)
+    )
+    return (
+        Piece(name="boards", shapes=(*boards, *backs), temperature_c=temperature, rgb=rgb, uneven_k=0.6),
+        Piece(name="legs", shapes=legs, temperature_c=temperature - 1.0, rgb=BLACK),
+    )
+
+
+def railing(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A barrier of two rails and upright bars, through which one sees."""
+    depth, width, height = size
+    radius = 0.5 * depth
+    rails = tuple(tube(width, radius, (0.0, 0.0, at), ALONG_Y) for at in (0.15, height - radius))
+    count = min(max(round(width / 0.16), 2), 12)
+    bars = tuple(
+        tube(height - 0.15, 0.45 * radius, (0.0, ((k + 0.5) / count - 0.5) * width, 0.5 * (height + 0.1)))
+        for k in range(count)
+    )
+    posts = tuple(
+        tube(
+            height + SINK_M - radius,
+            0.9 * radius,
+            (0.0, y * (width - 2.2 * radius), 0.5 * (height - SINK_M - radius)),
+        )
+        for y in (-0.5, 0.5)
+    )
+    return (
+        Piece(name="bars", shapes=(*rails, *bars, *posts), temperature_c=temperature, rgb=rgb, uneven_k=0.3),
+    )
+
+
+def lit_shade(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A flat panel of light-emitting diodes under the ceiling, hardly warmer than a hand."""
+    depth, width, height = size
+    panel = standing_box(depth, width, 0.0, height + SINK_M)
+    return (
+        Piece(
+            name="panel", shapes=(panel,), temperature_c=temperature, rgb=rgb, glow=1.0, uneven_k=0.8,
+            is_solid=False,
+        ),
+    )  # fmt: skip
+
+
+def shelf_of_boxes(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A rack with boxes on its boards."""
+    depth, width, height = size
+    levels = 4
+    boards = tuple(
+        standing_box(depth, width, at - 0.03, at)
+        for at in (0.08, *(0.08 + (height - 0.08) * k / (levels - 1) for k in range(1, levels)))
+    )
+    posts = tuple(
+        standing_box(
+            0.03, 0.03, -SINK_M, height - 0.012, x=sx * (depth / 2.0 - 0.02), y=sy * (width / 2.0 - 0.02)
+        )
+        for sx in (-1.0, 1.0)
+        for sy in (-1.0, 1.0)
+    )
+    gap = (height - 0.08) / (levels - 1)
+    boxes = tuple(
+        standing_box(
+            0.8 * depth, (0.16 + 0.05 * ((k + j) % 3)) * width, 0.075 + j * gap,
+            0.08 + j * gap + (0.4 + 0.13 * ((2 * k + j) % 3)) * gap, y=(0.3 * k - 0.3) * width,
+        )
+        for j in range(levels - 1)
+        for k in range(3)
+    )  # fmt: skip
+    return (
+        Piece(
+            name="boxes", shapes=boxes, temperature_c=temperature, rgb=rgb, uneven_k=1.0, gradient_k_per_m=0.8
+        ),
+        Piece(
+            name="rack", shapes=(*boards, *posts), temperature_c=temperature - 1.0, rgb=STEEL, emissivity=0.7
+        ),
+    )

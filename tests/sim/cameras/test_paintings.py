@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from peopleboy.sim.cameras.paintings import make_paint_table, painted
+from peopleboy.sim.shapes.paintings import Painting, Unrolling
+
+ROWS, COLUMNS, TEXEL_M = 5, 7, 0.1
+
+
+def slope(unrolling: Unrolling) -> Painting:
+    """3 K a metre across and 2 K a metre up, from the first texel on; light falls by a half."""
+    across, up = np.meshgrid(np.arange(COLUMNS) * TEXEL_M, np.arange(ROWS) * TEXEL_M)
+    return Painting(
+        unrolling=unrolling,
+        origin_m=(-0.3, 0.2),
+        texel_m=TEXEL_M,
+        kelvin=(3.0 * across + 2.0 * up).astype(np.float32),
+        light=(1.0 - 0.5 * across).astype(np.float32),
+    )
+
+
+@given(st.floats(0.0, 0.59), st.floats(0.0, 0.39), st.floats(-2.0, 2.0))
+def test_between_texels_a_painting_is_linear_whatever_lies_across_it(
+    across: float, up: float, other: float
+) -> None:
+    paint, texels = make_paint_table([None, slope(Unrolling.UPRIGHT), slope(Unrolling.LEVEL)])
+    expected = (3.0 * across + 2.0 * up, 1.0 - 0.5 * across)
+    upright = painted(paint, texels, 1, across - 0.3 - other, other, up + 0.2)
+    level = painted(paint, texels, 2, across - 0.3, up + 0.2, other)
+    assert upright == pytest.approx(expected, abs=1e-4)
+    assert level == pytest.approx(expected, abs=1e-4)
+
+
+def test_beyond_its_edge_a_painting_goes_on_as_it_ends() -> None:
+    paint, texels = make_paint_table([slope(Unrolling.LEVEL)])
+    assert painted(paint, texels, 0, -9.0, -9.0, 0.0) == pytest.approx((0.0, 1.0), abs=0.01)
+    assert painted(paint, texels, 0, 9.0, 9.0, 0.0) == pytest.approx((1.8 + 0.8, 0.7), abs=0.01)
+
+
+def test_a_part_without_a_painting_takes_no_texels() -> None:
+    paint, texels = make_paint_table([None, None])
+    assert (paint[:, 0] < 0.0).all()
+    assert len(texels) == 0
