@@ -25,6 +25,12 @@ RANGES: Final[Mapping[str, Range]] = {
     "room_width": Range(low=3.5, high=14.0, unit="m", what="width of a room"),
     "corridor_length": Range(low=7.0, high=24.0, unit="m", what="length of a corridor, and of its legs"),
     "corridor_width": Range(low=1.8, high=4.0, unit="m", what="width of a corridor"),
+    "street_length": Range(low=10.0, high=40.0, unit="m", what="length of a street"),
+    "street_width": Range(low=6.0, high=16.0, unit="m", what="width of a street"),
+    "sky": Range(low=-35.0, high=5.0, unit="K", what="sky at the horizon less air"),
+    "sun_azimuth": Range(low=-180.0, high=180.0, unit="deg", what="where the sun stands, if it shines"),
+    "sun_elevation": Range(low=8.0, high=60.0, unit="deg", what="how high the sun stands"),
+    "sun_warms": Range(low=2.0, high=16.0, unit="K", what="how much the sun warms what it shines on"),
     "ceiling": Range(low=2.4, high=5.0, unit="m", what="height of the place"),
     "doors": Range(low=0, high=3, unit="", what="doors", is_whole=True),
     "door_width": Range(low=0.8, high=1.8, unit="m", what="width of a door"),
@@ -75,7 +81,8 @@ RANGES: Final[Mapping[str, Range]] = {
 """All that is drawn evenly."""
 
 SHARES: Final[Mapping[str, Mapping[str, float]]] = {
-    "place": {"room": 0.55, "corridor": 0.15, "l_corridor": 0.15, "t_corridor": 0.15},
+    "place": {"room": 0.45, "street": 0.25, "corridor": 0.1, "l_corridor": 0.1, "t_corridor": 0.1},
+    "houses": {"both": 0.5, "north": 0.2, "south": 0.2, "none": 0.1},
     "door": {"open": 0.5, "closed": 0.5},
     "robot": {"stands": 0.5, "drives": 0.5},
     "gain": {"percentile": 0.3, "plateau": 0.7},
@@ -90,6 +97,8 @@ SHARES: Final[Mapping[str, Mapping[str, float]]] = {
 """All that is drawn from a few, and how often each is."""
 
 ODDS: Final[Mapping[str, tuple[float, str]]] = {
+    "has_sun": (0.4, "the sun shines in, or on the street"),
+    "street_kind": (0.8, "a thing in a street is of a kind that belongs there"),
     "wall_differs": (0.3, "a wall of the place has a temperature of its own"),
     "coloured": (0.6, "a surface or thing has a colour that is drawn"),
     "patterned": (0.3, "a thing has a pattern"),

@@ -15,7 +15,7 @@ from peopleboy.sim.places.floor_plan import FloorPlan
 
 _PLACE: Final[TypeAdapter[PlaceSpec]] = TypeAdapter(PlaceSpec)
 _LENGTHS: Final = {
-    "room": ("length_m",), "corridor": ("length_m",),
+    "room": ("length_m",), "street": ("length_m",), "corridor": ("length_m",),
     "l_corridor": ("first_m", "second_m"), "t_corridor": ("stem_m", "bar_m"),
 }  # fmt: skip
 _MARGIN_M: Final = 0.4  # from walls, so that a robot has room
@@ -24,7 +24,7 @@ _MARGIN_M: Final = 0.4  # from walls, so that a robot has room
 def draw_place(draws: Draws) -> Data:
     """Draw a place without doors."""
     kind = draws.one_of("place")
-    size = "room" if kind == "room" else "corridor"
+    size = kind if kind in ("room", "street") else "corridor"
     air = draws.number("air")
     place: Data = {
         "kind": kind,
@@ -39,7 +39,16 @@ def draw_place(draws: Draws) -> Data:
     }
     if kind == "l_corridor":
         place["turn"] = str(draws.rng.choice(["left", "right"]))
+    if kind == "street":
+        place |= {"houses": draws.one_of("houses"), "sky_c": rounded(air + draws.number("sky"))}
+    if draws.happens("has_sun"):
+        place["sun"] = {
+            "azimuth_deg": draws.number("sun_azimuth"),
+            "elevation_deg": draws.number("sun_elevation"),
+            "warms_k": draws.number("sun_warms"),
+        }
     place["temperatures"] = {
+        "air_c": air,
         "surroundings_c": air,
         **{
             f"{part}_c": rounded(air + draws.number(f"{part}_over_air"))

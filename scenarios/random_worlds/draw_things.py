@@ -11,7 +11,10 @@ from peopleboy.scenarios.random_worlds.draw_robot import is_before
 from peopleboy.sim.places.thing_kinds import KINDS, Kind
 
 _USUAL_AIR_C: Final = 21.5  # to which the kinds' own temperatures belong
-_HEATED_K: Final = 4.0  # above that a thing heats itself
+_IN_STREETS: Final = (
+    "bench", "bicycle", "bin", "block", "car", "dog", "market_stall", "plant", "pillar", "railing",
+    "robot", "street_lamp", "tree", "vending_machine",
+)  # fmt: skip
 _LOW_M: Final = 0.65  # a thing that is lower may stand on furniture
 _TABLE_M: Final = (0.4, 1.3)
 _PATTERNS: Final = ("stripes", "checks", "patch", "speckle")
@@ -20,7 +23,10 @@ _PATTERNS: Final = ("stripes", "checks", "patch", "speckle")
 def draw_thing(draws: Draws, place: Data, robot: Data, things: list[Data]) -> Data:
     """Draw a thing; it may stand where it cannot."""
     is_hung = draws.happens("hung")
-    name = str(draws.rng.choice([name for name, kind in KINDS.items() if kind.is_hung == is_hung]))
+    kinds = [name for name, kind in KINDS.items() if kind.is_hung == is_hung]
+    if place["kind"] == "street" and draws.happens("street_kind"):
+        kinds = list(_IN_STREETS)
+    name = str(draws.rng.choice(kinds))
     kind = KINDS[name]
     thing: Data = {
         "kind": name,
@@ -67,5 +73,5 @@ def _height(thing: Data) -> float:
 def _temperature(draws: Draws, place: Data, kind: Kind) -> float:
     """Draw a temperature [degC]: that of the air and a little, and for what heats itself its heat."""
     own = kind.temperature_c - _USUAL_AIR_C
-    heat = own * draws.number("thing_heat") if own > _HEATED_K else own
+    heat = own * draws.number("thing_heat") if kind.is_heated else own
     return rounded(air_of(place) + heat + draws.number("thing_over_air"))

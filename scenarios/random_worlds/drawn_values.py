@@ -15,6 +15,7 @@ Values = dict[str, list[float] | list[str]]
 """By name of what was drawn: a value, or as many as there are."""
 
 _BARS: Final = 6
+_SUN: Final = {"sun_azimuth": "azimuth_deg", "sun_elevation": "elevation_deg", "sun_warms": "warms_k"}
 _CAMERA: Final[Mapping[str, str]] = {
     "pitch": "pitch_deg",
     "vertical_fov": "vertical_fov_deg",
@@ -49,7 +50,7 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
     people, things = played["people"], played["things"]
     points = [point for person in people for point in person["path"]]
     air = warm["surroundings_c"]
-    size = "room" if place["kind"] == "room" else "corridor"
+    size = place["kind"] if place["kind"] in ("room", "street") else "corridor"
     lengths = [place[key] for key in ("length_m", "first_m", "second_m", "stem_m", "bar_m") if key in place]
     return {
         "place": [place["kind"]],
@@ -59,6 +60,8 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
         "doors": [len(place["doors"])],
         "door": ["open" if door["open"] else "closed" for door in place["doors"]],
         "air": [air],
+        **({"houses": [place["houses"]], "sky": [place["sky_c"] - air]} if size == "street" else {}),
+        **{name: [place["sun"][key]] for name, key in _SUN.items() if place.get("sun")},
         "floor_over_air": [warm["floor_c"] - air],
         "walls_over_air": [warm["walls_c"] - air],
         "ceiling_over_air": [warm["ceiling_c"] - air],

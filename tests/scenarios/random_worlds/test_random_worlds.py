@@ -21,7 +21,20 @@ from tests.helpers.calls.refused import assert_names
 
 QUICK = 40
 ROUNDING = 0.011
-BESIDE = {"thing", "sex", "top", "bottom", "hair", "posture", "arms", "door", "place", "robot", "gain"}
+BESIDE = {
+    "thing",
+    "sex",
+    "top",
+    "bottom",
+    "hair",
+    "posture",
+    "arms",
+    "door",
+    "place",
+    "robot",
+    "gain",
+    "houses",
+}
 
 
 @pytest.fixture(scope="module")
