@@ -12,7 +12,6 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from benchmarks.closed_loop import loop_speed, peak_memory_mb, run_speed
 from benchmarks.environments import (
     CASES,
     QUICK_HZ,
@@ -23,10 +22,11 @@ from benchmarks.environments import (
     step_rates,
     way_off_mm,
 )
-from benchmarks.filter_step import step_time_ms
 from benchmarks.memory import long_run
-from benchmarks.render import render_times
-from benchmarks.whole_tracker import whole_tracker
+from benchmarks.speed.closed_loop import loop_speed, peak_memory_mb, run_speed
+from benchmarks.speed.filter_step import step_time_ms
+from benchmarks.speed.render import render_times
+from benchmarks.speed.whole_tracker import whole_tracker
 
 COUNTS = (300, 1000)
 SCENARIOS = ("single_follow", "crossing_pair")

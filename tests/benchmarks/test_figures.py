@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.memory import MemoryCurve, memory_curve
-from benchmarks.whole_tracker import CrowdTime, WholeTracker
+from benchmarks.speed.whole_tracker import CrowdTime, WholeTracker
 from peopleboy.tracker.frame import THERMAL, Frame
 
 
