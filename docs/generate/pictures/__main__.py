@@ -20,10 +20,10 @@ from docs.generate.pictures import (
     runs,
     scene_model,
     thermal,
-    thermal_worlds,
     tracker,
 )
 from docs.generate.pictures.paper import save
+from docs.generate.pictures.worlds import light
 from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import draw_parts
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
@@ -37,8 +37,8 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "thermal_mirror": thermal.mirror,
     "thermal_gains": thermal.gains,
     "thermal_faults": thermal.faults,
-    "light": thermal_worlds.light,
     "people_finely": thermal.finely,
+    "light": light.light,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,

@@ -1,4 +1,4 @@
-"""What full detail adds to images: on and off, side by side."""
+"""What light does with full detail."""
 
 from __future__ import annotations
 
