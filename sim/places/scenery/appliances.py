@@ -102,7 +102,7 @@ def screen(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     return (
         Piece(
             name="glass", shapes=(glass,), temperature_c=temperature, rgb=rgb, glow=0.7, gradient_k_per_m=5.0,
-            uneven_k=0.9,
+            uneven_k=0.9, shine=0.8,
         ),
         Piece(name="case", shapes=(case,), temperature_c=temperature - 3.0, rgb=BLACK),
     )  # fmt: skip
@@ -181,7 +181,7 @@ def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     return (
         Piece(
             name="pane", shapes=(pane,), temperature_c=temperature, rgb=rgb, emissivity=0.85, uneven_k=0.5,
-            gradient_k_per_m=0.8, covering=Covering.GLASS,
+            gradient_k_per_m=0.8, covering=Covering.GLASS, shine=1.0,
         ),
         Piece(
             name="frame", shapes=(*posts, *rails), temperature_c=temperature + 1.5, rgb=STEEL, emissivity=0.7

@@ -35,7 +35,7 @@ class StreetLook:
 def street_shell(plan: FloorPlan, look: StreetLook, surfaces: Surfaces) -> tuple[Fixture, ...]:
     """Build the fixtures of a street: a ray from any point on it meets a surface."""
     far = plan.bounds().grown(_FAR_M)
-    street = replace(surfaces.floor, covering=Covering.STREET, colour_pattern=Pattern())
+    street = replace(surfaces.floor, covering=Covering.STREET, colour_pattern=Pattern(), shine=0.0)
     sky = Material(
         temperature_c=look.sky_c, emissivity=1.0, rgb=(0.36, 0.5, 0.72), glow=0.45, covering=Covering.SKY
     )
