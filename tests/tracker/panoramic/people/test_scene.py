@@ -99,3 +99,10 @@ def test_who_is_wholly_below_the_image_is_hidden_by_nobody():
     scene.covered[:] = 1.0
     scene.cover(0.0, 2.0)
     assert scene.hidden_share(0.0, 0.02) in (0.0, pytest.approx(1.0))
+
+
+@pytest.mark.parametrize("distance", [0.5, 1.3, 4.0, 30.0])
+@pytest.mark.parametrize("height", [-0.2, 0.0, 1.72, 2.0])
+def test_the_row_of_a_height_at_a_distance_is_where_it_is_projected_to(distance, height):
+    point = np.array([[distance * math.cos(0.7), distance * math.sin(0.7), height]])
+    assert CAMERA.row(distance, height) == pytest.approx(float(CAMERA.project(point)[0, 1]), nan_ok=True)
