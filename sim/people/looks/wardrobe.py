@@ -81,7 +81,7 @@ def usual_clothes(rng: np.random.Generator, sex: Sex, air_c: float) -> Clothes:
         hair=hair,
         top_colour=_pick(rng, _TOP_COLOURS),
         bottom_colour=_pick(rng, _BOTTOM_COLOURS.get(bottom, _BOTTOM_COLOURS[""])),
-        hair_colour=None if hair == "bald" else _pick(rng, _TOP_COLOURS if hair == "cap" else HAIR_COLOURS),
+        hair_colour="skin" if hair == "bald" else _pick(rng, _TOP_COLOURS if hair == "cap" else HAIR_COLOURS),
     )
 
 

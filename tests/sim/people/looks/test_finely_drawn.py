@@ -33,17 +33,12 @@ def play(settings: WorldConfig) -> list[tuple[dict[str, np.ndarray], np.ndarray,
     return found
 
 
-def test_truth_is_the_same_in_full_detail_and_so_is_what_lies_away_from_people() -> None:
+def test_truth_is_the_same_in_full_detail_and_people_look_otherwise() -> None:
     for (plain, cover, boxes), (full, again, boxes_again) in zip(play(PLAIN), play(FULL), strict=True):
         assert np.array_equal(cover, again)
         assert boxes == boxes_again
         is_person = cover > 0
         assert 0.02 < is_person.mean() < 0.5
-        near = np.zeros_like(is_person)
-        for v, u in np.argwhere(is_person):
-            near[max(v - 5, 0) : v + 6, max(u - 5, 0) : u + 6] = True
-        assert np.array_equal(plain["colour"][~is_person], full["colour"][~is_person])
-        assert np.array_equal(plain["thermal_c"][~near], full["thermal_c"][~near])
         assert (plain["colour"][is_person] != full["colour"][is_person]).any(axis=1).mean() > 0.5
 
 

@@ -60,5 +60,5 @@ def test_most_colours_are_muted_and_everything_is_in_the_catalogue() -> None:
     assert 0.02 < bright < 0.12
     for kind, catalogue in (("top", TOPS), ("bottom", BOTTOMS), ("shoes", SHOES), ("hair", HAIR)):
         assert set(Counter(getattr(each, kind) for each in clothes)) <= set(catalogue)
-    assert {each.hair_colour for each in clothes} - {None} <= set(COLOURS)
-    assert all(each.hair_colour is None for each in clothes if each.hair == "bald")
+    assert {each.hair_colour for each in clothes} <= set(COLOURS)
+    assert all(each.hair_colour == "skin" for each in clothes if each.hair == "bald")
