@@ -11,10 +11,11 @@ import numpy as np
 
 from peopleboy.tracker.frame import Calibration, PinholeCalibration
 from peopleboy.tracker.thermal.config import LimitsConfig
-from peopleboy.tracker.thermal.particles import FOOT
+from peopleboy.tracker.thermal.particles import CROWN, FOOT
 
 USUAL_HEIGHT_M: Final = 1.2  # above the floor, for which the limits of the variants are given
 VIEW_ANGLE_DEG: Final = 44.0  # vertical, of a camera of which nothing is known
+_STATURES_M: Final = (2.0, 1.5)  # of the tallest and of the smallest people who are looked for
 _MIDDLE: Final = 0.5  # [image heights] row of the horizon for a level camera
 
 
@@ -54,9 +55,9 @@ def mount_of(calibration: Calibration | None, rows: int) -> Mount:
 def seen_from(limits: LimitsConfig, mount: Mount, rows: int) -> LimitsConfig:
     """Carry limits over to a camera that sits elsewhere, by similar triangles.
 
-    Feet are the camera's height below the horizon, heights being proportional to distance; with a body's
-    middle FOOT semi-heights above the feet, people of the same statures are within (height / usual height)
-    (y + FOOT) - FOOT semi-heights below it.
+    Whoever stands has the feet as far below the horizon as the camera is high, at any distance. A camera
+    higher by a metre therefore sees all of a person of stature S further down by (CROWN + FOOT) / S
+    semi-heights.
 
     Args:
         limits: for a level camera at the usual height.
@@ -64,8 +65,9 @@ def seen_from(limits: LimitsConfig, mount: Mount, rows: int) -> LimitsConfig:
         rows: height of its image [px].
     """
     shift = (mount.horizon_px + 0.5) / rows - _MIDDLE
-    more = mount.height_m / USUAL_HEIGHT_M - 1.0
-    low, high = (y + (y + FOOT) * more if math.isfinite(y) else y for y in limits.y_below_horizon)
-    reach = high / limits.y_below_horizon[1] if more > 0.0 and math.isfinite(high) else 1.0
+    higher_m = mount.height_m - USUAL_HEIGHT_M
+    sunk = [higher_m * (CROWN + FOOT) / stature_m for stature_m in _STATURES_M]
+    low, high = (y + more for y, more in zip(limits.y_below_horizon, sunk, strict=True))
+    reach = high / limits.y_below_horizon[1] if higher_m > 0.0 and math.isfinite(high) else 1.0
     top, bottom = limits.y[0] + shift, limits.y[1] + (limits.y[1] - _MIDDLE) * (reach - 1.0) + shift
     return replace(limits, y=(top, bottom), horizon=_MIDDLE + shift, y_below_horizon=(low, high))
