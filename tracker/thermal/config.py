@@ -62,6 +62,7 @@ class LimitsConfig:
     ratio_dw: tuple[float, float] = (-1.5, 1.5)
     y: tuple[float, float] = (0.2, 0.8)  # [image heights]
     h: tuple[float, float] = (0.02, 0.5)  # [image heights]; the sources name no largest
+    horizon: float = 0.5  # [image heights] row of the horizon: the middle, for a level camera
     # [body semi-heights]: where people who stand on the floor are.
     y_below_horizon: tuple[float, float] = (-math.inf, math.inf)
 

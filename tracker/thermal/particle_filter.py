@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +18,10 @@ from peopleboy.tracker.thermal.config import (
     TrackerConfig,
 )
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.thermal.mount import Mount, mount_of, seen_from
 from peopleboy.tracker.thermal.particles import (
     CROWN,
     FOOT,
-    HORIZON,
     Columns,
     D,
     Floats,
@@ -46,7 +45,6 @@ from peopleboy.tracker.thermal.whereabouts import Regions
 STANDING = Odometry()
 RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
 OUTSIDE_WEIGHT = 1e-6  # factor on the weight of a sample outside the limits: "a very low chance"
-VIEW_ANGLE_DEG = 44.0  # vertical, of the robot's thermal camera: makes a shift in pixels of a turn
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +56,7 @@ class FrameView:
         model: the contour laid out for its size.
         dt_s: time since the last frame [s].
         turn_rad: how the camera turned since then, left positive [rad]; 0 if unknown.
-        focal_px: focal length [px].
+        mount: how the camera sits.
         advance_m: how far the camera moved forward since then [m]; 0 if unknown.
         colour: the colour image; None without one.
         appearance: colours and thermal pattern together; None if they are not compared.
@@ -70,7 +68,7 @@ class FrameView:
     model: ContourModel
     dt_s: float
     turn_rad: float
-    focal_px: float
+    mount: Mount
     colour: ColourView | None = None
     appearance: AppearanceView | None = None
     covered: float | None = None
@@ -83,7 +81,7 @@ class FrameView:
 
     def after_turn(self, x: Columns) -> Columns:
         """Tell where columns x [px] of the last frame lie in this one but for people's own motion."""
-        return turned(x, self.turn_rad, self.focal_px, (self.image.shape[1] - 1) / 2)
+        return turned(x, self.turn_rad, self.mount.focal_px, (self.image.shape[1] - 1) / 2)
 
     def describe(self, state: Floats, hiding: Regions) -> Floats | None:
         """Describe people (N, 9) as their models do, (N, F), if that can be told.
@@ -99,13 +97,13 @@ def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerCo
     motion = config.motion
     moved = frame.odometry if motion.uses_odometry and frame.odometry is not None else STANDING
     thermal = frame.grey(THERMAL)
-    focal = len(thermal) / 2 / math.tan(math.radians(VIEW_ANGLE_DEG) / 2)
+    mount = mount_of(frame.calibrations.get(THERMAL), len(thermal))
     image = model.prepare(thermal)
     colour = None
     if config.colour is not None and COLOUR in frame.images:
         colour = ColourView.build(frame.rgb(COLOUR), thermal.shape, config.colour)
     appearance = None if config.appearance is None else AppearanceView.build(image, colour, config.appearance)
-    return FrameView(image, model, dt_s, moved.turn_rad, focal, colour, appearance, advance_m=moved.advance_m)
+    return FrameView(image, model, dt_s, moved.turn_rad, mount, colour, appearance, advance_m=moved.advance_m)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,7 +149,8 @@ def weigh(
     differences = view.model.differences(view.image, state, view.covered)
     fit = fitness(differences, view.model.weights, config.likelihood)
     chance = probability(fit, config.likelihood)
-    inside = is_within(state, view.image.shape[0], filter_config.limits)
+    rows = view.image.shape[0]
+    inside = is_within(state, rows, seen_from(filter_config.limits, view.mount, rows))
     if likeness is not None and filter_config.sharpness == 0:
         factor = likeness if factor is None else likeness * factor
     counted = _floored(fit, likeness, filter_config)
@@ -208,7 +207,7 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
     Source: thesis, section 4.2 and the table of section 4.4.
     """
     w, h = state[:, W], state[:, H]
-    below_horizon = state[:, Y] - HORIZON * height_px
+    below_horizon = state[:, Y] - limits.horizon * height_px
     return (
         (w > limits.ratio_wh[0] * h)
         & (w < limits.ratio_wh[1] * h)
@@ -297,4 +296,5 @@ def draw_fresh(
     count: int, view: FrameView, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator
 ) -> Floats:
     """Draw samples (count, 9) from the prior for this image."""
-    return draw_prior(count, view.image.shape, config.motion, filter_config, rng)
+    limits = seen_from(filter_config.limits, view.mount, view.image.shape[0])
+    return draw_prior(count, view.image.shape, config.motion, replace(filter_config, limits=limits), rng)

@@ -32,7 +32,6 @@ STATE_SIZE: Final = 9
 HEAD_DIVISOR: Final = 4.4  # body semi-height / head semi-height
 CROWN: Final = 1 + 2 / HEAD_DIVISOR  # top of the head above the body's centre
 FOOT: Final = 2.05  # feet below it
-HORIZON: Final = 0.5  # row of the horizon [image heights]: the middle, for a level camera
 
 BOX_SPREAD = 0.05  # of a person within a box that is known, as a share of its sides
 
@@ -99,8 +98,9 @@ def _heights(limits: tuple[float, float], chance: Floats, is_log_uniform: bool) 
 
 def _rows(height: int, h: Floats, limits: LimitsConfig, chance: Floats) -> Floats:
     """Draw y [px] between the limits, those of the floor included."""
-    low = np.maximum(limits.y[0] * height, HORIZON * height + limits.y_below_horizon[0] * h)
-    high = np.minimum(limits.y[1] * height, HORIZON * height + limits.y_below_horizon[1] * h)
+    horizon = limits.horizon * height
+    low = np.maximum(limits.y[0] * height, horizon + limits.y_below_horizon[0] * h)
+    high = np.minimum(limits.y[1] * height, horizon + limits.y_below_horizon[1] * h)
     y: Floats = low + (high - low) * chance
     return y
 

@@ -116,9 +116,9 @@ def newborn(
 
 def approached(person: TrackedPerson, view: FrameView) -> TrackedPerson:
     """Let what is kept of a standing person grow as the camera comes nearer."""
-    distance_m = view.focal_px * PERSON_M / (HEIGHT * max(float(person.size[1]), 1.0))
+    distance_m = view.mount.focal_px * PERSON_M / (HEIGHT * max(float(person.size[1]), 1.0))
     growth = distance_m / max(distance_m - view.advance_m, 0.5 * distance_m)
-    horizon = (view.image.shape[0] - 1) / 2
+    horizon = view.mount.horizon_px
     return replace(person, size=growth * person.size, foot=horizon + growth * (person.foot - horizon))
 
 

@@ -140,7 +140,8 @@ PEOPLEBOY = TrackerConfig(
     ),
     detector=FilterConfig(
         fresh_share=0.5,
-        # A level camera 1.2 m above the floor sees the middle of whoever stands there just below the horizon.
+        # A level camera 1.2 m above the floor sees the middle of whoever stands there just below the horizon;
+        # `mount` carries that over to other cameras.
         limits=replace(_LIMITS, h=(0.05, 0.5), y_below_horizon=(-0.1, 0.9)),
         log_uniform_h=True,
         sharpness=20.0,

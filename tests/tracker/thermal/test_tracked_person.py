@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from peopleboy.tracker.thermal.mount import Mount
 from peopleboy.tracker.thermal.particle_filter import Belief
 from peopleboy.tracker.thermal.particles import equally_weighted
 from peopleboy.tracker.thermal.tracked_person import HEIGHT, PERSON_M, SIZE, TrackedPerson, approached
@@ -23,12 +24,12 @@ def standing(distance_m, camera_m=1.2):
 
 @given(distance_m=st.floats(2, 12), advance_m=st.floats(-0.1, 0.1))
 def test_who_stands_grows_as_the_pinhole_camera_says_when_the_robot_drives(distance_m, advance_m):
-    view = SimpleNamespace(focal_px=FOCAL_PX, advance_m=advance_m, image=np.zeros((240, 320)))
+    view = SimpleNamespace(mount=Mount(HORIZON, FOCAL_PX, 1.2), advance_m=advance_m)
     later, expected = approached(standing(distance_m), view), standing(distance_m - advance_m)
     assert later.size == pytest.approx(expected.size)
     assert later.foot == pytest.approx(expected.foot)
 
 
 def test_a_robot_that_drives_through_a_person_does_not_make_it_grow_without_end():
-    view = SimpleNamespace(focal_px=FOCAL_PX, advance_m=5.0, image=np.zeros((240, 320)))
+    view = SimpleNamespace(mount=Mount(HORIZON, FOCAL_PX, 1.2), advance_m=5.0)
     assert approached(standing(4.0), view).size == pytest.approx(2 * standing(4.0).size)

@@ -11,6 +11,7 @@ from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.colour_config import ColourConfig
 from peopleboy.tracker.thermal.config import ContourConfig
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.mount import mount_of
 from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
 from peopleboy.tracker.thermal.occlusion.pair_features import (
     FEATURES,
@@ -71,7 +72,8 @@ def surroundings(*drawn: int) -> FrameView:
         left, top, right, bottom = boxes(people((x, y, w, h)))[0].astype(int)
         colour[top:bottom, left:right] = ((200, 40, 40), (40, 40, 200))[number]
     model = ContourModel.build((240, 320), ContourConfig())
-    return FrameView(thermal, model, 1 / 15, 0.0, 300.0, colour=ColourView.build(colour, (240, 320), ALONE))
+    mount = mount_of(None, 240)
+    return FrameView(thermal, model, 1 / 15, 0.0, mount, colour=ColourView.build(colour, (240, 320), ALONE))
 
 
 def known_colours() -> list[ColourModel]:

@@ -1,0 +1,199 @@
+"""How the tracker does with other cameras than the robot's own: `python -m benchmarks.cameras`.
+
+Scenes of the library are played with both cameras on another mast, tilted, or of another field of view, or
+with a thermal image that reads too warm or drifts. Each tracker sees the same images, with the cameras'
+calibration or without.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.tracker_ablation import print_row
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.thermal import encode_8bit
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.truth.truth import Truth
+from peopleboy.sim.world import World
+from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.track import Status
+from peopleboy.tracker.trackers import make_tracker
+
+SCENES: Final = ("crossing_2", "single_stationary")
+_HEIGHT_M: Final = 1.2  # of the cameras, as they are
+
+Offset = Callable[[float], float]
+
+
+def _none(share: float) -> float:  # noqa: ARG001
+    return 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Camera:
+    """What is changed of the robot's cameras.
+
+    Attributes:
+        pitch_deg: tilt, positive looks down.
+        height_m: above the floor.
+        fov_deg: vertical, of the thermal camera; None as it is.
+        offset_k: by which the thermal image reads too warm, from the share of the run that is over.
+    """
+
+    pitch_deg: float = 0.0
+    height_m: float = _HEIGHT_M
+    fov_deg: float | None = None
+    offset_k: Offset = _none
+
+
+CAMERAS: Final[Mapping[str, Camera]] = {
+    "as is": Camera(),
+    "3.5 K warmer": Camera(offset_k=lambda share: 3.5),  # noqa: ARG005
+    "6 K warmer": Camera(offset_k=lambda share: 6.0),  # noqa: ARG005
+    "drift of 1.5 K": Camera(offset_k=lambda share: 1.5 * math.sin(2.0 * math.pi * share)),
+    "6 deg down": Camera(pitch_deg=6.0),
+    "6 deg up": Camera(pitch_deg=-6.0),
+    "15 deg down": Camera(pitch_deg=15.0),
+    "15 deg up": Camera(pitch_deg=-15.0),
+    "at 0.4 m": Camera(height_m=0.4),
+    "at 0.7 m": Camera(height_m=0.7),
+    "at 1.6 m": Camera(height_m=1.6),
+    "at 1.8 m": Camera(height_m=1.8),
+    "60 deg": Camera(fov_deg=60.0),
+    "25 deg": Camera(fov_deg=25.0),
+}
+
+
+def mounted(config: WorldConfig, camera: Camera) -> WorldConfig:
+    """Put the robot's cameras elsewhere, all in the same way."""
+    cameras = {name: _moved(one, camera) for name, one in config.robot.cameras.items()}
+    return replace(config, robot=replace(config.robot, cameras=cameras))
+
+
+def _moved(config: CameraConfig, camera: Camera) -> CameraConfig:
+    geometry = config.camera
+    if not isinstance(geometry, Pinhole):
+        return config
+    x, y, z = geometry.position_m
+    zoom = 1.0
+    if camera.fov_deg is not None:
+        zoom = math.tan(math.radians(camera.fov_deg) / 2.0) / math.tan(Pinhole().vertical_fov_rad / 2.0)
+    moved = replace(
+        geometry,
+        pitch_rad=geometry.pitch_rad + math.radians(camera.pitch_deg),
+        position_m=(x, y, z + camera.height_m - _HEIGHT_M),
+        vertical_fov_rad=2.0 * math.atan(zoom * math.tan(geometry.vertical_fov_rad / 2.0)),
+    )
+    return replace(config, camera=moved)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Film:
+    """One run: what a tracker is given, and what was true."""
+
+    frames: tuple[Frame, ...]
+    truth: TrueBoxes
+
+
+def play(scene: str, camera: Camera, seed: int) -> Film:
+    """Play a scene whose robot stands, with another camera."""
+    scenario = load_scenario(scene)
+    config = mounted(scenario.world(seed), camera)
+    count = round(scenario.duration_s * config.control_hz)
+    frames, truths = [], []
+    with World(config) as world:
+        for tick in range(count):
+            observation = world.observe()
+            frame = make_frame(observation, calibrations_of(world.cameras), None)
+            images = {name: observation.images[name] for name in frame.images if not name.endswith("_c")}
+            images[THERMAL] = _warmer(observation.images["thermal_c"], camera.offset_k(tick / count))
+            frames.append(replace(frame, images=images))
+            truths.append(world.truth())
+            world.step(0.0, 0.0)
+    return Film(tuple(frames), _boxes(truths))
+
+
+def _warmer(temperature_c: NDArray[np.float32], offset_k: float) -> NDArray[np.uint8]:
+    return encode_8bit(temperature_c + np.float32(offset_k))
+
+
+def _boxes(truths: list[Truth]) -> TrueBoxes:
+    rows = [
+        (number, person.id, person.box, person.is_counted, person.visible_fraction)
+        for number, truth in enumerate(truths, start=1)
+        for person in truth.people
+        if person.box is not None
+    ]
+    frame, identity, box, counted, visible = zip(*rows, strict=True)
+    return TrueBoxes(
+        frame=np.array(frame),
+        id=np.array(identity),
+        box=np.array(box).reshape(-1, 4),
+        counted=np.array(counted, dtype=bool),
+        visible=np.array(visible),
+    )
+
+
+def track(film: Film, tracker: str, seed: int, *, is_calibrated: bool) -> Scores:
+    """Score a tracker on a film."""
+    eyes = make_tracker(tracker, stream(seed, "tracker"))
+    rows = []
+    for number, frame in enumerate(film.frames, start=1):
+        given = frame if is_calibrated else replace(frame, calibrations={})
+        rows += [
+            (number, one.id, one.boxes[THERMAL], one.confidence)
+            for one in eyes.update(given)
+            if one.status is not Status.TENTATIVE and THERMAL in one.boxes
+        ]
+    found = TrackBoxes(
+        frame=np.array([row[0] for row in rows], int),
+        id=np.array([row[1] for row in rows], int),
+        box=np.array([row[2] for row in rows]).reshape(-1, 4),
+        confidence=np.array([row[3] for row in rows], float),
+    )
+    return evaluate(film.truth, found, frames=len(film.frames))
+
+
+def rows(names: tuple[str, ...], seeds: int, tracker: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield CP, CR, IDF1 and HOTA [%] of each camera, with calibration and then without."""
+    for name in names:
+        films = [(seed, play(scene, CAMERAS[name], seed)) for scene in SCENES for seed in range(seeds)]
+        cells = []
+        for is_calibrated in (True, False):
+            scores = combine(
+                [track(film, tracker, seed, is_calibrated=is_calibrated) for seed, film in films]
+            )
+            figures = (scores.thesis.cp, scores.thesis.cr, scores.mot.identity.idf1, scores.mot.hota.hota)
+            cells += ["-" if math.isnan(figure) else f"{figure:.1f}" for figure in figures]
+        yield name, cells
+
+
+@click.command()
+@click.option("--seeds", default=5, show_default=True, help="Runs of each scene.")
+@click.option("--tracker", default="peopleboy", show_default=True)
+@click.argument("cameras", nargs=-1, type=click.Choice(tuple(CAMERAS)))
+def main(seeds: int, tracker: str, cameras: tuple[str, ...]) -> None:
+    """Print how a tracker does with these cameras, or with all, as a Markdown table [%]."""
+    figures = ("CP", "CR", "IDF1", "HOTA")
+    print_row("camera", (*(f"{one}, calibrated" for one in figures), *(f"{one}, not" for one in figures)))
+    print_row("---", ["---:"] * 8)
+    for name, cells in rows(cameras or tuple(CAMERAS), seeds, tracker):
+        print_row(name, cells)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,73 @@
+"""How the thermal camera sits on the robot, as far as rows and sizes of people in its image depend on it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+
+from peopleboy.tracker.frame import Calibration, PinholeCalibration
+from peopleboy.tracker.thermal.config import LimitsConfig
+from peopleboy.tracker.thermal.particles import CROWN, FOOT
+
+USUAL_HEIGHT_M: Final = 1.2  # above the floor, for which the limits of the variants are given
+VIEW_ANGLE_DEG: Final = 44.0  # vertical, of a camera of which nothing is known
+_STATURES_M: Final = (2.0, 1.5)  # of the tallest and of the smallest people who are looked for
+_MIDDLE: Final = 0.5  # [image heights] row of the horizon for a level camera
+
+
+@dataclass(frozen=True, slots=True)
+class Mount:
+    """Where a camera looks from.
+
+    Attributes:
+        horizon_px: row of the horizon [px]; it may lie outside the image.
+        focal_px: focal length [px].
+        height_m: of the camera above the floor [m].
+    """
+
+    horizon_px: float
+    focal_px: float
+    height_m: float
+
+
+def mount_of(calibration: Calibration | None, rows: int) -> Mount:
+    """Tell how a camera sits; one of which nothing is known is level, and as the robot's own.
+
+    Args:
+        calibration: of the camera; None if nobody knows it.
+        rows: height of its image [px].
+    """
+    if not isinstance(calibration, PinholeCalibration):
+        focal = rows / 2 / math.tan(math.radians(VIEW_ANGLE_DEG) / 2)
+        return Mount((rows - 1) / 2, focal, USUAL_HEIGHT_M)
+    column = calibration.intrinsics[0, 2]
+    top, bottom = calibration.rays(np.array([[column, 0.0], [column, rows - 1.0]]))[:, 2].tolist()
+    # Rounded, as a level camera's horizon is to be the middle of its image to the last bit.
+    horizon = round((rows - 1) * top / (top - bottom), 6)
+    return Mount(horizon, float(calibration.intrinsics[1, 1]), calibration.position_m[2])
+
+
+@lru_cache(maxsize=64)
+def seen_from(limits: LimitsConfig, mount: Mount, rows: int) -> LimitsConfig:
+    """Carry limits over to a camera that sits elsewhere, by similar triangles.
+
+    Whoever stands has the feet as far below the horizon as the camera is high, at any distance. A camera
+    higher by a metre therefore sees all of a person of stature S further down by (CROWN + FOOT) / S
+    semi-heights.
+
+    Args:
+        limits: for a level camera at the usual height.
+        mount: where the camera sits.
+        rows: height of its image [px].
+    """
+    shift = (mount.horizon_px + 0.5) / rows - _MIDDLE
+    higher_m = mount.height_m - USUAL_HEIGHT_M
+    sunk = [higher_m * (CROWN + FOOT) / stature_m for stature_m in _STATURES_M]
+    low, high = (y + more for y, more in zip(limits.y_below_horizon, sunk, strict=True))
+    reach = high / limits.y_below_horizon[1] if higher_m > 0.0 and math.isfinite(high) else 1.0
+    top, bottom = limits.y[0] + shift, limits.y[1] + (limits.y[1] - _MIDDLE) * (reach - 1.0) + shift
+    return replace(limits, y=(top, bottom), horizon=_MIDDLE + shift, y_below_horizon=(low, high))
