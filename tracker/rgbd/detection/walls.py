@@ -20,6 +20,7 @@ _OFF_PX: Final = 0.2  # disparity by which a column may be off its wall
 _LEAST_COLUMNS: Final = 10  # of those that are looked at
 _LEAST_M: Final = 0.8  # length of a wall
 _MOST_WALLS: Final = 6
+_MOST_SCATTER_PX: Final = 0.12  # half of what eight tenths of a column's readings span
 _SPANS: Final = (6, 16, 40)  # between the two columns through which a line is tried
 _CORNER_PX: Final = 12  # by which a wall goes on beyond the columns that are surely its own
 _BEHIND_M: Final = FARTHEST_M + 1.0  # the near fringe of what is farther is not in reach
@@ -58,9 +59,10 @@ class Wall:
 def tall_disparity(
     depth: Depth, first_row: Floats, last_row: Floats, row_m: float, view: DepthView
 ) -> Floats:
-    """Give the middle disparity (W,) [px] of what stands above people's heads, NaN where nothing does.
+    """Give the disparity (W, 2) [px] of what stands above people's heads, NaN where nothing does.
 
-    Only every fourth column is looked at.
+    The first is the middle one, the second half of what eight tenths of the readings span. Only every fourth
+    column of the image is looked at.
 
     Args:
         depth: (H, W) [mm].
@@ -74,11 +76,16 @@ def tall_disparity(
 
 
 def find_walls(tall: Floats, view: DepthView) -> tuple[Wall, ...]:
-    """Find the lines that most columns (W,) of disparities are on, the longest first."""
-    columns = np.flatnonzero(np.isfinite(tall))
+    """Find the lines that most columns (W, 2) of disparities are on, the longest first.
+
+    There are none where readings scatter too much, as they would leave pieces of a human's size.
+    """
+    columns = np.flatnonzero(np.isfinite(tall[:, 0]))
     walls: list[Wall] = []
+    if not len(columns) or np.median(tall[columns, 1]) > _MOST_SCATTER_PX:
+        return ()
     while len(columns) >= _LEAST_COLUMNS and len(walls) < _MOST_WALLS:
-        u, disparity = np.asarray(columns - view.centre_u, np.float64), tall[columns]
+        u, disparity = np.asarray(columns - view.centre_u, np.float64), tall[columns, 0]
         on = _strongest(u, disparity)
         if np.count_nonzero(on) < _LEAST_COLUMNS:
             break
@@ -99,16 +106,16 @@ def bands_mm(
 
     Args:
         walls: what was found.
-        tall: (W,) [px] disparities in which they were found.
+        tall: (W, 2) [px] disparities in which they were found.
         off_m: [m] square to a wall, by which what belongs to it may be off.
         view: of the camera.
     """
     limits = np.zeros((2, len(walls), len(tall)))
     columns = np.arange(len(tall), dtype=np.float64)
-    looked = np.flatnonzero(np.isfinite(tall))
+    looked = np.flatnonzero(np.isfinite(tall[:, 0]))
     apart = np.abs(looked[:, None] - columns)  # (L, W)
     for k, wall in enumerate(walls):
-        shows = np.abs(wall.disparity(columns[looked], view) - tall[looked]) < _OFF_PX
+        shows = np.abs(wall.disparity(columns[looked], view) - tall[looked, 0]) < _OFF_PX
         depth_m = wall.depth_m(columns, view)
         here = shows[apart.argmin(axis=0)] | (apart[shows].min(axis=0) <= _CORNER_PX)
         here &= (depth_m > NEAREST_M) & (depth_m < _BEHIND_M)
@@ -164,7 +171,7 @@ def _try_lines(u: Floats, disparity: Floats, spans: NDArray[np.int64]) -> tuple[
 @njit(cache=True, nogil=True)
 def _middle(depth: Depth, first_row: Floats, last_row: Floats, row_mm: int, disparity_px_mm: float) -> Floats:
     height, width = depth.shape
-    middle = np.full(width, np.nan)
+    middle = np.full((width, 2), np.nan)
     found = np.empty(height, np.uint16)
     lowest = min(height - 1, int(last_row.max()))
     for u in range(0, width, _EVERY_U):
@@ -176,5 +183,8 @@ def _middle(depth: Depth, first_row: Floats, last_row: Floats, row_mm: int, disp
                 found[count] = reading
                 count += 1
         if count >= _LEAST_READINGS:
-            middle[u] = disparity_px_mm / np.sort(found[:count])[count // 2]
+            readings = np.sort(found[:count])
+            middle[u, 0] = disparity_px_mm / readings[count // 2]
+            nearest, farthest = readings[count // 10], readings[count - 1 - count // 10]
+            middle[u, 1] = 0.5 * (disparity_px_mm / nearest - disparity_px_mm / farthest)
     return middle

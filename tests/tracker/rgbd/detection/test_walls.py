@@ -90,14 +90,20 @@ def test_whom_no_wall_is_behind_is_seen_as_before() -> None:
 
 
 def test_what_is_narrow_and_tall_is_no_wall() -> None:
-    tall = np.full(WIDTH, np.nan)
-    tall[100:140:4] = VIEW.disparity_px_m / 5.0  # 0.6 m
+    tall = np.full((WIDTH, 2), np.nan)
+    tall[100:140:4] = VIEW.disparity_px_m / 5.0, 0.0  # 0.6 m
+    assert find_walls(tall, VIEW) == ()
+
+
+def test_where_readings_scatter_too_much_walls_are_left_in() -> None:
+    tall = np.full((WIDTH, 2), np.nan)
+    tall[::4] = VIEW.disparity_px_m / 5.0, 0.2
     assert find_walls(tall, VIEW) == ()
 
 
 def test_readings_off_the_wall_stay() -> None:
-    tall = np.full(WIDTH, np.nan)
-    tall[::4] = VIEW.disparity_px_m / 5.0
+    tall = np.full((WIDTH, 2), np.nan)
+    tall[::4] = VIEW.disparity_px_m / 5.0, 0.0
     (wall,) = find_walls(tall, VIEW)
     near, far = bands_mm((wall,), tall, 0.1, VIEW)
     depth = np.tile(np.array([[4700], [4950], [5050], [5300]], np.uint16), WIDTH)
