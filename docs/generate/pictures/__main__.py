@@ -23,7 +23,7 @@ from docs.generate.pictures import (
     tracker,
 )
 from docs.generate.pictures.paper import save
-from docs.generate.pictures.worlds import light
+from docs.generate.pictures.worlds import hard_scenes, light
 from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import draw_parts
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
@@ -39,6 +39,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "thermal_faults": thermal.faults,
     "people_finely": thermal.finely,
     "light": light.light,
+    "hard_scenes": hard_scenes.hard_scenes,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,

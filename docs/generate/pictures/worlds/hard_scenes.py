@@ -1,0 +1,34 @@
+"""The library's scenes that are as hard for a thermal camera as real ones."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import cv2
+from matplotlib.figure import Figure
+
+from docs.generate.pictures.moments import world_at
+from docs.generate.pictures.paper import panels, show
+
+SCENES: Final = {
+    "warm_office": 5.0,
+    "kitchen_morning": 5.0,
+    "glass_corridor": 6.0,
+    "street_evening": 6.0,
+    "sunny_hall": 5.0,
+    "garage": 5.0,
+    "workshop": 6.0,
+    "crowded_foyer": 6.0,
+}
+_GREYS: Final = 12  # apart, so that the file is small
+
+
+def hard_scenes() -> Figure:
+    """One image of each, as the robot gets it."""
+    figure, axes = panels(tuple(SCENES), 5.0, columns=4)
+    for panel, (scene, time_s) in zip(axes, SCENES.items(), strict=True):
+        with world_at(scenario=scene, seed=0, time_s=time_s) as world:
+            grey = world.observe().images["thermal"]
+        smooth = cv2.GaussianBlur(grey, (0, 0), 0.5)  # noise takes most of a picture's bytes
+        show(panel, smooth // _GREYS * _GREYS)
+    return figure
