@@ -19,6 +19,7 @@ from peopleboy.sim.physics import bullet
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
+from peopleboy.sim.shapes.paintings import Painting
 from peopleboy.sim.world import World, light_level
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
@@ -44,8 +45,11 @@ def no_world_is_left_open() -> Iterator[None]:
 def test_a_world_of_one_temperature_gives_one_value(monkeypatch: pytest.MonkeyPatch) -> None:
     make = world_module.make_material_table
 
-    def at_one_temperature(materials: list[Material], rng: np.random.Generator) -> object:
-        return make([replace(k, temperature_c=29.0, variation_k=0.0, contrast_k=0.0) for k in materials], rng)
+    def at_one_temperature(
+        materials: list[Material], rng: np.random.Generator, paintings: list[Painting | None]
+    ) -> object:
+        same = [replace(k, temperature_c=29.0, variation_k=0.0, contrast_k=0.0) for k in materials]
+        return make(same, rng, paintings)
 
     monkeypatch.setattr(world_module, "make_material_table", at_one_temperature)
     place = replace(hall(), surroundings_c=29.0)
