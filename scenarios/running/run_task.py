@@ -72,9 +72,7 @@ def play(tasks: Sequence[RunTask], workers: Workers, title: str) -> None:
         if workers.scheduler is not None and isinstance(task, RunTask):
             _see(task.options.out)
 
-    claimed = [_claimed(task) for task in tasks]
-    if workers.scheduler is not None:
-        claimed = [_from_anywhere(task) for task in claimed]
+    claimed = [_from_anywhere(_claimed(task)) for task in tasks]
     work_through(claimed, workers, title, keep, unit="frames")
 
 
@@ -86,7 +84,7 @@ def _claimed(task: RunTask) -> RunTask:
 
 
 def _from_anywhere(task: RunTask) -> RunTask:
-    """Make it independent of the working directory."""
+    """Make it independent of the working directory, which workers keep from when they were started."""
     return replace(task, options=replace(task.options, out=task.options.out.resolve()))
 
 
