@@ -11,7 +11,7 @@ from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, Light
 from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows
 from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.paintings import painted
+from peopleboy.sim.cameras.paintings import paint_row
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
     finish_at,
@@ -51,8 +51,11 @@ def _radiance_image(
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
-    has_finish = len(finish) > 0
+    has_finish, has_paint = len(finish) > 0, len(paint_texels) > 0
+    line = np.empty(width, np.float32)
     for v in range(height):
+        if has_paint:
+            paint_row(line, v, part, depth, matrices, paint, paint_texels, 1)
         for u in range(width):
             p = part[v, u]
             if p < 0:
@@ -60,8 +63,8 @@ def _radiance_image(
             x, y, z = surface_point(matrices, p, u, v, depth[v, u])
             second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
-            if paint[p, 0] >= 0.0:
-                shade *= painted(paint, paint_texels, p, x, y, z)[1]
+            if has_paint and paint[p, 0] >= 0.0:
+                shade *= line[u]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
             if has_finish and finish[p, 0] >= 0.0:

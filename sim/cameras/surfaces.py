@@ -63,14 +63,18 @@ def make_material_table(
     rng: np.random.Generator,
     paintings: Sequence[Painting | None] | None = None,
 ) -> MaterialTable:
-    """Put the looks of all parts into arrays; the generator draws each part's phase of variation."""
+    """Put the looks of all parts into arrays; the generator draws each part's phase of variation.
+
+    A painting has the variation of its part in it.
+    """
     finish, texels = _lay_out([material.finish for material in materials])
     paint, paint_texels = make_paint_table([None] * len(materials) if paintings is None else paintings)
+    varies = paint[:, 0] < 0.0
     return MaterialTable(
         thermal=np.array(
             [
-                (k.temperature_c, k.emissivity, k.variation_k, 1.0 / k.variation_m, k.contrast_k)
-                for k in materials
+                (k.temperature_c, k.emissivity, varies[i] * k.variation_k, 1.0 / k.variation_m, k.contrast_k)
+                for i, k in enumerate(materials)
             ]
         ).reshape(-1, 5),
         colour=np.array([(*k.rgb, *k.second_rgb, k.glow) for k in materials]).reshape(-1, 7),
