@@ -60,14 +60,16 @@ def _radiance_image(
             p = part[v, u]
             if p < 0:
                 continue
-            x, y, z = surface_point(matrices, p, u, v, depth[v, u])
-            second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
+            second, is_finished = 0, has_finish and finish[p, 0] >= 0.0
+            if kind[p, 1] != 0 or is_finished:
+                x, y, z = surface_point(matrices, p, u, v, depth[v, u])
+                second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
             if has_paint and paint[p, 0] >= 0.0:
                 shade *= line[u]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
-            if has_finish and finish[p, 0] >= 0.0:
+            if is_finished:
                 _, factor, cover = finish_at(finish, texels, p, x, y, z)
                 for c in range(3):
                     over = cover * (shade * finish[p, 5 + c] - image[v, u, c])
