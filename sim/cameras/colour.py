@@ -43,15 +43,15 @@ def _radiance_image(
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
     finish: NDArray[np.float64],
-    texels: NDArray[np.float32],
+    texels: NDArray[np.int16],
     paint: NDArray[np.float64],
-    paint_texels: NDArray[np.float32],
+    paint_texels: NDArray[np.int16],
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
-    has_finish, has_paint = len(finish) > 0, len(paint_texels) > 0
+    has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
     line = np.empty(width, np.float32)
     for v in range(height):
         if has_paint:

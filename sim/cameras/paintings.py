@@ -11,31 +11,35 @@ from numpy.typing import NDArray
 from peopleboy.sim.shapes.paintings import Painting, Unrolling
 
 _LEVEL = int(Unrolling.LEVEL)
+_STEPS = np.array([256.0, 4096.0])  # to a kelvin, and to a factor of 1 on light
+_KELVIN, _LIGHT = 1.0 / _STEPS
 
 
 def make_paint_table(
     paintings: Sequence[Painting | None],
-) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+) -> tuple[NDArray[np.float64], NDArray[np.int16]]:
     """Put the paintings of all P parts into arrays.
 
     Returns:
         (P, 7) first texel (-1 for a part without a painting), unrolling, origin across and up [m], texels a
-        metre, columns, rows; and (N, 2) texels: what is added [K], factor on light.
+        metre, columns, rows; and (2, N) texels: what is added [K / 256], factor on light [1 / 4096]. As whole
+        numbers of two bytes they stay near to where they are looked up: waiting for memory takes longest.
     """
     rows = np.full((len(paintings), 7), -1.0)
-    texels, first = [np.zeros((0, 2), np.float32)], 0
+    texels, first = [np.zeros((2, 0), np.int16)], 0
     for row, painting in zip(rows, paintings, strict=True):
         if painting is not None:
             height, width = painting.kelvin.shape
             row[:] = first, painting.unrolling, *painting.origin_m, 1.0 / painting.texel_m, width, height
-            texels.append(np.stack([painting.kelvin.ravel(), painting.light.ravel()], axis=1))
+            layers = np.stack([painting.kelvin.ravel(), painting.light.ravel()]) * _STEPS[:, None]
+            texels.append(np.clip(np.rint(layers), -32768, 32767).astype(np.int16))
             first += height * width
-    return rows, np.concatenate(texels)
+    return rows, np.concatenate(texels, axis=1)
 
 
 @njit(cache=True, fastmath=True)
 def painted(
-    paint: NDArray[np.float64], texels: NDArray[np.float32], part: int, x: float, y: float, z: float
+    paint: NDArray[np.float64], texels: NDArray[np.int16], part: int, x: float, y: float, z: float
 ) -> tuple[float, float]:
     """Return what the painting of a part adds [K], and its factor on light, at a point [m] of the part.
 
@@ -51,8 +55,8 @@ def painted(
     c, d, e, f = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
     above = at + columns
     return (
-        c * texels[at, 0] + d * texels[at + 1, 0] + e * texels[above, 0] + f * texels[above + 1, 0],
-        c * texels[at, 1] + d * texels[at + 1, 1] + e * texels[above, 1] + f * texels[above + 1, 1],
+        _KELVIN * (c * texels[0, at] + d * texels[0, at + 1] + e * texels[0, above] + f * texels[0, above + 1]),
+        _LIGHT * (c * texels[1, at] + d * texels[1, at + 1] + e * texels[1, above] + f * texels[1, above + 1]),
     )
 
 
@@ -64,7 +68,7 @@ def paint_row(
     depth: NDArray[np.float32],
     matrices: NDArray[np.float64],
     paint: NDArray[np.float64],
-    texels: NDArray[np.float32],
+    texels: NDArray[np.int16],
     layer: int,
 ) -> None:
     """Find what paintings do to the pixels of a row, as `painted` says it of points.
@@ -79,7 +83,8 @@ def paint_row(
         paint, texels: as `make_paint_table` gives them.
         layer: 0 for kelvin, 1 for light.
     """
-    width = part.shape[1]
+    width, step = part.shape[1], _KELVIN if layer == 0 else _LIGHT
+    values = texels[layer]
     end = 0
     while end < width:
         first, p = end, part[v, end]
@@ -103,7 +108,7 @@ def paint_row(
             y = min(max((slope_v * u + start_v) * z + origin_v, 0.0), most_v)
             i, j = int(x), int(y)
             a, at = x - i, texel + j * columns + i
-            lower = texels[at, layer] + a * (texels[at + 1, layer] - texels[at, layer])
+            lower = values[at] + a * (values[at + 1] - values[at])
             at += columns
-            upper = texels[at, layer] + a * (texels[at + 1, layer] - texels[at, layer])
-            line[u] = lower + (y - j) * (upper - lower)
+            upper = values[at] + a * (values[at + 1] - values[at])
+            line[u] = step * (lower + (y - j) * (upper - lower))

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.paintings import make_paint_table
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.shapes.finishes import Finish
+from peopleboy.sim.shapes.finishes import TEXEL_STEP, Finish
 from peopleboy.sim.shapes.materials import Material, PatternKind
 from peopleboy.sim.shapes.paintings import Painting
 
@@ -41,7 +41,7 @@ class MaterialTable:
         phase: (P, 3) [waves] offsets of the smooth variation.
         finish: (P, 8) of each part's finish its first texel (-1 for none), columns, rows, lowest z [m], rows
             a metre, and colour; (0, 8) if no part has one.
-        texels: (N, 3) kelvin, light and cover of all finishes.
+        texels: (N, 3) kelvin, light and cover of all finishes, as `Finish.texels` gives them.
         shine: (P,) how much of what is reflected is mirrored, 0..1.
         paint, paint_texels: paintings, as `make_paint_table` gives them.
     """
@@ -52,10 +52,10 @@ class MaterialTable:
     period: NDArray[np.float64]
     phase: NDArray[np.float64]
     finish: NDArray[np.float64]
-    texels: NDArray[np.float32]
+    texels: NDArray[np.int16]
     shine: NDArray[np.float64]
     paint: NDArray[np.float64]
-    paint_texels: NDArray[np.float32]
+    paint_texels: NDArray[np.int16]
 
 
 def make_material_table(
@@ -93,9 +93,9 @@ def make_material_table(
     )
 
 
-def _lay_out(finishes: Sequence[Finish | None]) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+def _lay_out(finishes: Sequence[Finish | None]) -> tuple[NDArray[np.float64], NDArray[np.int16]]:
     """Put finishes one after the other: rows and texels as in `MaterialTable`."""
-    rows, texels = np.full((len(finishes), 8), -1.0), [np.zeros((0, 3), np.float32)]
+    rows, texels = np.full((len(finishes), 8), -1.0), [np.zeros((0, 3), np.int16)]
     for row, finish in zip(rows, finishes, strict=True):
         if finish is not None:
             height, width = finish.kelvin.shape
@@ -198,7 +198,7 @@ def turn_of(x: float, y: float) -> float:
 
 @njit(cache=True, fastmath=True)
 def finish_at(
-    finish: NDArray[np.float64], texels: NDArray[np.float32], part: int, x: float, y: float, z: float
+    finish: NDArray[np.float64], texels: NDArray[np.int16], part: int, x: float, y: float, z: float
 ) -> tuple[float, float, float]:
     """Return kelvin, light and cover of a part's finish at a point [m] of the part, linear between texels."""
     columns, rows = int(finish[part, 1]), int(finish[part, 2])
@@ -212,10 +212,10 @@ def finish_at(
     above = below + columns
     c, d, e, f = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
     return (
-        c * texels[below + left, 0] + d * texels[below + right, 0]
-        + e * texels[above + left, 0] + f * texels[above + right, 0],
-        c * texels[below + left, 1] + d * texels[below + right, 1]
-        + e * texels[above + left, 1] + f * texels[above + right, 1],
-        c * texels[below + left, 2] + d * texels[below + right, 2]
-        + e * texels[above + left, 2] + f * texels[above + right, 2],
+        TEXEL_STEP * (c * texels[below + left, 0] + d * texels[below + right, 0]
+                      + e * texels[above + left, 0] + f * texels[above + right, 0]),
+        TEXEL_STEP * (c * texels[below + left, 1] + d * texels[below + right, 1]
+                      + e * texels[above + left, 1] + f * texels[above + right, 1]),
+        TEXEL_STEP * (c * texels[below + left, 2] + d * texels[below + right, 2]
+                      + e * texels[above + left, 2] + f * texels[above + right, 2]),
     )  # fmt: skip
