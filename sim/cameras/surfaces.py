@@ -200,22 +200,12 @@ def turn_of(x: float, y: float) -> float:
 def finish_at(
     finish: NDArray[np.float64], texels: NDArray[np.int16], part: int, x: float, y: float, z: float
 ) -> tuple[float, float, float]:
-    """Return kelvin, light and cover of a part's finish at a point [m] of the part, linear between texels."""
+    """Return kelvin, light and cover of a part's finish at a point [m] of the part: those of the nearest texel.
+
+    Only from nearer than 2 m are texels larger than a pixel.
+    """
     columns, rows = int(finish[part, 1]), int(finish[part, 2])
-    across = turn_of(x, y) * columns
-    up = min(max((z - finish[part, 3]) * finish[part, 4], 0.0), rows - 1.001)
-    column, row = int(across), int(up)
-    a, b = across - column, up - row
-    left = column if column < columns else column - columns
-    right = left + 1 if left + 1 < columns else 0
-    below = int(finish[part, 0]) + row * columns
-    above = below + columns
-    c, d, e, f = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
-    return (
-        TEXEL_STEP * (c * texels[below + left, 0] + d * texels[below + right, 0]
-                      + e * texels[above + left, 0] + f * texels[above + right, 0]),
-        TEXEL_STEP * (c * texels[below + left, 1] + d * texels[below + right, 1]
-                      + e * texels[above + left, 1] + f * texels[above + right, 1]),
-        TEXEL_STEP * (c * texels[below + left, 2] + d * texels[below + right, 2]
-                      + e * texels[above + left, 2] + f * texels[above + right, 2]),
-    )  # fmt: skip
+    column = int(turn_of(x, y) * columns + 0.5)
+    row = int(min(max((z - finish[part, 3]) * finish[part, 4] + 0.5, 0.0), rows - 0.5))
+    at = int(finish[part, 0]) + row * columns + (column if column < columns else 0)
+    return TEXEL_STEP * texels[at, 0], TEXEL_STEP * texels[at, 1], TEXEL_STEP * texels[at, 2]
