@@ -182,7 +182,7 @@ def _find_sources(
     """
     kind, size, first_surface, shape_of, piece_of, pose = shapes
     z, pieces = depth.reshape(-1), piece.reshape(-1)
-    sources = np.empty((len(pixel), len(_RAYS)), np.int32)
+    sources, scale = np.empty((len(pixel), len(_RAYS)), np.int32), 1.0 / lens.focal
     for i in range(len(pixel)):
         own = pixel[i]
         v, u = own // lens.width, own % lens.width
@@ -201,8 +201,8 @@ def _find_sources(
             if other == one or (is_far and (pieces[own + near] != one or sources[i, _NEARER[k]] == own)):
                 continue
             first, last, count = _in_order(one, other, shape_of[one] == shape_of[other], depth_one, z[at])
-            x = (u + _RAYS[k, 0] - lens.centre_u) / lens.focal
-            y = (v + _RAYS[k, 1] - lens.centre_v) / lens.focal
+            x = (u + _RAYS[k, 0] - lens.centre_u) * scale
+            y = (v + _RAYS[k, 1] - lens.centre_v) * scale
             best, seen = math.inf, last if count == 1 else one
             for j in range(count):
                 s = shape_of[first if j == 0 else last]
