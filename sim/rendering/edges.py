@@ -26,12 +26,10 @@ from peopleboy.sim.shapes.shapes import ShapeKind
 Array = NDArray[np.float64]
 Pixels = NDArray[np.int32]
 
-# [px] where rays go through a pixel, from its middle: the first is nearest to the pixel above it, the second to
-# that on the right, the third to that on the left, the last to that below.
+# [px] where rays go through a pixel, from its middle: the first is nearest to the pixel above it, then to that on
+# the right, on the left and below; and next nearest to these.
 _RAYS = np.array([(-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375)])
-
-# For the other pixel beside a ray's quarter, the ray that is nearer to it.
-_NEARER = (2, 0, 3, 1)
+_NEXT = (1, 3, 0, 2)
 
 _CAPSULE = int(ShapeKind.CAPSULE)
 _MESH = int(ShapeKind.MESH)
@@ -186,39 +184,46 @@ def _find_sources(
     for i in range(len(pixel)):
         own = pixel[i]
         v, u = own // lens.width, own % lens.width
-        up, down = (0 if v == 0 else -lens.width), (0 if v == lens.height - 1 else lens.width)
-        left, right = (0 if u == 0 else -1), (0 if u == lens.width - 1 else 1)
+        beside = (
+            own if v == 0 else own - lens.width,
+            own if u == lens.width - 1 else own + 1,
+            own if u == 0 else own - 1,
+            own if v == lens.height - 1 else own + lens.width,
+        )
         one, depth_one = pieces[own], z[own]
         for k in range(4):
             sources[i, k] = own
-        for turn in range(8):
-            # First come rays near the pixel beside them, then those farther from it, if the former met it.
-            k, is_far = turn % 4, turn >= 4
-            row, aside = (up if k < 2 else down), (left if k % 2 == 0 else right)
-            near, far = (row, aside) if k in (0, 3) else (aside, row)
-            at = own + (far if is_far else near)
+        for side in range(4):
+            at = beside[side]
             other = pieces[at]
-            if other == one or (is_far and (pieces[own + near] != one or sources[i, _NEARER[k]] == own)):
+            if other == one:
                 continue
             first, last, count = _in_order(one, other, shape_of[one] == shape_of[other], depth_one, z[at])
-            x = (u + _RAYS[k, 0] - lens.centre_u) * scale
-            y = (v + _RAYS[k, 1] - lens.centre_v) * scale
-            best, seen = math.inf, last if count == 1 else one
-            for j in range(count):
-                s = shape_of[first if j == 0 else last]
-                if kind[s] == _MESH:
-                    best, seen = 0.0, one
+            for turn in range(2):
+                # If the ray nearest to the pixel beside meets what that shows, the next nearest may, too, but
+                # not if it has another such pixel nearer to it.
+                k = side if turn == 0 else _NEXT[side]
+                if turn == 1 and pieces[beside[k]] != one:
                     break
-                o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
-                d = (
-                    pose[s, 0, 0] * x + pose[s, 0, 1] * y + pose[s, 0, 2],
-                    pose[s, 1, 0] * x + pose[s, 1, 1] * y + pose[s, 1, 2],
-                    pose[s, 2, 0] * x + pose[s, 2, 1] * y + pose[s, 2, 2],
-                )
-                t, surface = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
-                if t < best:
-                    best, seen = t, piece_of[first_surface[s] + surface]
-            if seen != one and (seen == other or shape_of[seen] != shape_of[one]):
+                x = (u + _RAYS[k, 0] - lens.centre_u) * scale
+                y = (v + _RAYS[k, 1] - lens.centre_v) * scale
+                best, seen = math.inf, last if count == 1 else one
+                for j in range(count):
+                    s = shape_of[first if j == 0 else last]
+                    if kind[s] == _MESH:
+                        best, seen = 0.0, one
+                        break
+                    o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
+                    d = (
+                        pose[s, 0, 0] * x + pose[s, 0, 1] * y + pose[s, 0, 2],
+                        pose[s, 1, 0] * x + pose[s, 1, 1] * y + pose[s, 1, 2],
+                        pose[s, 2, 0] * x + pose[s, 2, 1] * y + pose[s, 2, 2],
+                    )
+                    t, surface = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
+                    if t < best:
+                        best, seen = t, piece_of[first_surface[s] + surface]
+                if seen == one or (seen != other and shape_of[seen] == shape_of[one]):
+                    break
                 sources[i, k] = at
     return sources
 
