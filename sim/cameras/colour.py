@@ -67,13 +67,15 @@ def _radiance_image(
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
             if has_paint and paint[p, 0] >= 0.0:
                 shade *= line[u]
-            for c in range(3):
-                image[v, u, c] = shade * colour[p, second + c]
             if is_finished:
                 _, factor, cover = finish_at(finish, texels, p, x, y, z)
+                shade *= factor
                 for c in range(3):
-                    over = cover * (shade * finish[p, 5 + c] - image[v, u, c])
-                    image[v, u, c] = factor * (image[v, u, c] + over)
+                    own = colour[p, second + c]
+                    image[v, u, c] = shade * (own + cover * (finish[p, 5 + c] - own))
+                continue
+            for c in range(3):
+                image[v, u, c] = shade * colour[p, second + c]
     return image
 
 
