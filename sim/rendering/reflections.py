@@ -238,22 +238,26 @@ def _is_outside(x: float, y: float, z: float, radius: float, lens: Lens) -> bool
 def _count(
     part: Pixels, surface: Pixels, is_shiny: Mask, surfaces: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Count the pixels of each shiny surface; its window (left, top, right, bottom), and one pixel of it."""
+    """Count the pixels of each shiny surface; its window (left, top, right, bottom), and one pixel of it.
+
+    Every other row and column is looked at, and stands for the next.
+    """
     height, width = part.shape
     count, example = np.zeros(surfaces, np.int64), np.zeros(surfaces, np.int64)
     window = np.empty((surfaces, 4), np.int64)
-    for v in range(height):
-        for u in range(width):
+    for v in range(0, height, 2):
+        for u in range(0, width, 2):
             p = part[v, u]
             if p < 0 or not is_shiny[p]:
                 continue
             s = surface[v, u]
             if count[s] == 0:
                 window[s, 0] = window[s, 2] = u
-                window[s, 1] = v
-            count[s] += 1
-            window[s, 0], window[s, 2] = min(window[s, 0], u), max(window[s, 2], u)
-            window[s, 3] = v
+                window[s, 1] = max(v - 1, 0)
+            count[s] += 4
+            window[s, 0] = min(window[s, 0], max(u - 1, 0))
+            window[s, 2] = max(window[s, 2], min(u + 1, width - 1))
+            window[s, 3] = min(v + 1, height - 1)
             example[s] = v * width + u
     return count, window, example
 
