@@ -54,9 +54,10 @@ def painted(
     at = int(paint[part, 0]) + low * columns + left
     c, d, e, f = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
     above = at + columns
+    kelvin, light = texels[0], texels[1]
     return (
-        _KELVIN * (c * texels[0, at] + d * texels[0, at + 1] + e * texels[0, above] + f * texels[0, above + 1]),
-        _LIGHT * (c * texels[1, at] + d * texels[1, at + 1] + e * texels[1, above] + f * texels[1, above + 1]),
+        _KELVIN * (c * kelvin[at] + d * kelvin[at + 1] + e * kelvin[above] + f * kelvin[above + 1]),
+        _LIGHT * (c * light[at] + d * light[at + 1] + e * light[above] + f * light[above + 1]),
     )
 
 
@@ -78,9 +79,11 @@ def paint_row(
     Args:
         line: (W,) gets kelvin or factors on light where parts have paintings, nothing elsewhere.
         v: number of the row.
-        part, depth: (H, W) what each pixel sees.
+        part: (H, W) what each pixel sees.
+        depth: (H, W) [m] how far away that is.
         matrices: (P, 3, 4) as `part_from_pixel` gives them.
-        paint, texels: as `make_paint_table` gives them.
+        paint: (P, 7) as `make_paint_table` gives them.
+        texels: (2, N) beside them.
         layer: 0 for kelvin, 1 for light.
     """
     width, step = part.shape[1], _KELVIN if layer == 0 else _LIGHT

@@ -200,9 +200,9 @@ def turn_of(x: float, y: float) -> float:
 def finish_at(
     finish: NDArray[np.float64], texels: NDArray[np.int16], part: int, x: float, y: float, z: float
 ) -> tuple[float, float, float]:
-    """Return kelvin, light and cover of a part's finish at a point [m] of the part: those of the nearest texel.
+    """Return kelvin, light and cover of a part's finish at a point [m] of the part.
 
-    Only from nearer than 2 m are texels larger than a pixel.
+    They are those of the nearest texel; only from nearer than 2 m is that larger than a pixel.
     """
     columns, rows = int(finish[part, 1]), int(finish[part, 2])
     column = int(turn_of(x, y) * columns + 0.5)

@@ -1,9 +1,9 @@
 """Edges without stairs: where surfaces meet within a pixel, each gets the share of it that it fills.
 
 Four rays go through a pixel, none in a row or column with another. Beside a pixel that shows something else,
-the ray nearest to that is tried against what both show, and if that meets the other, the next nearest is. What
-they meet looks as one of the two pixels does. So nothing is evaluated twice, and any image of the view can do
-it. Where an image shows no step, nothing is done.
+the ray nearest to that is tried against what both show, and if it meets the other, the next nearest is. What
+they meet looks as one of the two pixels does. So nothing is evaluated twice, and any image of the view can
+do it. Where an image shows no step, nothing is done.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from peopleboy.sim.shapes.shapes import ShapeKind
 Array = NDArray[np.float64]
 Pixels = NDArray[np.int32]
 
-# [px] where rays go through a pixel, from its middle: the first is nearest to the pixel above it, then to that on
-# the right, on the left and below; and next nearest to these.
+# [px] where rays go through a pixel, from its middle: the first is nearest to the pixel above it, the next to
+# those on the right, on the left and below; and which rays are next nearest to these.
 _RAYS = np.array([(-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375)])
 _NEXT = (1, 3, 0, 2)
 
@@ -180,7 +180,7 @@ def _find_sources(
     """
     kind, size, first_surface, shape_of, piece_of, pose = shapes
     z, pieces = depth.reshape(-1), piece.reshape(-1)
-    sources, scale = np.empty((len(pixel), len(_RAYS)), np.int32), 1.0 / lens.focal
+    sources, scale = np.repeat(pixel, len(_RAYS)).reshape(-1, len(_RAYS)), 1.0 / lens.focal
     for i in range(len(pixel)):
         own = pixel[i]
         v, u = own // lens.width, own % lens.width
@@ -191,8 +191,6 @@ def _find_sources(
             own if v == lens.height - 1 else own + lens.width,
         )
         one, depth_one = pieces[own], z[own]
-        for k in range(4):
-            sources[i, k] = own
         for side in range(4):
             at = beside[side]
             other = pieces[at]

@@ -140,18 +140,19 @@ def _reflect(seen: Seen, camera: Pinhole, mirror: _Mirror, is_mirrored: Mask) ->
     # A pixel more all round, for what is mirrored ends between pixels.
     first_u, first_v = max(box[0] - 1, 0), max(box[1] - 1, 0)
     columns, rows = slice(first_u, box[2] + 2), slice(first_v, box[3] + 2)
-    nearness, surface, cover = (
-        np.ascontiguousarray(one[rows, columns]) for one in (canvas.nearness, canvas.surface, canvas.cover)
+    canvas = canvas._replace(
+        nearness=np.ascontiguousarray(canvas.nearness[rows, columns]),
+        surface=np.ascontiguousarray(canvas.surface[rows, columns]),
+        cover=np.ascontiguousarray(canvas.cover[rows, columns]),
     )
-    canvas = canvas._replace(nearness=nearness, surface=surface, cover=cover)
-    height, width = surface.shape
+    height, width = canvas.surface.shape
     lens = Lens(lens.focal, lens.centre_u - first_u, lens.centre_v - first_v, width, height)
     cosine, part = np.empty((height, width), np.float32), np.empty((height, width), np.int32)
     if not _keep(canvas, table.surface_part, is_mirrored, plane, lens, cosine):
         return None
     depth, normal = np.empty((height, width), np.float32), np.empty((height, width, 3), np.float32)
     shade(table.surface_part, lens, canvas, np.ascontiguousarray(pose[:3, :3]), part, depth, normal)
-    beyond = View(part, depth, normal, cover, surface)
+    beyond = View(part, depth, normal, canvas.cover, canvas.surface)
     is_surface = np.zeros(len(table.surface_part), np.bool_)
     is_surface[mirror.surfaces] = True
     return Reflection(left + EVERY * first_u, top + EVERY * first_v, beyond, pose, cosine, is_surface)
@@ -215,8 +216,8 @@ def _radius(kind: int, size: Array) -> float:
     if kind == _BOX:
         return 0.5 * math.sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2])
     if kind in (_CAPSULE, _CYLINDER):
-        return 0.5 * size[0] + size[1]
-    return size[0] if kind == _SPHERE else math.inf
+        return 0.5 * float(size[0]) + float(size[1])
+    return float(size[0]) if kind == _SPHERE else math.inf
 
 
 @njit(cache=True, error_model="numpy")
@@ -291,7 +292,7 @@ def _keep(
             nearness = canvas.nearness[v, u]
             if nearness == 0.0:
                 continue
-            is_beyond = slope < 0.0 and 1.0 >= (plane[3] / slope - _SUNK_M) * nearness
+            is_beyond = slope < 0.0 and (plane[3] / slope - _SUNK_M) * nearness <= 1.0
             if is_beyond and wanted[surface_part[canvas.surface[v, u]]]:
                 is_any = True
             else:

@@ -45,12 +45,11 @@ def test_a_row_of_pixels_shows_what_a_painting_has_at_their_points(unrolling: Un
     for v, layer in ((1, 0), (3, 1)):
         line = np.full(9, np.nan, np.float32)
         paint_row(line, v, part, depth, matrices, paint, texels, layer)
-        for u, p in enumerate(part[v]):
-            z = depth[v, u]
-            point = matrices[p] @ (u * z, v * z, z, 1.0)
-            assert np.isnan(line[u]) if p < 1 else line[u] == pytest.approx(
-                painted(paint, texels, p, *point)[layer], abs=1e-4
-            )
+        for u in np.flatnonzero(part[v] >= 1):
+            point = matrices[part[v, u]] @ (u * depth[v, u], v * depth[v, u], depth[v, u], 1.0)
+            expected = painted(paint, texels, int(part[v, u]), *point)[layer]
+            assert line[u] == pytest.approx(expected, abs=1e-4)
+        assert np.isnan(line[part[v] < 1]).all()
 
 
 def test_beyond_its_edge_a_painting_goes_on_as_it_ends() -> None:
