@@ -1,6 +1,6 @@
 """The ray caster against PyBullet's TinyRenderer: both camera images of a corridor, with full truth.
 
-Beside them the ray caster with all that full detail adds, on a polished floor.
+Beside them the ray caster with all that full detail adds, on a polished floor, by an uncooled camera.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from peopleboy.sim.cameras.electronics.thermal_presets import THERMAL_PRESETS
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walk import Waypoint
@@ -91,14 +92,20 @@ def _corridor(renderer: str) -> WorldConfig:
 
 
 def _polished(config: WorldConfig) -> WorldConfig:
-    """The same world in full detail, with a floor that mirrors."""
+    """The same world in full detail, with a floor that mirrors and all that electronics do to images."""
+    cameras = {**config.robot.cameras, "thermal": THERMAL_PRESETS["uncooled"]}
     fixtures = tuple(
         replace(one, part=replace(one.part, material=replace(one.part.material, shine=_SHINE)))
         if one.name == "floor" and one.part is not None
         else one
         for one in config.place.fixtures
     )
-    return replace(config, detail="full", place=replace(config.place, fixtures=fixtures))
+    return replace(
+        config,
+        detail="full",
+        place=replace(config.place, fixtures=fixtures),
+        robot=replace(config.robot, cameras=cameras),
+    )
 
 
 if __name__ == "__main__":

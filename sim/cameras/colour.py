@@ -11,7 +11,7 @@ from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, Light
 from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows
 from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.paintings import painted
+from peopleboy.sim.cameras.paintings import paint_row
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
     finish_at,
@@ -43,32 +43,39 @@ def _radiance_image(
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
     finish: NDArray[np.float64],
-    texels: NDArray[np.float32],
+    texels: NDArray[np.int16],
     paint: NDArray[np.float64],
-    paint_texels: NDArray[np.float32],
+    paint_texels: NDArray[np.int16],
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
-    has_finish = len(finish) > 0
+    has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
+    line = np.empty(width, np.float32)
     for v in range(height):
+        if has_paint:
+            paint_row(line, v, part, depth, matrices, paint, paint_texels, 1)
         for u in range(width):
             p = part[v, u]
             if p < 0:
                 continue
-            x, y, z = surface_point(matrices, p, u, v, depth[v, u])
-            second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
+            second, is_finished = 0, has_finish and finish[p, 0] >= 0.0
+            if kind[p, 1] != 0 or is_finished:
+                x, y, z = surface_point(matrices, p, u, v, depth[v, u])
+                second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
-            if paint[p, 0] >= 0.0:
-                shade *= painted(paint, paint_texels, p, x, y, z)[1]
+            if has_paint and paint[p, 0] >= 0.0:
+                shade *= line[u]
+            if is_finished:
+                _, factor, cover = finish_at(finish, texels, p, x, y, z)
+                shade *= factor
+                for c in range(3):
+                    own = colour[p, second + c]
+                    image[v, u, c] = shade * (own + cover * (finish[p, 5 + c] - own))
+                continue
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
-            if has_finish and finish[p, 0] >= 0.0:
-                _, factor, cover = finish_at(finish, texels, p, x, y, z)
-                for c in range(3):
-                    over = cover * (shade * finish[p, 5 + c] - image[v, u, c])
-                    image[v, u, c] = factor * (image[v, u, c] + over)
     return image
 
 

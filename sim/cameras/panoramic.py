@@ -80,9 +80,9 @@ def _radiance_image(
     period: Matrix,
     phase: Matrix,
     finish: NDArray[np.float64],
-    texels: NDArray[np.float32],
+    texels: NDArray[np.int16],
     paint: Matrix,
-    paint_texels: NDArray[np.float32],
+    paint_texels: NDArray[np.int16],
     light: Matrix,
     level: float,
 ) -> Linear:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.paintings import make_paint_table
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.shapes.finishes import Finish
+from peopleboy.sim.shapes.finishes import TEXEL_STEP, Finish
 from peopleboy.sim.shapes.materials import Material, PatternKind
 from peopleboy.sim.shapes.paintings import Painting
 
@@ -41,7 +41,7 @@ class MaterialTable:
         phase: (P, 3) [waves] offsets of the smooth variation.
         finish: (P, 8) of each part's finish its first texel (-1 for none), columns, rows, lowest z [m], rows
             a metre, and colour; (0, 8) if no part has one.
-        texels: (N, 3) kelvin, light and cover of all finishes.
+        texels: (N, 3) kelvin, light and cover of all finishes, as `Finish.texels` gives them.
         shine: (P,) how much of what is reflected is mirrored, 0..1.
         paint, paint_texels: paintings, as `make_paint_table` gives them.
     """
@@ -52,10 +52,10 @@ class MaterialTable:
     period: NDArray[np.float64]
     phase: NDArray[np.float64]
     finish: NDArray[np.float64]
-    texels: NDArray[np.float32]
+    texels: NDArray[np.int16]
     shine: NDArray[np.float64]
     paint: NDArray[np.float64]
-    paint_texels: NDArray[np.float32]
+    paint_texels: NDArray[np.int16]
 
 
 def make_material_table(
@@ -63,14 +63,18 @@ def make_material_table(
     rng: np.random.Generator,
     paintings: Sequence[Painting | None] | None = None,
 ) -> MaterialTable:
-    """Put the looks of all parts into arrays; the generator draws each part's phase of variation."""
+    """Put the looks of all parts into arrays; the generator draws each part's phase of variation.
+
+    A painting has the variation of its part in it.
+    """
     finish, texels = _lay_out([material.finish for material in materials])
     paint, paint_texels = make_paint_table([None] * len(materials) if paintings is None else paintings)
+    varies = paint[:, 0] < 0.0
     return MaterialTable(
         thermal=np.array(
             [
-                (k.temperature_c, k.emissivity, k.variation_k, 1.0 / k.variation_m, k.contrast_k)
-                for k in materials
+                (k.temperature_c, k.emissivity, varies[i] * k.variation_k, 1.0 / k.variation_m, k.contrast_k)
+                for i, k in enumerate(materials)
             ]
         ).reshape(-1, 5),
         colour=np.array([(*k.rgb, *k.second_rgb, k.glow) for k in materials]).reshape(-1, 7),
@@ -89,9 +93,9 @@ def make_material_table(
     )
 
 
-def _lay_out(finishes: Sequence[Finish | None]) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
+def _lay_out(finishes: Sequence[Finish | None]) -> tuple[NDArray[np.float64], NDArray[np.int16]]:
     """Put finishes one after the other: rows and texels as in `MaterialTable`."""
-    rows, texels = np.full((len(finishes), 8), -1.0), [np.zeros((0, 3), np.float32)]
+    rows, texels = np.full((len(finishes), 8), -1.0), [np.zeros((0, 3), np.int16)]
     for row, finish in zip(rows, finishes, strict=True):
         if finish is not None:
             height, width = finish.kelvin.shape
@@ -194,24 +198,14 @@ def turn_of(x: float, y: float) -> float:
 
 @njit(cache=True, fastmath=True)
 def finish_at(
-    finish: NDArray[np.float64], texels: NDArray[np.float32], part: int, x: float, y: float, z: float
+    finish: NDArray[np.float64], texels: NDArray[np.int16], part: int, x: float, y: float, z: float
 ) -> tuple[float, float, float]:
-    """Return kelvin, light and cover of a part's finish at a point [m] of the part, linear between texels."""
+    """Return kelvin, light and cover of a part's finish at a point [m] of the part.
+
+    They are those of the nearest texel; only from nearer than 2 m is that larger than a pixel.
+    """
     columns, rows = int(finish[part, 1]), int(finish[part, 2])
-    across = turn_of(x, y) * columns
-    up = min(max((z - finish[part, 3]) * finish[part, 4], 0.0), rows - 1.001)
-    column, row = int(across), int(up)
-    a, b = across - column, up - row
-    left = column if column < columns else column - columns
-    right = left + 1 if left + 1 < columns else 0
-    below = int(finish[part, 0]) + row * columns
-    above = below + columns
-    c, d, e, f = (1.0 - a) * (1.0 - b), a * (1.0 - b), (1.0 - a) * b, a * b
-    return (
-        c * texels[below + left, 0] + d * texels[below + right, 0]
-        + e * texels[above + left, 0] + f * texels[above + right, 0],
-        c * texels[below + left, 1] + d * texels[below + right, 1]
-        + e * texels[above + left, 1] + f * texels[above + right, 1],
-        c * texels[below + left, 2] + d * texels[below + right, 2]
-        + e * texels[above + left, 2] + f * texels[above + right, 2],
-    )  # fmt: skip
+    column = int(turn_of(x, y) * columns + 0.5)
+    row = int(min(max((z - finish[part, 3]) * finish[part, 4] + 0.5, 0.0), rows - 0.5))
+    at = int(finish[part, 0]) + row * columns + (column if column < columns else 0)
+    return TEXEL_STEP * texels[at, 0], TEXEL_STEP * texels[at, 1], TEXEL_STEP * texels[at, 2]

@@ -18,7 +18,7 @@ from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.paintings import painted
+from peopleboy.sim.cameras.paintings import paint_row
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
     finish_at,
@@ -88,31 +88,33 @@ def _radiance_image(
     period: NDArray[np.float64],
     phase: NDArray[np.float64],
     finish: NDArray[np.float64],
-    texels: NDArray[np.float32],
+    texels: NDArray[np.int16],
     paint: NDArray[np.float64],
-    paint_texels: NDArray[np.float32],
+    paint_texels: NDArray[np.int16],
     table: NDArray[np.float64],
     surroundings: float,
     span: tuple[float, float],
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.empty((height, width), np.float32)
-    has_finish = len(finish) > 0
+    has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
+    line = np.empty(width, np.float32)
     for v in range(height):
+        if has_paint:
+            paint_row(line, v, part, depth, matrices, paint, paint_texels, 0)
         for u in range(width):
             p = part[v, u]
             if p < 0:
                 image[v, u] = surroundings
                 continue
             temperature = thermal[p, 0]
-            is_painted = paint[p, 0] >= 0.0
+            if has_paint and paint[p, 0] >= 0.0:
+                temperature += line[u]
             is_finished = has_finish and finish[p, 0] >= 0.0
-            if is_painted or is_finished or thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
+            if is_finished or thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
                 temperature += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
                 temperature += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
-                if is_painted:
-                    temperature += painted(paint, paint_texels, p, x, y, z)[0]
                 if is_finished:
                     temperature += finish_at(finish, texels, p, x, y, z)[0]
             emitted = _look_up(table, span[0], span[1], temperature)

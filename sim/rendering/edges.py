@@ -1,10 +1,9 @@
 """Edges without stairs: where surfaces meet within a pixel, each gets the share of it that it fills.
 
-Four rays through a pixel, none in a row or column with another, tell what they meet among the shapes that
-the pixel and its eight neighbours show; a ray in a quarter whose neighbours all show the same needs no trial.
-What that looks like is known already: it is taken from the nearest of these pixels that shows the same
-surface. So nothing is evaluated twice, and any image of the view can do it. Where an image shows no step,
-nothing is done.
+Four rays go through a pixel, none in a row or column with another. Beside a pixel that shows something else,
+the ray nearest to that is tried against what both show, and if it meets the other, the next nearest is. What
+they meet looks as one of the two pixels does. So nothing is evaluated twice, and any image of the view can
+do it. Where an image shows no step, nothing is done.
 """
 
 from __future__ import annotations
@@ -26,18 +25,16 @@ from peopleboy.sim.shapes.shapes import ShapeKind
 
 Array = NDArray[np.float64]
 Pixels = NDArray[np.int32]
-Four = tuple[int, int, int, int]
 
-# [px] where rays go through a pixel, from its middle.
+# [px] where rays go through a pixel, from its middle: the first is nearest to the pixel above it, the next to
+# those on the right, on the left and below; and which rays are next nearest to these.
 _RAYS = np.array([(-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375)])
-# The neighbourhood, nearest first.
-_AROUND = np.array([(0, 0), (0, -1), (-1, 0), (1, 0), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1)])
+_NEXT = (1, 3, 0, 2)
 
 _CAPSULE = int(ShapeKind.CAPSULE)
 _MESH = int(ShapeKind.MESH)
-_NONE, _UNKNOWN = -1, -2
+_NONE = -1
 
-_NEARER = 0.95  # what is nearer than this share of a shape's depth hides it all over a pixel
 _BEHIND = 1.1  # what is farther than this many times another's depth is behind it all over a pixel
 
 
@@ -121,11 +118,15 @@ def _shapes_from_camera(table: ShapeTable, camera_from_part: Array) -> Array:
     return poses
 
 
+@njit(cache=True)
 def _pieces_of(table: ShapeTable) -> Pixels:
     """(M,) the piece that a surface is of: itself, but of a capsule or mesh its first surface."""
-    shape = table.surface_shape
-    is_one = np.isin(table.kind, (_CAPSULE, _MESH))[shape]
-    return np.where(is_one, table.first_surface[shape], np.arange(len(shape))).astype(np.int32)
+    pieces = np.empty(len(table.surface_shape), np.int32)
+    for surface in range(len(pieces)):
+        shape = table.surface_shape[surface]
+        is_one = table.kind[shape] in (_CAPSULE, _MESH)
+        pieces[surface] = table.first_surface[shape] if is_one else surface
+    return pieces
 
 
 @njit(cache=True)
@@ -175,45 +176,41 @@ def _find_sources(
 ) -> Pixels:
     """(E, 4) the numbers of the pixels that look like what each ray meets.
 
-    Nearly everywhere there are but two pieces. Then no array is passed to a kernel: to pass three costs as
-    much as to try a ray.
+    All is in one function, as to pass arrays to a kernel costs as much as to try a ray.
     """
     kind, size, first_surface, shape_of, piece_of, pose = shapes
-    z = depth.reshape(-1)
-    sources = np.empty((len(pixel), len(_RAYS)), np.int32)
-    around, near, nearest = np.empty((9, 2), np.int64), np.empty(9, np.int64), np.empty(9)
+    z, pieces = depth.reshape(-1), piece.reshape(-1)
+    sources, scale = np.repeat(pixel, len(_RAYS)).reshape(-1, len(_RAYS)), 1.0 / lens.focal
     for i in range(len(pixel)):
         own = pixel[i]
         v, u = own // lens.width, own % lens.width
-        up, down = max(v - 1, 0), min(v + 1, lens.height - 1)
-        left, right = max(u - 1, 0), min(u + 1, lens.width - 1)
-        one = piece[v, u]
-        beside = (piece[v, left], piece[up, u], piece[v, right], piece[down, u])
-        askew = (piece[up, left], piece[up, right], piece[down, left], piece[down, right])
-        second, at = _second(one, beside, askew)
-        known, other = 0, own
-        if at < 0:
-            known = _look_around(v, u, piece, around)
-            count, last = _shapes_of(known, around, z, shape_of, near, nearest)
-        else:
-            # Rows and columns in the order of `beside` and `askew`.
-            row, column = (v, up, v, down, up, up, down, down), (left, u, right, u, left, right, left, right)
-            other = row[at] * lens.width + column[at]
-            near[0], near[1], nearest[0], nearest[1], count, last = _in_order(
-                one, second, shape_of[one], shape_of[second], z[own], z[other]
-            )
-        for k in range(len(_RAYS)):
-            best, seen = math.inf, one
-            if _is_open(k, one, beside, askew):
-                x = (u + _RAYS[k, 0] - lens.centre_u) / lens.focal
-                y = (v + _RAYS[k, 1] - lens.centre_v) / lens.focal
-                seen = last
+        beside = (
+            own if v == 0 else own - lens.width,
+            own if u == lens.width - 1 else own + 1,
+            own if u == 0 else own - 1,
+            own if v == lens.height - 1 else own + lens.width,
+        )
+        one, depth_one = pieces[own], z[own]
+        for side in range(4):
+            at = beside[side]
+            other = pieces[at]
+            if other == one:
+                continue
+            first, last, count = _in_order(one, other, shape_of[one] == shape_of[other], depth_one, z[at])
+            for turn in range(2):
+                # If the ray nearest to the pixel beside meets what that shows, the next nearest may, too, but
+                # not if it has another such pixel nearer to it.
+                k = side if turn == 0 else _NEXT[side]
+                if turn == 1 and pieces[beside[k]] != one:
+                    break
+                x = (u + _RAYS[k, 0] - lens.centre_u) * scale
+                y = (v + _RAYS[k, 1] - lens.centre_v) * scale
+                best, seen = math.inf, last if count == 1 else one
                 for j in range(count):
-                    if best < _NEARER * nearest[j]:
-                        break
-                    s = near[j]
+                    s = shape_of[first if j == 0 else last]
                     if kind[s] == _MESH:
-                        best, seen = 0.0, _UNKNOWN
+                        best, seen = 0.0, one
+                        break
                     o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
                     d = (
                         pose[s, 0, 0] * x + pose[s, 0, 1] * y + pose[s, 0, 2],
@@ -223,126 +220,21 @@ def _find_sources(
                     t, surface = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
                     if t < best:
                         best, seen = t, piece_of[first_surface[s] + surface]
-            if known:
-                sources[i, k] = _place_of(seen, known, around, shape_of)
-            else:
-                is_own = _is_own(seen, one, second, shape_of[seen], shape_of[one])
-                sources[i, k] = own if is_own else other
+                if seen == one or (seen != other and shape_of[seen] == shape_of[one]):
+                    break
+                sources[i, k] = at
     return sources
 
 
 @njit(cache=True)
-def _is_own(seen: int, one: int, second: int, shape: int, own_shape: int) -> bool:
-    """Whether what a ray meets looks like the first of two pieces: another face of a box does, too."""
-    if seen == one:
-        return True
-    return seen == _UNKNOWN or (seen != second and shape == own_shape)
+def _in_order(one: int, other: int, is_same: bool, z: float, other_z: float) -> tuple[int, int, int]:
+    """Two pieces by their depths, the nearer first, and how many of their shapes are to be tried.
 
-
-@njit(cache=True)
-def _is_open(ray: int, one: int, beside: Four, askew: Four) -> bool:
-    """Whether those next to the quarter of a ray show something else than the pixel does."""
-    side, end = 3 * (ray // 2) + 1 - ray // 2, 2 * (ray % 2)
-    return bool((beside[side] != one) | (beside[end] != one) | (askew[ray] != one))
-
-
-@njit(cache=True)
-def _in_order(
-    one: int, second: int, shape: int, other_shape: int, z: float, other_z: float
-) -> tuple[int, int, float, float, int, int]:
-    """The shapes of two pieces, the nearer first, their depths, how many are to be tried, and what is last.
-
-    The last is the piece that is seen where they are missed; it may be nothing, or unknown.
+    Only the nearer is if the other is far behind, and of two pieces of one shape the second, where a miss
+    tells nothing.
     """
+    if is_same and one != _NONE and other != _NONE:
+        return other, one, 1
     if other_z < z:
-        one, second, shape, other_shape, z, other_z = second, one, other_shape, shape, other_z, z
-    if second == _NONE or other_z > _BEHIND * z:
-        return shape, shape, z, z, 1, second
-    return shape, other_shape, z, other_z, 1 if shape == other_shape else 2, _UNKNOWN
-
-
-@njit(cache=True)
-def _second(one: int, beside: Four, askew: Four) -> tuple[int, int]:
-    """The only other piece in a neighbourhood, and where it is first; -1 for where if there are more."""
-    found, at = _UNKNOWN, -1
-    for j in range(8):
-        here = beside[j] if j < 4 else askew[j - 4]
-        if here != one and here != found:
-            if at >= 0:
-                return found, -1
-            found, at = here, j
-    return found, at
-
-
-@njit(cache=True)
-def _look_around(v: int, u: int, piece: Pixels, around: NDArray[np.int64]) -> int:
-    """List the pieces of a neighbourhood, each with the nearest pixel that shows it; returns how many."""
-    height, width = piece.shape
-    known = 0
-    for i in range(len(_AROUND)):
-        x, y = u + _AROUND[i, 0], v + _AROUND[i, 1]
-        if x < 0 or y < 0 or x >= width or y >= height:
-            continue
-        one = piece[y, x]
-        is_new = True
-        for j in range(known):
-            is_new &= around[j, 0] != one
-        if is_new:
-            around[known, 0], around[known, 1] = one, y * width + x
-            known += 1
-    return known
-
-
-@njit(cache=True)
-def _shapes_of(
-    known: int,
-    around: NDArray[np.int64],
-    depth: NDArray[np.float32],
-    shape_of: Pixels,
-    shapes: NDArray[np.int64],
-    nearest: Array,
-) -> tuple[int, int]:
-    """List the shapes of pieces by depth, nearest first.
-
-    Returns:
-        How many are to be tried, and the piece that is seen where all of them are missed, which may be
-        nothing or unknown. The farthest shape need not be tried if it is far behind and shows one piece.
-    """
-    count, last = 0, _UNKNOWN
-    for j in range(known):
-        if around[j, 0] == _NONE:
-            last = _NONE
-            continue
-        shape, z = shape_of[around[j, 0]], float(depth[around[j, 1]])
-        at = 0
-        while at < count and shapes[at] != shape:
-            at += 1
-        if at == count:
-            count += 1
-            shapes[at], nearest[at] = shape, z
-        nearest[at] = min(nearest[at], z)
-        while at > 0 and nearest[at - 1] > nearest[at]:
-            shapes[at], shapes[at - 1] = shapes[at - 1], shapes[at]
-            nearest[at], nearest[at - 1] = nearest[at - 1], nearest[at]
-            at -= 1
-    if last == _NONE or count < 2 or nearest[count - 1] < _BEHIND * nearest[count - 2]:
-        return count, last
-    pieces = 0
-    for j in range(known):
-        if shape_of[around[j, 0]] == shapes[count - 1]:
-            last, pieces = around[j, 0], pieces + 1
-    return (count - 1, last) if pieces == 1 else (count, _UNKNOWN)
-
-
-@njit(cache=True)
-def _place_of(seen: int, known: int, around: NDArray[np.int64], shape_of: Pixels) -> int:
-    """The pixel that shows a piece, or else its shape, or else the middle one."""
-    at = -1
-    for j in range(known):
-        if around[j, 0] == seen:
-            at = j
-            break
-        if at < 0 and seen >= 0 and around[j, 0] >= 0 and shape_of[around[j, 0]] == shape_of[seen]:
-            at = j
-    place: int = around[max(at, 0), 1]
-    return place
+        one, other, z, other_z = other, one, other_z, z
+    return one, other, 1 if other == _NONE or other_z > _BEHIND * z else 2

@@ -113,16 +113,16 @@ def _hit_box(size: Point, o: Point, d: Point) -> Hit:
     """By slabs: the ray enters the box where it enters the last of them, if it has left none before."""
     enter, leave, surface = 0.0, math.inf, -1
     for i in range(3):
-        half = size[i] / 2.0
+        half = 0.5 * size[i]
         if d[i] == 0.0:
             if abs(o[i]) > half:
                 return MISS
             continue
-        sign = -1.0 if d[i] > 0.0 else 1.0
-        near, far = (sign * half - o[i]) / d[i], (-sign * half - o[i]) / d[i]
-        leave = min(leave, far)
-        if near > enter:
-            enter, surface = near, i if sign > 0.0 else i + 3
+        step = 1.0 / d[i]
+        middle, wide = -o[i] * step, half * abs(step)
+        leave = min(leave, middle + wide)
+        if middle - wide > enter:
+            enter, surface = middle - wide, i + 3 if d[i] > 0.0 else i
     if surface < 0 or enter > leave:
         return MISS
     return enter, surface

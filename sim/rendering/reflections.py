@@ -16,20 +16,24 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
-from peopleboy.sim.geometry.vectors import compose
-from peopleboy.sim.rendering.canvas import Lens, pixels
-from peopleboy.sim.rendering.raycast import quick_bounds
+from peopleboy.sim.geometry.vectors import compose, map_point
+from peopleboy.sim.rendering.canvas import Canvas, Lens, Rectangle, make_canvas, pixels, shade
+from peopleboy.sim.rendering.raycast import draw_shape, quick_bounds
 from peopleboy.sim.rendering.sight import Seen
-from peopleboy.sim.rendering.view import NOBODY, View
-from peopleboy.sim.shapes.bounds import EMPTY, Bounds, unite
+from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Pixels = NDArray[np.int32]
+Plane = tuple[float, float, float, float]
 
-_FLAT = (int(ShapeKind.BOX), int(ShapeKind.PLANE))
+_SPHERE = int(ShapeKind.SPHERE)
+_CAPSULE = int(ShapeKind.CAPSULE)
+_CYLINDER = int(ShapeKind.CYLINDER)
+_BOX = int(ShapeKind.BOX)
+_FLAT = (_BOX, int(ShapeKind.PLANE))
 _FEWEST = 30  # pixels of a surface in which anything would be seen
 EVERY = 2  # pixels of the image for one of a reflection, in row and column
 _MOST = 6  # planes that mirror at a time, those of most pixels
@@ -119,120 +123,178 @@ def _around(a: tuple[int, ...], b: tuple[int, ...]) -> tuple[int, int, int, int]
 
 def _reflect(seen: Seen, camera: Pinhole, mirror: _Mirror, is_mirrored: Mask) -> Reflection | None:
     """Draw what is seen in a mirror; None if that is nothing."""
-    from peopleboy.sim.rendering.render import cast_window  # here, as kinds are told without PyBullet
-
-    scene = seen.scene
+    scene, table, eye = seen.scene, seen.scene.table, seen.world_from_camera
     householder = np.eye(4)
     householder[:3, :3] -= 2.0 * np.outer(mirror.normal, mirror.normal)
     householder[:3, 3] = 2.0 * mirror.offset * mirror.normal
-    pose = householder @ seen.world_from_camera
-    hidden = scene.hidden | ~_is_before(scene.table, scene.world_from_part, mirror.normal, mirror.offset)
-    wanted = is_mirrored & ~hidden
-    if not wanted.any():
-        return None
-    lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    camera_from_part = invert_pose(pose) @ scene.world_from_part
-    box = pixels(lens, _bounds(scene.table, camera_from_part, wanted))
-    left, top = max(box[0], mirror.window[0]), max(box[1], mirror.window[1])
-    right, bottom = min(box[2], mirror.window[2]), min(box[3], mirror.window[3])
-    if left > right or top > bottom:
-        return None
-    lens = Lens(
-        lens.focal / EVERY, (lens.centre_u - left) / EVERY, (lens.centre_v - top) / EVERY,
-        (right - left) // EVERY + 2, (bottom - top) // EVERY + 2,
-    )  # fmt: skip
-    nobody = np.full(len(wanted), NOBODY, np.int64)
-    beyond = cast_window(scene.table, lens, pose, scene.world_from_part, nobody, hidden)
-    is_surface = np.zeros(len(scene.table.surface_part), np.bool_)
-    is_surface[mirror.surfaces] = True
-    up = mirror.normal @ seen.world_from_camera[:3, :3]
-    away = mirror.offset - float(mirror.normal @ seen.world_from_camera[:3, 3])
-    cosine = np.empty(beyond.part.shape, np.float32)
+    pose = householder @ eye
+    up, away = mirror.normal @ eye[:3, :3], mirror.offset - float(mirror.normal @ eye[:3, 3])
     plane = (float(up[0]), float(up[1]), float(up[2]), away)
-    is_any = _keep(beyond.part, beyond.depth, wanted, plane, lens, cosine)
-    return Reflection(left, top, beyond, pose, cosine, is_surface) if is_any else None
+    left, top, right, bottom = mirror.window
+    lens = _every(camera, left, top, right, bottom)
+    canvas = make_canvas(lens, len(table.surface_part))
+    camera_from_part = invert_pose(pose) @ scene.world_from_part
+    box = _draw_beyond(table, camera_from_part, scene.hidden, is_mirrored, plane, lens, canvas)
+    if box[0] > box[2] or box[1] > box[3]:
+        return None
+    # A pixel more all round, for what is mirrored ends between pixels.
+    first_u, first_v = max(box[0] - 1, 0), max(box[1] - 1, 0)
+    columns, rows = slice(first_u, box[2] + 2), slice(first_v, box[3] + 2)
+    canvas = canvas._replace(
+        nearness=np.ascontiguousarray(canvas.nearness[rows, columns]),
+        surface=np.ascontiguousarray(canvas.surface[rows, columns]),
+        cover=np.ascontiguousarray(canvas.cover[rows, columns]),
+    )
+    height, width = canvas.surface.shape
+    lens = Lens(lens.focal, lens.centre_u - first_u, lens.centre_v - first_v, width, height)
+    cosine, part = np.empty((height, width), np.float32), np.empty((height, width), np.int32)
+    if not _keep(canvas, table.surface_part, is_mirrored, plane, lens, cosine):
+        return None
+    depth, normal = np.empty((height, width), np.float32), np.empty((height, width, 3), np.float32)
+    shade(table.surface_part, lens, canvas, np.ascontiguousarray(pose[:3, :3]), part, depth, normal)
+    beyond = View(part, depth, normal, canvas.cover, canvas.surface)
+    is_surface = np.zeros(len(table.surface_part), np.bool_)
+    is_surface[mirror.surfaces] = True
+    return Reflection(left + EVERY * first_u, top + EVERY * first_v, beyond, pose, cosine, is_surface)
+
+
+def _every(camera: Pinhole, left: int, top: int, right: int, bottom: int) -> Lens:
+    """A lens for some of the pixels of a window."""
+    u, v = camera.centre_px
+    width, height = (right - left) // EVERY + 2, (bottom - top) // EVERY + 2
+    return Lens(camera.focal_px / EVERY, (u - left) / EVERY, (v - top) / EVERY, width, height)
 
 
 @njit(cache=True, error_model="numpy")
-def _is_before(table: ShapeTable, world_from_part: Array, normal: Array, offset: float) -> Mask:
-    """(P,) whether the middle of any of a part's shapes lies on the side of a plane to which it faces."""
-    is_before = np.zeros(len(world_from_part), np.bool_)
-    pose = np.empty((3, 4))
-    for shape in range(len(table.kind)):
-        part = table.part[shape]
-        compose(world_from_part[part], table.part_from_shape[shape], pose)
-        height = pose[0, 3] * normal[0] + pose[1, 3] * normal[1] + pose[2, 3] * normal[2]
-        is_before[part] |= height > offset
-    return is_before
+def _draw_beyond(
+    table: ShapeTable,
+    camera_from_part: Array,
+    hidden: Mask,
+    is_mirrored: Mask,
+    plane: Plane,
+    lens: Lens,
+    canvas: Canvas,
+) -> Rectangle:
+    """Draw what is seen in a mirror, and what hides it there, and tell in which pixels that may be.
+
+    Of what is drawn, the middle lies on the side of the mirror to which it faces. Arguments as in `draw`, but
+    for `is_mirrored` (P,), what is wanted, and the mirror's plane as in `_keep`.
+    """
+    left, top, right, bottom = lens.width, lens.height, -1, -1
+    pose = canvas.pose
+    for is_wanted in (True, False):
+        for shape in range(len(table.kind)):
+            part = table.part[shape]
+            if hidden[part] or is_mirrored[part] != is_wanted:
+                continue
+            to_camera, middle = camera_from_part[part], table.part_from_shape[shape]
+            x, y, z = map_point(to_camera, middle[0, 3], middle[1, 3], middle[2, 3])
+            if plane[0] * x + plane[1] * y + plane[2] * z >= plane[3]:
+                continue
+            if _is_outside(x, y, z, _radius(table.kind[shape], table.size[shape]), lens):
+                continue
+            compose(to_camera, middle, pose)
+            area = pixels(lens, quick_bounds(table, shape, pose))
+            if area[0] > area[2] or area[1] > area[3]:
+                continue
+            if is_wanted:
+                left, top = min(left, area[0]), min(top, area[1])
+                right, bottom = max(right, area[2]), max(bottom, area[3])
+            else:
+                area = max(area[0], left), max(area[1], top), min(area[2], right), min(area[3], bottom)
+                if area[0] > area[2] or area[1] > area[3]:
+                    continue
+            draw_shape(table, shape, np.uint64(0), lens, area, canvas)
+        if right < 0:
+            break
+    return left, top, right, bottom
+
+
+@njit(cache=True, error_model="numpy")
+def _radius(kind: int, size: Array) -> float:
+    """Radius [m] of a ball about a shape's middle that it does not leave; infinite if that is not known."""
+    if kind == _BOX:
+        return 0.5 * math.sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2])
+    if kind in (_CAPSULE, _CYLINDER):
+        return 0.5 * float(size[0]) + float(size[1])
+    return float(size[0]) if kind == _SPHERE else math.inf
+
+
+@njit(cache=True, error_model="numpy")
+def _is_outside(x: float, y: float, z: float, radius: float, lens: Lens) -> bool:
+    """Whether a ball lies wholly beyond one of the four sides of what a lens sees, or behind it."""
+    left, right = lens.centre_u + 1.0, lens.width - lens.centre_u
+    top, bottom = lens.centre_v + 1.0, lens.height - lens.centre_v
+    f = lens.focal
+    return (
+        z < -radius
+        or f * x + left * z < -radius * math.sqrt(f * f + left * left)
+        or right * z - f * x < -radius * math.sqrt(f * f + right * right)
+        or f * y + top * z < -radius * math.sqrt(f * f + top * top)
+        or bottom * z - f * y < -radius * math.sqrt(f * f + bottom * bottom)
+    )
 
 
 @njit(cache=True)
 def _count(
     part: Pixels, surface: Pixels, is_shiny: Mask, surfaces: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Count the pixels of each shiny surface; its window (left, top, right, bottom), and one pixel of it."""
+    """Count the pixels of each shiny surface; its window (left, top, right, bottom), and one pixel of it.
+
+    Every other row and column is looked at, and stands for the next.
+    """
     height, width = part.shape
     count, example = np.zeros(surfaces, np.int64), np.zeros(surfaces, np.int64)
     window = np.empty((surfaces, 4), np.int64)
-    for v in range(height):
-        for u in range(width):
+    for v in range(0, height, 2):
+        for u in range(0, width, 2):
             p = part[v, u]
             if p < 0 or not is_shiny[p]:
                 continue
             s = surface[v, u]
             if count[s] == 0:
                 window[s, 0] = window[s, 2] = u
-                window[s, 1] = v
-            count[s] += 1
-            window[s, 0], window[s, 2] = min(window[s, 0], u), max(window[s, 2], u)
-            window[s, 3] = v
+                window[s, 1] = max(v - 1, 0)
+            count[s] += 4
+            window[s, 0] = min(window[s, 0], max(u - 1, 0))
+            window[s, 2] = max(window[s, 2], min(u + 1, width - 1))
+            window[s, 3] = min(v + 1, height - 1)
             example[s] = v * width + u
     return count, window, example
 
 
-@njit(cache=True)
-def _bounds(table: ShapeTable, camera_from_part: Array, parts: Mask) -> Bounds:
-    """Bounds of some parts (P,) as a mirrored camera sees them."""
-    pose = np.empty((3, 4))
-    bounds = EMPTY
-    for shape in range(len(table.kind)):
-        if parts[table.part[shape]]:
-            compose(camera_from_part[table.part[shape]], table.part_from_shape[shape], pose)
-            bounds = unite(bounds, quick_bounds(table, shape, pose))
-    return bounds
-
-
 @njit(cache=True, error_model="numpy")
 def _keep(
-    beyond: Pixels,
-    far: NDArray[np.float32],
+    canvas: Canvas,
+    surface_part: NDArray[np.int32],
     wanted: Mask,
-    plane: tuple[float, float, float, float],
+    plane: Plane,
     lens: Lens,
     cosine: NDArray[np.float32],
 ) -> bool:
     """Keep of what is beyond a mirror what is wanted, and tell whether that is anything.
 
     Args:
-        beyond: (h, w) parts; gets -1 for what is not wanted, or lies before the mirror.
-        far: (h, w) [m] their depths.
+        canvas: what is drawn; loses what is not wanted, or lies before the mirror.
+        surface_part: (M,) part of each surface.
         wanted: (P,) parts.
         plane: x, y, z of the mirror's normal, and its distance along that, in the camera's frame.
         lens: where the pixels look.
         cosine: (h, w) gets the cosine between normal and ray.
     """
     is_any = False
-    for v in range(beyond.shape[0]):
+    for v in range(lens.height):
         y = (v - lens.centre_v) / lens.focal
-        for u in range(beyond.shape[1]):
+        for u in range(lens.width):
             x = (u - lens.centre_u) / lens.focal
             slope = plane[0] * x + plane[1] * y + plane[2]
             cosine[v, u] = max(-slope, 0.0) / math.sqrt(x * x + y * y + 1.0)
-            p = beyond[v, u]
-            if p < 0:
+            nearness = canvas.nearness[v, u]
+            if nearness == 0.0:
                 continue
-            if not wanted[p] or slope >= 0.0 or far[v, u] < plane[3] / slope - _SUNK_M:
-                beyond[v, u] = -1
-            else:
+            is_beyond = slope < 0.0 and (plane[3] / slope - _SUNK_M) * nearness <= 1.0
+            if is_beyond and wanted[surface_part[canvas.surface[v, u]]]:
                 is_any = True
+            else:
+                canvas.nearness[v, u] = 0.0
     return is_any

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,10 +33,10 @@ class Finish:
     cover: Grid
     rgb: Grid = field(default_factory=lambda: np.zeros(3))
 
-    def texels(self) -> NDArray[np.float32]:
-        """(R C, 3) kelvin, light and cover, rounded so that every machine has the same."""
+    def texels(self) -> NDArray[np.int16]:
+        """(R C, 3) kelvin, light and cover in steps of 1 / 256, so that every machine has the same."""
         layers = np.stack([self.kelvin, self.light, self.cover], axis=-1).reshape(-1, 3)
-        return (np.rint(layers * _STEPS) / _STEPS).astype(np.float32)
+        return np.clip(np.rint(layers / TEXEL_STEP), -32768, 32767).astype(np.int16)
 
 
-_STEPS = 256.0
+TEXEL_STEP: Final = 1.0 / 256.0

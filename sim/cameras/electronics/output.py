@@ -6,6 +6,7 @@ from typing import Final
 
 import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import optics_blur
@@ -19,10 +20,21 @@ def sharpen(temperature_c: NDArray[np.float32], amount: float, radius_px: float)
 
     At edges this leaves halos, dark on the cold side and bright on the warm one.
     """
-    if amount <= 0.0:
+    if amount <= 0.0 or radius_px <= 0.0:
         return temperature_c
-    detail = np.float32(amount) * (temperature_c - optics_blur(temperature_c, radius_px))
-    return np.asarray(temperature_c + np.clip(detail, -MOST_K, MOST_K), np.float32)
+    crisp = optics_blur(temperature_c, radius_px)
+    _add_detail(temperature_c.reshape(-1), np.float32(amount), np.float32(MOST_K), crisp.reshape(-1))
+    return crisp
+
+
+@njit(cache=True, fastmath=True)
+def _add_detail(
+    values: NDArray[np.float32], amount: np.float32, most: np.float32, blurred: NDArray[np.float32]
+) -> None:
+    """Replace blurred values (N,) by sharpened ones."""
+    for i in range(len(values)):
+        detail = amount * (values[i] - blurred[i])
+        blurred[i] = values[i] + min(max(detail, -most), most)
 
 
 def compress(grey: NDArray[np.uint8], quality: int | None) -> NDArray[np.uint8]:

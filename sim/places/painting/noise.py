@@ -23,14 +23,18 @@ class Clouds:
     def at(self, across: Array, up: Array, metres: float) -> Array:
         """(H, W) noise at points (1, W) and (H, 1) [m], linear between samples, its blotches so wide [m]."""
         scale = _SIDE / (_COARSEST * metres)
-        u, v = across * scale, up * scale
-        left, low = np.floor(u).astype(int), np.floor(v).astype(int)
-        a, b = u - left, v - low
-        s, left, low = self.square, left % _SIDE, low % _SIDE
-        right, high = (left + 1) % _SIDE, (low + 1) % _SIDE
-        lower = s[low, left] * (1.0 - a) + s[low, right] * a
-        upper = s[high, left] * (1.0 - a) + s[high, right] * a
-        return np.asarray(lower * (1.0 - b) + upper * b)
+        left, right, a = _between(across[0] * scale)
+        low, high, b = _between(up[:, 0] * scale)
+        rows = self.square[low] + b[:, None] * (self.square[high] - self.square[low])
+        before = rows[:, left]
+        return np.asarray(before + a * (rows[:, right] - before))
+
+
+def _between(at: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
+    """The samples (N,) before and after each place, and how far it is from the first to the second."""
+    whole = np.floor(at)
+    before = whole.astype(np.int64) % _SIDE
+    return before, (before + 1) % _SIDE, at - whole
 
 
 def draw_clouds(rng: np.random.Generator) -> Clouds:

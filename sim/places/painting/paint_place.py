@@ -35,6 +35,7 @@ _PAINTERS: Mapping[Covering, Callable[[Fresco], None]] = {
     Covering.SKYLINE: paint_skyline,
     Covering.LEAVES: paint_leaves,
 }
+_VARIATION = 0.4  # deviation of the smooth variation of a material, of amplitude 1
 _OFFSET_K = 0.9  # deviation of whole surfaces: another wall behind, another load, another make
 _SHELL = (Covering.PLASTER, Covering.FLOORING, Covering.CEILING, Covering.STREET, Covering.FACADE)
 _FLAT = (*_SHELL, Covering.SKY, Covering.SKYLINE)
@@ -86,6 +87,8 @@ def _paint(
         warm_by(fresco, material.temperature_c, extents)
         if place.sun is not None and material.covering is not Covering.CEILING:
             shine_on(fresco, place.sun, *_sun_ways(place, things))
+    if material.variation_k > 0.0:
+        fresco.kelvin += _VARIATION * material.variation_k * fresco.cloudy(material.variation_m)
     return fresco.painting()
 
 

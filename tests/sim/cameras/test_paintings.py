@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.paintings import make_paint_table, painted
+from peopleboy.sim.cameras.paintings import make_paint_table, paint_row, painted
 from peopleboy.sim.shapes.paintings import Painting, Unrolling
 
 ROWS, COLUMNS, TEXEL_M = 5, 7, 0.1
@@ -31,8 +31,25 @@ def test_between_texels_a_painting_is_linear_whatever_lies_across_it(
     expected = (3.0 * across + 2.0 * up, 1.0 - 0.5 * across)
     upright = painted(paint, texels, 1, across - 0.3 - other, other, up + 0.2)
     level = painted(paint, texels, 2, across - 0.3, up + 0.2, other)
-    assert upright == pytest.approx(expected, abs=1e-4)
-    assert level == pytest.approx(expected, abs=1e-4)
+    assert upright == pytest.approx(expected, abs=0.002)
+    assert level == pytest.approx(expected, abs=0.002)
+
+
+@pytest.mark.parametrize("unrolling", Unrolling)
+def test_a_row_of_pixels_shows_what_a_painting_has_at_their_points(unrolling: Unrolling) -> None:
+    rng = np.random.default_rng(3)
+    paint, texels = make_paint_table([None, slope(unrolling), slope(unrolling)])
+    part = rng.integers(-1, 3, (4, 9), dtype=np.int32)
+    depth = rng.uniform(0.2, 1.0, part.shape).astype(np.float32)
+    matrices = rng.uniform(-0.2, 0.2, (3, 3, 4))
+    for v, layer in ((1, 0), (3, 1)):
+        line = np.full(9, np.nan, np.float32)
+        paint_row(line, v, part, depth, matrices, paint, texels, layer)
+        for u in np.flatnonzero(part[v] >= 1):
+            point = matrices[part[v, u]] @ (u * depth[v, u], v * depth[v, u], depth[v, u], 1.0)
+            expected = painted(paint, texels, int(part[v, u]), *point)[layer]
+            assert line[u] == pytest.approx(expected, abs=1e-4)
+        assert np.isnan(line[part[v] < 1]).all()
 
 
 def test_beyond_its_edge_a_painting_goes_on_as_it_ends() -> None:
@@ -44,4 +61,4 @@ def test_beyond_its_edge_a_painting_goes_on_as_it_ends() -> None:
 def test_a_part_without_a_painting_takes_no_texels() -> None:
     paint, texels = make_paint_table([None, None])
     assert (paint[:, 0] < 0.0).all()
-    assert len(texels) == 0
+    assert texels.size == 0
