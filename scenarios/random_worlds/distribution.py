@@ -52,7 +52,7 @@ RANGES: Final[Mapping[str, Range]] = {
     "pause": Range(low=0.3, high=4.0, unit="s", what="pause at a point"),
     "camera_height": Range(low=0.4, high=1.8, unit="m", what="height of the cameras above the floor"),
     "pitch": Range(low=-15.0, high=15.0, unit="deg", what="tilt of the cameras; positive looks down"),
-    "vertical_fov": Range(low=25.0, high=70.0, unit="deg", what="height of the thermal camera's view"),
+    "vertical_fov": Range(low=20.0, high=60.0, unit="deg", what="height of the thermal camera's view"),
     "blur": Range(low=0.4, high=1.4, unit="px", what="blur of the thermal camera's optics"),
     "netd": Range(low=0.02, high=0.15, unit="K", what="noise that is new in every image"),
     "fixed_pattern": Range(low=0.01, high=0.12, unit="K", what="noise that is the same in every image"),
@@ -81,7 +81,7 @@ RANGES: Final[Mapping[str, Range]] = {
 """All that is drawn evenly."""
 
 SHARES: Final[Mapping[str, Mapping[str, float]]] = {
-    "place": {"room": 0.45, "street": 0.25, "corridor": 0.1, "l_corridor": 0.1, "t_corridor": 0.1},
+    "place": {"room": 0.36, "street": 0.4, "corridor": 0.08, "l_corridor": 0.08, "t_corridor": 0.08},
     "houses": {"both": 0.5, "north": 0.2, "south": 0.2, "none": 0.1},
     "door": {"open": 0.5, "closed": 0.5},
     "robot": {"stands": 0.5, "drives": 0.5},

@@ -7,12 +7,17 @@ from typing import Final
 
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 
-# As sold for cars and drones: a microbolometer behind a shutter, with the gain that its maker sets.
+# As sold for cars and drones: a microbolometer behind a shutter and a fast lens, whose electronics even out
+# noise over time, and with a gain that a low plateau and its largest slope keep from making noise of walls.
 _UNCOOLED: Final = ThermalConfig(
+    blur_px=1.0,
     gain="plateau",
-    netd_k=0.06,
-    fixed_pattern_k=0.03,
-    column_noise_k=0.02,
+    plateau_percent=0.1,
+    linear_share=0.7,
+    least_span_k=12.0,
+    netd_k=0.03,
+    fixed_pattern_k=0.015,
+    column_noise_k=0.01,
     vignetting_k=0.3,
     offset_drift_k_per_min=0.2,
     shutter_every_s=30.0,

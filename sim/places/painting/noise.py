@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 _SIDE = 512
-_SLOPE = 1.35  # amplitude falls with frequency to this power; 1 would be grainy, 2 would be a few blobs
+_SLOPE = 2.0  # amplitude falls with frequency to this power: conduction evens out what is small; 1 is grainy
 _COARSEST = 4  # blotches a side: none larger, or a wall could be all one of them
 
 
