@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Final
 
 import numpy as np
 
 from peopleboy.tracker.frame import Calibration, PinholeCalibration
-from peopleboy.tracker.thermal.config import LimitsConfig
+from peopleboy.tracker.thermal.config import LimitsConfig, TrackerConfig
 from peopleboy.tracker.thermal.particles import CROWN, FOOT
 
 USUAL_HEIGHT_M: Final = 1.2  # above the floor, for which the limits of the variants are given
@@ -51,8 +50,16 @@ def mount_of(calibration: Calibration | None, rows: int) -> Mount:
     return Mount(horizon, float(calibration.intrinsics[1, 1]), calibration.position_m[2])
 
 
-@lru_cache(maxsize=64)
-def seen_from(limits: LimitsConfig, mount: Mount, rows: int) -> LimitsConfig:
+def seen_from(config: TrackerConfig, mount: Mount, rows: int) -> TrackerConfig:
+    """Carry the limits of both filters over to a camera that sits elsewhere."""
+    detector, person = (
+        replace(samples, limits=limits_seen_from(samples.limits, mount, rows))
+        for samples in (config.detector, config.person)
+    )
+    return replace(config, detector=detector, person=person)
+
+
+def limits_seen_from(limits: LimitsConfig, mount: Mount, rows: int) -> LimitsConfig:
     """Carry limits over to a camera that sits elsewhere, by similar triangles.
 
     Whoever stands has the feet as far below the horizon as the camera is high, at any distance. A camera

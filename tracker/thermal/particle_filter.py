@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from peopleboy.tracker.thermal.config import (
     TrackerConfig,
 )
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
-from peopleboy.tracker.thermal.mount import Mount, mount_of, seen_from
+from peopleboy.tracker.thermal.mount import Mount, mount_of
 from peopleboy.tracker.thermal.particles import (
     CROWN,
     FOOT,
@@ -92,12 +92,15 @@ class FrameView:
         return None if source is None else visible(source.describe(state), state, hiding)
 
 
-def view_frame(frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig) -> FrameView:
-    """Prepare a frame for all filters."""
+def view_frame(
+    frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig, mount: Mount | None = None
+) -> FrameView:
+    """Prepare a frame for all filters; how the camera sits is found out where it is not said."""
     motion = config.motion
     moved = frame.odometry if motion.uses_odometry and frame.odometry is not None else STANDING
     thermal = frame.grey(THERMAL)
-    mount = mount_of(frame.calibrations.get(THERMAL), len(thermal))
+    if mount is None:
+        mount = mount_of(frame.calibrations.get(THERMAL), len(thermal))
     image = model.prepare(thermal)
     colour = None
     if config.colour is not None and COLOUR in frame.images:
@@ -149,8 +152,7 @@ def weigh(
     differences = view.model.differences(view.image, state, view.covered)
     fit = fitness(differences, view.model.weights, config.likelihood)
     chance = probability(fit, config.likelihood)
-    rows = view.image.shape[0]
-    inside = is_within(state, rows, seen_from(filter_config.limits, view.mount, rows))
+    inside = is_within(state, view.image.shape[0], filter_config.limits)
     if likeness is not None and filter_config.sharpness == 0:
         factor = likeness if factor is None else likeness * factor
     counted = _floored(fit, likeness, filter_config)
@@ -296,5 +298,4 @@ def draw_fresh(
     count: int, view: FrameView, filter_config: FilterConfig, config: TrackerConfig, rng: np.random.Generator
 ) -> Floats:
     """Draw samples (count, 9) from the prior for this image."""
-    limits = seen_from(filter_config.limits, view.mount, view.image.shape[0])
-    return draw_prior(count, view.image.shape, config.motion, replace(filter_config, limits=limits), rng)
+    return draw_prior(count, view.image.shape, config.motion, filter_config, rng)

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame
 from peopleboy.tracker.thermal.appearance.appearance_model import likelihood
 from peopleboy.tracker.thermal.config import FilterConfig, TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.ellipse import ellipse_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
+from peopleboy.tracker.thermal.mount import Mount, mount_of, seen_from
 from peopleboy.tracker.thermal.occlusion.depth_order import (
     ORDERS,
     ExpectedPerson,
@@ -58,7 +59,9 @@ class PeopleTracker:
     """
 
     def __init__(self, config: TrackerConfig, rng: np.random.Generator, order: Order | None = None) -> None:
-        self._config = config
+        self._given = config
+        self._config = config  # the same with limits for the camera
+        self._mount: tuple[Calibration | None, int, Mount] | None = None
         self._rng = rng
         by = config.depth.order
         self._order = None if by is None else order or ORDERS[by]
@@ -105,7 +108,8 @@ class PeopleTracker:
             BadInput: time that does not go forward.
         """
         model = self._model_for(frame.grey(THERMAL))
-        view = view_frame(frame, self._time_step(frame.time_s), model, self._config)
+        mount = self._mount_for(frame.calibrations.get(THERMAL), model.shape[0])
+        view = view_frame(frame, self._time_step(frame.time_s), model, self._config, mount)
         self._last_s = frame.time_s
         self._memories = self._remembered(view)
         self._part(_follow(self._persons, view, self._config, self._order, self._policy, self._rng))
@@ -130,6 +134,14 @@ class PeopleTracker:
         if self._model is None or self._model.shape != shape:
             self._model = ContourModel.build(shape, self._config.contour)
         return self._model
+
+    def _mount_for(self, calibration: Calibration | None, rows: int) -> Mount:
+        """Tell how the camera sits, and carry the limits over to it, once for each camera."""
+        if self._mount is None or self._mount[0] is not calibration or self._mount[1] != rows:
+            mount = mount_of(calibration, rows)
+            self._mount = calibration, rows, mount
+            self._config = seen_from(self._given, mount, rows)
+        return self._mount[2]
 
     def _remembered(self, view: FrameView) -> tuple[TrackedPerson, ...]:
         """Carry on the memory of people for whom no samples look any more, but of those not for too long."""

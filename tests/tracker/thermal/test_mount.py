@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.thermal.config import LimitsConfig
-from peopleboy.tracker.thermal.mount import Mount, mount_of, seen_from
+from peopleboy.tracker.thermal.mount import Mount, limits_seen_from, mount_of, seen_from
 from peopleboy.tracker.thermal.particle_filter import is_within
 from peopleboy.tracker.thermal.particles import CROWN, FOOT, H, W, X, Y
-from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.thermal.variants import VARIANTS
 
 FLOOR = LimitsConfig(y=(-9.0, 9.0), h=(0.01, 3.0), y_below_horizon=(-0.1, 0.9))
 
@@ -27,8 +27,8 @@ def camera(height_m=1.2, pitch_deg=0.0, fov_deg=44.0):
 def test_the_robots_own_camera_is_the_usual_one_to_the_last_bit():
     mount = mount_of(calibration_of(Pinhole()), 240)
     assert mount == mount_of(None, 240)
-    for limits in (LimitsConfig(), PEOPLEBOY.detector.limits, PEOPLEBOY.person.limits):
-        assert seen_from(limits, mount, 240) == limits
+    for config in VARIANTS.values():
+        assert seen_from(config, mount, 240) == config
 
 
 @given(st.floats(0.3, 2.5), st.floats(-30, 30), st.floats(20, 80))
@@ -54,5 +54,5 @@ def test_people_who_stand_on_the_floor_are_within_the_limits_of_any_camera(
     state = np.zeros((3, 9), dtype=np.float32)
     state[:, H], state[:, W], state[:, X] = h, 0.4 * h, 160.0
     state[:, Y] = foot - FOOT * h + np.array([0.0, -3.0, 3.0]) * h  # one on the floor, one above, one below
-    limits = seen_from(FLOOR, mount_of(calibration, geometry.height), geometry.height)
+    limits = limits_seen_from(FLOOR, mount_of(calibration, geometry.height), geometry.height)
     assert list(is_within(state, geometry.height, limits)) == [True, False, False]
