@@ -109,6 +109,7 @@ def test_histograms_count_every_value() -> None:
     assert rows["sex"].count(" ") == 2 * len(set(sexes)) - 1
 
 
+@pytest.mark.heavy
 def test_a_set_of_random_worlds_says_what_was_drawn_and_is_the_same_in_another_process(
     tmp_path: Path,
 ) -> None:
