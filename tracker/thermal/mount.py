@@ -15,6 +15,7 @@ from peopleboy.tracker.thermal.particles import CROWN, FOOT
 USUAL_HEIGHT_M: Final = 1.2  # above the floor, for which the limits of the variants are given
 VIEW_ANGLE_DEG: Final = 44.0  # vertical, of a camera of which nothing is known
 _STATURES_M: Final = (2.0, 1.5)  # of the tallest and of the smallest people who are looked for
+_FAR: Final = 100.0  # [image heights] beyond which it does not matter where the horizon is
 _MIDDLE: Final = 0.5  # [image heights] row of the horizon for a level camera
 
 
@@ -45,8 +46,11 @@ def mount_of(calibration: Calibration | None, rows: int) -> Mount:
         return Mount((rows - 1) / 2, focal, USUAL_HEIGHT_M)
     column = calibration.intrinsics[0, 2]
     top, bottom = calibration.rays(np.array([[column, 0.0], [column, rows - 1.0]]))[:, 2].tolist()
+    # A camera that looks straight down or up has its horizon nowhere, which is as good as far away.
+    far = _FAR * rows
+    away = (rows - 1) * top / (top - bottom) if top != bottom else math.copysign(far, top)
     # Rounded, as a level camera's horizon is to be the middle of its image to the last bit.
-    horizon = round((rows - 1) * top / (top - bottom), 6)
+    horizon = round(max(-far, min(away, far)), 6)
     return Mount(horizon, float(calibration.intrinsics[1, 1]), calibration.position_m[2])
 
 

@@ -7,11 +7,13 @@ from hypothesis import strategies as st
 
 from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.config import LimitsConfig
 from peopleboy.tracker.thermal.mount import Mount, limits_seen_from, mount_of, seen_from
 from peopleboy.tracker.thermal.particle_filter import is_within
 from peopleboy.tracker.thermal.particles import CROWN, FOOT, H, W, X, Y
 from peopleboy.tracker.thermal.variants import VARIANTS
+from peopleboy.tracker.trackers import make_tracker
 
 FLOOR = LimitsConfig(y=(-9.0, 9.0), h=(0.01, 3.0), y_below_horizon=(-0.1, 0.9))
 
@@ -56,3 +58,16 @@ def test_people_who_stand_on_the_floor_are_within_the_limits_of_any_camera(
     state[:, Y] = foot - FOOT * h + np.array([0.0, -3.0, 3.0]) * h  # one on the floor, one above, one below
     limits = limits_seen_from(FLOOR, mount_of(calibration, geometry.height), geometry.height)
     assert list(is_within(state, geometry.height, limits)) == [True, False, False]
+
+
+@pytest.mark.parametrize("pitch_deg", [-90.0, 90.0])
+@pytest.mark.parametrize("height_m", [0.05, 5.0])
+def test_a_camera_that_looks_straight_up_or_down_has_its_horizon_far_away(pitch_deg, height_m):
+    mount = mount_of(calibration_of(camera(height_m, pitch_deg)), 240)
+    assert abs(mount.horizon_px) == 24000.0
+    assert math.copysign(1.0, mount.horizon_px) == -math.copysign(1.0, pitch_deg)  # below it when looking up
+    tracker = make_tracker("peopleboy", np.random.default_rng(0))
+    calibrations = {"thermal": calibration_of(camera(height_m, pitch_deg))}
+    for tick in range(3):
+        images = {"thermal": np.full((240, 320), 40, np.uint8)}
+        assert tracker.update(Frame(images=images, calibrations=calibrations, time_s=tick / 15)) == ()
