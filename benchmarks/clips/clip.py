@@ -82,7 +82,7 @@ def _open(folder: Path, frames: int | None) -> Clip:
 
 
 def _load(path: Path, frames: int) -> GivenTruth:
-    """Read truth; what is no person is neither to be found nor wrong to find, such as a cyclist."""
+    """Read truth; what is no person, such as a bicycle, is neither to be found nor wrong to find."""
     if path.name == TRUTH:
         return GivenTruth(read_truth(path, keeps_things=True), is_single=False, path=path)
     return load_truth(path, frames)

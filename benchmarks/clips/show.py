@@ -42,7 +42,7 @@ class ClipRow:
         return everybody | {
             "CR": scores.thesis.cr,
             "one id": scores.mot.identity.idr,
-            "frames/s": 1.0 / max(mean(one.frame_s for one in self.watched), 1e-9),
+            "frames per s": 1.0 / max(mean(one.frame_s for one in self.watched), 1e-9),
         }
 
 
@@ -54,7 +54,7 @@ COLUMNS: Final[Mapping[str, str]] = {
     "CR": "{:.1f}",
     "one id": "{:.1f}",
     "false tracks per 1000": "{:.1f}",
-    "frames/s": "{:.0f}",
+    "frames per s": "{:.0f}",
 }
 """How each figure is written, in the table's order."""
 

@@ -16,11 +16,11 @@ from benchmarks.footage import main
 from tests.helpers.calls.refused import assert_names, refused
 
 FRAMES = 12
-WALKER, CYCLIST = (50.0, 23.0, 31.82, 74.0), (110.0, 30.0, 30.1, 70.0)
+WALKER, BICYCLE = (50.0, 23.0, 31.82, 74.0), (110.0, 30.0, 30.1, 70.0)
 
 
 def write_clip(folder: Path, *, single: bool = False) -> Path:
-    """A person who walks, and somebody on a bicycle; of a single one, only the walker is annotated."""
+    """A person who walks, and a bicycle; of a single one, only the walker is annotated."""
     pictures = folder / ("img" if single else "thermal")
     pictures.mkdir(parents=True)
     lines = []
@@ -30,7 +30,7 @@ def write_clip(folder: Path, *, single: bool = False) -> Path:
         cv2.ellipse(image, (x, 55), (11, 20), 0, 0, 360, 180, cv2.FILLED)
         cv2.rectangle(image, (x - 8, 60), (x + 8, 96), 180, cv2.FILLED)
         cv2.imwrite(str(pictures / f"{frame:06d}.jpg"), image)
-        boxes = [",".join(map(str, (one[0] + frame, *one[1:]))) for one in (WALKER, CYCLIST)]
+        boxes = [",".join(map(str, (one[0] + frame, *one[1:]))) for one in (WALKER, BICYCLE)]
         lines += (
             [f"{boxes[0]}\n"]
             if single
@@ -60,16 +60,16 @@ def test_a_torso_becomes_as_wide_as_a_whole_person_about_the_same_middle() -> No
     )
 
 
-def test_a_cyclist_is_neither_hit_nor_miss(tmp_path: Path) -> None:
+def test_a_bicycle_is_neither_hit_nor_miss(tmp_path: Path) -> None:
     write_clip(tmp_path / "street")
     (clip,) = open_clips(tmp_path)
-    for people in ((WALKER,), (WALKER, CYCLIST)):
+    for people in ((WALKER,), (WALKER, BICYCLE)):
         figures = ClipRow(clip, "x", [Watched(_scored(clip, said(*people)), 0.1)]).figures()
         assert (figures["HOTA"], figures["CP"], figures["CR"]) == pytest.approx(
             (100.0, 100.0, 100.0), abs=0.1
         )
         assert figures["false tracks per 1000"] == 0.0
-        assert figures["frames/s"] == pytest.approx(10.0)
+        assert figures["frames per s"] == pytest.approx(10.0)
 
 
 def test_a_track_on_nobody_is_false_and_counted_per_thousand_frames(tmp_path: Path) -> None:
@@ -84,7 +84,7 @@ def test_a_track_on_nobody_is_false_and_counted_per_thousand_frames(tmp_path: Pa
 def test_of_a_clip_with_one_person_annotated_nothing_is_said_of_other_boxes(tmp_path: Path) -> None:
     write_clip(tmp_path / "airfield", single=True)
     (clip,) = open_clips(tmp_path)
-    figures = ClipRow(clip, "x", [Watched(_scored(clip, said(WALKER, CYCLIST)), 0.1)]).figures()
+    figures = ClipRow(clip, "x", [Watched(_scored(clip, said(WALKER, BICYCLE)), 0.1)]).figures()
     assert figures["one id"] == 100.0
     assert np.isnan([figures[name] for name in ("HOTA", "IDF1", "MOTA", "CP", "false tracks per 1000")]).all()
 

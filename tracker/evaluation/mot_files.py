@@ -30,8 +30,8 @@ def read_truth(path: Path, *, keeps_things: bool = False) -> TrueBoxes:
 
     Args:
         path: the file.
-        keeps_things: whether things stay, and do not count either; for truth that takes cyclists, whom a
-            tracker may well take for people, for such.
+        keeps_things: whether things stay, without counting, so that a box on one, such as on a bicycle with
+            somebody on it, is not wrong either.
 
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
