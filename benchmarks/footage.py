@@ -19,6 +19,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.clips.bench import ClipsOptions, bench_clips
+from benchmarks.clips.watch import PEERS
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.footage.options import TrackOptions
@@ -57,6 +58,14 @@ GOAL: Final = 85.0  # [%] of its frames in which one id shall keep a person
     default=(FOOTAGE_TRACKER,),
     show_default=True,
     help="With --clips; may be given several times.",
+)
+@click.option(
+    "--peer",
+    "peers",
+    multiple=True,
+    type=click.Choice(tuple(PEERS)),
+    default=tuple(PEERS),
+    help="With --clips; may be given several times.  [default: all]",
 )
 @click.option("--only", multiple=True, help="Of --clips, those of these names.")
 @click.option("--frames", type=click.IntRange(min=1), help="Of each of --clips, the first so many.")

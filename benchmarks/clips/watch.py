@@ -22,7 +22,8 @@ from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.trackers import FOOTAGE_TRACKER
 
-PEER: Final = "HOG + ByteTrack"
+PEERS: Final = {"HOG x 2 + ByteTrack": 2.0, "HOG x 3 + ByteTrack": 3.0}
+"""How many times each enlarges the pictures: HOG sees people from 96 px of the enlarged ones on."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,8 +45,8 @@ class WatchTask:
 
     Attributes:
         clip: which.
-        tracker: name of one of ours, or `PEER`.
-        seed: of ours; the peer draws nothing.
+        tracker: name of one of ours, or of `PEERS`.
+        seed: of ours; peers draw nothing.
         rate_hz: pictures a second; None for what a folder is taken to have.
     """
 
@@ -71,7 +72,7 @@ class WatchTask:
             BadInput: the tracker is unknown or wants other cameras, or a picture cannot be used.
         """
         watcher = make_watcher(self.tracker, self.seed)
-        name = FOOTAGE_TRACKER if self.tracker == PEER else self.tracker
+        name = FOOTAGE_TRACKER if self.tracker in PEERS else self.tracker
         views = open_views(
             TrackOptions(footage=self.clip.folder, out=Path(), tracker=name, rate_hz=self.rate_hz)
         )
@@ -87,13 +88,13 @@ class WatchTask:
 
 
 def make_watcher(name: str, seed: int) -> Contestant:
-    """Make one of ours, or the peer.
+    """Make one of ours, or a peer.
 
     Raises:
         BadInput: it is unknown, wants other cameras, or lacks a package.
     """
-    if name == PEER:
-        return _peer()
+    if name in PEERS:
+        return _peer(name)
     ours = Ours(name, seed)
     for camera in ours.cameras:
         if camera not in ThermalViews.cameras:
@@ -101,12 +102,12 @@ def make_watcher(name: str, seed: int) -> Contestant:
     return ours
 
 
-def _peer() -> Contestant:
+def _peer(name: str) -> Contestant:
     try:
         from benchmarks.clips.peer import make_peer
     except ImportError as error:
-        raise BadInput(f"{PEER}: the package trackers is missing; `make peers` installs it") from error
-    return make_peer()
+        raise BadInput(f"{name}: the package trackers is missing; `make peers` installs it") from error
+    return make_peer(PEERS[name])
 
 
 def _scored(clip: Clip, rows: list[tuple[int, int, Floats]]) -> Scores:

@@ -102,14 +102,15 @@ def test_clips_are_printed_as_one_table_and_kept(tmp_path: Path, monkeypatch: py
     write_clip(tmp_path / "clips" / "camel_21")
     write_clip(tmp_path / "clips" / "airfield", single=True)
     write_clip(tmp_path / "clips" / "left_out")
-    told = call("--clips", "clips", "--only", "camel_21", "--only", "airfield", "--frames", 6, "--seeds", 2)
+    which = ("--only", "camel_21", "--only", "airfield", "--peer", "HOG x 2 + ByteTrack")
+    told = call("--clips", "clips", *which, "--frames", 6, "--seeds", 2)
     assert told.exit_code == 0, told.output
     rows = [line for line in told.stdout.splitlines() if line.startswith("| ")]
     assert [row.split(" | ")[:3] for row in rows[2:]] == [
         ["| camel_21", "6", "footage"],
-        ["| camel_21", "6", "HOG + ByteTrack"],
+        ["| camel_21", "6", "HOG x 2 + ByteTrack"],
         ["| airfield", "6", "footage"],
-        ["| airfield", "6", "HOG + ByteTrack"],
+        ["| airfield", "6", "HOG x 2 + ByteTrack"],
     ]
     assert "values chosen by: camel_21\n" in told.stdout
     assert "only reported: airfield\n" in told.stdout
