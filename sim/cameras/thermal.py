@@ -100,7 +100,7 @@ def _radiate_row(
     paint: NDArray[np.float64],
     surroundings: float,
 ) -> None:
-    """Fill a row (W,) where parts have paintings but no patterns: several pixels at a time, without a table."""
+    """Fill a row (W,) where parts have paintings but no patterns, several pixels at a time."""
     width, end = len(part), 0
     scale, most = np.float32(1.0 / _HALF_K), np.float32(1.0)
     while end < width:

@@ -233,6 +233,7 @@ def _draw_beyond(
     """
     left, top, right, bottom = lens.width, lens.height, -1, -1
     pose, window, farthest = canvas.pose, lens, 0.0
+    bounds = (0, 0, lens.width - 1, lens.height - 1)
     for is_wanted in (True, False):
         for shape in range(len(table.kind)):
             part = table.part[shape]
@@ -247,18 +248,18 @@ def _draw_beyond(
                 continue
             compose(to_camera, middle, pose)
             kind, size = table.kind[shape], table.size[shape]
-            is_round = kind == _CAPSULE or kind == _SPHERE
+            is_round = kind in (_CAPSULE, _SPHERE)
             area = pixels(lens, _around_balls(size, pose) if is_round else quick_bounds(table, shape, pose))
+            area = (
+                max(area[0], bounds[0]), max(area[1], bounds[1]),
+                min(area[2], bounds[2]), min(area[3], bounds[3]),
+            )  # fmt: skip
             if area[0] > area[2] or area[1] > area[3]:
                 continue
             if is_wanted:
                 left, top = min(left, area[0]), min(top, area[1])
                 right, bottom = max(right, area[2]), max(bottom, area[3])
                 farthest = max(farthest, z + radius)
-            else:
-                area = max(area[0], left), max(area[1], top), min(area[2], right), min(area[3], bottom)
-                if area[0] > area[2] or area[1] > area[3]:
-                    continue
             if is_round:
                 _draw_round(kind, size, table.first_surface[shape], lens, area, canvas)
             else:
@@ -266,6 +267,7 @@ def _draw_beyond(
         if right < 0:
             break
         # What hides something must be nearer than that, and within its bounds.
+        bounds = (left, top, right, bottom)
         window = Lens(
             lens.focal, lens.centre_u - left, lens.centre_v - top, right - left + 1, bottom - top + 1
         )
@@ -273,9 +275,7 @@ def _draw_beyond(
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_round(
-    kind: int, size: Array, surface: int, lens: Lens, area: Rectangle, canvas: Canvas
-) -> None:
+def _draw_round(kind: int, size: Array, surface: int, lens: Lens, area: Rectangle, canvas: Canvas) -> None:
     """Draw a sphere or a capsule by trying the ray of each pixel, which is quick where these are few."""
     pose = canvas.pose
     centre, axis = (pose[0, 3], pose[1, 3], pose[2, 3]), (pose[0, 2], pose[1, 2], pose[2, 2])
