@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
 from peopleboy.sim.geometry.vectors import compose
 from peopleboy.sim.rendering.canvas import Lens
-from peopleboy.sim.rendering.rays import Hit, hit_shape
+from peopleboy.sim.rendering.rays import hit_shape
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
@@ -173,7 +173,7 @@ def _differ(one: NDArray[np.float32], other: NDArray[np.float32], contrast: np.f
 
 
 @njit(cache=True, error_model="numpy")
-def _find_sources(
+def _find_sources(  # noqa: C901 (in one function)
     pixel: Pixels,
     values: NDArray[np.float32],
     contrast: np.float32,
@@ -222,27 +222,23 @@ def _find_sources(
                     if kind[s] == _MESH:
                         best, seen = 0.0, one
                         break
-                    t, surface = _hit_piece(kind[s], p - first_surface[s], size[s], pose[s], x, y)
+                    if kind[s] == _BOX:
+                        t, surface = _hit_face(p - first_surface[s], size[s], pose[s], x, y), p
+                    else:
+                        o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
+                        d = (
+                            pose[s, 0, 0] * x + pose[s, 0, 1] * y + pose[s, 0, 2],
+                            pose[s, 1, 0] * x + pose[s, 1, 1] * y + pose[s, 1, 2],
+                            pose[s, 2, 0] * x + pose[s, 2, 1] * y + pose[s, 2, 2],
+                        )
+                        t, local = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
+                        surface = piece_of[first_surface[s] + local]
                     if t < best:
-                        best, seen = t, piece_of[first_surface[s] + surface]
+                        best, seen = t, surface
                 if seen == one or (seen != other and shape_of[seen] == shape_of[one]):
                     break
                 sources[i, k] = at
     return sources
-
-
-@njit(cache=True, error_model="numpy")
-def _hit_piece(kind: int, surface: int, size: Array, pose: Array, x: float, y: float) -> Hit:
-    """Where the camera's ray (x, y, 1) meets a shape, of a box one face alone, and which surface of it."""
-    if kind == _BOX:
-        return _hit_face(surface, size, pose, x, y), surface
-    o = (pose[0, 3], pose[1, 3], pose[2, 3])
-    d = (
-        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2],
-        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2],
-        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2],
-    )
-    return hit_shape(kind, (size[0], size[1], size[2]), o, d)
 
 
 @njit(cache=True, error_model="numpy")
