@@ -12,7 +12,7 @@ import numpy as np
 from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.glance import glance
-from peopleboy.tracker.fusion.matching import apart, pairs
+from peopleboy.tracker.fusion.matching import apart, is_beside, pairs
 from peopleboy.tracker.fusion.outline import outline, standing_box, with_width
 from peopleboy.tracker.fusion.peek import peek
 from peopleboy.tracker.fusion.person import Person, newborn
@@ -25,7 +25,7 @@ from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.track import Box, Track
+from peopleboy.tracker.track import Box, Status, Track
 
 _LONGEST_STEP_S: Final = 0.5
 _CROWDED_M: Final = (0.5, 0.7)  # in depth and to the side, within which two people's shoulders are mixed up
@@ -102,6 +102,8 @@ class AheadTracker:
         return person.with_depth(told, self._time_s, self._config)
 
     def _with_heat(self, person: Person, told: Told) -> Person:
+        if is_beside(person, told, self._config):
+            told = replace(told, status=Status.TOTALLY_OCCLUDED)
         return person.with_heat(told, self._time_s, self._config)
 
     def _joined(self, people: Sequence[Person], told: Sequence[Told], own: Own, take: Take) -> list[Person]:
@@ -162,12 +164,19 @@ class AheadTracker:
                 continue
             double = next((one for one in kept if self._is_same(person, one)), None)
             if double is not None:
-                both = replace(person, warm=double.warm, heat=double.heat)
-                if double.id < person.id:
-                    looks = person.looks if double.looks is None else double.looks
-                    both = replace(both, id=double.id, born_s=double.born_s, looks=looks)
-                kept = [both if one is person else one for one in kept if one is not double]
+                kept = [part for one in kept for part in self._settled(one, person, double)]
         return kept
+
+    def _settled(self, one: Person, deep: Person, double: Person) -> tuple[Person, ...]:
+        """Give a thermal track to whom depth sees there; whoever else had it, and is known by looks, is away."""
+        if one is double:
+            return () if double.looks is None else (replace(double, warm=None, heat=None),)
+        if one is not deep:
+            return (one,)
+        both = replace(deep, warm=double.warm, heat=double.heat)
+        if double.looks is None and double.id < deep.id:
+            return (replace(both, id=double.id, born_s=double.born_s),)
+        return (both,)
 
     def _is_same(self, deep: Person, other: Person) -> bool:
         warm = other.warm

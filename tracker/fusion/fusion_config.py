@@ -14,6 +14,8 @@ class FusionConfig:
         unlike_gate: the same with what other looks and another height count.
         own_gate: the same as `gate` for the track that was the person's before.
         loyalty: by how much a person's track of before counts as nearer.
+        beside_m: [m] across the line of sight, by which a thermal track may be off somebody whom depth sees
+            whole before neither its place nor its contour is taken.
         looks_weight: what entirely other looks count.
         height_sd_m: [m] by which a person's height may be measured wrongly.
         most_height: what another height counts at most.
@@ -48,7 +50,8 @@ class FusionConfig:
     gate: float = 12.0
     unlike_gate: float = 18.0
     own_gate: float = 25.0
-    loyalty: float = 6.0
+    loyalty: float = 12.0
+    beside_m: float = 0.3
     looks_weight: float = 20.0
     height_sd_m: float = 0.08
     most_height: float = 4.0

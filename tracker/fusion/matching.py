@@ -44,6 +44,15 @@ def cost(person: Person, told: Told, own: int | None, config: FusionConfig) -> f
     return np.inf if is_out else away + unlike
 
 
+def is_beside(person: Person, told: Told, config: FusionConfig) -> bool:
+    """Tell whether a thermal track is in another bearing than somebody whom depth sees whole."""
+    deep = person.deep
+    if told.box is None or deep is None or not deep.is_clear:
+        return False
+    across = np.linalg.eigh(told.error_m2)[1][:, 0]  # the line of sight, along which heat is unsure
+    return abs(float(across @ (told.place_m - deep.place_m))) > config.beside_m
+
+
 def _unlikeness(person: Person, told: Told, config: FusionConfig) -> float:
     """Rate how different looks and height are; 0 as far as they are not known."""
     found = 0.0
