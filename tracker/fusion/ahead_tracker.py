@@ -152,7 +152,10 @@ class AheadTracker:
         return any(abs(x - here[0]) < deep_m and abs(y - here[1]) < aside_m for x, y in others)
 
     def _single(self, people: Sequence[Person]) -> list[Person]:
-        """Make one of two at one place of whom one is seen by heat alone, and the other by depth alone."""
+        """Make one of two at one place of whom one is seen by heat alone, and the other by depth alone.
+
+        Two who are both known by their looks stay two: heat has taken one for the other.
+        """
         kept = list(people)
         for person in people:
             if (
@@ -168,7 +171,7 @@ class AheadTracker:
         return kept
 
     def _settled(self, one: Person, deep: Person, double: Person) -> tuple[Person, ...]:
-        """Give a thermal track to whom depth sees there; whoever else had it, and is known by looks, is away."""
+        """Give a thermal track to whom depth sees there; who else had it, and is known by looks, is away."""
         if one is double:
             return () if double.looks is None else (replace(double, warm=None, heat=None),)
         if one is not deep:
