@@ -13,7 +13,8 @@ class FusionConfig:
         gate: squared distance, in standard deviations, beyond which a track is not a person's.
         unlike_gate: the same with what other looks and another height count.
         own_gate: the same as `gate` for the track that was the person's before.
-        loyalty: by how much a person's track of before counts as nearer.
+        loyalty, loyalty_heat: by how much a person's track of before counts as nearer: one by depth, and a thermal
+            one, which takes no colours of somebody else along.
         beside_m: [m] across the line of sight, by which a thermal track may be off somebody whom depth sees
             whole before neither its place nor its contour is taken.
         looks_weight: what entirely other looks count.
@@ -50,7 +51,8 @@ class FusionConfig:
     gate: float = 12.0
     unlike_gate: float = 18.0
     own_gate: float = 25.0
-    loyalty: float = 12.0
+    loyalty: float = 6.0
+    loyalty_heat: float = 12.0
     beside_m: float = 0.3
     looks_weight: float = 20.0
     height_sd_m: float = 0.08

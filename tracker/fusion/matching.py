@@ -39,7 +39,8 @@ def cost(person: Person, told: Told, own: int | None, config: FusionConfig) -> f
     """
     away, unlike = apart(person, told, config.floor_m), _unlikeness(person, told, config)
     if told.id == own:
-        return np.inf if away > config.own_gate else away + unlike - config.loyalty
+        loyalty = config.loyalty if told.box is None else config.loyalty_heat
+        return np.inf if away > config.own_gate else away + unlike - loyalty
     is_out = away > config.gate or away + unlike > config.unlike_gate
     return np.inf if is_out else away + unlike
 
