@@ -13,8 +13,8 @@ class FusionConfig:
         gate: squared distance, in standard deviations, beyond which a track is not a person's.
         unlike_gate: the same with what other looks and another height count.
         own_gate: the same as `gate` for the track that was the person's before.
-        loyalty, loyalty_heat: by how much a person's track of before counts as nearer: one by depth, and a thermal
-            one, which takes no colours of somebody else along.
+        loyalty, loyalty_heat: by how much a person's track of before counts as nearer: one by depth, and a
+            thermal one.
         beside_m: [m] across the line of sight, by which a thermal track may be off somebody whom depth sees
             whole before neither its place nor its contour is taken.
         looks_weight: what entirely other looks count.
