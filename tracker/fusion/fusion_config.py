@@ -78,7 +78,7 @@ class FusionConfig:
     least_alike: float = 0.7
     tallest_off_m: float = 0.12
     least_own: float = 0.6
-    strange_frames: int = 5
+    strange_frames: int = 10
     relearn_frames: int = 15
     young_s: float = 3.0
     young_alike: float = 0.85
