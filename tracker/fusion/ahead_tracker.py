@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -29,6 +29,7 @@ from peopleboy.tracker.track import Box, Status, Track
 
 _LONGEST_STEP_S: Final = 0.5
 _CROWDED_M: Final = (0.5, 0.7)  # in depth and to the side, within which two people's shoulders are mixed up
+_NOBODYS: Final = -1  # the id of no track
 _UNSURE: Final = 0.1  # confidence in who is not told of
 
 Own = Callable[[Person], int | None]
@@ -110,6 +111,8 @@ class AheadTracker:
         """Tell people what a tracker knows of them; who is nobody's turns up again, or is new."""
         found = pairs(people, told, [own(one) for one in people], self._config)
         joined = [take(one, told[found[k]]) if k in found else one for k, one in enumerate(people)]
+        owners = {told[m].id: people[k].id for k, m in found.items()}
+        joined = [_without(one, own, owners) for one in joined]
         recognition, taken = Recognition(self._config, self._time_s), set(found.values())
         for k, one in enumerate(told):
             if k in taken or not one.is_seen:
@@ -228,3 +231,11 @@ def _heat(person: Person) -> int | None:
 
 def _depth(person: Person) -> int | None:
     return person.depth
+
+
+def _without(person: Person, own: Own, owners: Mapping[int, int]) -> Person:
+    """Take a track from who had it before, if it is somebody else's now: it must not go back and forth."""
+    mine = own(person)
+    if mine is None or owners.get(mine, person.id) == person.id:
+        return person
+    return replace(person, heat=_NOBODYS) if own is _heat else replace(person, depth=_NOBODYS)
