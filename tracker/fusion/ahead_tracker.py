@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -12,7 +12,7 @@ import numpy as np
 from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.glance import glance
-from peopleboy.tracker.fusion.matching import apart, pairs
+from peopleboy.tracker.fusion.matching import apart, is_beside, pairs
 from peopleboy.tracker.fusion.outline import outline, standing_box, with_width
 from peopleboy.tracker.fusion.peek import peek
 from peopleboy.tracker.fusion.person import Person, newborn
@@ -25,10 +25,11 @@ from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.track import Box, Track
+from peopleboy.tracker.track import Box, Status, Track
 
 _LONGEST_STEP_S: Final = 0.5
 _CROWDED_M: Final = (0.5, 0.7)  # in depth and to the side, within which two people's shoulders are mixed up
+_NOBODYS: Final = -1  # the id of no track
 _UNSURE: Final = 0.1  # confidence in who is not told of
 
 Own = Callable[[Person], int | None]
@@ -102,12 +103,16 @@ class AheadTracker:
         return person.with_depth(told, self._time_s, self._config)
 
     def _with_heat(self, person: Person, told: Told) -> Person:
+        if is_beside(person, told, self._config):
+            told = replace(told, status=Status.TOTALLY_OCCLUDED)
         return person.with_heat(told, self._time_s, self._config)
 
     def _joined(self, people: Sequence[Person], told: Sequence[Told], own: Own, take: Take) -> list[Person]:
         """Tell people what a tracker knows of them; who is nobody's turns up again, or is new."""
         found = pairs(people, told, [own(one) for one in people], self._config)
         joined = [take(one, told[found[k]]) if k in found else one for k, one in enumerate(people)]
+        owners = {told[m].id: people[k].id for k, m in found.items()}
+        joined = [_without(one, own, owners) for one in joined]
         recognition, taken = Recognition(self._config, self._time_s), set(found.values())
         for k, one in enumerate(told):
             if k in taken or not one.is_seen:
@@ -150,7 +155,10 @@ class AheadTracker:
         return any(abs(x - here[0]) < deep_m and abs(y - here[1]) < aside_m for x, y in others)
 
     def _single(self, people: Sequence[Person]) -> list[Person]:
-        """Make one of two at one place of whom one is seen by heat alone, and the other by depth alone."""
+        """Make one of two at one place of whom one is seen by heat alone, and the other by depth alone.
+
+        Two who are both known by their looks stay two: heat has taken one for the other.
+        """
         kept = list(people)
         for person in people:
             if (
@@ -162,12 +170,19 @@ class AheadTracker:
                 continue
             double = next((one for one in kept if self._is_same(person, one)), None)
             if double is not None:
-                both = replace(person, warm=double.warm, heat=double.heat)
-                if double.id < person.id:
-                    looks = person.looks if double.looks is None else double.looks
-                    both = replace(both, id=double.id, born_s=double.born_s, looks=looks)
-                kept = [both if one is person else one for one in kept if one is not double]
+                kept = [part for one in kept for part in self._settled(one, person, double)]
         return kept
+
+    def _settled(self, one: Person, deep: Person, double: Person) -> tuple[Person, ...]:
+        """Give a thermal track to whom depth sees there; who else had it, and is known by looks, is away."""
+        if one is double:
+            return () if double.looks is None else (replace(double, warm=None, heat=None),)
+        if one is not deep:
+            return (one,)
+        both = replace(deep, warm=double.warm, heat=double.heat)
+        if double.looks is None and double.id < deep.id:
+            return (replace(both, id=double.id, born_s=double.born_s),)
+        return (both,)
 
     def _is_same(self, deep: Person, other: Person) -> bool:
         warm = other.warm
@@ -216,3 +231,11 @@ def _heat(person: Person) -> int | None:
 
 def _depth(person: Person) -> int | None:
     return person.depth
+
+
+def _without(person: Person, own: Own, owners: Mapping[int, int]) -> Person:
+    """Take a track from who had it before, if it is somebody else's now: it must not go back and forth."""
+    mine = own(person)
+    if mine is None or owners.get(mine, person.id) == person.id:
+        return person
+    return replace(person, heat=_NOBODYS) if own is _heat else replace(person, depth=_NOBODYS)

@@ -13,7 +13,10 @@ class FusionConfig:
         gate: squared distance, in standard deviations, beyond which a track is not a person's.
         unlike_gate: the same with what other looks and another height count.
         own_gate: the same as `gate` for the track that was the person's before.
-        loyalty: by how much a person's track of before counts as nearer.
+        loyalty, loyalty_heat: by how much a person's track of before counts as nearer: one by depth, and a
+            thermal one.
+        beside_m: [m] across the line of sight, by which a thermal track may be off somebody whom depth sees
+            whole before neither its place nor its contour is taken.
         looks_weight: what entirely other looks count.
         height_sd_m: [m] by which a person's height may be measured wrongly.
         most_height: what another height counts at most.
@@ -49,6 +52,8 @@ class FusionConfig:
     unlike_gate: float = 18.0
     own_gate: float = 25.0
     loyalty: float = 6.0
+    loyalty_heat: float = 12.0
+    beside_m: float = 0.3
     looks_weight: float = 20.0
     height_sd_m: float = 0.08
     most_height: float = 4.0
@@ -73,7 +78,7 @@ class FusionConfig:
     least_alike: float = 0.7
     tallest_off_m: float = 0.12
     least_own: float = 0.6
-    strange_frames: int = 5
+    strange_frames: int = 10
     relearn_frames: int = 15
     young_s: float = 3.0
     young_alike: float = 0.85

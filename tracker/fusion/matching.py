@@ -39,9 +39,19 @@ def cost(person: Person, told: Told, own: int | None, config: FusionConfig) -> f
     """
     away, unlike = apart(person, told, config.floor_m), _unlikeness(person, told, config)
     if told.id == own:
-        return np.inf if away > config.own_gate else away + unlike - config.loyalty
+        loyalty = config.loyalty if told.box is None else config.loyalty_heat
+        return np.inf if away > config.own_gate else away + unlike - loyalty
     is_out = away > config.gate or away + unlike > config.unlike_gate
     return np.inf if is_out else away + unlike
+
+
+def is_beside(person: Person, told: Told, config: FusionConfig) -> bool:
+    """Tell whether a thermal track is in another bearing than somebody whom depth sees whole."""
+    deep = person.deep
+    if told.box is None or deep is None or not deep.is_clear:
+        return False
+    across = np.linalg.eigh(told.error_m2)[1][:, 0]  # the line of sight, along which heat is unsure
+    return abs(float(across @ (told.place_m - deep.place_m))) > config.beside_m
 
 
 def _unlikeness(person: Person, told: Told, config: FusionConfig) -> float:

@@ -226,6 +226,33 @@ def test_people_who_cross_keep_their_numbers_whatever_the_trackers_do() -> None:
             assert there == {4: 1, 6: 2}
 
 
+def test_two_who_are_known_stay_two_when_heat_takes_one_for_the_other() -> None:
+    """Heat has only the one behind, and takes the one in front for her while she is hidden."""
+    scene = Scene()
+    for k in range(70):
+        near, far = Block(0.9 - 0.03 * k, 4.0), Block(0.03 * k - 0.9, 5.0)
+        is_hidden = abs(near.x_m / 4.0 - far.x_m / 5.0) < 0.12
+        warm = [by_heat(2, near, off_m=0.6) if is_hidden else by_heat(2, far)]
+        deep = [by_depth(3, near, RED), by_depth(4, far, BLUE)]
+        seen = scene.see(far, near, warm=warm, deep=deep[: 1 if is_hidden else 2])
+        if k in (10, 69):
+            there = {round(one.place.position_m[0]): number for number, one in seen.items() if one.place}
+            assert there == {4: 1, 5: 2}
+
+
+def test_a_contour_that_drifts_away_takes_neither_box_nor_place_along() -> None:
+    scene, someone, ahead = Scene(), Block(0.0, 5.0), Block(0.45, 5.0)
+    for _ in range(10):
+        scene.see(someone, ahead, warm=[by_heat(7, someone)], deep=[by_depth(3, someone)])
+    before = scene.see(someone, ahead, warm=[by_heat(7, someone)], deep=[by_depth(3, someone)])[1]
+    for _ in range(10):
+        after = scene.see(someone, ahead, warm=[by_heat(7, ahead)], deep=[by_depth(3, someone)])
+    assert set(after) == {1}
+    assert after[1].place is not None
+    assert after[1].place.position_m == pytest.approx((5.1, 0.0), abs=0.05)
+    assert after[1].boxes[THERMAL] == pytest.approx(before.boxes[THERMAL], abs=2.5)
+
+
 def test_two_who_were_taken_for_each_other_are_known_by_their_looks() -> None:
     scene = Scene()
     left, right = Block(-1.0, 5.0), Block(1.0, 5.0)

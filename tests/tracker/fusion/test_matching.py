@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.fusion.matching import apart, cheapest, cost
+from peopleboy.tracker.fusion.matching import apart, cheapest, cost, is_beside
 from peopleboy.tracker.fusion.person import Person, newborn
 from peopleboy.tracker.fusion.told import Told
 from peopleboy.tracker.rgbd.people.looks import BINS
@@ -48,6 +48,15 @@ def test_looks_and_memory_decide_between_two_places_alike() -> None:
     same, other = (told(6.1, 0.0, looks=looks(colour), tall_m=1.7) for colour in (1, 2))
     assert cost(red, same, None, CONFIG) < cost(red, other, None, CONFIG)
     assert cost(red, same, 1, CONFIG) == cost(red, same, None, CONFIG) - CONFIG.loyalty
+
+
+def test_a_thermal_track_is_beside_who_is_seen_whole_in_another_bearing_and_not_in_another_range() -> None:
+    box = (0.0, 0.0, 20.0, 90.0)
+    someone, hidden = person(6.0, 0.0), person(6.0, 0.0, status=Status.PARTLY_OCCLUDED)
+    farther = told(7.5, 0.0, along_m=0.6, box=box)
+    beside = told(6.0, CONFIG.beside_m + 0.01, along_m=0.6, box=box)
+    assert [is_beside(someone, one, CONFIG) for one in (farther, beside)] == [False, True]
+    assert not is_beside(hidden, beside, CONFIG)
 
 
 costs = st.integers(1, 4).flatmap(
