@@ -38,8 +38,8 @@ class ContourConfig:
     inner_depth: float = 1.0  # distance of the inner points as a share of that of the outer ones
     far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 is none
     saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
-    # Clutters (`contour.clutter`) at which the response bends, if that is more: what differs no more than the
-    # image does everywhere says little.
+    # Clutters (`likelihood.clutter_of`) at which the response bends, if that is more: what differs no more
+    # than the image does everywhere says little.
     clutter_share: float = 0.0
     # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
     cold_response: float = 1.0
@@ -47,7 +47,8 @@ class ContourConfig:
     # Weight of an eighth section, the line under the feet; those of the other seven add up to 1.
     feet_weight: float = 0.0
     unseen_response: float = 0.0  # response of a point outside the image
-    # Weight of such a point above or below; for what it lacks to 1, the points inside the image speak.
+    # Weight of such a point above the image; for what it lacks to 1, the points inside speak. Not below, or
+    # people would grow until all but their shoulders is out of sight.
     unseen_share: float = 1.0
     cut_share: float = 1.0  # the same for a camera that cuts off heads, or of which that is not known
     hottest_grey: int = 256  # grey from which a surface is too hot for a person and counts as cold

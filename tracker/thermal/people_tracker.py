@@ -12,8 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, PinholeCalibration
 from peopleboy.tracker.thermal.appearance.appearance_model import likelihood
 from peopleboy.tracker.thermal.config import FilterConfig, TrackerConfig
-from peopleboy.tracker.thermal.contour.clutter import clutter_of, settled
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, clutter_of, settled_clutter
 from peopleboy.tracker.thermal.ellipse import ellipse_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.mount import Mount, mount_of, seen_from
@@ -138,12 +137,11 @@ class PeopleTracker:
 
     def _model_for(self, image: NDArray[np.uint8], dt_s: float) -> ContourModel:
         shape = (image.shape[0], image.shape[1])
-        config = self._config.contour
-        if self._model is None or self._model.shape != shape or self._model.config != config:
-            self._model = ContourModel.build(shape, config)
-        if config.clutter_share == 0:
+        if self._model is None or self._model.shape != shape:
+            self._model = ContourModel.build(shape, self._config.contour)
+        if self._config.contour.clutter_share == 0:
             return self._model
-        self._clutter = settled(self._clutter, clutter_of(image), dt_s)
+        self._clutter = settled_clutter(self._clutter, clutter_of(image), dt_s)
         return self._model.amid(self._clutter)
 
     def _mount_for(self, calibration: Calibration | None, rows: int) -> Mount:
@@ -151,7 +149,7 @@ class PeopleTracker:
         if self._mount is None or self._mount[0] is not calibration or self._mount[1] != rows:
             mount = mount_of(calibration, rows)
             self._mount = calibration, rows, mount
-            self._config = seen_from(self._given, mount, rows)
+            self._config, self._model = seen_from(self._given, mount, rows), None
             is_known = isinstance(calibration, PinholeCalibration)
             self._belief = None
             if not is_known and is_learnable(self._given):

@@ -5,9 +5,11 @@ All variants share the one kernel that reads the image.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Final
 
 import cv2
 import numpy as np
@@ -33,11 +35,17 @@ COVERED = 0
 """Grey of the pixels of people in front, in an image where no other pixel has it."""
 NO_GREY = -2
 BLACK_GREY = 4  # at most, with noise
-ASIDE, ABOVE_OR_BELOW = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
+ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
 UNKNOWN = 1e-4  # share of a section's weight that is none
 LEGS_WIDTH = 0.75  # half width of the legs, in body semi-widths
 _SUBPIXEL_BITS = 4
 _SCALE = 1 << _SUBPIXEL_BITS
+
+
+CLUTTER_SETTLES_S: Final = 0.5  # time constant with which a tracker takes in that the clutter changes
+_APART_PX: Final = 8  # of 240 rows: between the two pixels of a pair
+_SHARE: Final = 0.75  # of the pairs differ by less: people, lamps and windows are among the others
+_STRIDE: Final = 4
 
 
 def _superellipse(power: float, count: int = 32) -> NDArray[np.float64]:
@@ -95,7 +103,7 @@ class ContourModel:
     ) -> Floats:
         """Measure every section of every sample in a prepared image, (N, 8).
 
-        Where points above and below the image, or on people in front, have less than their weight, a section
+        Where points above the image, or on people in front, have less than their weight, a section
         counts for the rest what the others say on average.
 
         Args:
@@ -123,6 +131,27 @@ class ContourModel:
 @lru_cache(maxsize=64)
 def _bent(config: ContourConfig, bend_grey: int) -> Floats:
     return build_response(replace(config, saturation_grey=float(bend_grey)))
+
+
+def clutter_of(image: NDArray[np.uint8]) -> float:
+    """Measure by how much [grey] most pixels of an image (H, W) differ at most from those nearby.
+
+    Raised by noise, texture and sharp gain; people, lamps and windows take too little of an image to count.
+    """
+    apart = max(round(_APART_PX * image.shape[0] / REFERENCE_HEIGHT_PX), 1)
+    rows, columns = image[::_STRIDE], image[:, ::_STRIDE]
+    counts = np.zeros(GREYS)
+    for one, other in ((rows[:, apart:], rows[:, :-apart]), (columns[apart:], columns[:-apart])):
+        if one.size:
+            counts += np.bincount(cv2.absdiff(one, other).reshape(-1), minlength=GREYS)
+    return float(np.searchsorted(np.cumsum(counts), _SHARE * counts.sum()))
+
+
+def settled_clutter(before: float | None, now: float, dt_s: float) -> float:
+    """Let the clutter [grey] follow what is measured now, slowly, so that no person's evidence pumps."""
+    if before is None:
+        return now
+    return before + (1 - math.exp(-dt_s / CLUTTER_SETTLES_S)) * (now - before)
 
 
 def fitness(differences: Floats, weights: NDArray[np.float64], config: LikelihoodConfig) -> Floats:
@@ -212,7 +241,7 @@ def _measured(
         state: (N, 9) samples.
         probes: the points to look at.
         response: (8, 511) what a difference counts.
-        unseen: what a pair counts with a point outside the image, and its weight above or below.
+        unseen: what a pair counts with a point outside the image, and its weight above it.
         covered: the same with a point on a person in front; None in an image without such marks.
     """
     grey = NO_GREY if covered[0] is None else COVERED
@@ -323,7 +352,7 @@ def _locate(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, heig
         u = x + du[q] * d + wu[q] * w + hu[q] * h + u0[q]
         v = y + wv[q] * w + hv[q] * h + v0[q]
         is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
-        outside = ABOVE_OR_BELOW if (u >= 0) & (u < right) else ASIDE
+        outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
         at[q] = np.int32(v) * columns + np.int32(u) if is_inside else outside
 
 
@@ -344,14 +373,14 @@ def _differences(
     inner, outer = at[: len(section)], at[len(section) :]
     result = np.zeros((len(state), SECTIONS), dtype=np.float32)
     known = np.ones((len(state), SECTIONS), dtype=np.float32)
-    aside, unseen, covered = missing[0], missing[1] * missing[0], missing[3] * missing[2]
+    elsewhere, unseen, covered = missing[0], missing[1] * missing[0], missing[3] * missing[2]
     unseen_lacks, covered_lacks = np.float32(1) - missing[1], np.float32(1) - missing[3]
     for i in range(len(state)):
         _locate(at, state[i], mix, image.shape[1], image.shape[0])
         for p in range(len(section)):
             j = section[p]
-            if inner[p] == ASIDE or outer[p] == ASIDE:
-                result[i, j] += aside
+            if inner[p] == ELSEWHERE or outer[p] == ELSEWHERE:
+                result[i, j] += elsewhere
                 continue
             if inner[p] < 0 or outer[p] < 0:
                 result[i, j] += unseen

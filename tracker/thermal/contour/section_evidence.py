@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import ContourConfig
-from peopleboy.tracker.thermal.contour.clutter import clutter_of
 from peopleboy.tracker.thermal.contour.contour import FEET
 from peopleboy.tracker.thermal.contour.likelihood import (
     FEET_GAIN,
     ContourModel,
+    clutter_of,
     covered_by,
     section_differences,
     seen_shares,
