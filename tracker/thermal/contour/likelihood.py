@@ -143,7 +143,7 @@ def clutter_of(image: NDArray[np.uint8]) -> float:
     counts = np.zeros(GREYS)
     for one, other in ((rows[:, apart:], rows[:, :-apart]), (columns[apart:], columns[:-apart])):
         if one.size:
-            counts += np.bincount(cv2.absdiff(one, other).reshape(-1), minlength=GREYS)
+            counts += cv2.calcHist([cv2.absdiff(one, other)], [0], None, [GREYS], [0, GREYS])[:, 0]
     return float(np.searchsorted(np.cumsum(counts), _SHARE * counts.sum()))
 
 
@@ -202,7 +202,8 @@ def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np
 
 def _is_bright(thermal: NDArray[np.uint8], dark_share: float) -> bool:
     """Tell whether less than a share of an image (H, W) is black."""
-    return dark_share > 0 and bool(np.mean(thermal[::2, ::2] <= BLACK_GREY) < dark_share)
+    some = thermal[::2, ::2]
+    return dark_share > 0 and bool(np.count_nonzero(some <= BLACK_GREY) < dark_share * some.size)
 
 
 def section_differences(
