@@ -56,6 +56,9 @@ STEPS: dict[str, tuple[str, ...]] = {
     ),
     "people stand on the floor": ("detector.limits.y_below_horizon",),
     "a wider margin around what is too hot": ("contour.hot_margin_px",),
+    "too hot only where the room is black": ("contour.dark_share",),
+    "differences stand out from clutter": ("contour.clutter_share",),
+    "heads that the camera cuts off": ("contour.cut_share",),
     # First, as sharp weights with the thesis's penalties find the same person again and again.
     "filters keep farther off each other": ("interaction",),
     "sharper weights; the best near the best make the estimate": (

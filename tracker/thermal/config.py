@@ -38,20 +38,35 @@ class ContourConfig:
     inner_depth: float = 1.0  # distance of the inner points as a share of that of the outer ones
     far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 is none
     saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
+    # Clutters (`likelihood.clutter_of`) at which the response bends, if that is more: what differs no more
+    # than the image does everywhere says little.
+    clutter_share: float = 0.0
     # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
     cold_response: float = 1.0
     cold_feet_response: float = 1.0  # the same for feet colder than the floor
     # Weight of an eighth section, the line under the feet; those of the other seven add up to 1.
     feet_weight: float = 0.0
     unseen_response: float = 0.0  # response of a point outside the image
+    # Weight of such a point above the image; for what it lacks to 1, the points inside speak. Not below, or
+    # people would grow until all but their shoulders is out of sight.
+    unseen_share: float = 1.0
+    cut_share: float = 1.0  # the same for a camera that cuts off heads, or of which that is not known
     hottest_grey: int = 256  # grey from which a surface is too hot for a person and counts as cold
+    dark_share: float = 0.0  # share of the image that is black if the scale ends there; 0: it always does
     hot_margin_px: int = 0  # so do the pixels around it, whose grey is a blend
 
     def __post_init__(self) -> None:
         check_positive(self, "points")
         check_not_negative(
-            self, "saturation_grey", "reach_px", "inner_depth", "far_head_reach", "feet_weight"
+            self,
+            "saturation_grey",
+            "reach_px",
+            "inner_depth",
+            "far_head_reach",
+            "feet_weight",
+            "clutter_share",
         )
+        check_share(self, "unseen_share", "cut_share", "dark_share")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +80,8 @@ class LimitsConfig:
     horizon: float = 0.5  # [image heights] row of the horizon: the middle, for a level camera
     # [body semi-heights]: where people who stand on the floor are.
     y_below_horizon: tuple[float, float] = (-math.inf, math.inf)
+    # [image heights squared] of what these limits are wider by: c0 + c1 h + c2 h^2, with h in image heights.
+    floor_variance: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         for name in ("ratio_wh", "ratio_dw", "y", "h"):

@@ -15,6 +15,7 @@ from peopleboy.tracker.thermal.particles import CROWN, FOOT
 USUAL_HEIGHT_M: Final = 1.2  # above the floor, for which the limits of the variants are given
 VIEW_ANGLE_DEG: Final = 44.0  # vertical, of a camera of which nothing is known
 _STATURES_M: Final = (2.0, 1.5)  # of the tallest and of the smallest people who are looked for
+_NEAR_M: Final = 3.0
 _FAR: Final = 100.0  # [image heights] beyond which it does not matter where the horizon is
 _MIDDLE: Final = 0.5  # [image heights] row of the horizon for a level camera
 
@@ -32,6 +33,11 @@ class Mount:
     horizon_px: float
     focal_px: float
     height_m: float
+
+    @property
+    def cuts_heads(self) -> bool:
+        """Whether the image ends below the heads of tall people who are not very near."""
+        return self.horizon_px < self.focal_px * (_STATURES_M[0] - self.height_m) / _NEAR_M
 
 
 def mount_of(calibration: Calibration | None, rows: int) -> Mount:
@@ -60,7 +66,10 @@ def seen_from(config: TrackerConfig, mount: Mount, rows: int) -> TrackerConfig:
         replace(samples, limits=limits_seen_from(samples.limits, mount, rows))
         for samples in (config.detector, config.person)
     )
-    return replace(config, detector=detector, person=person)
+    contour = config.contour
+    if mount.cuts_heads:
+        contour = replace(contour, unseen_share=contour.cut_share)
+    return replace(config, contour=contour, detector=detector, person=person)
 
 
 def limits_seen_from(limits: LimitsConfig, mount: Mount, rows: int) -> LimitsConfig:

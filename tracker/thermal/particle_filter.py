@@ -32,6 +32,7 @@ from peopleboy.tracker.thermal.particles import (
     Y,
     core_rows,
     draw_prior,
+    floor_rows,
     mean_state,
     normalised,
     predict,
@@ -209,7 +210,7 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
     Source: thesis, section 4.2 and the table of section 4.4.
     """
     w, h = state[:, W], state[:, H]
-    below_horizon = state[:, Y] - limits.horizon * height_px
+    above, below = floor_rows(height_px, h, limits)
     return (
         (w > limits.ratio_wh[0] * h)
         & (w < limits.ratio_wh[1] * h)
@@ -217,8 +218,8 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
         & (state[:, D] < limits.ratio_dw[1] * w)
         & (state[:, Y] > limits.y[0] * height_px)
         & (state[:, Y] < limits.y[1] * height_px)
-        & (below_horizon > limits.y_below_horizon[0] * h)
-        & (below_horizon < limits.y_below_horizon[1] * h)
+        & (state[:, Y] > above)
+        & (state[:, Y] < below)
         & (h > limits.h[0] * height_px)
         & (h < limits.h[1] * height_px)
     )

@@ -98,11 +98,22 @@ def _heights(limits: tuple[float, float], chance: Floats, is_log_uniform: bool) 
 
 def _rows(height: int, h: Floats, limits: LimitsConfig, chance: Floats) -> Floats:
     """Draw y [px] between the limits, those of the floor included."""
-    horizon = limits.horizon * height
-    low = np.maximum(limits.y[0] * height, horizon + limits.y_below_horizon[0] * h)
-    high = np.minimum(limits.y[1] * height, horizon + limits.y_below_horizon[1] * h)
+    above, below = floor_rows(height, h, limits)
+    low, high = np.maximum(limits.y[0] * height, above), np.minimum(limits.y[1] * height, below)
     y: Floats = low + (high - low) * chance
     return y
+
+
+def floor_rows(height: int, h: Floats, limits: LimitsConfig) -> tuple[Floats, Floats]:
+    """Give the rows (N,) [px] between which the centres of people of semi-height h (N,) on the floor are."""
+    horizon = limits.horizon * height
+    low, high = horizon + limits.y_below_horizon[0] * h, horizon + limits.y_below_horizon[1] * h
+    if any(limits.floor_variance):
+        first, second, third = limits.floor_variance
+        size = h / np.float32(height)
+        more = height * np.sqrt(np.maximum(first + size * (second + size * third), 0))
+        low, high = low - more, high + more
+    return low.astype(np.float32), high.astype(np.float32)
 
 
 def _between(limits: tuple[float, float], chance: Floats) -> Floats:

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, PinholeCalibration
 from peopleboy.tracker.thermal.appearance.appearance_model import likelihood
 from peopleboy.tracker.thermal.config import FilterConfig, TrackerConfig
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, clutter_of, settled_clutter
 from peopleboy.tracker.thermal.ellipse import ellipse_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.mount import Mount, mount_of, seen_from
+from peopleboy.tracker.thermal.mount_belief import MountBelief, believed_from, is_learnable, tells_mount
 from peopleboy.tracker.thermal.occlusion.depth_order import (
     ORDERS,
     ExpectedPerson,
@@ -62,11 +63,13 @@ class PeopleTracker:
         self._given = config
         self._config = config  # the same with limits for the camera
         self._mount: tuple[Calibration | None, int, Mount] | None = None
+        self._belief: MountBelief | None = None  # of a camera that nobody calibrated
         self._rng = rng
         by = config.depth.order
         self._order = None if by is None else order or ORDERS[by]
         self._policy = make_policy(config)
         self._model: ContourModel | None = None
+        self._clutter: float | None = None
         self._last_s: float | None = None
         self._detector: Belief | None = None
         self._hits = 0
@@ -107,9 +110,11 @@ class PeopleTracker:
         Raises:
             BadInput: time that does not go forward.
         """
-        model = self._model_for(frame.grey(THERMAL))
-        mount = self._mount_for(frame.calibrations.get(THERMAL), model.shape[0])
-        view = view_frame(frame, self._time_step(frame.time_s), model, self._config, mount)
+        dt_s = self._time_step(frame.time_s)
+        image = frame.grey(THERMAL)
+        mount = self._mount_for(frame.calibrations.get(THERMAL), image.shape[0])
+        model = self._model_for(image, dt_s)
+        view = view_frame(frame, dt_s, model, self._config, mount)
         self._last_s = frame.time_s
         self._memories = self._remembered(view)
         self._part(_follow(self._persons, view, self._config, self._order, self._policy, self._rng))
@@ -117,6 +122,7 @@ class PeopleTracker:
             self._meet(self._introduced, view, frame.time_s)
             self._introduced = None
         newcomer = self._search(view, frame.time_s)
+        self._learn_mount(model.shape[0])
         known = (*self._persons, *self._memories)
         shown = [person for person in known if not person.is_hidden or self._is_shown(person, view)]
         self._told = (*shown, *newcomer)
@@ -129,19 +135,37 @@ class PeopleTracker:
             raise BadInput(f"time_s must go forward, got {time_s} after {self._last_s}")
         return time_s - self._last_s
 
-    def _model_for(self, image: NDArray[np.uint8]) -> ContourModel:
+    def _model_for(self, image: NDArray[np.uint8], dt_s: float) -> ContourModel:
         shape = (image.shape[0], image.shape[1])
         if self._model is None or self._model.shape != shape:
             self._model = ContourModel.build(shape, self._config.contour)
-        return self._model
+        if self._config.contour.clutter_share == 0:
+            return self._model
+        self._clutter = settled_clutter(self._clutter, clutter_of(image), dt_s)
+        return self._model.amid(self._clutter)
 
     def _mount_for(self, calibration: Calibration | None, rows: int) -> Mount:
         """Tell how the camera sits, and carry the limits over to it, once for each camera."""
         if self._mount is None or self._mount[0] is not calibration or self._mount[1] != rows:
             mount = mount_of(calibration, rows)
             self._mount = calibration, rows, mount
-            self._config = seen_from(self._given, mount, rows)
+            self._config, self._model = seen_from(self._given, mount, rows), None
+            is_known = isinstance(calibration, PinholeCalibration)
+            self._belief = None
+            if not is_known and is_learnable(self._given):
+                self._belief = MountBelief.usual(self._given.detector.limits)
+                self._config = believed_from(self._given, self._belief)
         return self._mount[2]
+
+    def _learn_mount(self, rows: int) -> None:
+        """Learn from those who are seen well how a camera sits that nobody calibrated."""
+        if self._belief is None:
+            return
+        telling = [person for person in self._persons if tells_mount(person, rows)]
+        for person in telling:
+            self._belief = self._belief.learnt(person.belief.estimate, rows)
+        if telling:
+            self._config = believed_from(self._given, self._belief)
 
     def _remembered(self, view: FrameView) -> tuple[TrackedPerson, ...]:
         """Carry on the memory of people for whom no samples look any more, but of those not for too long."""

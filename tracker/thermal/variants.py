@@ -123,7 +123,10 @@ PEOPLEBOY = TrackerConfig(
         cold_response=-0.5,
         feet_weight=0.15,
         unseen_response=0.1,
+        cut_share=0.2,
+        clutter_share=2.0,
         hottest_grey=250,
+        dark_share=0.7,
         hot_margin_px=2,
     ),
     likelihood=LikelihoodConfig(slope=6.0, threshold=0.45, weakest_share=0.25),
@@ -181,7 +184,12 @@ PEOPLEBOY = TrackerConfig(
 FOOTAGE = replace(
     PEOPLEBOY,
     contour=replace(
-        PEOPLEBOY.contour, inner_depth=2.0, saturation_grey=22.0, hottest_grey=256, cold_feet_response=-0.25
+        PEOPLEBOY.contour,
+        inner_depth=2.0,
+        saturation_grey=22.0,
+        clutter_share=0.0,
+        hottest_grey=256,
+        cold_feet_response=-0.25,
     ),
     likelihood=replace(PEOPLEBOY.likelihood, threshold=0.35),
     motion=replace(PEOPLEBOY.motion, noise_y=10.0, noise_w=6.0, noise_h=6.0, uses_odometry=False),

@@ -4,6 +4,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from peopleboy.scenarios.loop.calibrations import calibration_of
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal import people_tracker
 from peopleboy.tracker.thermal.config import InteractionConfig
@@ -15,6 +17,7 @@ from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.images.contours import middle, semi_height
 from tests.helpers.images.drawn_people import blank, draw_person
 
+ROBOTS_OWN = calibration_of(Pinhole())
 APART = replace(PEOPLEBOY, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
 
 
@@ -22,7 +25,7 @@ def frame(i, *people):
     image = blank()
     for x, h in people:
         draw_person(image, x, 120 + 0.36 * h, 0.38 * h, h)
-    return Frame(images={THERMAL: image}, time_s=i / 15)
+    return Frame(images={THERMAL: image}, calibrations={THERMAL: ROBOTS_OWN}, time_s=i / 15)
 
 
 def confirmed(tracks):

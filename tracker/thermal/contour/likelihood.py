@@ -5,8 +5,11 @@ All variants share the one kernel that reads the image.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Final
 
 import cv2
 import numpy as np
@@ -31,9 +34,18 @@ FEET_GAIN = 3.0  # factor on the response of the feet, up to 1: they fill only a
 COVERED = 0
 """Grey of the pixels of people in front, in an image where no other pixel has it."""
 NO_GREY = -2
+BLACK_GREY = 4  # at most, with noise
+ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
+UNKNOWN = 1e-4  # share of a section's weight that is none
 LEGS_WIDTH = 0.75  # half width of the legs, in body semi-widths
 _SUBPIXEL_BITS = 4
 _SCALE = 1 << _SUBPIXEL_BITS
+
+
+CLUTTER_SETTLES_S: Final = 0.5  # time constant with which a tracker takes in that the clutter changes
+_APART_PX: Final = 8  # of 240 rows: between the two pixels of a pair
+_SHARE: Final = 0.75  # of the pairs differ by less: people, lamps and windows are among the others
+_STRIDE: Final = 4
 
 
 def _superellipse(power: float, count: int = 32) -> NDArray[np.float64]:
@@ -75,19 +87,71 @@ class ContourModel:
         """Turn a thermal image (H, W) into the one that the contour is compared with."""
         return person_grey(thermal, self.config)
 
-    def differences(self, image: NDArray[np.uint8], state: Floats, covered: float | None = None) -> Floats:
+    def amid(self, clutter_grey: float) -> ContourModel:
+        """Let the response bend only where differences stand out from such clutter."""
+        bend = round(self.config.clutter_share * clutter_grey)
+        if bend <= self.config.saturation_grey:
+            return self
+        return replace(self, response=_bent(self.config, bend))
+
+    def differences(
+        self,
+        image: NDArray[np.uint8],
+        state: Floats,
+        covered: float | None = None,
+        covered_share: float = 1.0,
+    ) -> Floats:
         """Measure every section of every sample in a prepared image, (N, 8).
+
+        Where points above the image, or on people in front, have less than their weight, a section
+        counts for the rest what the others say on average.
 
         Args:
             image: (H, W) prepared.
             state: (N, 9) samples.
             covered: what a point counts where the image says that somebody is in front; None if it does not.
+            covered_share: weight of such a point.
         """
-        unseen = self.config.unseen_response
-        result = section_differences(image, state, self.probes, self.response, unseen, covered)
-        if self.config.feet_weight > 0:
+        config = self.config
+        result, known = _measured(
+            image,
+            state,
+            self.probes,
+            self.response,
+            (config.unseen_response, config.unseen_share),
+            (covered, covered_share),
+        )
+        if config.feet_weight > 0:
             result[:, FEET] = np.minimum(1.0, FEET_GAIN * result[:, FEET])
+        if min(config.unseen_share, covered_share) < 1:
+            _fill(result, known, self.weights.astype(np.float32))
         return result
+
+
+@lru_cache(maxsize=64)
+def _bent(config: ContourConfig, bend_grey: int) -> Floats:
+    return build_response(replace(config, saturation_grey=float(bend_grey)))
+
+
+def clutter_of(image: NDArray[np.uint8]) -> float:
+    """Measure by how much [grey] most pixels of an image (H, W) differ at most from those nearby.
+
+    Raised by noise, texture and sharp gain; people, lamps and windows take too little of an image to count.
+    """
+    apart = max(round(_APART_PX * image.shape[0] / REFERENCE_HEIGHT_PX), 1)
+    rows, columns = image[::_STRIDE], image[:, ::_STRIDE]
+    counts = np.zeros(GREYS)
+    for one, other in ((rows[:, apart:], rows[:, :-apart]), (columns[apart:], columns[:-apart])):
+        if one.size:
+            counts += cv2.calcHist([cv2.absdiff(one, other)], [0], None, [GREYS], [0, GREYS])[:, 0]
+    return float(np.searchsorted(np.cumsum(counts), _SHARE * counts.sum()))
+
+
+def settled_clutter(before: float | None, now: float, dt_s: float) -> float:
+    """Let the clutter [grey] follow what is measured now, slowly, so that no person's evidence pumps."""
+    if before is None:
+        return now
+    return before + (1 - math.exp(-dt_s / CLUTTER_SETTLES_S)) * (now - before)
 
 
 def fitness(differences: Floats, weights: NDArray[np.float64], config: LikelihoodConfig) -> Floats:
@@ -124,15 +188,22 @@ def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
 def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np.uint8]:
     """Turn what is too hot for a person as dark as the coldest surface, (H, W) in and out.
 
-    Lamps and radiators lose their bright outline that way, and people in front of them regain theirs.
+    Lamps and radiators lose their bright outline that way, and people in front of them regain theirs. Only a
+    scale that starts above the room, which is black then, is known to end above people.
     """
-    if config.hottest_grey >= GREYS:
+    if config.hottest_grey >= GREYS or _is_bright(thermal, config.dark_share):
         return np.ascontiguousarray(thermal)
     is_hot = (thermal >= config.hottest_grey).view(np.uint8)
     if not is_hot.any():
         return np.ascontiguousarray(thermal)
     side = 2 * config.hot_margin_px + 1
     return np.where(cv2.dilate(is_hot, np.ones((side, side), np.uint8)), np.uint8(0), thermal)
+
+
+def _is_bright(thermal: NDArray[np.uint8], dark_share: float) -> bool:
+    """Tell whether less than a share of an image (H, W) is black."""
+    some = thermal[::2, ::2]
+    return dark_share > 0 and bool(np.count_nonzero(some <= BLACK_GREY) < dark_share * some.size)
 
 
 def section_differences(
@@ -153,15 +224,36 @@ def section_differences(
         unseen: what a pair counts with a point outside the image.
         covered: what a pair counts with a point on a person in front; None in an image without such marks.
     """
+    return _measured(image, state, probes, response, (unseen, 1.0), (covered, 1.0))[0]
+
+
+def _measured(
+    image: NDArray[np.uint8],
+    state: Floats,
+    probes: Probes,
+    response: Floats,
+    unseen: tuple[float, float],
+    covered: tuple[float | None, float],
+) -> tuple[Floats, Floats]:
+    """Measure sections as `section_differences` does, and what share (N, 8) of their weight they keep.
+
+    Args:
+        image: (H, W) grey.
+        state: (N, 9) samples.
+        probes: the points to look at.
+        response: (8, 511) what a difference counts.
+        unseen: what a pair counts with a point outside the image, and its weight above it.
+        covered: the same with a point on a person in front; None in an image without such marks.
+    """
+    grey = NO_GREY if covered[0] is None else COVERED
     return _differences(
         image,
         state,
         probes.mix,
         probes.section,
         response,
-        np.float32(unseen),
-        NO_GREY if covered is None else COVERED,
-        np.float32(0 if covered is None else covered),
+        grey,
+        np.array([*unseen, covered[0] or 0.0, covered[1]], dtype=np.float32),
     )
 
 
@@ -174,7 +266,7 @@ def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArr
         shape: (H, W) of the image.
 
     Returns:
-        Number of each pixel, counted row by row; -1 outside the image.
+        Number of each pixel, counted row by row; negative outside the image.
     """
     at = np.empty(probes.mix.shape[1], dtype=np.int32)
     _locate(at, state, probes.mix, shape[1], shape[0])
@@ -261,7 +353,8 @@ def _locate(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, heig
         u = x + du[q] * d + wu[q] * w + hu[q] * h + u0[q]
         v = y + wv[q] * w + hv[q] * h + v0[q]
         is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
-        at[q] = np.int32(v) * columns + np.int32(u) if is_inside else np.int32(-1)
+        outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
+        at[q] = np.int32(v) * columns + np.int32(u) if is_inside else outside
 
 
 @njit(cache=True, fastmath={"contract"}, nogil=True)
@@ -271,29 +364,50 @@ def _differences(
     mix: Floats,
     section: NDArray[np.int64],
     response: Floats,
-    unseen: np.float32,
     covered_grey: int,
-    covered: np.float32,
-) -> Floats:
-    share = np.zeros(SECTIONS, dtype=np.float32)
+    missing: Floats,
+) -> tuple[Floats, Floats]:
+    count = np.zeros(SECTIONS, dtype=np.float32)
     for j in section:
-        share[j] += np.float32(1)
+        count[j] += np.float32(1)
     grey, at = image.reshape(-1), np.empty(mix.shape[1], dtype=np.int32)
     inner, outer = at[: len(section)], at[len(section) :]
     result = np.zeros((len(state), SECTIONS), dtype=np.float32)
+    known = np.ones((len(state), SECTIONS), dtype=np.float32)
+    elsewhere, unseen, covered = missing[0], missing[1] * missing[0], missing[3] * missing[2]
+    unseen_lacks, covered_lacks = np.float32(1) - missing[1], np.float32(1) - missing[3]
     for i in range(len(state)):
         _locate(at, state[i], mix, image.shape[1], image.shape[0])
         for p in range(len(section)):
             j = section[p]
+            if inner[p] == ELSEWHERE or outer[p] == ELSEWHERE:
+                result[i, j] += elsewhere
+                continue
             if inner[p] < 0 or outer[p] < 0:
                 result[i, j] += unseen
+                known[i, j] -= unseen_lacks / count[j]
                 continue
             inside, outside = int(grey[inner[p]]), int(grey[outer[p]])
             if inside == covered_grey or outside == covered_grey:
                 result[i, j] += covered
+                known[i, j] -= covered_lacks / count[j]
             else:
                 result[i, j] += response[j, GREYS - 1 + inside - outside]
         for j in range(SECTIONS):
-            if share[j] > 0:
-                result[i, j] /= share[j]
-    return result
+            if count[j] > 0 and known[i, j] > UNKNOWN:
+                result[i, j] /= count[j] * known[i, j]
+    return result, known
+
+
+@njit(cache=True, nogil=True)
+def _fill(differences: Floats, known: Floats, weights: Floats) -> None:
+    """Let sections (N, 8) count, in place, as far as they are not known, what the others say on average."""
+    for i in range(len(differences)):
+        total, whole = np.float32(0), np.float32(0)
+        for j in range(SECTIONS):
+            total += weights[j] * known[i, j] * differences[i, j]
+            whole += weights[j] * known[i, j]
+        if whole <= UNKNOWN:
+            continue
+        for j in range(SECTIONS):
+            differences[i, j] += (1 - known[i, j]) * (total / whole - differences[i, j])

@@ -14,6 +14,7 @@ from peopleboy.tracker.thermal.contour.contour import FEET
 from peopleboy.tracker.thermal.contour.likelihood import (
     FEET_GAIN,
     ContourModel,
+    clutter_of,
     covered_by,
     section_differences,
     seen_shares,
@@ -52,6 +53,7 @@ def evidence_of(
     config = explanation.config
     model = _model((thermal.shape[0], thermal.shape[1]), config.contour)
     image = model.prepare(thermal)
+    model = model.amid(clutter_of(image))
     states = {track.id: _state(explanation.ellipses[track.id]) for track in tracks}
     evidence = {}
     for track in tracks:

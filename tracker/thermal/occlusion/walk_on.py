@@ -207,8 +207,9 @@ def look_at(
         if surroundings.front
         else np.ones(SECTIONS)
     )
-    differences = view.model.differences(surroundings.image, rows, 0.0 if surroundings.front else None)
-    fit = differences[0] @ view.model.weights / max(float(shares @ view.model.weights), 1e-3)
+    covered = 0.0 if surroundings.front else None
+    differences = view.model.differences(surroundings.image, rows, covered, covered_share=0.0)
+    fit = differences[0] @ view.model.weights
     chance = float(probability(np.array([fit], dtype=np.float32), config.likelihood)[0])
     features, away = view.describe(rows, surroundings.hiding), np.nan
     if person.looks is not None and features is not None:

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -23,7 +24,12 @@ from peopleboy.tracker.thermal.contour.contour import (
     section_angles,
     section_weights,
 )
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel, person_grey, pixels_under
+from peopleboy.tracker.thermal.contour.likelihood import (
+    ContourModel,
+    clutter_of,
+    person_grey,
+    pixels_under,
+)
 from peopleboy.tracker.thermal.particles import HEAD_DIVISOR
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS
 from tests.helpers.images.drawn_people import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
@@ -139,6 +145,57 @@ def test_a_point_outside_the_image_counts_as_unseen():
     state = np.array([[-500, 120, 20, 50, 0, 0, 0, 0, 0]], dtype=np.float32)
     config = ContourConfig(unseen_response=0.25)
     assert np.allclose(ContourModel.build((240, 320), config).differences(blank(), state)[0, :FEET], 0.25)
+
+
+def test_of_a_head_above_the_image_the_rest_speaks() -> None:
+    image = blank()
+    draw_person(image, 150, 40, 18, 44)
+    state = np.array([[150, 40, 18, 44, 0, 0, 0, 0, 0]], dtype=np.float32)
+    cut = replace(PEOPLEBOY.contour, unseen_share=PEOPLEBOY.contour.cut_share)
+    weights = section_weights(cut)
+    plain, filled = (
+        float(ContourModel.build(image.shape, config).differences(image, state)[0] @ weights)
+        for config in (PEOPLEBOY.contour, cut)
+    )
+    assert plain < PEOPLEBOY.likelihood.threshold + 0.1 < filled
+
+
+def test_what_covers_without_weight_leaves_the_others_as_they_are() -> None:
+    image = blank()
+    draw_person(image, 150, 110, 18, 40)
+    marked = image.copy()
+    marked[:, 150:] = 0
+    state = np.array([[150, 110, 18, 40, 0, 0, 0, 0, 0]], dtype=np.float32)
+    model = ContourModel.build(image.shape, replace(PEOPLEBOY.contour, feet_weight=0.0))
+    whole = model.differences(np.maximum(image, 1), state)[0]
+    half = model.differences(np.maximum(marked, (marked > 0).astype(np.uint8)), state, 0.0, 0.0)[0]
+    assert half[SIDE_LEFT] == pytest.approx(whole[SIDE_LEFT], abs=1e-5)
+    assert half @ model.weights == pytest.approx(whole @ model.weights, abs=0.1)
+
+
+def test_clutter_is_what_most_pixels_differ_by_and_people_are_none() -> None:
+    flat = blank()
+    draw_person(flat, 150, 110, 18, 40)
+    assert clutter_of(flat) == 0
+    checked = np.where(np.indices((240, 320)).sum(axis=0) // 8 % 2, 30, 60).astype(np.uint8)
+    assert clutter_of(checked) == 30
+
+
+def test_in_clutter_the_response_bends_later_and_never_earlier() -> None:
+    model = ContourModel.build((240, 320), PEOPLEBOY.contour)
+    assert model.amid(0.0) is model
+    bent = model.amid(30.0).response[HEAD_TOP]
+    assert (np.abs(bent) <= np.abs(model.response[HEAD_TOP])).all()
+    assert bent[255 + 60] == pytest.approx(np.tanh(1.0))
+
+
+def test_only_on_a_scale_that_shows_the_room_black_is_its_end_too_hot_for_people() -> None:
+    config = ContourConfig(hottest_grey=250, dark_share=0.7)
+    image = np.zeros((240, 320), np.uint8)
+    image[100:120, 50:90] = 255
+    assert not person_grey(image, config).any()
+    warmer = np.maximum(image, 40)
+    assert np.array_equal(person_grey(warmer, config), warmer)
 
 
 def test_the_response_is_odd_for_the_head_and_saturates():
