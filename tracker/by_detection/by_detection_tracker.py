@@ -1,0 +1,225 @@
+"""The tracker by detection: what is proposed in single images becomes people who last."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.by_detection.config import ByDetectionConfig
+from peopleboy.tracker.by_detection.looks import Pattern, patterns
+from peopleboy.tracker.by_detection.matching import intersections, matched, overlaps
+from peopleboy.tracker.by_detection.paths import (
+    NOBODY,
+    Floats,
+    advanced,
+    begun,
+    boxes_of,
+    carried,
+    corrected,
+    distances,
+)
+from peopleboy.tracker.by_detection.target import Target
+from peopleboy.tracker.by_detection.viewpoint import Viewpoint
+from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
+from peopleboy.tracker.thermal.whereabouts import places_on_floor
+from peopleboy.tracker.track import Box, Status, Track
+
+FIRST_STEP_S: Final = 1 / 15
+_STANDING: Final = Odometry()
+_COVERED: Final = 0.35  # share of a box that is hidden by who stands in front
+_LOWER: Final = 0.03  # who stands so much lower in the image, in heights, is in front
+_CLEAR: Final = 0.2  # overlap with others up to which looks are learned
+_TAKEN: Final = 0.45  # overlap with somebody from which a proposal is nobody new
+_ABOVE_GROUND: Final = 0.04  # of the distance: error of how far something moved
+
+
+Finder = Callable[[Frame], tuple[Floats, Floats]]
+
+
+class ByDetectionTracker:
+    """Follows people in metres round the camera by what a detector proposes in each image.
+
+    A track is told once enough speaks for it. What never moved needs more: a thing that looks like a person
+    goes on to look so.
+    """
+
+    def __init__(self, find: Finder, config: ByDetectionConfig | None = None) -> None:
+        self._find, self._config = find, config or ByDetectionConfig()
+        self._targets: list[Target] = []
+        self._paths = NOBODY
+        self._last_s: float | None = None
+        self._born = 0
+        self._view: tuple[Calibration | None, tuple[int, int], Viewpoint] | None = None
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The thermal camera."""
+        return (THERMAL,)
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame and tell who is seen.
+
+        Raises:
+            BadInput: time that does not go forward.
+        """
+        image = frame.grey(THERMAL)
+        view = self._viewpoint(frame.calibrations.get(THERMAL), (image.shape[0], image.shape[1]))
+        dt_s = self._time_step(frame.time_s)
+        self._carry_on(dt_s, frame.odometry or _STANDING)
+        boxes, scores = self._find(frame)
+        is_strong = scores > self._config.existence.weakest
+        boxes, scores = boxes[is_strong], scores[is_strong]
+        looks = patterns(image.astype(np.float32), boxes)
+        expected = self._boxes(view)
+        found = self._matched(expected, boxes, scores, looks, view, frame.time_s)
+        self._take_in(found, expected, boxes, scores, looks, view, frame.time_s, dt_s)
+        self._begin(set(found.values()), boxes, scores, looks, view, frame.time_s)
+        self._judge(frame.time_s)
+        return self._tracks(frame, view)
+
+    def _viewpoint(self, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
+        if self._view is None or self._view[0] is not calibration or self._view[1] != shape:
+            self._view = calibration, shape, Viewpoint.of(calibration, shape)
+        return self._view[2]
+
+    def _time_step(self, time_s: float) -> float:
+        last_s, self._last_s = self._last_s, time_s
+        if last_s is None:
+            return FIRST_STEP_S
+        if time_s <= last_s:
+            raise BadInput(f"time_s must go forward, got {time_s} after {last_s}")
+        return time_s - last_s
+
+    def _carry_on(self, dt_s: float, moved: Odometry) -> None:
+        self._paths = advanced(self._paths, dt_s, moved, self._config.path)
+        for target in self._targets:
+            target.origin_m = carried(target.origin_m[None], moved)[0]
+
+    def _boxes(self, view: Viewpoint) -> Floats:
+        return boxes_of(self._paths, view, np.array([target.ratio for target in self._targets]))
+
+    def _matched(
+        self, expected: Floats, boxes: Floats, scores: Floats, looks: Pattern, view: Viewpoint, time_s: float
+    ) -> dict[int, int]:
+        if not self._targets or len(boxes) == 0:
+            return {}
+        remembered = np.stack([target.looks for target in self._targets])
+        return matched(
+            self._targets,
+            distances(self._paths, boxes, view, self._config.path),
+            overlaps(expected, boxes),
+            (remembered @ looks.T).astype(np.float64),
+            scores,
+            time_s,
+            self._config.matching,
+        )
+
+    def _take_in(
+        self,
+        found: dict[int, int],
+        expected: Floats,
+        boxes: Floats,
+        scores: Floats,
+        looks: Pattern,
+        view: Viewpoint,
+        time_s: float,
+        dt_s: float,
+    ) -> None:
+        """Correct those who were found, and look for who hides the others."""
+        config = self._config
+        is_told = np.array([target.is_told for target in self._targets], bool)
+        mutual = overlaps(expected, expected) * ~np.eye(len(expected), dtype=bool)
+        hidden_by = _hidden_by(expected, is_told, found)
+        for row, target in enumerate(self._targets):
+            if row in found:
+                box = boxes[found[row]]
+                target.see(float(scores[found[row]]), box[2] / box[3], time_s, dt_s, config.existence)
+                if not (is_told & (mutual[row] > _CLEAR)).any():
+                    target.learn(looks[found[row]])
+            else:
+                front = hidden_by[row]
+                target.miss(None if front is None else self._targets[front].id, dt_s, config.existence)
+        if found:
+            rows = np.array(sorted(found))
+            later = corrected(self._paths.take(rows), boxes[[found[row] for row in rows]], view, config.path)
+            self._paths = self._paths.replaced(rows, later)
+
+    def _begin(
+        self,
+        taken: set[int],
+        boxes: Floats,
+        scores: Floats,
+        looks: Pattern,
+        view: Viewpoint,
+        time_s: float,
+    ) -> None:
+        """Begin to follow whoever is proposed where nobody is."""
+        config = self._config
+        free = [
+            row for row in range(len(boxes)) if row not in taken and scores[row] >= config.existence.birth
+        ]
+        recent = [t.seen_s > time_s - config.matching.lost_s for t in self._targets]
+        known = self._boxes(view)[np.array(recent, bool)] if self._targets else np.empty((0, 4))
+        if len(known) and free:
+            nearest = overlaps(boxes[free], known).max(axis=1)
+            free = [row for row, share in zip(free, nearest, strict=True) if share < _TAKEN]
+        if not free:
+            return
+        new = begun(boxes[free], view, config.path)
+        self._paths = self._paths.joined(new)
+        self._targets += [
+            Target(born_s=time_s, seen_s=time_s, looks=looks[row], ratio=boxes[row, 2] / boxes[row, 3], origin_m=feet[:3])
+            for row, feet in zip(free, new.mean, strict=True)
+        ]
+
+    def _judge(self, time_s: float) -> None:
+        """Tell of those who are sure, and forget those who are gone."""
+        config = self._config.existence
+        deviation = np.sqrt(np.diagonal(self._paths.covariance, axis1=1, axis2=2))
+        for target, mean, error in zip(self._targets, self._paths.mean, deviation, strict=True):
+            target.moved_m = max(target.moved_m, _surely_apart_m(target.origin_m, mean, error))
+            if not target.is_told and target.is_confirmed(config):
+                self._born += 1
+                target.id = self._born
+        kept = [row for row, target in enumerate(self._targets) if not target.is_forgotten(time_s, config)]
+        self._paths = self._paths.take(np.array(kept, int))
+        self._targets = [self._targets[row] for row in kept]
+
+    def _tracks(self, frame: Frame, view: Viewpoint) -> tuple[Track, ...]:
+        shown = [
+            (target, box)
+            for target, box in zip(self._targets, self._boxes(view), strict=True)
+            if target.is_shown(frame.time_s, self._config.existence)
+        ]
+        return tuple(
+            Track(
+                id=target.id,
+                boxes={THERMAL: (float(box[0]), float(box[1]), float(box[2]), float(box[3]))},
+                confidence=target.confidence,
+                status=target.status(frame.time_s),
+                age_s=frame.time_s - target.born_s,
+                occluder=target.occluder,
+            )
+            for target, box in sorted(shown, key=lambda pair: pair[0].id)
+        )
+
+
+def _hidden_by(expected: Floats, is_told: NDArray[np.bool_], found: dict[int, int]) -> list[int | None]:
+    """Tell for each of K people with boxes (K, 4) who of those who were found may hide it."""
+    area = np.maximum(expected[:, 2] * expected[:, 3], 1e-9)
+    covered = intersections(expected, expected) / area[:, None]
+    foot = expected[:, 1] + expected[:, 3]
+    hides = (covered > _COVERED) & (foot[None] > (foot - _LOWER * expected[:, 3])[:, None]) & is_told[None]
+    hides &= np.isin(np.arange(len(expected)), list(found))[None] & ~np.eye(len(expected), dtype=bool)
+    return [int(np.argmax(covered[row] * hides[row])) if hides[row].any() else None for row in range(len(hides))]
+
+
+def _surely_apart_m(origin_m: Floats, mean: Floats, error: Floats) -> float:
+    """Tell how far along the floor somebody surely is from the origin, errors of distance taken off."""
+    aside = abs(mean[0] - origin_m[0]) - 2.0 * error[0]
+    ahead = abs(mean[2] - origin_m[2]) - 2.0 * error[2] - 2.0 * _ABOVE_GROUND * mean[2]
+    return float(np.hypot(max(aside, 0.0), max(ahead, 0.0)))

@@ -1,0 +1,79 @@
+"""Who is whom: proposals are given to those who are expected there and look so, who was seen last first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from peopleboy.tracker.by_detection.config import MatchingConfig
+from peopleboy.tracker.by_detection.target import Target
+
+Floats = NDArray[np.float64]
+
+_NEVER: Final = 1e6
+
+
+def intersections(one: Floats, other: Floats) -> Floats:
+    """Give the areas (K, M) [px2] that boxes (K, 4) and (M, 4) share."""
+    a, b = one[:, None], other[None]
+    low = np.maximum(a[..., :2], b[..., :2])
+    high = np.minimum(a[..., :2] + a[..., 2:], b[..., :2] + b[..., 2:])
+    return np.prod(np.maximum(high - low, 0.0), axis=2)
+
+
+def overlaps(one: Floats, other: Floats) -> Floats:
+    """Give the intersection over union (K, M) of boxes (K, 4) and (M, 4)."""
+    shared = intersections(one, other)
+    area = np.prod(one[:, 2:], axis=1)[:, None] + np.prod(other[:, 2:], axis=1)[None]
+    return shared / np.maximum(area - shared, 1e-9)
+
+
+def matched(
+    targets: Sequence[Target],
+    distance: Floats,
+    overlap: Floats,
+    likeness: Floats,
+    score: Floats,
+    time_s: float,
+    config: MatchingConfig,
+) -> dict[int, int]:
+    """Give the number of the proposal that is each target's, by the target's number.
+
+    Args:
+        targets: K of them.
+        distance: (K, M) Mahalanobis.
+        overlap: (K, M) of boxes.
+        likeness: (K, M) of looks, -1 to 1.
+        score: (M,) of proposals.
+        time_s: now.
+        config: what things cost.
+    """
+    cost = (
+        config.path * distance
+        + config.overlap * (1.0 - overlap)
+        + config.looks * (1.0 - likeness)
+        - config.score * np.minimum(score, 4.0)[None]
+    )
+    cost[(distance > config.gate) | (cost > config.highest)] = _NEVER
+    ranks = np.array([_rank(target, time_s, config) for target in targets], int)
+    cost[(ranks[:, None] == 2) & (likeness < config.looks_of_lost)] = _NEVER
+    found: dict[int, int] = {}
+    for rank in range(3):
+        rows = np.flatnonzero(ranks == rank)
+        columns = np.array([j for j in range(len(score)) if j not in found.values()], int)
+        if len(rows) and len(columns):
+            some = cost[np.ix_(rows, columns)]
+            pairs = zip(*linear_sum_assignment(some), strict=True)
+            found |= {int(rows[i]): int(columns[j]) for i, j in pairs if some[i, j] < _NEVER}
+    return found
+
+
+def _rank(target: Target, time_s: float, config: MatchingConfig) -> int:
+    """Tell whose turn it is: those who are seen, those who may be somebody, and those who were lost."""
+    if not target.is_told:
+        return 1
+    return 0 if time_s - target.seen_s < config.lost_s else 2
