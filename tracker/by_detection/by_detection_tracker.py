@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
-from peopleboy.tracker.by_detection.looks import Pattern, patterns
 from peopleboy.tracker.by_detection.matching import intersections, matched, overlaps
 from peopleboy.tracker.by_detection.paths import (
     NOBODY,
@@ -22,11 +21,11 @@ from peopleboy.tracker.by_detection.paths import (
     corrected,
     distances,
 )
+from peopleboy.tracker.by_detection.proposed import Proposed
 from peopleboy.tracker.by_detection.target import Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
-from peopleboy.tracker.thermal.whereabouts import places_on_floor
-from peopleboy.tracker.track import Box, Status, Track
+from peopleboy.tracker.track import Track
 
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
@@ -38,6 +37,14 @@ _ABOVE_GROUND: Final = 0.04  # of the distance: error of how far something moved
 
 
 Finder = Callable[[Frame], tuple[Floats, Floats]]
+
+
+class _Instant(NamedTuple):
+    """When a frame was taken [s], how long after the last one [s], and from where."""
+
+    time_s: float
+    dt_s: float
+    view: Viewpoint
 
 
 class ByDetectionTracker:
@@ -66,20 +73,19 @@ class ByDetectionTracker:
         Raises:
             BadInput: time that does not go forward.
         """
-        image = frame.grey(THERMAL)
+        image, config = frame.grey(THERMAL), self._config
         view = self._viewpoint(frame.calibrations.get(THERMAL), (image.shape[0], image.shape[1]))
-        dt_s = self._time_step(frame.time_s)
-        self._carry_on(dt_s, frame.odometry or _STANDING)
+        now = _Instant(frame.time_s, self._time_step(frame.time_s), view)
+        self._carry_on(now.dt_s, frame.odometry or _STANDING)
         boxes, scores = self._find(frame)
-        is_strong = scores > self._config.existence.weakest
-        boxes, scores = boxes[is_strong], scores[is_strong]
-        looks = patterns(image.astype(np.float32), boxes)
+        is_strong = scores > config.existence.weakest
+        proposed = Proposed.of(frame, boxes[is_strong], scores[is_strong], view)
         expected = self._boxes(view)
-        found = self._matched(expected, boxes, scores, looks, view, frame.time_s)
-        self._take_in(found, expected, boxes, scores, looks, view, frame.time_s, dt_s)
-        self._begin(set(found.values()), boxes, scores, looks, view, frame.time_s)
-        self._judge(frame.time_s)
-        return self._tracks(frame, view)
+        found = self._matched(expected, proposed, now)
+        self._take_in(found, expected, proposed, now)
+        self._begin(set(found.values()), proposed, now)
+        self._judge(now.time_s)
+        return self._tracks(now)
 
     def _viewpoint(self, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
         if self._view is None or self._view[0] is not calibration or self._view[1] != shape:
@@ -102,33 +108,20 @@ class ByDetectionTracker:
     def _boxes(self, view: Viewpoint) -> Floats:
         return boxes_of(self._paths, view, np.array([target.ratio for target in self._targets]))
 
-    def _matched(
-        self, expected: Floats, boxes: Floats, scores: Floats, looks: Pattern, view: Viewpoint, time_s: float
-    ) -> dict[int, int]:
-        if not self._targets or len(boxes) == 0:
+    def _matched(self, expected: Floats, proposed: Proposed, now: _Instant) -> dict[int, int]:
+        if not self._targets or len(proposed) == 0:
             return {}
-        remembered = np.stack([target.looks for target in self._targets])
         return matched(
             self._targets,
-            distances(self._paths, boxes, view, self._config.path),
-            overlaps(expected, boxes),
-            (remembered @ looks.T).astype(np.float64),
-            scores,
-            time_s,
+            distances(self._paths, proposed.boxes, now.view, self._config.path),
+            overlaps(expected, proposed.boxes),
+            proposed.likeness(self._targets),
+            proposed.scores,
+            now.time_s,
             self._config.matching,
         )
 
-    def _take_in(
-        self,
-        found: dict[int, int],
-        expected: Floats,
-        boxes: Floats,
-        scores: Floats,
-        looks: Pattern,
-        view: Viewpoint,
-        time_s: float,
-        dt_s: float,
-    ) -> None:
+    def _take_in(self, found: dict[int, int], expected: Floats, proposed: Proposed, now: _Instant) -> None:
         """Correct those who were found, and look for who hides the others."""
         config = self._config
         is_told = np.array([target.is_told for target in self._targets], bool)
@@ -136,44 +129,45 @@ class ByDetectionTracker:
         hidden_by = _hidden_by(expected, is_told, found)
         for row, target in enumerate(self._targets):
             if row in found:
-                box = boxes[found[row]]
-                target.see(float(scores[found[row]]), box[2] / box[3], time_s, dt_s, config.existence)
+                seen = found[row]
+                target.see(
+                    float(proposed.scores[seen]), proposed.ratio(seen), now.time_s, now.dt_s, config.existence
+                )
                 if not (is_told & (mutual[row] > _CLEAR)).any():
-                    target.learn(looks[found[row]])
+                    target.learn(proposed.looks[seen], proposed.colours[seen])
             else:
                 front = hidden_by[row]
-                target.miss(None if front is None else self._targets[front].id, dt_s, config.existence)
+                target.miss(None if front is None else self._targets[front].id, now.dt_s, config.existence)
         if found:
             rows = np.array(sorted(found))
-            later = corrected(self._paths.take(rows), boxes[[found[row] for row in rows]], view, config.path)
+            boxes = proposed.boxes[[found[row] for row in rows]]
+            later = corrected(self._paths.take(rows), boxes, now.view, config.path)
             self._paths = self._paths.replaced(rows, later)
 
-    def _begin(
-        self,
-        taken: set[int],
-        boxes: Floats,
-        scores: Floats,
-        looks: Pattern,
-        view: Viewpoint,
-        time_s: float,
-    ) -> None:
+    def _begin(self, taken: set[int], proposed: Proposed, now: _Instant) -> None:
         """Begin to follow whoever is proposed where nobody is."""
         config = self._config
-        free = [
-            row for row in range(len(boxes)) if row not in taken and scores[row] >= config.existence.birth
-        ]
-        recent = [t.seen_s > time_s - config.matching.lost_s for t in self._targets]
-        known = self._boxes(view)[np.array(recent, bool)] if self._targets else np.empty((0, 4))
-        if len(known) and free:
-            nearest = overlaps(boxes[free], known).max(axis=1)
-            free = [row for row, share in zip(free, nearest, strict=True) if share < _TAKEN]
-        if not free:
+        is_free = proposed.scores >= config.existence.birth
+        is_free[list(taken)] = False
+        recent = [target.seen_s > now.time_s - config.matching.lost_s for target in self._targets]
+        if any(recent):
+            known = self._boxes(now.view)[np.array(recent)]
+            is_free &= (overlaps(proposed.boxes, known) < _TAKEN).all(axis=1)
+        free = np.flatnonzero(is_free)
+        if len(free) == 0:
             return
-        new = begun(boxes[free], view, config.path)
+        new = begun(proposed.boxes[free], now.view, config.path)
         self._paths = self._paths.joined(new)
         self._targets += [
-            Target(born_s=time_s, seen_s=time_s, looks=looks[row], ratio=boxes[row, 2] / boxes[row, 3], origin_m=feet[:3])
-            for row, feet in zip(free, new.mean, strict=True)
+            Target(
+                born_s=now.time_s,
+                seen_s=now.time_s,
+                looks=proposed.looks[row],
+                colours=proposed.colours[row],
+                ratio=proposed.ratio(row),
+                origin_m=feet[:3],
+            )
+            for row, feet in zip(free.tolist(), new.mean, strict=True)
         ]
 
     def _judge(self, time_s: float) -> None:
@@ -189,19 +183,19 @@ class ByDetectionTracker:
         self._paths = self._paths.take(np.array(kept, int))
         self._targets = [self._targets[row] for row in kept]
 
-    def _tracks(self, frame: Frame, view: Viewpoint) -> tuple[Track, ...]:
+    def _tracks(self, now: _Instant) -> tuple[Track, ...]:
         shown = [
             (target, box)
-            for target, box in zip(self._targets, self._boxes(view), strict=True)
-            if target.is_shown(frame.time_s, self._config.existence)
+            for target, box in zip(self._targets, self._boxes(now.view), strict=True)
+            if target.is_shown(now.time_s, self._config.existence)
         ]
         return tuple(
             Track(
                 id=target.id,
                 boxes={THERMAL: (float(box[0]), float(box[1]), float(box[2]), float(box[3]))},
                 confidence=target.confidence,
-                status=target.status(frame.time_s),
-                age_s=frame.time_s - target.born_s,
+                status=target.status(now.time_s),
+                age_s=now.time_s - target.born_s,
                 occluder=target.occluder,
             )
             for target, box in sorted(shown, key=lambda pair: pair[0].id)
@@ -215,7 +209,9 @@ def _hidden_by(expected: Floats, is_told: NDArray[np.bool_], found: dict[int, in
     foot = expected[:, 1] + expected[:, 3]
     hides = (covered > _COVERED) & (foot[None] > (foot - _LOWER * expected[:, 3])[:, None]) & is_told[None]
     hides &= np.isin(np.arange(len(expected)), list(found))[None] & ~np.eye(len(expected), dtype=bool)
-    return [int(np.argmax(covered[row] * hides[row])) if hides[row].any() else None for row in range(len(hides))]
+    return [
+        int(np.argmax(covered[row] * hides[row])) if hides[row].any() else None for row in range(len(hides))
+    ]
 
 
 def _surely_apart_m(origin_m: Floats, mean: Floats, error: Floats) -> float:

@@ -117,7 +117,7 @@ def _turn(moved: Odometry) -> Floats:
 def _innovation(
     paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig
 ) -> tuple[Floats, Floats, Floats]:
-    """Give what is seen less what is expected (K, M, 3), its covariance (K, 3, 3), and the slopes (K, 3, 6)."""
+    """Give what is seen less what is expected (K, M, 3), the covariance (K, 3, 3) and slopes (K, 3, 6)."""
     feet = paths.mean[:, :3]
     expected = view.seen(feet)
     slope = np.zeros((len(paths), 3, 6))

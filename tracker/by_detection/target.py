@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.tracker.by_detection.colours import Colours
 from peopleboy.tracker.by_detection.config import ExistenceConfig
 from peopleboy.tracker.by_detection.looks import Pattern
 from peopleboy.tracker.by_detection.paths import Floats
@@ -25,7 +26,8 @@ class Target:
     Attributes:
         born_s: when it was first seen.
         seen_s: when it was last.
-        looks: how it looks.
+        looks: how it looks in the thermal image.
+        colours: what it wears; 0 where nobody knows.
         ratio: width of its box over the height.
         origin_m: (3,) where it stood first, in the level frame of now.
         watched_s: for how long it was seen in all.
@@ -40,6 +42,7 @@ class Target:
     born_s: float
     seen_s: float
     looks: Pattern
+    colours: Colours
     ratio: float
     origin_m: Floats
     watched_s: float = 0.0
@@ -65,9 +68,12 @@ class Target:
         self.log_odds = min(self.log_odds + evidence, config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-score)) - self.confidence)
 
-    def learn(self, looks: Pattern) -> None:
+    def learn(self, looks: Pattern, colours: Colours) -> None:
         """Take in how it looks now."""
         self.looks = self.looks + np.float32(_LEARNING) * (looks - self.looks)
+        if colours.any():
+            before = self.colours if self.colours.any() else colours
+            self.colours = before + np.float32(_LEARNING) * (colours - before)
 
     def miss(self, occluder: int | None, dt_s: float, config: ExistenceConfig) -> None:
         """Take in that it was not found, and who may hide it."""

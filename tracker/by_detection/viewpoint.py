@@ -63,7 +63,7 @@ class Viewpoint:
         return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None)
 
     def seen(self, feet_m: Floats) -> Floats:
-        """Tell how people with these feet (K, 3) are seen: (K, 3) middle column, foot row, log height [px]."""
+        """Tell how people with these feet (K, 3) are seen: (K, 3) middle column, foot row, log height."""
         foot, head = self._pixels(feet_m), self._pixels(feet_m + _UP)
         height = np.maximum(foot[:, 1] - head[:, 1], 1.0)
         return np.stack([(foot[:, 0] + head[:, 0]) / 2.0, foot[:, 1], np.log(height)], axis=1)
@@ -78,7 +78,7 @@ class Viewpoint:
         left, top, width, height = boxes.T
         rays = self._rays(np.stack([left + width / 2.0, top + height], axis=1))
         heads = self._rays(np.stack([left + width / 2.0, top], axis=1))
-        # Both rays meet the upright line at one distance ahead: STATURE_M = z (slope of feet - slope of head).
+        # Both rays meet the upright line at one distance z: STATURE_M = z (slope of feet - slope of head).
         ahead = STATURE_M / np.maximum(rays[:, 1] - heads[:, 1], 1e-3)
         return rays * np.maximum(ahead, NEAREST_M)[:, None]
 

@@ -1,0 +1,51 @@
+"""What is proposed in one image, and how it looks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from peopleboy.tracker.by_detection.colours import Colours, colours_of
+from peopleboy.tracker.by_detection.looks import Pattern, patterns
+from peopleboy.tracker.by_detection.target import Target
+from peopleboy.tracker.by_detection.viewpoint import Viewpoint
+from peopleboy.tracker.frame import THERMAL, Floats, Frame
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Proposed:
+    """M proposals.
+
+    Attributes:
+        boxes: (M, 4) [px].
+        scores: (M,) log odds.
+        looks: (M, 72) in the thermal image.
+        colours: (M, 512) of clothes; 0 where nobody knows.
+    """
+
+    boxes: Floats
+    scores: Floats
+    looks: Pattern
+    colours: Colours
+
+    @classmethod
+    def of(cls, frame: Frame, boxes: Floats, scores: Floats, view: Viewpoint) -> Proposed:
+        """Look at what is proposed in a frame."""
+        image = frame.grey(THERMAL).astype(np.float32)
+        return cls(boxes, scores, patterns(image, boxes), colours_of(frame, boxes, view))
+
+    def __len__(self) -> int:
+        return len(self.boxes)
+
+    def likeness(self, targets: list[Target]) -> Floats:
+        """Tell how alike K targets and these are (K, M), -1 to 1: by warmth, and by colours if known."""
+        warm = np.stack([target.looks for target in targets]) @ self.looks.T
+        worn = np.stack([target.colours for target in targets])
+        in_colour = 2.0 * worn @ self.colours.T - 1.0
+        is_known = worn.any(axis=1)[:, None] & self.colours.any(axis=1)[None]
+        return np.where(is_known, (warm + in_colour) / 2.0, warm).astype(np.float64)
+
+    def ratio(self, row: int) -> float:
+        """Give the width of a box over its height."""
+        return float(self.boxes[row, 2] / self.boxes[row, 3])
