@@ -115,7 +115,7 @@ class ByDetectionTracker:
             self._targets,
             distances(self._paths, proposed.boxes, now.view, self._config.path),
             overlaps(expected, proposed.boxes),
-            proposed.likeness(self._targets),
+            *proposed.likeness(self._targets),
             proposed.scores,
             now.time_s,
             self._config.matching,

@@ -22,7 +22,7 @@ class PathConfig:
         floor_m: deviation of feet from the floor, where it is known.
     """
 
-    acceleration_m_s2: tuple[float, float, float] = (1.5, 0.3, 1.5)
+    acceleration_m_s2: tuple[float, float, float] = (0.8, 0.2, 0.8)
     speed_m_s: tuple[float, float, float] = (1.0, 0.2, 1.0)
     column: float = 0.05
     foot: float = 0.06
@@ -42,17 +42,19 @@ class MatchingConfig:
         score: what a unit of the proposal's score takes off.
         highest: cost that is too high.
         lost_s: who was not seen for longer comes after all others.
-        looks_of_lost: least likeness of who was lost, -1 to 1.
+        looks_of_lost: least likeness of who was lost, -1 to 1, where colours are not known.
+        colours_of_same: likeness of colours from which on somebody is the same, wherever he comes back.
     """
 
     gate: float = 3.5
     path: float = 0.35
     overlap: float = 1.0
-    looks: float = 0.5
+    looks: float = 1.0
     score: float = 0.05
     highest: float = 2.6
     lost_s: float = 0.7
     looks_of_lost: float = 0.35
+    colours_of_same: float = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +68,8 @@ class ExistenceConfig:
         highest_score: what one image can say at most.
         highest: what all can say.
         confirmed: log odds at which somebody is told.
-        unmoved: what who never moved needs more: a thing that looks like a person stands where it stood.
+        still_doubt: what is taken off the score of who never moved: a thing that looks like a person stands.
+        hopeless: log odds below which nobody is followed.
         moved_m: how far somebody went who moves.
         missed: what an image without somebody says who should be seen.
         missed_hidden: the same of somebody behind others.
@@ -77,13 +80,14 @@ class ExistenceConfig:
         brief_forget_s: who was hardly seen is forgotten sooner.
     """
 
-    weakest: float = -1.0
-    birth: float = 0.5
+    weakest: float = -2.0
+    birth: float = 0.0
     independent_s: float = 0.25
     highest_score: float = 3.0
     highest: float = 8.0
-    confirmed: float = 2.5
-    unmoved: float = 3.0
+    confirmed: float = 1.5
+    still_doubt: float = 1.0
+    hopeless: float = -0.5
     moved_m: float = 0.25
     missed: float = 2.0
     missed_hidden: float = 0.3

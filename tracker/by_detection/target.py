@@ -16,7 +16,6 @@ from peopleboy.tracker.track import Status
 
 _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
 _LEAST_SIGHTINGS: Final = 3
-_HOPELESS: Final = -0.3  # log odds of who was never told
 
 
 @dataclass(slots=True, kw_only=True)
@@ -64,7 +63,8 @@ class Target:
         self.sightings += 1
         self.watched_s += dt_s
         self.ratio += _LEARNING * (ratio - self.ratio)
-        evidence = min(score, config.highest_score) * dt_s / config.independent_s
+        doubt = 0.0 if self.moved_m > config.moved_m else config.still_doubt
+        evidence = (min(score, config.highest_score) - doubt) * dt_s / config.independent_s
         self.log_odds = min(self.log_odds + evidence, config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-score)) - self.confidence)
 
@@ -92,16 +92,15 @@ class Target:
     def is_shown(self, time_s: float, config: ExistenceConfig) -> bool:
         """Tell whether it is still said to be where it is expected."""
         doubt = config.doubt_s if self.occluder is None else config.hidden_doubt_s
-        return self.is_told and time_s - self.seen_s <= doubt
+        return self.is_told and self.log_odds > config.hopeless and time_s - self.seen_s <= doubt
 
     def is_forgotten(self, time_s: float, config: ExistenceConfig) -> bool:
         """Tell whether it would not be known again."""
         gone = time_s - self.seen_s
         if not self.is_told:
-            return self.log_odds < _HOPELESS or gone > config.doubt_s
+            return self.log_odds < config.hopeless or gone > config.doubt_s
         return gone > (config.forget_s if self.watched_s > config.brief_s else config.brief_forget_s)
 
     def is_confirmed(self, config: ExistenceConfig) -> bool:
         """Tell whether enough speaks for it to be told."""
-        needed = config.confirmed + (0.0 if self.moved_m > config.moved_m else config.unmoved)
-        return self.sightings >= _LEAST_SIGHTINGS and self.log_odds > needed
+        return self.sightings >= _LEAST_SIGHTINGS and self.log_odds > config.confirmed
