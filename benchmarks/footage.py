@@ -2,6 +2,7 @@
 
 Scenes of the library are played, and their 16-bit pictures tracked as somebody else's would be: without a
 scale, without the robot's motion, anywhere in the image. In a hot room clothes are colder than the walls.
+`--clips DIR` measures on real clips instead, beside OpenCV's HOG with ByteTrack.
 """
 
 from __future__ import annotations
@@ -17,11 +18,16 @@ import yaml
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks.clips.bench import ClipsOptions, bench_clips
+from benchmarks.clips.watch import PEERS
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import track_footage
+from peopleboy.scenarios.running.engine.task import TasksFailed
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.trackers import FOOTAGE_TRACKER
 
 SCENES: Final = (
     "crossing_2",
@@ -37,21 +43,59 @@ ROOMS: Final[Mapping[str, Mapping[str, float]]] = {
     "a room of 31 degC": {"floor_c": 30.0, "walls_c": 31.0, "ceiling_c": 32.0, "surroundings_c": 31.0},
 }
 DURATION_S: Final = 12.0
+_FOOTAGE: Final = click.Path(exists=True, path_type=Path)
+_FOLDER: Final = click.Path(exists=True, file_okay=False, path_type=Path)
 GOAL: Final = 85.0  # [%] of its frames in which one id shall keep a person
 
 
 @click.command()
+@click.option("--clip", type=_FOOTAGE, help="Footage with truth of one person, by many seeds.")
+@click.option("--clips", type=_FOLDER, help="Folder of clips, NAME/thermal and NAME/gt.txt, or as --clip.")
 @click.option(
-    "--clip", type=click.Path(exists=True, path_type=Path), help="Footage with truth of one person."
+    "--tracker",
+    "trackers",
+    multiple=True,
+    default=(FOOTAGE_TRACKER,),
+    show_default=True,
+    help="With --clips; may be given several times.",
 )
-@click.option("--seeds", type=click.IntRange(min=1), default=32, show_default=True, help="For the clip.")
-def main(clip: Path | None, seeds: int) -> None:
-    """Print how people are kept in scenes of the library, or how one is in a clip, in percent."""
+@click.option(
+    "--peer",
+    "peers",
+    multiple=True,
+    type=click.Choice(tuple(PEERS)),
+    default=tuple(PEERS),
+    help="With --clips; may be given several times.  [default: all]",
+)
+@click.option("--only", multiple=True, help="Of --clips, those of these names.")
+@click.option("--frames", type=click.IntRange(min=1), help="Of each of --clips, the first so many.")
+@click.option(
+    "--rate-hz", type=click.FloatRange(min=0.1), help="Of --clips.  [default: as `peopleboy track`]"
+)
+@click.option("--seeds", type=click.IntRange(min=1), help="[default: 32 for --clip, 1 for --clips]")
+@click.option(
+    "--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes, with --clips."
+)
+def main(clip: Path | None, clips: Path | None, seeds: int | None, **how: Any) -> None:
+    """Print how people are kept in scenes of the library, how one is in a clip, or how trackers do on clips.
+
+    Figures are percent. Those of --clips are left in runs/clips.json, too.
+    """
+    if clips is not None:
+        _show_clips(ClipsOptions(home=clips, seeds=seeds or 1, **how))
+        return
     with tempfile.TemporaryDirectory() as folder:
         if clip is None:
             _show_rooms(Path(folder))
         else:
-            _show_clip(clip, seeds, Path(folder))
+            _show_clip(clip, seeds or 32, Path(folder))
+
+
+def _show_clips(options: ClipsOptions) -> None:
+    try:
+        bench_clips(options)
+    except (BadInput, TasksFailed) as error:
+        raise click.UsageError(str(error)) from error
 
 
 def _show_rooms(folder: Path) -> None:

@@ -10,26 +10,16 @@ import supervision as sv
 from trackers import ByteTrackTracker, SORTTracker
 
 from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
-from peopleboy.sim.random_streams import stream
+from benchmarks.peers.ours import Contestant, Ours
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.variants import VARIANTS
-from peopleboy.tracker.track import confirmed
-from peopleboy.tracker.trackers import make_tracker
 
 RATE_HZ = 15.0
 # The package counts in frames at 30 Hz: five seconds. Of 1, 2, 5 and 10 s it is best for the oracle's IDF1,
 # and within a point of the best for that of the blobs.
 _LOST_BUFFER = 150
 _STRONG = 0.4  # confidence; HOG's are lower than those of the detectors that the defaults are made for
-
-
-class Contestant(Protocol):
-    """Whatever turns frames into boxes with ids."""
-
-    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
-        """Give the boxes (N, 4) of the next frame, left, top, width, height [px], and their ids."""
-        ...
 
 
 class _Detector(Protocol):
@@ -51,18 +41,6 @@ class DetectAndAssociate:
         corners = tracked.xyxy[is_known]
         boxes = np.concatenate([corners[:, :2], corners[:, 2:] - corners[:, :2]], axis=1)
         return boxes, [int(number) for number in np.asarray(tracked.tracker_id)[is_known]]
-
-
-class Ours:
-    """A tracker of `peopleboy.tracker.trackers`."""
-
-    def __init__(self, name: str, seed: int) -> None:
-        self._tracker = make_tracker(name, stream(seed, "tracker"))
-
-    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
-        """Update, and take the confirmed tracks."""
-        found = list(confirmed(self._tracker.update(frame), THERMAL))
-        return np.array([box for _, box in found]).reshape(-1, 4), [track.id for track, _ in found]
 
 
 def _bytetrack() -> Any:

@@ -1,7 +1,8 @@
 """Detectors that see one frame at a time: OpenCV's HOG, warm blobs, and an oracle.
 
-Their boxes are shaped to the truth's: as high as the person, and as wide as the torso. The constants that do
-so were chosen in the peers' favour, by the area accuracy on crossing_2 and crossing_3.
+Their boxes are shaped to the truth's: as high as the person, and as wide as the torso, or as whole people
+where those are annotated. The constants that do so were chosen in the peers' favour, by the area accuracy on
+crossing_2 and crossing_3.
 """
 
 from __future__ import annotations
@@ -35,29 +36,41 @@ class Detections:
 
 
 class Hog:
-    """OpenCV's people detector on the colour or the thermal image, enlarged so that it sees people 10 m away.
+    """OpenCV's people detector on the colour or the thermal image, enlarged to see people 10 m away.
+
+    Args:
+        uses_colour: whether to look at the colour image.
+        width_per_height: of the truth's boxes.
+        enlarged: how many times the image is enlarged.
+        weakest: least distance from the classifier's boundary.
 
     Source: Dalal and Triggs 2005, with OpenCV's default detector of windows of 64 x 128 pixels.
     """
 
-    _ENLARGED = 2.0
-    _WEAKEST = -0.3  # distance from the classifier's boundary
     _MAN_PER_WINDOW = 0.76  # the person is so high in the detector's window
 
-    def __init__(self, *, uses_colour: bool) -> None:
-        self._uses_colour = uses_colour
+    def __init__(
+        self,
+        *,
+        uses_colour: bool,
+        width_per_height: float = TORSO_PER_HEIGHT,
+        enlarged: float = 2.0,
+        weakest: float = -0.3,
+    ) -> None:
+        self._uses_colour, self._width_per_height = uses_colour, width_per_height
+        self._enlarged, self._weakest = enlarged, weakest
         self._hog = cv2.HOGDescriptor()
         self._hog.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
 
     def detect(self, frame: Frame) -> Detections:
         """Find people in a frame."""
         image = frame.rgb(COLOUR) if self._uses_colour else frame.grey(THERMAL)
-        large = cv2.resize(image, None, fx=self._ENLARGED, fy=self._ENLARGED, interpolation=cv2.INTER_LINEAR)
+        large = cv2.resize(image, None, fx=self._enlarged, fy=self._enlarged, interpolation=cv2.INTER_LINEAR)
         found, weight = self._hog.detectMultiScale(
-            large, hitThreshold=self._WEAKEST, winStride=(8, 8), padding=(16, 16), scale=1.07
+            large, hitThreshold=self._weakest, winStride=(8, 8), padding=(16, 16), scale=1.07
         )
-        windows = np.asarray(found, dtype=np.float64).reshape(-1, 4) / self._ENLARGED
-        boxes = _shaped(windows, self._MAN_PER_WINDOW)
+        windows = np.asarray(found, dtype=np.float64).reshape(-1, 4) / self._enlarged
+        boxes = _shaped(windows, self._MAN_PER_WINDOW, self._width_per_height)
         if self._uses_colour:
             boxes = _from_colour(boxes, image.shape, frame)
         return Detections(
@@ -82,7 +95,7 @@ class Blobs:
         boxes = boxes[
             (boxes[:, 3] >= self._SMALLEST_PX) & (ratio >= self._UPRIGHT[0]) & (ratio <= self._UPRIGHT[1])
         ]
-        return Detections(_shaped(boxes, 1.0), np.ones(len(boxes)))
+        return Detections(_shaped(boxes, 1.0, TORSO_PER_HEIGHT), np.ones(len(boxes)))
 
 
 class Oracle:
@@ -99,10 +112,10 @@ class Oracle:
         return Detections(self._truth.box[rows], np.ones(int(rows.sum())))
 
 
-def _shaped(boxes: Boxes, height_share: float) -> Boxes:
-    """Boxes with the same middles, so much lower, and as wide as a torso."""
+def _shaped(boxes: Boxes, height_share: float, width_per_height: float) -> Boxes:
+    """Boxes with the same middles, so much lower, and so wide of that, unless they are narrower."""
     height = height_share * boxes[:, 3]
-    width = np.minimum(boxes[:, 2], TORSO_PER_HEIGHT * height)
+    width = np.minimum(boxes[:, 2], width_per_height * height)
     middle = boxes[:, :2] + boxes[:, 2:] / 2.0
     size = np.stack([width, height], axis=1)
     return np.concatenate([middle - size / 2.0, size], axis=1)

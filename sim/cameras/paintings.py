@@ -86,8 +86,9 @@ def paint_row(
         texels: (2, N) beside them.
         layer: 0 for kelvin, 1 for light.
     """
-    width, step = part.shape[1], _KELVIN if layer == 0 else _LIGHT
-    values = texels[layer]
+    width, step = part.shape[1], np.float32(_KELVIN if layer == 0 else _LIGHT)
+    values, depths = texels[layer], depth[v]
+    none, one = np.float32(0.0), np.uint32(1)
     end = 0
     while end < width:
         first, p = end, part[v, end]
@@ -95,23 +96,26 @@ def paint_row(
             end += 1
         if p < 0 or paint[p, 0] < 0.0:
             continue
-        scale, columns, texel = paint[p, 4], int(paint[p, 5]), int(paint[p, 0])
-        most_u, most_v = paint[p, 5] - 1.001, paint[p, 6] - 1.001
+        scale, columns, texel = paint[p, 4], np.int32(paint[p, 5]), np.int32(paint[p, 0])
+        most_u, most_v = np.float32(paint[p, 5] - 1.001), np.float32(paint[p, 6] - 1.001)
         m, is_level = matrices[p], int(paint[p, 1]) == _LEVEL
         low, more = (1, 0.0) if is_level else (2, 1.0)
         # Texels across are (slope u + start) z + origin, and those up alike.
-        slope_u = (m[0, 0] + more * m[1, 0]) * scale
-        start_u = ((m[0, 1] + more * m[1, 1]) * v + m[0, 2] + more * m[1, 2]) * scale
-        origin_u = (m[0, 3] + more * m[1, 3] - paint[p, 2]) * scale
-        slope_v, start_v = m[low, 0] * scale, (m[low, 1] * v + m[low, 2]) * scale
-        origin_v = (m[low, 3] - paint[p, 3]) * scale
+        slope_u = np.float32((m[0, 0] + more * m[1, 0]) * scale)
+        start_u = np.float32(((m[0, 1] + more * m[1, 1]) * v + m[0, 2] + more * m[1, 2]) * scale)
+        origin_u = np.float32((m[0, 3] + more * m[1, 3] - paint[p, 2]) * scale)
+        slope_v, start_v = np.float32(m[low, 0] * scale), np.float32((m[low, 1] * v + m[low, 2]) * scale)
+        origin_v = np.float32((m[low, 3] - paint[p, 3]) * scale)
         for u in range(first, end):
-            z = depth[v, u]
-            x = min(max((slope_u * u + start_u) * z + origin_u, 0.0), most_u)
-            y = min(max((slope_v * u + start_v) * z + origin_v, 0.0), most_v)
-            i, j = int(x), int(y)
-            a, at = x - i, texel + j * columns + i
-            lower = values[at] + a * (values[at + 1] - values[at])
-            at += columns
-            upper = values[at] + a * (values[at + 1] - values[at])
-            line[u] = step * (lower + (y - j) * (upper - lower))
+            z = depths[u]
+            x = min(max((slope_u * np.float32(u) + start_u) * z + origin_u, none), most_u)
+            y = min(max((slope_v * np.float32(u) + start_v) * z + origin_v, none), most_v)
+            i, j = np.int32(x), np.int32(y)
+            # An unsigned place is not checked for being counted from the end.
+            a, at = x - np.float32(i), np.uint32(texel + j * columns + i)
+            value = np.float32(values[at])
+            lower = value + a * (np.float32(values[at + one]) - value)
+            at += np.uint32(columns)
+            value = np.float32(values[at])
+            upper = value + a * (np.float32(values[at + one]) - value)
+            line[u] = step * (lower + (y - np.float32(j)) * (upper - lower))

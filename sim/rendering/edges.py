@@ -31,6 +31,7 @@ Pixels = NDArray[np.int32]
 _RAYS = np.array([(-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375)])
 _NEXT = (1, 3, 0, 2)
 
+_BOX = int(ShapeKind.BOX)
 _CAPSULE = int(ShapeKind.CAPSULE)
 _MESH = int(ShapeKind.MESH)
 _NONE = -1
@@ -81,9 +82,10 @@ def smooth(
     pose = _shapes_from_camera(table, invert_pose(world_from_camera) @ world_from_part)
     shapes = Shapes(table.kind, table.size, table.first_surface, table.surface_shape, _pieces_of(table), pose)
     piece = _find_pieces(view.part, view.surface, shapes.piece)
-    pixel = _find_pixels(image, piece, np.float32(contrast))
-    sources = _find_sources(pixel, view.depth, piece, shapes, lens)
-    _average(image.reshape(-1, image.shape[2]), pixel, sources)
+    values, least = image.reshape(-1, image.shape[2]), np.float32(contrast)
+    pixel = _find_pixels(image, piece, least)
+    sources = _find_sources(pixel, values, least, view.depth, piece, shapes, lens)
+    _average(values, pixel, sources)
 
 
 @njit(cache=True)
@@ -171,10 +173,18 @@ def _differ(one: NDArray[np.float32], other: NDArray[np.float32], contrast: np.f
 
 
 @njit(cache=True, error_model="numpy")
-def _find_sources(
-    pixel: Pixels, depth: NDArray[np.float32], piece: Pixels, shapes: Shapes, lens: Lens
+def _find_sources(  # noqa: C901 (in one function)
+    pixel: Pixels,
+    values: NDArray[np.float32],
+    contrast: np.float32,
+    depth: NDArray[np.float32],
+    piece: Pixels,
+    shapes: Shapes,
+    lens: Lens,
 ) -> Pixels:
     """(E, 4) the numbers of the pixels that look like what each ray meets.
+
+    No ray is tried where that would look the same.
 
     All is in one function, as to pass arrays to a kernel costs as much as to try a ray.
     """
@@ -194,7 +204,7 @@ def _find_sources(
         for side in range(4):
             at = beside[side]
             other = pieces[at]
-            if other == one:
+            if other == one or not _differ(values[own], values[at], contrast):
                 continue
             first, last, count = _in_order(one, other, shape_of[one] == shape_of[other], depth_one, z[at])
             for turn in range(2):
@@ -207,23 +217,41 @@ def _find_sources(
                 y = (v + _RAYS[k, 1] - lens.centre_v) * scale
                 best, seen = math.inf, last if count == 1 else one
                 for j in range(count):
-                    s = shape_of[first if j == 0 else last]
+                    p = first if j == 0 else last
+                    s = shape_of[p]
                     if kind[s] == _MESH:
                         best, seen = 0.0, one
                         break
-                    o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
-                    d = (
-                        pose[s, 0, 0] * x + pose[s, 0, 1] * y + pose[s, 0, 2],
-                        pose[s, 1, 0] * x + pose[s, 1, 1] * y + pose[s, 1, 2],
-                        pose[s, 2, 0] * x + pose[s, 2, 1] * y + pose[s, 2, 2],
-                    )
-                    t, surface = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
+                    if kind[s] == _BOX:
+                        t, surface = _hit_face(p - first_surface[s], size[s], pose[s], x, y), p
+                    else:
+                        o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
+                        d = (
+                            pose[s, 0, 0] * x + pose[s, 0, 1] * y + pose[s, 0, 2],
+                            pose[s, 1, 0] * x + pose[s, 1, 1] * y + pose[s, 1, 2],
+                            pose[s, 2, 0] * x + pose[s, 2, 1] * y + pose[s, 2, 2],
+                        )
+                        t, local = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
+                        surface = piece_of[first_surface[s] + local]
                     if t < best:
-                        best, seen = t, piece_of[first_surface[s] + surface]
+                        best, seen = t, surface
                 if seen == one or (seen != other and shape_of[seen] == shape_of[one]):
                     break
                 sources[i, k] = at
     return sources
+
+
+@njit(cache=True, error_model="numpy")
+def _hit_face(face: int, size: Array, pose: Array, x: float, y: float) -> float:
+    """Where the camera's ray (x, y, 1) meets one face of a box, infinite if it does not."""
+    i, j, k = face % 3, (face + 1) % 3, (face + 2) % 3
+    along = pose[i, 0] * x + pose[i, 1] * y + pose[i, 2]
+    end = 0.5 * size[i] if face < 3 else -0.5 * size[i]
+    t = (end - pose[i, 3]) / along
+    across = pose[j, 3] + t * (pose[j, 0] * x + pose[j, 1] * y + pose[j, 2])
+    up = pose[k, 3] + t * (pose[k, 0] * x + pose[k, 1] * y + pose[k, 2])
+    is_met = (abs(across) <= 0.5 * size[j]) & (abs(up) <= 0.5 * size[k]) & (end * along < 0.0)
+    return t if is_met else math.inf
 
 
 @njit(cache=True)

@@ -15,17 +15,20 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
-from peopleboy.sim.geometry.vectors import compose, map_point
-from peopleboy.sim.rendering.canvas import Canvas, Lens, Rectangle, make_canvas, pixels, shade
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.geometry.vectors import Point, compose, dot, map_point, minus, plus, scaled
+from peopleboy.sim.rendering.canvas import Canvas, Lens, Rectangle, pixels, set_shading, shade
 from peopleboy.sim.rendering.raycast import draw_shape, quick_bounds
+from peopleboy.sim.rendering.rays import hit_shape
 from peopleboy.sim.rendering.sight import Seen
 from peopleboy.sim.rendering.view import View
+from peopleboy.sim.shapes.bounds import EMPTY, EVERYTHING, FAR_M, NEAR_M, Bounds, unite
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Image = NDArray[np.float32]
 Pixels = NDArray[np.int32]
 Plane = tuple[float, float, float, float]
 
@@ -34,6 +37,7 @@ _CAPSULE = int(ShapeKind.CAPSULE)
 _CYLINDER = int(ShapeKind.CYLINDER)
 _BOX = int(ShapeKind.BOX)
 _FLAT = (_BOX, int(ShapeKind.PLANE))
+_NO_AXIS: Point = (0.0, 0.0, 0.0)
 _FEWEST = 30  # pixels of a surface in which anything would be seen
 EVERY = 2  # pixels of the image for one of a reflection, in row and column
 _MOST = 6  # planes that mirror at a time, those of most pixels
@@ -124,38 +128,85 @@ def _around(a: tuple[int, ...], b: tuple[int, ...]) -> tuple[int, int, int, int]
 def _reflect(seen: Seen, camera: Pinhole, mirror: _Mirror, is_mirrored: Mask) -> Reflection | None:
     """Draw what is seen in a mirror; None if that is nothing."""
     scene, table, eye = seen.scene, seen.scene.table, seen.world_from_camera
-    householder = np.eye(4)
-    householder[:3, :3] -= 2.0 * np.outer(mirror.normal, mirror.normal)
-    householder[:3, 3] = 2.0 * mirror.offset * mirror.normal
-    pose = householder @ eye
-    up, away = mirror.normal @ eye[:3, :3], mirror.offset - float(mirror.normal @ eye[:3, 3])
-    plane = (float(up[0]), float(up[1]), float(up[2]), away)
+    pose = eye.copy()
+    pose[:3, :3] -= np.outer(2.0 * mirror.normal, mirror.normal @ eye[:3, :3])
+    away = mirror.offset - float(mirror.normal @ eye[:3, 3])
+    pose[:3, 3] += 2.0 * away * mirror.normal
+    up = (mirror.normal @ eye[:3, :3]).tolist()
     left, top, right, bottom = mirror.window
     lens = _every(camera, left, top, right, bottom)
-    canvas = make_canvas(lens, len(table.surface_part))
-    camera_from_part = invert_pose(pose) @ scene.world_from_part
-    box = _draw_beyond(table, camera_from_part, scene.hidden, is_mirrored, plane, lens, canvas)
-    if box[0] > box[2] or box[1] > box[3]:
-        return None
-    # A pixel more all round, for what is mirrored ends between pixels.
-    first_u, first_v = max(box[0] - 1, 0), max(box[1] - 1, 0)
-    columns, rows = slice(first_u, box[2] + 2), slice(first_v, box[3] + 2)
-    canvas = canvas._replace(
-        nearness=np.ascontiguousarray(canvas.nearness[rows, columns]),
-        surface=np.ascontiguousarray(canvas.surface[rows, columns]),
-        cover=np.ascontiguousarray(canvas.cover[rows, columns]),
+    beyond = _look_into(
+        table, pose, scene.world_from_part, scene.hidden, is_mirrored, (up[0], up[1], up[2], away), lens
     )
-    height, width = canvas.surface.shape
-    lens = Lens(lens.focal, lens.centre_u - first_u, lens.centre_v - first_v, width, height)
-    cosine, part = np.empty((height, width), np.float32), np.empty((height, width), np.int32)
-    if not _keep(canvas, table.surface_part, is_mirrored, plane, lens, cosine):
+    column, row, part, depth, normal, surface, cosine = beyond
+    if column < 0:
         return None
-    depth, normal = np.empty((height, width), np.float32), np.empty((height, width, 3), np.float32)
-    shade(table.surface_part, lens, canvas, np.ascontiguousarray(pose[:3, :3]), part, depth, normal)
-    beyond = View(part, depth, normal, canvas.cover, canvas.surface)
     is_surface = np.zeros(len(table.surface_part), np.bool_)
     is_surface[mirror.surfaces] = True
-    return Reflection(left + EVERY * first_u, top + EVERY * first_v, beyond, pose, cosine, is_surface)
+    view = View(part, depth, normal, np.zeros(part.shape, np.uint64), surface)
+    return Reflection(left + EVERY * column, top + EVERY * row, view, pose, cosine, is_surface)
+
+
+@njit(cache=True, error_model="numpy")
+def _look_into(
+    table: ShapeTable,
+    world_from_camera: Array,
+    world_from_part: Array,
+    hidden: Mask,
+    is_mirrored: Mask,
+    plane: Plane,
+    lens: Lens,
+) -> tuple[int, int, Pixels, Image, Image, Pixels, Image]:
+    """First column and row of what a mirrored camera sees, its parts, depths, normals, surfaces and cosines.
+
+    The column is -1 if that is nothing; arguments as in `_draw_beyond` and `_keep`.
+    """
+    shape = (lens.height, lens.width)
+    canvas = Canvas(
+        np.zeros(shape),
+        np.empty(shape, np.int32),
+        np.zeros(shape, np.uint64),
+        np.empty((len(table.surface_part), 7)),
+        np.empty((6, 3)),
+        np.empty((3, 4)),
+    )
+    camera_from_part = _seen_from(world_from_camera, world_from_part)
+    box = _draw_beyond(table, camera_from_part, hidden, is_mirrored, plane, lens, canvas)
+    # A pixel more all round, for what is mirrored ends between pixels.
+    column, row = max(box[0] - 1, 0), max(box[1] - 1, 0)
+    width, height = min(box[2] + 2, lens.width) - column, min(box[3] + 2, lens.height) - row
+    if box[0] > box[2] or box[1] > box[3]:
+        column, row, width, height = -1, 0, 0, 0
+    canvas = Canvas(
+        canvas.nearness[row : row + height, max(column, 0) : column + width].copy(),
+        canvas.surface[row : row + height, max(column, 0) : column + width].copy(),
+        canvas.cover,
+        canvas.shading,
+        canvas.edges,
+        canvas.pose,
+    )
+    lens = Lens(lens.focal, lens.centre_u - column, lens.centre_v - row, width, height)
+    shape = (height, width)
+    cosine, depth = np.empty(shape, np.float32), np.empty(shape, np.float32)
+    part, normal = np.empty(shape, np.int32), np.empty((height, width, 3), np.float32)
+    if not _keep(canvas, table.surface_part, is_mirrored, plane, lens, cosine):
+        column = -1
+    shade(table.surface_part, lens, canvas, world_from_camera, part, depth, normal)
+    return column, row, part, depth, normal, canvas.surface, cosine
+
+
+@njit(cache=True)
+def _seen_from(world_from_camera: Array, world_from_part: Array) -> Array:
+    """(P, 3, 4) camera from part, by rigid poses (4, 4) and (P, 4, 4)."""
+    inverse, found = np.empty((3, 4)), np.empty((len(world_from_part), 3, 4))
+    for i in range(3):
+        inverse[i, 3] = 0.0
+        for j in range(3):
+            inverse[i, j] = world_from_camera[j, i]
+            inverse[i, 3] -= world_from_camera[j, i] * world_from_camera[j, 3]
+    for part in range(len(found)):
+        compose(inverse, world_from_part[part], found[part])
+    return found
 
 
 def _every(camera: Pinhole, left: int, top: int, right: int, bottom: int) -> Lens:
@@ -181,7 +232,8 @@ def _draw_beyond(
     for `is_mirrored` (P,), what is wanted, and the mirror's plane as in `_keep`.
     """
     left, top, right, bottom = lens.width, lens.height, -1, -1
-    pose = canvas.pose
+    pose, window, farthest = canvas.pose, lens, 0.0
+    bounds = (0, 0, lens.width - 1, lens.height - 1)
     for is_wanted in (True, False):
         for shape in range(len(table.kind)):
             part = table.part[shape]
@@ -191,23 +243,95 @@ def _draw_beyond(
             x, y, z = map_point(to_camera, middle[0, 3], middle[1, 3], middle[2, 3])
             if plane[0] * x + plane[1] * y + plane[2] * z >= plane[3]:
                 continue
-            if _is_outside(x, y, z, _radius(table.kind[shape], table.size[shape]), lens):
+            radius = _radius(table.kind[shape], table.size[shape])
+            if _is_outside(x, y, z, radius, window) or (not is_wanted and z - radius > farthest):
                 continue
             compose(to_camera, middle, pose)
-            area = pixels(lens, quick_bounds(table, shape, pose))
+            kind, size = table.kind[shape], table.size[shape]
+            is_round = kind in (_CAPSULE, _SPHERE)
+            area = pixels(lens, _around_balls(size, pose) if is_round else quick_bounds(table, shape, pose))
+            area = (
+                max(area[0], bounds[0]), max(area[1], bounds[1]),
+                min(area[2], bounds[2]), min(area[3], bounds[3]),
+            )  # fmt: skip
             if area[0] > area[2] or area[1] > area[3]:
                 continue
             if is_wanted:
                 left, top = min(left, area[0]), min(top, area[1])
                 right, bottom = max(right, area[2]), max(bottom, area[3])
+                farthest = max(farthest, z + radius)
+            if is_round:
+                _draw_round(kind, size, table.first_surface[shape], lens, area, canvas)
             else:
-                area = max(area[0], left), max(area[1], top), min(area[2], right), min(area[3], bottom)
-                if area[0] > area[2] or area[1] > area[3]:
-                    continue
-            draw_shape(table, shape, np.uint64(0), lens, area, canvas)
+                draw_shape(table, shape, np.uint64(0), lens, area, canvas)
         if right < 0:
             break
+        # What hides something must be nearer than that, and within its bounds.
+        bounds = (left, top, right, bottom)
+        window = Lens(
+            lens.focal, lens.centre_u - left, lens.centre_v - top, right - left + 1, bottom - top + 1
+        )
     return left, top, right, bottom
+
+
+@njit(cache=True, error_model="numpy")
+def _draw_round(kind: int, size: Array, surface: int, lens: Lens, area: Rectangle, canvas: Canvas) -> None:
+    """Draw a sphere or a capsule by trying the ray of each pixel, which is quick where these are few."""
+    pose = canvas.pose
+    centre, axis = (pose[0, 3], pose[1, 3], pose[2, 3]), (pose[0, 2], pose[1, 2], pose[2, 2])
+    radius, half = (size[1], 0.5 * size[0]) if kind == _CAPSULE else (size[0], 0.0)
+    if kind == _CAPSULE:
+        set_shading(canvas, surface, axis, minus(scaled(axis, dot(axis, centre)), centre), 1.0 / radius)
+        for i in range(2):
+            end = plus(centre, scaled(axis, (2 * i - 1) * half))
+            set_shading(canvas, surface + 1 + i, _NO_AXIS, scaled(end, -1.0), 1.0 / radius)
+    else:
+        set_shading(canvas, surface, _NO_AXIS, scaled(centre, -1.0), 1.0 / radius)
+    eye = _turned(pose, -centre[0], -centre[1], -centre[2])
+    step = scaled((pose[0, 0], pose[0, 1], pose[0, 2]), 1.0 / lens.focal)
+    extent = (size[0], size[1], size[2])
+    for v in range(area[1], area[3] + 1):
+        ray = _turned(pose, -lens.centre_u / lens.focal, (v - lens.centre_v) / lens.focal, 1.0)
+        nearness, surfaces = canvas.nearness[v], canvas.surface[v]
+        for u in range(area[0], area[2] + 1):
+            z, local = hit_shape(kind, extent, eye, plus(ray, scaled(step, float(u))))
+            if z * nearness[u] < 1.0 and NEAR_M <= z <= FAR_M:
+                nearness[u] = 1.0 / z
+                surfaces[u] = surface + local
+
+
+@njit(cache=True)
+def _turned(pose: Array, x: float, y: float, z: float) -> Point:
+    """A direction of the camera's frame in that of a shape."""
+    return (
+        pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z,
+        pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z,
+        pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z,
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _around_balls(size: Array, pose: Array) -> Bounds:
+    """Bounds that a capsule, or a sphere, does not leave, quickly: those of a box round each end."""
+    is_capsule = size[1] > 0.0
+    radius, half = (size[1], 0.5 * size[0]) if is_capsule else (size[0], 0.0)
+    bounds = EMPTY
+    for i in range(2 if is_capsule else 1):
+        along = (2 * i - 1) * half
+        x, y, z = map_point(pose, 0.0, 0.0, along)
+        if z - radius < NEAR_M:
+            return EVERYTHING
+        near, far = 1.0 / (z - radius), 1.0 / (z + radius)
+        bounds = unite(
+            bounds,
+            (
+                (x - radius) * (near if x < radius else far),
+                (y - radius) * (near if y < radius else far),
+                (x + radius) * (far if x < -radius else near),
+                (y + radius) * (far if y < -radius else near),
+            ),
+        )
+    return bounds
 
 
 @njit(cache=True, error_model="numpy")

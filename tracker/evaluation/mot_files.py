@@ -25,8 +25,13 @@ CLASSES = range(1, 14)
 Kind = TypeVar("Kind", bound=Rows)
 
 
-def read_truth(path: Path) -> TrueBoxes:
+def read_truth(path: Path, *, keeps_things: bool = False) -> TrueBoxes:
     """Read a truth file (`gt.txt`); distractors do not count, and things are left out, as in TrackEval.
+
+    Args:
+        path: the file.
+        keeps_things: whether things stay, without counting, so that a box on one, such as on a bicycle with
+            somebody on it, is not wrong either.
 
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
@@ -35,7 +40,7 @@ def read_truth(path: Path) -> TrueBoxes:
     kind = table[:, 7]
     for row in np.flatnonzero(~np.isin(kind, CLASSES))[:1]:
         raise BadInput(f"{path}:{row + 1}: class must be 1 (person) to 13, got {kind[row]:g}")
-    is_distractor = np.isin(kind, DISTRACTORS)
+    is_distractor = (kind != PERSON) if keeps_things else np.isin(kind, DISTRACTORS)
     truth = _build(path, TrueBoxes, table, counted=table[:, 6], visible=table[:, 8])
     if (kind == PERSON).all():
         return truth

@@ -8,7 +8,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.surfaces import part_from_pixel
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.rendering.reflections import EVERY, Reflection
 from peopleboy.sim.rendering.view import View
@@ -48,14 +47,42 @@ def add_reflections(
     if view.surface is None:
         return
     for one in reflections:
-        matrices = part_from_pixel(camera, one.world_from_camera, world_from_part)
-        # The window's pixels are counted from its own corner, every other one.
-        matrices[:, :, 2] += one.left * matrices[:, :, 0] + one.top * matrices[:, :, 1]
-        matrices[:, :, :2] *= EVERY
+        matrices = _part_from_pixel(
+            camera.focal_px, camera.centre_px, one.left, one.top, one.world_from_camera, world_from_part
+        )
         _mix(
             image, view.part, view.surface, one.is_surface, draw(one.view, matrices), one.view.part,
             one.cosine, one.left, one.top, reflectance, shine, surroundings,
         )  # fmt: skip
+
+
+@njit(cache=True, fastmath=True)
+def _part_from_pixel(
+    focal: float,
+    centre: tuple[float, float],
+    left: int,
+    top: int,
+    world_from_camera: Matrix,
+    world_from_part: Matrix,
+) -> Matrix:
+    """(P, 3, 4) as `surfaces.part_from_pixel`, for a window's pixels from its own corner, every other one."""
+    matrices, rays, offset = np.empty((len(world_from_part), 3, 4)), np.empty((3, 3)), np.empty(3)
+    step = EVERY / focal
+    for i in range(3):
+        across, down, ahead = world_from_camera[i, 0], world_from_camera[i, 1], world_from_camera[i, 2]
+        rays[i, 0], rays[i, 1] = across * step, down * step
+        rays[i, 2] = across * (left - centre[0]) / focal + down * (top - centre[1]) / focal + ahead
+    for p in range(len(matrices)):
+        pose = world_from_part[p]
+        for i in range(3):
+            offset[i] = world_from_camera[i, 3] - pose[i, 3]
+        for i in range(3):
+            for j in range(3):
+                matrices[p, i, j] = (
+                    pose[0, i] * rays[0, j] + pose[1, i] * rays[1, j] + pose[2, i] * rays[2, j]
+                )
+            matrices[p, i, 3] = pose[0, i] * offset[0] + pose[1, i] * offset[1] + pose[2, i] * offset[2]
+    return matrices
 
 
 @njit(cache=True, fastmath=True)

@@ -1,0 +1,38 @@
+"""Our own trackers among contestants, for which no package of others is needed."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from benchmarks.peers.detectors import Boxes
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.track import confirmed
+from peopleboy.tracker.trackers import make_tracker
+
+
+class Contestant(Protocol):
+    """Whatever turns frames into boxes with ids."""
+
+    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
+        """Give the boxes (N, 4) of the next frame, left, top, width, height [px], and their ids."""
+        ...
+
+
+class Ours:
+    """A tracker of `peopleboy.tracker.trackers`."""
+
+    def __init__(self, name: str, seed: int) -> None:
+        self._tracker = make_tracker(name, stream(seed, "tracker"))
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """Names of the cameras that it wants."""
+        return self._tracker.cameras
+
+    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
+        """Update, and take the confirmed tracks."""
+        found = list(confirmed(self._tracker.update(frame), THERMAL))
+        return np.array([box for _, box in found]).reshape(-1, 4), [track.id for track, _ in found]

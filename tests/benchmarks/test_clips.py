@@ -1,0 +1,129 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from benchmarks.clips.bench import OUT
+from benchmarks.clips.clip import open_clips, whole_body
+from benchmarks.clips.show import ClipRow
+from benchmarks.clips.watch import Watched, _scored
+from benchmarks.footage import main
+from tests.helpers.calls.refused import assert_names, refused
+
+FRAMES = 12
+WALKER, BICYCLE = (50.0, 23.0, 31.82, 74.0), (110.0, 30.0, 30.1, 70.0)
+
+
+def write_clip(folder: Path, *, single: bool = False) -> Path:
+    """A person who walks, and a bicycle; of a single one, only the walker is annotated."""
+    pictures = folder / ("img" if single else "thermal")
+    pictures.mkdir(parents=True)
+    lines = []
+    for frame in range(1, FRAMES + 1):
+        image, x = np.full((120, 160), 60, np.uint8), 65 + frame
+        cv2.ellipse(image, (x, 30), (5, 7), 0, 0, 360, 180, cv2.FILLED)
+        cv2.ellipse(image, (x, 55), (11, 20), 0, 0, 360, 180, cv2.FILLED)
+        cv2.rectangle(image, (x - 8, 60), (x + 8, 96), 180, cv2.FILLED)
+        cv2.imwrite(str(pictures / f"{frame:06d}.jpg"), image)
+        boxes = [",".join(map(str, (one[0] + frame, *one[1:]))) for one in (WALKER, BICYCLE)]
+        lines += (
+            [f"{boxes[0]}\n"]
+            if single
+            else [f"{frame},1,{boxes[0]},1,1,1\n", f"{frame},2,{boxes[1]},0,3,1\n"]
+        )
+    name = "groundtruth_rect.txt" if single else "gt.txt"
+    (folder / name).write_text("".join(lines), encoding="utf-8")
+    return folder
+
+
+def said(*people: tuple[float, float, float, float]) -> list[tuple[int, int, np.ndarray]]:
+    """Tracks that follow these boxes as the truth does, but as narrow as a torso."""
+    return [
+        (frame, number, np.array([box[0] + frame + 0.25 * box[2], box[1], 0.5 * box[2], box[3]]))
+        for frame in range(1, FRAMES + 1)
+        for number, box in enumerate(people, 1)
+    ]
+
+
+def call(*arguments: object) -> Result:
+    return CliRunner().invoke(main, list(map(str, arguments)))
+
+
+def test_a_torso_becomes_as_wide_as_a_whole_person_about_the_same_middle() -> None:
+    assert whole_body(np.array([[40.0, 10.0, 20.0, 100.0]])) == pytest.approx(
+        np.array([[28.5, 10.0, 43.0, 100.0]])
+    )
+
+
+def test_a_bicycle_is_neither_hit_nor_miss(tmp_path: Path) -> None:
+    write_clip(tmp_path / "street")
+    (clip,) = open_clips(tmp_path)
+    for people in ((WALKER,), (WALKER, BICYCLE)):
+        figures = ClipRow(clip, "x", [Watched(_scored(clip, said(*people)), 0.1)]).figures()
+        assert (figures["HOTA"], figures["CP"], figures["CR"]) == pytest.approx(
+            (100.0, 100.0, 100.0), abs=0.1
+        )
+        assert figures["false tracks per 1000"] == 0.0
+        assert figures["frames per s"] == pytest.approx(10.0)
+
+
+def test_a_track_on_nobody_is_false_and_counted_per_thousand_frames(tmp_path: Path) -> None:
+    write_clip(tmp_path / "street")
+    (clip,) = open_clips(tmp_path)
+    scores = _scored(clip, said(WALKER, (0.0, 0.0, 10.0, 20.0)))
+    row = ClipRow(clip, "x", [Watched(scores, 0.1), Watched(scores, 0.1)])
+    assert row.figures()["false tracks per 1000"] == pytest.approx(1000.0 / FRAMES)
+    assert row.figures()["CP"] == pytest.approx(50.0)
+
+
+def test_of_a_clip_with_one_person_annotated_nothing_is_said_of_other_boxes(tmp_path: Path) -> None:
+    write_clip(tmp_path / "airfield", single=True)
+    (clip,) = open_clips(tmp_path)
+    figures = ClipRow(clip, "x", [Watched(_scored(clip, said(WALKER, BICYCLE)), 0.1)]).figures()
+    assert figures["one id"] == 100.0
+    assert np.isnan([figures[name] for name in ("HOTA", "IDF1", "MOTA", "CP", "false tracks per 1000")]).all()
+
+
+def test_clips_by_which_values_are_chosen_come_first_and_the_first_frames_alone_count(tmp_path: Path) -> None:
+    for name in ("aaa", "camel_21"):
+        write_clip(tmp_path / name)
+    clips = open_clips(tmp_path, frames=5)
+    assert [clip.name for clip in clips] == ["camel_21", "aaa"]
+    assert [(clip.frames, clip.given.truth.last_frame) for clip in clips] == [(5, 5), (5, 5)]
+
+
+def test_clips_are_printed_as_one_table_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_clip(tmp_path / "clips" / "camel_21")
+    write_clip(tmp_path / "clips" / "airfield", single=True)
+    write_clip(tmp_path / "clips" / "left_out")
+    which = ("--only", "camel_21", "--only", "airfield", "--peer", "HOG x 2 + ByteTrack")
+    told = call("--clips", "clips", *which, "--frames", 6, "--seeds", 2)
+    assert told.exit_code == 0, told.output
+    rows = [line for line in told.stdout.splitlines() if line.startswith("| ")]
+    assert [row.split(" | ")[:3] for row in rows[2:]] == [
+        ["| camel_21", "6", "footage"],
+        ["| camel_21", "6", "HOG x 2 + ByteTrack"],
+        ["| airfield", "6", "footage"],
+        ["| airfield", "6", "HOG x 2 + ByteTrack"],
+    ]
+    assert "values chosen by: camel_21\n" in told.stdout
+    assert "only reported: airfield\n" in told.stdout
+    kept = json.loads(OUT.read_text(encoding="utf-8"))
+    assert kept["camel_21"]["footage"]["runs"] == 2
+    assert kept["airfield"]["footage"]["HOTA"] is None
+
+
+def test_a_clip_or_tracker_that_there_is_not_is_refused(tmp_path: Path) -> None:
+    write_clip(tmp_path / "street")
+    with refused(tmp_path, "square", "street"):
+        open_clips(tmp_path, ["square"])
+    for tracker, word in (("nobodys", "nobodys"), ("rgbd", "depth")):
+        told = call("--clips", tmp_path, "--tracker", tracker)
+        assert told.exit_code == 2
+        assert_names(told.output.splitlines()[-1], word)
