@@ -1,4 +1,4 @@
-"""Boosted trees, one after another, until a window is no person any more; and their file.
+"""Boosted trees, one after another, until a window is no person any more.
 
 A soft cascade (Bourdev and Brandt, CVPR 2005): after each tree, whoever has less than nearly all people have
 by then is let go.
@@ -6,25 +6,15 @@ by then is let go.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from functools import cache
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
 from peopleboy.tracker.proposals.channels import CHANNELS, Cells
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
-from peopleboy.tracker.weights_archive import opened_archive
-
-COMMAND: Final = "peopleboy train-detector"
-WEIGHTS: Final = Path(__file__).parent / "weights" / "people.npz"
-"""The trees that come with the tracker."""
 
 DEPTH: Final = 3
 NODES: Final = 2**DEPTH - 1
@@ -35,8 +25,6 @@ FEATURES: Final = CHANNELS * ROWS * COLUMNS
 STRIDE: Final = 2  # [cells] between windows of the first look
 _LOOKED: Final = 24
 """Trees that a window must come through for those beside it to be looked at, too."""
-
-_ABOUT: Final = "about"
 
 
 class Hits(NamedTuple):
@@ -62,14 +50,12 @@ class Cascade:
         threshold: (T, 7) float32.
         leaf: (T, 8) float32, what each leaf adds to the score.
         least: (T,) float32 score below which a window is let go after that tree.
-        about: what they were learned from, for the reader.
     """
 
     feature: NDArray[np.int32]
     threshold: NDArray[np.float32]
     leaf: NDArray[np.float32]
     least: NDArray[np.float32]
-    about: Mapping[str, str] = field(default_factory=dict)
 
     def scan(self, cells: Cells, rows: tuple[int, int], *, stride: int = STRIDE) -> Hits:
         """Look through all windows of a level, with their first cell in some rows, borders included.
@@ -93,56 +79,18 @@ class Cascade:
         at_row, at_column = np.nonzero(found > -np.inf)
         return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
 
+    def calibrated(self, gain: float, offset: float) -> Cascade:
+        """Give the same trees with scores times a gain plus an offset."""
+        leaf = self.leaf * np.float32(gain)
+        leaf[0] += np.float32(offset)
+        least = self.least * np.float32(gain) + np.float32(offset)
+        return Cascade(self.feature, self.threshold, leaf, least)
+
     def running(self, features: NDArray[np.float32]) -> NDArray[np.float32]:
         """Give the scores (N, T) after each tree of windows (N, 1800)."""
         scores = np.empty((len(features), len(self.feature)), np.float32)
         _run(features, self.feature, self.threshold, self.leaf, scores)
         return scores
-
-    def save(self, path: Path) -> None:
-        """Write a NumPy archive without pickles."""
-        with path.open("wb") as file:
-            np.savez_compressed(
-                file, feature=self.feature.astype(np.int16), threshold=self.threshold, leaf=self.leaf,
-                least=self.least, about=np.array(json.dumps(dict(self.about))),
-            )  # fmt: skip
-
-    @classmethod
-    def load(cls, path: Path) -> Cascade:
-        """Read trees.
-
-        Raises:
-            BadInput: a file that is missing, is none, or holds other trees.
-        """
-        with opened_archive(path, COMMAND) as archive:
-            about = json.loads(str(archive[_ABOUT]))
-            feature, threshold, leaf, least = (
-                np.asarray(archive[name]) for name in ("feature", "threshold", "leaf", "least")
-            )
-        trees = len(least) if least.ndim == 1 else 0
-        is_right = (
-            trees > 0
-            and (feature.shape, feature.dtype) == ((trees, NODES), np.int16)
-            and (threshold.shape, threshold.dtype) == ((trees, NODES), np.float32)
-            and (leaf.shape, leaf.dtype) == ((trees, LEAVES), np.float32)
-            and least.dtype == np.float32
-            and bool(((feature >= 0) & (feature < FEATURES)).all())
-            and not (np.isnan(threshold).any() or np.isnan(least).any())
-            and bool(np.isfinite(leaf).all())
-        )
-        if not is_right:
-            raise BadInput(
-                f"holds no trees of depth {DEPTH} on the {FEATURES} features of a window; "
-                f"`{COMMAND}` makes some",
-                file=str(path),
-            )
-        return cls(feature.astype(np.int32), threshold, leaf, least, about)
-
-
-@cache
-def shipped_cascade() -> Cascade:
-    """Read the trees that come with the tracker."""
-    return Cascade.load(WEIGHTS)
 
 
 @njit(cache=True, nogil=True)

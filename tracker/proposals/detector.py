@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.proposals.cascade import Cascade, shipped_cascade
 from peopleboy.tracker.proposals.channels import Memory
+from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
 from peopleboy.tracker.proposals.motion import change, shifted, turned
 from peopleboy.tracker.proposals.pyramid import levels
 from peopleboy.tracker.proposals.suppression import Proposals, suppress
@@ -39,16 +39,16 @@ class PeopleDetector:
     """Where people may be in images that come one after another."""
 
     def __init__(
-        self, cascade: Cascade | None = None, *, smallest_px: float = SMALLEST_PX, least_score: float = 0.0
+        self, model: PeopleModel | None = None, *, smallest_px: float = SMALLEST_PX, least_score: float = 0.0
     ) -> None:
         """Take the shipped trees, or others.
 
         Args:
-            cascade: the trees.
+            model: the trees.
             smallest_px: height of the smallest people who are looked for.
             least_score: of what is told.
         """
-        self._cascade = shipped_cascade() if cascade is None else cascade
+        self._model = shipped_model() if model is None else model
         self._smallest_px = smallest_px
         self._least_score = least_score
         self._past: deque[_Past] = deque()
@@ -66,7 +66,7 @@ class PeopleDetector:
             mount: how the camera sits; None if that is not known: then people may be anywhere.
         """
         moved = self._change(grey, time_s, odometry, mount)
-        return look(self._cascade, grey, moved, mount, self._smallest_px, self._least_score, self._memory)
+        return look(self._model, grey, moved, mount, self._smallest_px, self._least_score, self._memory)
 
     def _change(self, grey: Grey, time_s: float, odometry: Odometry | None, mount: Mount | None) -> Grey:
         """Compare an image with the one of about 0.2 s ago, and keep it for later ones."""
@@ -90,7 +90,7 @@ class PeopleDetector:
 
 
 def look(
-    cascade: Cascade,
+    model: PeopleModel,
     grey: Grey,
     change: Grey,
     mount: Mount | None,
@@ -102,8 +102,9 @@ def look(
     boxes: list[Floats] = [np.empty((0, 4))]
     scores: list[Floats] = [np.empty(0)]
     for level in levels(grey, change, mount, smallest_px, memory or Memory()):
-        hits = cascade.scan(level.cells, level.rows)
+        hits = model.cascade.scan(level.cells, level.rows)
         is_sure = hits.score >= least_score
-        boxes.append(level.boxes(hits.row[is_sure], hits.column[is_sure]))
+        row, column = hits.row[is_sure], hits.column[is_sure]
+        boxes.append(model.placing.boxes(level.cells, row, column, level.boxes(row, column)))
         scores.append(hits.score[is_sure])
     return suppress(np.concatenate(boxes), np.concatenate(scores))

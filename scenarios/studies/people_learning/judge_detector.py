@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.people_learning.shots import Shot
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.proposals.cascade import Cascade
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
+from peopleboy.tracker.proposals.model import PeopleModel
 from peopleboy.tracker.proposals.suppression import Proposals
 
 Floats = NDArray[np.float64]
 
 _HIT: Final = 0.5  # IoU
+_THERE: Final = 0.4  # IoU with somebody who is there
 _LEAST_SCORE: Final = -2.0
 FALSE_AN_IMAGE: Final = 0.1
 """Mistakes per image at which it is told how many people are found."""
@@ -69,18 +71,44 @@ class Found:
         )
 
 
-def judge_detector(cascade: Cascade, shots: Iterable[Shot], *, knows_mount: bool) -> Found:
+def judge_detector(model: PeopleModel, shots: Iterable[Shot], *, knows_mount: bool) -> Found:
     """Look for people in images; those who are small, hidden or not upright are neither right nor wrong."""
     parts: list[tuple[Floats, NDArray[np.bool_], Floats]] = []
     people = images = 0
     for shot in shots:
         mount = shot.mount if knows_mount else None
-        found = look(cascade, shot.grey, shot.change, mount, SMALLEST_PX, _LEAST_SCORE)
+        found = look(model, shot.grey, shot.change, mount, SMALLEST_PX, _LEAST_SCORE)
         is_counted = shot.is_good & (shot.box[:, 3] >= SMALLEST_PX) & (shot.box[:, 3] <= _tallest(shot))
         people, images = people + int(is_counted.sum()), images + 1
         parts.append(_matched(found, shot.box, is_counted))
     scores, hits, overlaps = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Found(scores, hits, overlaps, people, images)
+
+
+def log_odds_line(model: PeopleModel, shots: Sequence[Shot]) -> tuple[float, float]:
+    """Tell gain and offset that make scores the log odds that what is proposed is somebody.
+
+    It is a logistic regression (Platt 1999) over what is proposed in images; who is there counts, however
+    hidden.
+
+    Raises:
+        BadInput: scikit-learn is missing, or nothing is proposed.
+    """
+    try:
+        from sklearn.linear_model import LogisticRegression  # here, as it comes with the extra `train`
+    except ImportError as error:
+        raise BadInput("scikit-learn is missing: install peopleboy[train]") from error
+    scores, is_somebody = [], []
+    for shot in shots:
+        for side in (shot, shot.spanned(np.random.default_rng(int(shot.grey.sum(dtype=np.int64))))):
+            found = look(model, side.grey, side.change, None, SMALLEST_PX, _LEAST_SCORE)
+            overlap = iou(found.box[:, None], side.box[None])
+            scores += found.score.tolist()
+            is_somebody += (overlap >= _THERE).any(axis=1).tolist()
+    if all(is_somebody) or not any(is_somebody):
+        raise BadInput(f"{sum(is_somebody)} of {len(is_somebody)} proposals are people; take more worlds")
+    line = LogisticRegression(C=1e6).fit(np.array(scores)[:, None], is_somebody)
+    return float(line.coef_[0, 0]), float(line.intercept_[0])
 
 
 def _tallest(shot: Shot) -> float:

@@ -48,12 +48,18 @@ def teach_cascade(people: NDArray[np.float16], others: NDArray[np.float16], boos
         max_features=_FEATURES_A_NODE, subsample=_SHARE_A_TREE, min_samples_leaf=_SMALLEST_LEAF,
         random_state=0,
     ).fit(windows, is_person, sample_weight=weight)  # fmt: skip
-    cascade = as_table([tree.tree_ for tree in trees.estimators_[:, 0]], boosting.rate)
-    return _letting_go(cascade, windows[: len(people)])
+    tables = as_tables([tree.tree_ for tree in trees.estimators_[:, 0]], boosting.rate)
+    return _letting_go(Cascade(*tables, np.full(boosting.trees, -np.inf, np.float32)), windows[: len(people)])
 
 
-def as_table(trees: list[Any], rate: float) -> Cascade:
-    """Write scikit-learn's trees as a table; those that end early go on with both ways alike."""
+def as_tables(
+    trees: list[Any], rate: float
+) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.float32]]:
+    """Write scikit-learn's trees as tables; those that end early go on with both ways alike.
+
+    Returns:
+        Feature (T, 7), threshold (T, 7) and leaf (T, 8) as a `Cascade` has them.
+    """
     feature = np.zeros((len(trees), NODES), np.int32)
     threshold = np.full((len(trees), NODES), np.inf, np.float32)
     leaf = np.zeros((len(trees), LEAVES), np.float32)
@@ -71,7 +77,7 @@ def as_table(trees: list[Any], rate: float) -> Cascade:
 
     for number, tree in enumerate(trees):
         put(number, tree, 0, 0)
-    return Cascade(feature, threshold, leaf, np.full(len(trees), -np.inf, np.float32))
+    return feature, threshold, leaf
 
 
 def _letting_go(cascade: Cascade, people: NDArray[np.float32]) -> Cascade:

@@ -14,12 +14,14 @@ from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.cascade import FEATURES, Cascade
 from peopleboy.tracker.proposals.channels import Cells
 from peopleboy.tracker.proposals.detector import SMALLEST_PX
+from peopleboy.tracker.proposals.placing import offsets
 from peopleboy.tracker.proposals.pyramid import STEP, Level, levels
 from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS
 
 Floats = NDArray[np.float64]
 Windows = NDArray[np.float16]
 
+_VARIETIES: Final = 2  # of each image
 _FITS: Final = 1.1 * math.log2(STEP) / 2.0  # a person is looked for in the level, or two, of about their size
 _BESIDE: Final = 0.3  # IoU with a person from which on a window is no example of what is none
 _ALIKE: Final = 0.6  # IoU of windows of which one is enough
@@ -28,33 +30,40 @@ _A_LEVEL: Final = 6  # windows that are placed anywhere
 _AN_IMAGE: Final = 12  # of what is none
 
 
-def windows_with_people(shots: Sequence[Shot], rng: np.random.Generator) -> Windows:
-    """Collect windows (N, 1800) that people fill, of images and of their mirror images; each also a cell off."""
+def windows_with_people(shots: Sequence[Shot], rng: np.random.Generator) -> tuple[Windows, Floats]:
+    """Collect windows (N, 1800) that people fill, in images that are varied, each also a cell off.
+
+    Returns:
+        The windows, and what is to be known of each (N, 4): see `placing.offsets`.
+    """
     found = [
-        window
+        example
         for shot in shots
-        for side in (shot, shot.mirrored())
-        if side.is_good.any()
-        for window in _filled(side, rng)
+        if shot.is_good.any()
+        for _ in range(_VARIETIES)
+        for example in _filled(shot.varied(rng), rng)
     ]
-    return np.array(found, np.float16).reshape(-1, FEATURES)
+    windows = np.array([window for window, _ in found], np.float16).reshape(-1, FEATURES)
+    return windows, np.array([offset for _, offset in found]).reshape(-1, 4)
 
 
-def _filled(shot: Shot, rng: np.random.Generator) -> Iterator[Windows]:
+def _filled(shot: Shot, rng: np.random.Generator) -> Iterator[tuple[Windows, Floats]]:
     box = shot.box[shot.is_good]
     for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
         off = np.abs(np.log2(box[:, 3] * level.scale[0] / PERSON_PX))
-        for row, column in level.windows(box[off < _FITS]).round().astype(int).tolist():
+        for own in box[off < _FITS]:
+            row, column = level.windows(own[None])[0].round().astype(int).tolist()
             aside = rng.integers(-1, 2, 2).tolist()
-            places = {(row, column), (row + aside[0], column + aside[1])}
-            yield from (_cut(level.cells, *place) for place in sorted(places))
+            for place in sorted({(row, column), (row + aside[0], column + aside[1])}):
+                window = level.boxes(*(np.array([index]) for index in place))
+                yield _cut(level.cells, *place), offsets(window, own[None])[0]
 
 
 def windows_anywhere(shots: Sequence[Shot], rng: np.random.Generator) -> Windows:
     """Collect windows (N, 1800) without people."""
     found: list[Windows] = []
-    for shot in shots:
-        here = []
+    for original in shots:
+        shot, here = original.varied(rng), []
         for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
             _, high, wide = level.cells.shape
             rows = rng.integers(0, high - ROWS + 1, _A_LEVEL)
@@ -75,8 +84,7 @@ def mistakes(shots: Sequence[Shot], cascade: Cascade, rng: np.random.Generator, 
     """
     found: list[Windows] = []
     for k in rng.permutation(len(shots)).tolist():
-        shot = shots[k].mirrored() if rng.random() < 0.5 else shots[k]
-        found += _mistakes(shot, cascade)
+        found += _mistakes(shots[k].varied(rng), cascade)
         if len(found) >= most:
             break
     return np.array(found, np.float16).reshape(-1, FEATURES)
