@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
+from peopleboy.tracker.by_detection.explanation import DetectionExplanation
+from peopleboy.tracker.by_detection.finder import Finder, ThermalFinder
 from peopleboy.tracker.by_detection.matching import intersections, matched, overlaps
 from peopleboy.tracker.by_detection.paths import (
     NOBODY,
@@ -24,8 +26,9 @@ from peopleboy.tracker.by_detection.paths import (
 from peopleboy.tracker.by_detection.proposed import Proposed
 from peopleboy.tracker.by_detection.target import Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
-from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
-from peopleboy.tracker.track import Track
+from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
+from peopleboy.tracker.thermal.whereabouts import places_on_floor
+from peopleboy.tracker.track import Box, FloorPlace, Track
 
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
@@ -34,9 +37,6 @@ _LOWER: Final = 0.03  # who stands so much lower in the image, in heights, is in
 _CLEAR: Final = 0.2  # overlap with others up to which looks are learned
 _TAKEN: Final = 0.45  # overlap with somebody from which a proposal is nobody new
 _ABOVE_GROUND: Final = 0.04  # of the distance: error of how far something moved
-
-
-Finder = Callable[[Frame], tuple[Floats, Floats]]
 
 
 class _Instant(NamedTuple):
@@ -54,8 +54,12 @@ class ByDetectionTracker:
     goes on to look so.
     """
 
-    def __init__(self, find: Finder, config: ByDetectionConfig | None = None) -> None:
-        self._find, self._config = find, config or ByDetectionConfig()
+    def __init__(self, config: ByDetectionConfig | None = None, find: Finder | None = None) -> None:
+        """Make one that finds people by the learned detector, or by something else."""
+        self._config = ByDetectionConfig() if config is None else config
+        self._find = ThermalFinder(self._config.existence.weakest) if find is None else find
+        self._introduced: Box | None = None
+        self._explanation = DetectionExplanation(boxes=np.empty((0, 4)), scores=np.empty(0))
         self._targets: list[Target] = []
         self._paths = NOBODY
         self._last_s: float | None = None
@@ -64,8 +68,17 @@ class ByDetectionTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """The thermal camera."""
-        return (THERMAL,)
+        """The thermal camera, and the colour one, by which people are known again."""
+        return (THERMAL, COLOUR)
+
+    @property
+    def explanation(self) -> DetectionExplanation:
+        """What was proposed in the last frame."""
+        return self._explanation
+
+    def introduce(self, box: Box) -> None:
+        """Tell that a person is at this box [px] in the next frame, as for trackers of single objects."""
+        self._introduced = box
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Take in the next frame and tell who is seen.
@@ -84,8 +97,12 @@ class ByDetectionTracker:
         found = self._matched(expected, proposed, now)
         self._take_in(found, expected, proposed, now)
         self._begin(set(found.values()), proposed, now)
+        if self._introduced is not None:
+            self._meet(np.array([self._introduced]), frame, now)
+            self._introduced = None
         self._judge(now.time_s)
-        return self._tracks(now)
+        self._explanation = DetectionExplanation(boxes=proposed.boxes, scores=proposed.scores)
+        return self._tracks(frame, now)
 
     def _viewpoint(self, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
         if self._view is None or self._view[0] is not calibration or self._view[1] != shape:
@@ -153,10 +170,22 @@ class ByDetectionTracker:
         if any(recent):
             known = self._boxes(now.view)[np.array(recent)]
             is_free &= (overlaps(proposed.boxes, known) < _TAKEN).all(axis=1)
-        free = np.flatnonzero(is_free)
+        self._add(np.flatnonzero(is_free), proposed, now)
+
+    def _meet(self, box: Floats, frame: Frame, now: _Instant) -> None:
+        """Follow somebody who is pointed out, instead of whoever was found there."""
+        strangers = (overlaps(self._boxes(now.view), box) < _TAKEN).all(axis=1)
+        kept = np.flatnonzero(strangers) if self._targets else np.empty(0, int)
+        self._paths = self._paths.take(kept)
+        self._targets = [self._targets[row] for row in kept]
+        self._add(np.zeros(1, int), Proposed.of(frame, box, np.zeros(1), now.view), now)
+        self._tell(self._targets[-1])
+
+    def _add(self, free: NDArray[np.intp], proposed: Proposed, now: _Instant) -> None:
+        """Begin to follow some of those who are proposed."""
         if len(free) == 0:
             return
-        new = begun(proposed.boxes[free], now.view, config.path)
+        new = begun(proposed.boxes[free], now.view, self._config.path)
         self._paths = self._paths.joined(new)
         self._targets += [
             Target(
@@ -177,29 +206,45 @@ class ByDetectionTracker:
         for target, mean, error in zip(self._targets, self._paths.mean, deviation, strict=True):
             target.moved_m = max(target.moved_m, _surely_apart_m(target.origin_m, mean, error))
             if not target.is_told and target.is_confirmed(config):
-                self._born += 1
-                target.id = self._born
+                self._tell(target)
         kept = [row for row, target in enumerate(self._targets) if not target.is_forgotten(time_s, config)]
         self._paths = self._paths.take(np.array(kept, int))
         self._targets = [self._targets[row] for row in kept]
 
-    def _tracks(self, now: _Instant) -> tuple[Track, ...]:
+    def _tell(self, target: Target) -> None:
+        self._born += 1
+        target.id = self._born
+        target.log_odds = max(target.log_odds, self._config.existence.confirmed)
+
+    def _tracks(self, frame: Frame, now: _Instant) -> tuple[Track, ...]:
         shown = [
-            (target, box)
-            for target, box in zip(self._targets, self._boxes(now.view), strict=True)
+            (target, _box(box))
+            for target, box in zip(self._targets, self._boxes(now.view).tolist(), strict=True)
             if target.is_shown(now.time_s, self._config.existence)
         ]
+        shown.sort(key=lambda pair: pair[0].id)
+        statuses = [target.status(now.time_s) for target, _ in shown]
+        calibration = frame.calibrations.get(THERMAL)
+        places: Sequence[FloorPlace | None] = [None] * len(shown)
+        if calibration is not None:
+            places = places_on_floor([box for _, box in shown], statuses, calibration)
         return tuple(
             Track(
                 id=target.id,
-                boxes={THERMAL: (float(box[0]), float(box[1]), float(box[2]), float(box[3]))},
+                boxes={THERMAL: box},
+                place=place,
                 confidence=target.confidence,
-                status=target.status(now.time_s),
+                status=status,
                 age_s=now.time_s - target.born_s,
                 occluder=target.occluder,
             )
-            for target, box in sorted(shown, key=lambda pair: pair[0].id)
+            for (target, box), status, place in zip(shown, statuses, places, strict=True)
         )
+
+
+def _box(numbers: Sequence[float]) -> Box:
+    left, top, width, height = numbers
+    return left, top, width, height
 
 
 def _hidden_by(expected: Floats, is_told: NDArray[np.bool_], found: dict[int, int]) -> list[int | None]:

@@ -41,7 +41,10 @@ class PeopleModel:
 
     def save(self, path: Path) -> None:
         """Write a NumPy archive without pickles."""
-        content: dict[str, Any] = {"least": self.cascade.least, _ABOUT: np.array(json.dumps(dict(self.about)))}
+        content: dict[str, Any] = {
+            "least": self.cascade.least,
+            _ABOUT: np.array(json.dumps(dict(self.about))),
+        }
         for trees, prefix in ((self.cascade, ""), (self.placing, "placing_")):
             content |= {prefix + name: getattr(trees, name) for name in _ARRAYS}
             content[prefix + "feature"] = trees.feature.astype(np.int16)

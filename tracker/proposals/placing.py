@@ -31,7 +31,9 @@ class Placing:
     threshold: NDArray[np.float32]
     leaf: NDArray[np.float32]
 
-    def boxes(self, cells: Cells, row: NDArray[np.int64], column: NDArray[np.int64], window: Floats) -> Floats:
+    def boxes(
+        self, cells: Cells, row: NDArray[np.int64], column: NDArray[np.int64], window: Floats
+    ) -> Floats:
         """Give the boxes (N, 4) of those who fill windows that begin in some cells, with boxes (N, 4)."""
         told = np.empty((len(row), OFFSETS), np.float32)
         _place(cells, row, column, self.feature, self.threshold, self.leaf, told)
