@@ -12,7 +12,6 @@ from peopleboy.scenarios.random_worlds.random_world import random_world
 from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.scenarios.studies.people_learning.people_film import film_upright
 
-
 _OWN_EVERY: Final = 3
 """Of so many worlds one is seen as the robot's own camera sees the library."""
 

@@ -68,7 +68,7 @@ def test_a_path_has_the_box_that_it_was_begun_with() -> None:
 def test_the_farther_a_proposal_lies_the_greater_is_its_distance() -> None:
     box = box_at(np.array([0.5, 1.2, 4.0]))
     paths = begun(box, VIEW, CONFIG)
-    there = np.concatenate([box, box + (10.0, 0.0, 0.0, 0.0), box + (30.0, 0.0, 0.0, 0.0)])
+    there = np.concatenate([box, box + np.array([10.0, 0, 0, 0]), box + np.array([30.0, 0, 0, 0])])
     own, near, far = distances(paths, there, VIEW, CONFIG)[0]
     assert own == pytest.approx(0.0, abs=1e-6)
     assert 0.5 < near < far
