@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.boxes import area, cover, intersection, iou
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.by_detection.finder import Finder, ThermalFinder
-from peopleboy.tracker.by_detection.matching import intersections, matched, overlaps
+from peopleboy.tracker.by_detection.matching import matched
 from peopleboy.tracker.by_detection.paths import (
     NOBODY,
     Floats,
@@ -131,7 +132,7 @@ class ByDetectionTracker:
         return matched(
             self._targets,
             distances(self._paths, proposed.boxes, now.view, self._config.path),
-            overlaps(expected, proposed.boxes),
+            iou(expected[:, None], proposed.boxes[None]),
             *proposed.likeness(self._targets),
             proposed.scores,
             now.time_s,
@@ -142,7 +143,7 @@ class ByDetectionTracker:
         """Correct those who were found, and look for who hides the others."""
         config = self._config
         is_told = np.array([target.is_told for target in self._targets], bool)
-        mutual = overlaps(expected, expected) * ~np.eye(len(expected), dtype=bool)
+        mutual = iou(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
         hidden_by = _hidden_by(expected, is_told, found)
         for row, target in enumerate(self._targets):
             if row in found:
@@ -169,12 +170,12 @@ class ByDetectionTracker:
         recent = [target.seen_s > now.time_s - config.matching.lost_s for target in self._targets]
         if any(recent):
             known = self._boxes(now.view)[np.array(recent)]
-            is_free &= (overlaps(proposed.boxes, known) < _TAKEN).all(axis=1)
+            is_free &= (iou(proposed.boxes[:, None], known[None]) < _TAKEN).all(axis=1)
         self._add(np.flatnonzero(is_free), proposed, now)
 
     def _meet(self, box: Floats, frame: Frame, now: _Instant) -> None:
         """Follow somebody who is pointed out, instead of whoever was found there."""
-        strangers = (overlaps(self._boxes(now.view), box) < _TAKEN).all(axis=1)
+        strangers = (iou(self._boxes(now.view)[:, None], box[None]) < _TAKEN).all(axis=1)
         kept = np.flatnonzero(strangers) if self._targets else np.empty(0, int)
         self._paths = self._paths.take(kept)
         self._targets = [self._targets[row] for row in kept]
@@ -249,8 +250,7 @@ def _box(numbers: Sequence[float]) -> Box:
 
 def _hidden_by(expected: Floats, is_told: NDArray[np.bool_], found: dict[int, int]) -> list[int | None]:
     """Tell for each of K people with boxes (K, 4) who of those who were found may hide it."""
-    area = np.maximum(expected[:, 2] * expected[:, 3], 1e-9)
-    covered = intersections(expected, expected) / area[:, None]
+    covered = cover(intersection(expected[:, None], expected[None]), area(expected)[:, None])
     foot = expected[:, 1] + expected[:, 3]
     hides = (covered > _COVERED) & (foot[None] > (foot - _LOWER * expected[:, 3])[:, None]) & is_told[None]
     hides &= np.isin(np.arange(len(expected)), list(found))[None] & ~np.eye(len(expected), dtype=bool)

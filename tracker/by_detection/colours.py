@@ -59,7 +59,7 @@ def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, 
     tall = below[:, 1] - above[:, 1]
     wide = tall * width / height
     there = np.stack([(above[:, 0] + below[:, 0] - wide) / 2.0, above[:, 1], wide, tall], axis=1)
-    return np.nan_to_num(there)
+    return np.asarray(np.nan_to_num(there))
 
 
 def _part(image: NDArray[np.uint8], box: Floats, first: float, last: float) -> NDArray[np.uint8]:

@@ -24,13 +24,13 @@ def patterns(image: NDArray[np.float32], boxes: NDArray[np.float64]) -> Pattern:
     down = (np.arange(ROWS) + 0.5) / ROWS
     x = boxes[:, 0, None, None] + boxes[:, 2, None, None] * across[None, None, :]
     y = boxes[:, 1, None, None] + boxes[:, 3, None, None] * down[None, :, None]
-    x, y = (
+    if len(boxes) == 0:
+        return np.empty((0, ROWS * COLUMNS), np.float32)
+    at_x, at_y = (
         np.broadcast_to(grid, (len(boxes), ROWS, COLUMNS)).reshape(-1, COLUMNS).astype(np.float32)
         for grid in (x, y)
     )
-    if len(boxes) == 0:
-        return np.empty((0, ROWS * COLUMNS), np.float32)
-    seen = cv2.remap(image, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    seen = cv2.remap(image, at_x, at_y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     flat = seen.reshape(len(boxes), -1)
     flat = flat - flat.mean(axis=1, keepdims=True)
     contrast = np.sqrt(np.mean(flat * flat, axis=1, keepdims=True))

@@ -18,21 +18,6 @@ _NEVER: Final = 1e6
 _SEEN, _UNTOLD, _LOST = range(3)
 
 
-def intersections(one: Floats, other: Floats) -> Floats:
-    """Give the areas (K, M) [px2] that boxes (K, 4) and (M, 4) share."""
-    a, b = one[:, None], other[None]
-    low = np.maximum(a[..., :2], b[..., :2])
-    high = np.minimum(a[..., :2] + a[..., 2:], b[..., :2] + b[..., 2:])
-    return np.prod(np.maximum(high - low, 0.0), axis=2)
-
-
-def overlaps(one: Floats, other: Floats) -> Floats:
-    """Give the intersection over union (K, M) of boxes (K, 4) and (M, 4)."""
-    shared = intersections(one, other)
-    area = np.prod(one[:, 2:], axis=1)[:, None] + np.prod(other[:, 2:], axis=1)[None]
-    return shared / np.maximum(area - shared, 1e-9)
-
-
 def matched(
     targets: Sequence[Target],
     distance: Floats,

@@ -77,13 +77,13 @@ def advanced(paths: Paths, dt_s: float, moved: Odometry, config: PathConfig) -> 
 
 def carried(points_m: Floats, moved: Odometry) -> Floats:
     """Give points (K, 3) of the level frame before the robot moved in that after it."""
-    return (points_m - (-moved.aside_m, 0.0, moved.advance_m)) @ _turn(moved).T
+    return np.asarray((points_m - (-moved.aside_m, 0.0, moved.advance_m)) @ _turn(moved).T)
 
 
 def distances(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) -> Floats:
     """Give the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
     gap, spread, _ = _innovation(paths, boxes, view, config)
-    return np.sqrt(np.einsum("kmi,kij,kmj->km", gap, np.linalg.inv(spread), gap))
+    return np.asarray(np.sqrt(np.einsum("kmi,kij,kmj->km", gap, np.linalg.inv(spread), gap)))
 
 
 def corrected(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) -> Paths:
@@ -105,7 +105,8 @@ def boxes_of(paths: Paths, view: Viewpoint, ratio: Floats) -> Floats:
     column, foot, log_height = view.seen(paths.mean[:, :3]).T
     height = np.exp(log_height)
     width = ratio * height
-    return np.stack([column - width / 2.0, foot - height, width, height], axis=1)
+    boxes = np.stack([column - width / 2.0, foot - height, width, height], axis=1)
+    return np.asarray(boxes, np.float64)
 
 
 def _turn(moved: Odometry) -> Floats:

@@ -86,9 +86,9 @@ def _are_trees(arrays: list[NDArray[Any]], trees: tuple[int, ...]) -> bool:
     """Tell whether features, thresholds and leaves are those of so many trees."""
     feature, threshold, leaf = arrays
     return (
-        (feature.shape, feature.dtype) == ((*trees, NODES), np.int16)
-        and (threshold.shape, threshold.dtype) == ((*trees, NODES), np.float32)
-        and (leaf.shape, leaf.dtype) == ((*trees, LEAVES), np.float32)
+        feature.shape == threshold.shape == (*trees, NODES)
+        and leaf.shape == (*trees, LEAVES)
+        and (feature.dtype, threshold.dtype, leaf.dtype) == (np.int16, np.float32, np.float32)
         and bool(((feature >= 0) & (feature < FEATURES)).all())
         and not bool(np.isnan(threshold).any())
         and bool(np.isfinite(leaf).all())

@@ -9,9 +9,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.cascade import COLUMNS, DEPTH, NODES, ROWS
+from peopleboy.tracker.proposals.cascade import DEPTH, NODES
 from peopleboy.tracker.proposals.channels import Cells
-from peopleboy.tracker.proposals.window import Floats
+from peopleboy.tracker.proposals.window import COLUMNS, ROWS, Floats
 
 OFFSETS: Final = 4
 """Numbers that tell a person's box from its window: see `offsets`."""

@@ -98,17 +98,19 @@ def log_odds_line(model: PeopleModel, shots: Sequence[Shot]) -> tuple[float, flo
         from sklearn.linear_model import LogisticRegression  # here, as it comes with the extra `train`
     except ImportError as error:
         raise BadInput("scikit-learn is missing: install peopleboy[train]") from error
-    scores, is_somebody = [], []
+    scores: list[float] = []
+    is_somebody: list[bool] = []
     for shot in shots:
         for side in (shot, shot.spanned(np.random.default_rng(int(shot.grey.sum(dtype=np.int64))))):
             found = look(model, side.grey, side.change, None, SMALLEST_PX, _LEAST_SCORE)
             overlap = iou(found.box[:, None], side.box[None])
             scores += found.score.tolist()
-            is_somebody += (overlap >= _THERE).any(axis=1).tolist()
+            is_somebody += [bool(there) for there in (overlap >= _THERE).any(axis=1)]
     if all(is_somebody) or not any(is_somebody):
         raise BadInput(f"{sum(is_somebody)} of {len(is_somebody)} proposals are people; take more worlds")
     line = LogisticRegression(C=1e6).fit(np.array(scores)[:, None], is_somebody)
-    return float(line.coef_[0, 0]), float(line.intercept_[0])
+    gain, offset = float(line.coef_[0, 0]), float(line.intercept_[0])
+    return gain, offset
 
 
 def _tallest(shot: Shot) -> float:
