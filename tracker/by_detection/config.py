@@ -86,10 +86,10 @@ class ExistenceConfig:
     highest_score: float = 3.0
     highest: float = 8.0
     confirmed: float = 1.5
-    still_doubt: float = 1.0
+    still_doubt: float = 0.5
     hopeless: float = -0.5
     moved_m: float = 0.25
-    missed: float = 2.0
+    missed: float = 1.0
     missed_hidden: float = 0.3
     doubt_s: float = 0.35
     hidden_doubt_s: float = 1.0
