@@ -33,7 +33,7 @@ FEATURES: Final = CHANNELS * ROWS * COLUMNS
 """Of a window, by channel, row and column."""
 
 STRIDE: Final = 2  # [cells] between windows of the first look
-_LOOKED: Final = 24
+_LOOKED: Final = 64
 """Trees that a window must come through for those beside it to be looked at, too."""
 
 _ABOUT: Final = "about"
@@ -122,10 +122,10 @@ class Cascade:
         trees = len(least) if least.ndim == 1 else 0
         is_right = (
             trees > 0
-            and (feature.shape, feature.dtype) == ((trees, NODES), np.int16)
-            and (threshold.shape, threshold.dtype) == ((trees, NODES), np.float32)
-            and (leaf.shape, leaf.dtype) == ((trees, LEAVES), np.float32)
-            and least.dtype == np.float32
+            and feature.shape == threshold.shape == (trees, NODES)
+            and leaf.shape == (trees, LEAVES)
+            and feature.dtype == np.int16
+            and threshold.dtype == leaf.dtype == least.dtype == np.float32
             and bool(((feature >= 0) & (feature < FEATURES)).all())
             and not (np.isnan(threshold).any() or np.isnan(least).any())
             and bool(np.isfinite(leaf).all())

@@ -103,7 +103,6 @@ def look(
     scores: list[Floats] = [np.empty(0)]
     for level in levels(grey, change, mount, smallest_px, memory or Memory()):
         hits = cascade.scan(level.cells, level.rows)
-        is_sure = hits.score >= least_score
-        boxes.append(level.boxes(hits.row[is_sure], hits.column[is_sure]))
-        scores.append(hits.score[is_sure])
-    return suppress(np.concatenate(boxes), np.concatenate(scores))
+        boxes.append(level.boxes(hits.row, hits.column))
+        scores.append(hits.score)
+    return suppress(np.concatenate(boxes), np.concatenate(scores), least_score)

@@ -48,7 +48,7 @@ class Found:
         order = np.argsort(-self.score, kind="stable")
         right = self.is_person[order]
         is_so_far = np.cumsum(~right) <= false_an_image * self.images
-        return float((right & is_so_far).sum()) / self.people
+        return int((right & is_so_far).sum()) / self.people
 
     def precision(self) -> float:
         """Give the mean precision over recall: the area under the envelope of their curve (VOC 2010)."""
@@ -85,7 +85,7 @@ def judge_detector(cascade: Cascade, shots: Iterable[Shot], *, knows_mount: bool
 
 def _tallest(shot: Shot) -> float:
     """Tell how tall [px] a person can be whose window fits into the image."""
-    return 0.75 * shot.grey.shape[0]
+    return 0.75 * len(shot.grey)
 
 
 def _matched(

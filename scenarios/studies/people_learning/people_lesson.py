@@ -32,7 +32,7 @@ FIRST_SEED: Final = 1000
 TESTS: Final = 30
 """Worlds to judge by: those of the first seeds."""
 
-ROUNDS: Final = (Boosting(48, 0.3), Boosting(128, 0.2), Boosting(256, 0.15), Boosting(512, 0.1))
+ROUNDS: Final = (Boosting(48, 0.3), Boosting(128, 0.2), Boosting(192, 0.15), Boosting(384, 0.1))
 """After each but the last, mistakes are collected, and learned from in the next."""
 
 _MISTAKES: Final = 9000  # a round

@@ -29,7 +29,7 @@ _AN_IMAGE: Final = 12  # of what is none
 
 
 def windows_with_people(shots: Sequence[Shot], rng: np.random.Generator) -> Windows:
-    """Collect windows (N, 1800) that people fill, of images and of their mirror images; each also a cell off."""
+    """Collect windows (N, 1800) that people fill, of images and their mirror images; each also a cell off."""
     found = [
         window
         for shot in shots

@@ -56,7 +56,9 @@ def test_people_of_random_worlds_are_found() -> None:
                 seen = [
                     person.box
                     for person in world.truth().people
-                    if person.visible_fraction > 0.8 and person.box is not None and 30.0 < person.box[3] < 150.0
+                    if person.visible_fraction > 0.8
+                    and person.box is not None
+                    and 30.0 < person.box[3] < 150.0
                 ]
                 boxes = np.array(seen, np.float64).reshape(-1, 4)
                 people += len(boxes)
@@ -105,9 +107,7 @@ def plain(value: int) -> Grey:
 
 def test_the_image_of_about_a_fifth_of_a_second_ago_tells_what_moves() -> None:
     detector, odometry, mount = PeopleDetector(), Odometry(), Mount(59.5, 150.0, 1.2)
-    changes = [
-        detector._change(plain(10 * k), k / 15.0, odometry, mount).max() for k in range(8)
-    ]
+    changes = [detector._change(plain(10 * k), k / 15.0, odometry, mount).max() for k in range(8)]
     assert changes == [0, 10, 20, 30, 30, 30, 30, 30]
 
 
