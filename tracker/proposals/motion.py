@@ -52,9 +52,16 @@ def shifted(before: Grey, now: Grey) -> Matrix:
 
 
 def change(before: Grey, now: Grey, moved: Matrix) -> Grey:
-    """Give the differences (H, W) of an image and an earlier one, whose pixels have moved so."""
+    """Give the differences (H, W) of an image and an earlier one, whose pixels have moved so.
+
+    What has come into view since is no difference.
+    """
     rows, columns = now.shape
     if not np.array_equal(moved, np.eye(3)):
-        warped = cv2.warpPerspective(before, moved, (columns, rows), borderMode=cv2.BORDER_REPLICATE)
-        before = np.asarray(warped, np.uint8)
+        before = np.asarray(
+            cv2.warpPerspective(
+                before, moved, (columns, rows), dst=now.copy(), borderMode=cv2.BORDER_TRANSPARENT
+            ),
+            np.uint8,
+        )
     return np.asarray(cv2.absdiff(now, before), np.uint8)

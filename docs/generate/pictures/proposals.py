@@ -12,25 +12,30 @@ from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, film_upright
 from peopleboy.tracker.proposals.cascade import shipped_cascade
-from peopleboy.tracker.proposals.channels import FIRST_DIRECTION, GRADIENT, GREY, MOTION, PAD
+from peopleboy.tracker.proposals.channels import FIRST_DIRECTION, GRADIENT, MOTION, PAD
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
 from peopleboy.tracker.proposals.pyramid import levels
 
-WORLDS = (4, 12, 23)
+WORLDS = (3, 20, 27)
 """Seeds of worlds; of each that image is shown in which most people are plain to see."""
 
-_CHANNELS = {GREY: "grey", GRADIENT: "gradient", FIRST_DIRECTION: "across", MOTION: "motion"}
+_CHANNELS = {GRADIENT: "gradient", FIRST_DIRECTION: "gradient to the right", MOTION: "motion"}
 
 
 def proposals() -> Figure:
     """Three images with what is found in them; below, channels of the first."""
-    figure, axes = panels([f"world {seed}" for seed in WORLDS] + list(_CHANNELS.values())[1:], 5.6, 3)
-    for seed, panel, below in zip(WORLDS, axes[:3], axes[3:], strict=True):
+    figure, axes = panels(
+        [f"world {seed}" for seed in WORLDS]
+        + [f"{name} in world {WORLDS[0]}" for name in _CHANNELS.values()],
+        5.6,
+        3,
+    )
+    for seed, channel, panel, below in zip(WORLDS, _CHANNELS, axes[:3], axes[3:], strict=True):
         film = film_upright(random_scenario(seed), seed)
         _found(panel, film, k := _plainest(film))
         if seed == WORLDS[0]:
             cells = next(levels(film.grey[k], film.change[k], None, SMALLEST_PX)).cells
-        _channel(below, cells, list(_CHANNELS)[1:][WORLDS.index(seed)])
+        _channel(below, cells, channel)
     return figure
 
 

@@ -15,6 +15,8 @@ _SHARE_A_TREE: Final = 0.5  # of the windows
 _SMALLEST_LEAF: Final = 20  # windows
 _WEAKEST: Final = 0.03  # of people, whom no tree needs to keep
 _LET_GO: Final = 0.005  # of all others may be let go
+_STRICTER: Final = np.float32(0.7)  # than that, as most who are let go by it are hardly sure in the end
+_AFTER: Final = np.float32(32.0)  # trees: the first ones tell people from others by less
 _LAST: Final = -4.0
 """Score below which nothing is told."""
 
@@ -78,5 +80,6 @@ def _letting_go(cascade: Cascade, people: NDArray[np.float32]) -> Cascade:
     running = cascade.running(people)
     is_found = running[:, -1] > np.quantile(running[:, -1], _WEAKEST)
     least = np.quantile(running[is_found], _LET_GO, axis=0).astype(np.float32)
+    least += _STRICTER * np.minimum(np.arange(len(least), dtype=np.float32) / _AFTER, 1.0)
     least[-1] = _LAST
     return Cascade(cascade.feature, cascade.threshold, cascade.leaf, least)
