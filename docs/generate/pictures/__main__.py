@@ -15,7 +15,6 @@ from docs.generate.pictures import (
     depth,
     occlusion,
     panorama,
-    proposals,
     rays,
     rgbd,
     runs,
@@ -24,7 +23,7 @@ from docs.generate.pictures import (
     tracker,
 )
 from docs.generate.pictures.paper import save
-from docs.generate.pictures.worlds import hard_scenes, light
+from docs.generate.pictures.worlds import hard_scenes, light, proposals
 from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import draw_parts
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 

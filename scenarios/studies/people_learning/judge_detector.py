@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.studies.people_learning.shots import Shot
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.cascade import Cascade
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
@@ -69,7 +69,7 @@ class Found:
         )
 
 
-def judge_detector(cascade: Cascade, shots: Iterable[Shot], *, knows_mount: bool) -> Found:
+def judge_detector(cascade: Cascade, shots: Iterable[PeopleShot], *, knows_mount: bool) -> Found:
     """Look for people in images; those who are small, hidden or not upright are neither right nor wrong."""
     parts: list[tuple[Floats, NDArray[np.bool_], Floats]] = []
     people = images = 0
@@ -83,7 +83,7 @@ def judge_detector(cascade: Cascade, shots: Iterable[Shot], *, knows_mount: bool
     return Found(scores, hits, overlaps, people, images)
 
 
-def _tallest(shot: Shot) -> float:
+def _tallest(shot: PeopleShot) -> float:
     """Tell how tall [px] a person can be whose window fits into the image."""
     return 0.75 * len(shot.grey)
 

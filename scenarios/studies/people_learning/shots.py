@@ -23,7 +23,7 @@ _LEAST_SHOWN_PX: Final = 8.0  # of whom less is seen, nobody need find
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shot:
+class PeopleShot:
     """One image.
 
     Attributes:
@@ -40,7 +40,7 @@ class Shot:
     box: Floats
     is_good: NDArray[np.bool_]
 
-    def mirrored(self) -> Shot:
+    def mirrored(self) -> PeopleShot:
         """Swap left and right."""
         box = self.box.copy()
         box[:, 0] = self.grey.shape[1] - 1.0 - (box[:, 0] + box[:, 2])
@@ -48,7 +48,7 @@ class Shot:
         return replace(self, grey=grey, change=change, box=box)
 
 
-def shots_of(films: Iterable[Path]) -> Iterator[Shot]:
+def shots_of(films: Iterable[Path]) -> Iterator[PeopleShot]:
     """Yield all images of films."""
     for path in films:
         film = PeopleFilm.load(path)
@@ -56,7 +56,7 @@ def shots_of(films: Iterable[Path]) -> Iterator[Shot]:
             yield _shot(film, k)
 
 
-def _shot(film: PeopleFilm, k: int) -> Shot:
+def _shot(film: PeopleFilm, k: int) -> PeopleShot:
     here = (film.image == k) & (film.shown_px > _LEAST_SHOWN_PX)
     box = film.box[here]
     width = WIDTH_PER_HEIGHT * box[:, 3]
@@ -65,4 +65,4 @@ def _shot(film: PeopleFilm, k: int) -> Shot:
     is_good = (
         film.is_upright[here] & (film.visible[here] > _LEAST_VISIBLE) & (film.inside[here] > _LEAST_INSIDE)
     )
-    return Shot(film.grey[k], film.change[k], film.seen_by(), box, is_good)
+    return PeopleShot(film.grey[k], film.change[k], film.seen_by(), box, is_good)

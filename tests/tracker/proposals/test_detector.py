@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector
 from peopleboy.scenarios.studies.people_learning.people_film import film_upright
-from peopleboy.scenarios.studies.people_learning.shots import Shot, shots_of
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.proposals.cascade import shipped_cascade
@@ -16,7 +16,7 @@ Grey = NDArray[np.uint8]
 
 
 @pytest.fixture(scope="module")
-def shots(tmp_path_factory: pytest.TempPathFactory) -> list[Shot]:
+def shots(tmp_path_factory: pytest.TempPathFactory) -> list[PeopleShot]:
     """Images of the first second of worlds that nobody learned from."""
     folder = tmp_path_factory.mktemp("films")
     for seed in (0, 1, 3):
@@ -24,21 +24,21 @@ def shots(tmp_path_factory: pytest.TempPathFactory) -> list[Shot]:
     return list(shots_of(sorted(folder.iterdir())))
 
 
-def test_people_of_random_worlds_are_found(shots: list[Shot]) -> None:
+def test_people_of_random_worlds_are_found(shots: list[PeopleShot]) -> None:
     found = judge_detector(shipped_cascade(), shots, knows_mount=False)
     assert found.people >= 10
     assert found.recall(1.0) > 0.6
     assert found.overlap[found.is_person].mean() > 0.65
 
 
-def test_a_known_mount_loses_hardly_anybody(shots: list[Shot]) -> None:
+def test_a_known_mount_loses_hardly_anybody(shots: list[PeopleShot]) -> None:
     known, unknown = (
         judge_detector(shipped_cascade(), shots, knows_mount=is_known) for is_known in (True, False)
     )
     assert known.is_person.sum() >= 0.85 * unknown.is_person.sum()
 
 
-def test_a_mirrored_image_has_mirrored_people(shots: list[Shot]) -> None:
+def test_a_mirrored_image_has_mirrored_people(shots: list[PeopleShot]) -> None:
     # Trees are not symmetric; those who are surely there are found on either side.
     sure = hits = 0
     for shot in shots:
@@ -55,7 +55,7 @@ def test_a_mirrored_image_has_mirrored_people(shots: list[Shot]) -> None:
 
 
 @pytest.mark.parametrize(("gain", "offset"), [(0.8, 0.0), (1.0, 30.0), (0.7, 20.0)])
-def test_gain_and_offset_hardly_matter(shots: list[Shot], gain: float, offset: float) -> None:
+def test_gain_and_offset_hardly_matter(shots: list[PeopleShot], gain: float, offset: float) -> None:
     sure = hits = 0
     for shot in shots:
         image = (0.8 * shot.grey).round().astype(np.uint8)  # room at the upper end
@@ -69,7 +69,7 @@ def test_gain_and_offset_hardly_matter(shots: list[Shot], gain: float, offset: f
     assert hits >= 0.8 * sure
 
 
-def test_scores_fall_and_nobody_below_the_least_is_told(shots: list[Shot]) -> None:
+def test_scores_fall_and_nobody_below_the_least_is_told(shots: list[PeopleShot]) -> None:
     image = shots[0].grey
     found = PeopleDetector(least_score=0.5).update(image, 0.0)
     assert (np.diff(found.score) <= 0.0).all()

@@ -14,7 +14,7 @@ from peopleboy.scenarios.studies.people_learning import people_lesson, teach_cas
 from peopleboy.scenarios.studies.people_learning.judge_detector import Found, judge_detector
 from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, film_upright
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
-from peopleboy.scenarios.studies.people_learning.shots import Shot, shots_of
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
 from peopleboy.tracker.proposals.cascade import FEATURES, Cascade
 from peopleboy.tracker.proposals.window import WIDTH_PER_HEIGHT
 from peopleboy.tracker.thermal.mount import Mount
@@ -76,7 +76,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(PeopleFilmTask, "__call__", lambda task, _: drawn_film(task.seed).save(task.film))
 
 
-def shot(film: PeopleFilm, path: Path) -> Shot:
+def shot(film: PeopleFilm, path: Path) -> PeopleShot:
     film.save(path)
     return next(shots_of([path]))
 
@@ -121,7 +121,7 @@ def test_windows_without_people_show_nobody(films: list[Path], monkeypatch: pyte
     seen: list[NDArray[np.float64]] = []
     clear = window_mining._is_clear
 
-    def spy(box: NDArray[np.float64], one: Shot) -> NDArray[np.bool_]:
+    def spy(box: NDArray[np.float64], one: PeopleShot) -> NDArray[np.bool_]:
         seen.append(window_mining.iou(box[:, None], one.box[None])[clear(box, one)].ravel())
         return clear(box, one)
 

@@ -19,6 +19,7 @@ from peopleboy.tracker.proposals.pyramid import levels
 WORLDS = (3, 20, 27)
 """Seeds of worlds; of each that image is shown in which most people are plain to see."""
 
+_STEP = 16  # of greys, so that the file is small
 _CHANNELS = {GRADIENT: "gradient", FIRST_DIRECTION: "gradient to the right", MOTION: "motion"}
 
 
@@ -45,7 +46,7 @@ def _plainest(film: PeopleFilm) -> int:
 
 
 def _found(panel: Axes, film: PeopleFilm, k: int) -> None:
-    show(panel, film.grey[k])
+    show(panel, film.grey[k] // _STEP * _STEP)
     found = look(shipped_cascade(), film.grey[k], film.change[k], film.seen_by(), SMALLEST_PX, 0.0)
     for (left, top, width, height), score in zip(found.box.tolist(), found.score.tolist(), strict=True):
         panel.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor="tab:orange", lw=1.5))
@@ -54,4 +55,5 @@ def _found(panel: Axes, film: PeopleFilm, k: int) -> None:
 
 def _channel(panel: Axes, cells: NDArray[np.float32], channel: int) -> None:
     image = cells[channel, PAD:-PAD, PAD:-PAD]
-    show(panel, image, cmap="gray", vmin=0.0, vmax=float(np.quantile(image, 0.995)))
+    bright = 255.0 * np.clip(image / np.quantile(image, 0.995), 0.0, 1.0)
+    show(panel, bright.astype(np.uint8) // _STEP * _STEP)
