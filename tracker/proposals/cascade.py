@@ -23,7 +23,7 @@ FEATURES: Final = CHANNELS * ROWS * COLUMNS
 """Of a window, by channel, row and column."""
 
 STRIDE: Final = 2  # [cells] between windows of the first look
-_LOOKED: Final = 24
+_LOOKED: Final = 64
 """Trees that a window must come through for those beside it to be looked at, too."""
 
 

@@ -75,7 +75,8 @@ def channels(grey: Image, change: Image, noise: float, memory: Memory | None = N
     Returns:
         (9, h + 4, w + 4): grey, gradient, 6 directions, motion; what is beyond the border is as at it.
     """
-    smooth = cv2.GaussianBlur(grey, (3, 3), 0.0, borderType=cv2.BORDER_REFLECT_101)  # 1 2 1, both ways
+    # 1 2 1, both ways.
+    smooth = np.asarray(cv2.GaussianBlur(grey, (3, 3), 0.0, borderType=cv2.BORDER_REFLECT_101), np.float32)
     rows, columns = change.shape
     cells = (memory or Memory()).take((CHANNELS, rows + 2 * PAD, columns + 2 * PAD))
     inner = cells[:, PAD:-PAD, PAD:-PAD]

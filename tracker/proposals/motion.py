@@ -42,7 +42,9 @@ def shifted(before: Grey, now: Grey) -> Matrix:
     half = (max(now.shape[1] // 2, 1), max(now.shape[0] // 2, 1))
     smaller = [cv2.resize(image, half, interpolation=cv2.INTER_AREA) for image in (before, now)]
     edges = [cv2.Laplacian(cv2.GaussianBlur(image, (0, 0), 1.0), cv2.CV_32F) for image in smaller]
-    (right, down), response = cv2.phaseCorrelate(*edges, cv2.createHanningWindow(half, cv2.CV_32F))
+    (right, down), response = cv2.phaseCorrelate(
+        edges[0], edges[1], cv2.createHanningWindow(half, cv2.CV_32F)
+    )
     matrix = np.eye(3)
     if response >= _SURE:
         matrix[:2, 2] = right * now.shape[1] / half[0], down * now.shape[0] / half[1]
@@ -50,8 +52,16 @@ def shifted(before: Grey, now: Grey) -> Matrix:
 
 
 def change(before: Grey, now: Grey, moved: Matrix) -> Grey:
-    """Give the differences (H, W) of an image and an earlier one, whose pixels have moved so."""
+    """Give the differences (H, W) of an image and an earlier one, whose pixels have moved so.
+
+    What has come into view since is no difference.
+    """
     rows, columns = now.shape
     if not np.array_equal(moved, np.eye(3)):
-        before = cv2.warpPerspective(before, moved, (columns, rows), borderMode=cv2.BORDER_REPLICATE)
+        before = np.asarray(
+            cv2.warpPerspective(
+                before, moved, (columns, rows), dst=now.copy(), borderMode=cv2.BORDER_TRANSPARENT
+            ),
+            np.uint8,
+        )
     return np.asarray(cv2.absdiff(now, before), np.uint8)

@@ -42,11 +42,12 @@ class Level:
 
     def boxes(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> Floats:
         """Give the boxes (N, 4) [px] of the people who fill windows, by their first cell in `cells`."""
-        return boxes_of(row + float(self.first - PAD), column - float(PAD), self.scale)
+        corner = np.stack([row + self.first - PAD, column - PAD]).astype(np.float64)
+        return boxes_of(corner[0], corner[1], self.scale)
 
     def windows(self, box: Floats) -> Floats:
         """Give row and column (N, 2) in `cells` of the windows that people of boxes (N, 4) fill."""
-        return cells_of(box, self.scale) + np.array([PAD - self.first, PAD])
+        return np.asarray(cells_of(box, self.scale) + np.array([PAD - self.first, PAD]), np.float64)
 
 
 def levels(
@@ -65,8 +66,9 @@ def levels(
         smallest_px: height of the smallest people.
         memory: for the channels; a level then holds until the next one is asked for.
     """
-    image, changes = _Halves(grey.astype(np.float32)), _Halves(change.astype(np.float32))
-    noise, person_px = noise_of(image.at(1.0)), smallest_px
+    whole = grey.astype(np.float32)
+    image, changes = _Halves(whole), _Halves(change.astype(np.float32))
+    noise, person_px = noise_of(whole), smallest_px
     rows, columns = grey.shape
     while True:
         scale = PERSON_PX / person_px
@@ -77,8 +79,8 @@ def levels(
         start, end = _beginnings(mount, high, down)
         if end > start:
             first, last = max(start - _CONTEXT, 0), min(end + ROWS + _CONTEXT, high)
-            scaled = cv2.resize(image.at(scale), (CELL_PX * wide, CELL_PX * high))
-            changed = cv2.resize(changes.at(scale / CELL_PX), (wide, high))
+            scaled = image.sized((CELL_PX * wide, CELL_PX * high), scale)
+            changed = changes.sized((wide, high), scale / CELL_PX)
             cells = channels(
                 scaled[CELL_PX * first : CELL_PX * last],
                 changed[first:last],
@@ -95,14 +97,18 @@ class _Halves:
     def __init__(self, image: Image) -> None:
         self._images = [image]
 
-    def at(self, scale: float) -> Image:
+    def sized(self, size: tuple[int, int], scale: float) -> Image:
+        """Give the image in another size (columns, rows), which is about a scale of its own."""
+        return np.asarray(cv2.resize(self._at(scale), size), np.float32)
+
+    def _at(self, scale: float) -> Image:
         """Give the smallest that is as large as a scale asks for."""
         halvings = max(math.floor(-math.log2(scale) + 1e-9), 0)
         while len(self._images) <= halvings:
             rows, columns = self._images[-1].shape
-            # Borders that make no pair are left out by neither: the sizes of both images say the same.
-            half = (max((columns + 1) // 2, 1), max((rows + 1) // 2, 1))
-            self._images.append(cv2.resize(self._images[-1], half, interpolation=cv2.INTER_AREA))
+            half = ((columns + 1) // 2, (rows + 1) // 2)
+            smaller = cv2.resize(self._images[-1], half, interpolation=cv2.INTER_AREA)
+            self._images.append(np.asarray(smaller, np.float32))
         return self._images[halvings]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -11,8 +12,8 @@ from peopleboy.tracker.boxes import area, cover, intersection, iou
 
 Floats = NDArray[np.float64]
 
-_SHARED: Final = 0.55  # of the smaller box: from then on two boxes are of one person
-_ALIKE: Final = 0.6  # IoU of boxes of whom the mean is taken
+_SHARED: Final = 0.65  # of the smaller box: from then on two boxes are of one person
+_ALIKE: Final = 0.5  # IoU of boxes of whom the mean is taken
 
 
 class Proposals(NamedTuple):
@@ -27,7 +28,7 @@ class Proposals(NamedTuple):
     score: Floats
 
 
-def suppress(box: Floats, score: Floats) -> Proposals:
+def suppress(box: Floats, score: Floats, least: float = -math.inf) -> Proposals:
     """Keep the best of boxes that share much of the smaller one's area, each the mean of those like it.
 
     Greedy (Dollár et al., PAMI 2012). A box weighs exp(score) in the mean.
@@ -35,11 +36,14 @@ def suppress(box: Floats, score: Floats) -> Proposals:
     Args:
         box: (N, 4) [px].
         score: (N,).
+        least: score of those that are kept; the others count in means only.
     """
     order = np.argsort(-score, kind="stable")
     box, score = box[order], score[order]
     is_left, kept, means = np.ones(len(box), np.bool_), [], []
     for k in range(len(box)):
+        if score[k] < least:
+            break
         if not is_left[k]:
             continue
         shared = cover(intersection(box[k], box), np.minimum(area(box[k]), area(box)))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.studies.people_learning.shots import Shot
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
 from peopleboy.tracker.proposals.model import PeopleModel
@@ -50,7 +50,7 @@ class Found:
         order = np.argsort(-self.score, kind="stable")
         right = self.is_person[order]
         is_so_far = np.cumsum(~right) <= false_an_image * self.images
-        return float((right & is_so_far).sum()) / self.people
+        return int((right & is_so_far).sum()) / self.people
 
     def precision(self) -> float:
         """Give the mean precision over recall: the area under the envelope of their curve (VOC 2010)."""
@@ -71,7 +71,7 @@ class Found:
         )
 
 
-def judge_detector(model: PeopleModel, shots: Iterable[Shot], *, knows_mount: bool) -> Found:
+def judge_detector(model: PeopleModel, shots: Iterable[PeopleShot], *, knows_mount: bool) -> Found:
     """Look for people in images; those who are small, hidden or not upright are neither right nor wrong."""
     parts: list[tuple[Floats, NDArray[np.bool_], Floats]] = []
     people = images = 0
@@ -85,7 +85,7 @@ def judge_detector(model: PeopleModel, shots: Iterable[Shot], *, knows_mount: bo
     return Found(scores, hits, overlaps, people, images)
 
 
-def log_odds_line(model: PeopleModel, shots: Sequence[Shot]) -> tuple[float, float]:
+def log_odds_line(model: PeopleModel, shots: Sequence[PeopleShot]) -> tuple[float, float]:
     """Tell gain and offset that make scores the log odds that what is proposed is somebody.
 
     It is a logistic regression (Platt 1999) over what is proposed in images; who is there counts, however
@@ -113,9 +113,9 @@ def log_odds_line(model: PeopleModel, shots: Sequence[Shot]) -> tuple[float, flo
     return gain, offset
 
 
-def _tallest(shot: Shot) -> float:
+def _tallest(shot: PeopleShot) -> float:
     """Tell how tall [px] a person can be whose window fits into the image."""
-    return 0.75 * shot.grey.shape[0]
+    return 0.75 * len(shot.grey)
 
 
 def _matched(

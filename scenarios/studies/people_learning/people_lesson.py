@@ -17,7 +17,7 @@ from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector, log_odds_line
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
-from peopleboy.scenarios.studies.people_learning.shots import Shot, shots_of
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
 from peopleboy.scenarios.studies.people_learning.teach_cascade import Boosting, teach_cascade
 from peopleboy.scenarios.studies.people_learning.teach_placing import teach_placing
 from peopleboy.scenarios.studies.people_learning.window_mining import (
@@ -80,7 +80,9 @@ def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) 
     return path
 
 
-def teach(shots: Sequence[Shot], others_of: Sequence[Shot], rng: np.random.Generator) -> PeopleModel:
+def teach(
+    shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot], rng: np.random.Generator
+) -> PeopleModel:
     """Teach trees on images, each time with the mistakes of those before.
 
     Args:

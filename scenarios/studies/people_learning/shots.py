@@ -28,7 +28,7 @@ _LEAST_SHOWN_PX: Final = 8.0  # of whom less is seen, nobody need find
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shot:
+class PeopleShot:
     """One image.
 
     Attributes:
@@ -45,12 +45,12 @@ class Shot:
     box: Floats
     is_good: NDArray[np.bool_]
 
-    def varied(self, rng: np.random.Generator) -> Shot:
+    def varied(self, rng: np.random.Generator) -> PeopleShot:
         """Give it as it is or mirrored, in half of all cases as a camera with another span would."""
         shot = self.mirrored() if rng.random() < 0.5 else self
         return shot.spanned(rng) if rng.random() < _SPANNED else shot
 
-    def spanned(self, rng: np.random.Generator) -> Shot:
+    def spanned(self, rng: np.random.Generator) -> PeopleShot:
         """Give it as a camera of another span would: what is colder than that is black, hotter white."""
         coldest = np.quantile(self.grey[::4, ::4], rng.uniform(0.0, _MOST_BLACK))
         gain = rng.uniform(*_GAINS) * 255.0 / max(255.0 - coldest, _LEAST_SPAN)
@@ -60,7 +60,7 @@ class Shot:
         change = np.where(was_black, 0.0, np.clip(self.change * gain, 0.0, 255.0))
         return replace(self, grey=grey.astype(np.uint8), change=change.astype(np.uint8))
 
-    def mirrored(self) -> Shot:
+    def mirrored(self) -> PeopleShot:
         """Swap left and right."""
         box = self.box.copy()
         box[:, 0] = self.grey.shape[1] - 1.0 - (box[:, 0] + box[:, 2])
@@ -68,7 +68,7 @@ class Shot:
         return replace(self, grey=grey, change=change, box=box)
 
 
-def shots_of(films: Iterable[Path]) -> Iterator[Shot]:
+def shots_of(films: Iterable[Path]) -> Iterator[PeopleShot]:
     """Yield all images of films."""
     for path in films:
         film = PeopleFilm.load(path)
@@ -76,7 +76,7 @@ def shots_of(films: Iterable[Path]) -> Iterator[Shot]:
             yield _shot(film, k)
 
 
-def _shot(film: PeopleFilm, k: int) -> Shot:
+def _shot(film: PeopleFilm, k: int) -> PeopleShot:
     here = (film.image == k) & (film.shown_px > _LEAST_SHOWN_PX)
     box = film.box[here]
     visible, inside = film.visible[here], film.inside[here]
@@ -87,4 +87,4 @@ def _shot(film: PeopleFilm, k: int) -> Shot:
         & (visible > _LEAST_CLEAR * inside)
         & (box[:, 1] > -_HIGHEST * box[:, 3])
     )
-    return Shot(film.grey[k], film.change[k], film.seen_by(), box, is_good)
+    return PeopleShot(film.grey[k], film.change[k], film.seen_by(), box, is_good)

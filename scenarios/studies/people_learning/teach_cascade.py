@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.proposals.cascade import DEPTH, LEAVES, NODES, Cascade
 
-_FEATURES_A_NODE: Final = 60  # drawn at random; of all it would take 30 times as long
-_SHARE_A_TREE: Final = 0.6  # of the windows
+_FEATURES_A_NODE: Final = 40  # drawn at random; of all it would take 45 times as long
+_SHARE_A_TREE: Final = 0.5  # of the windows
 _SMALLEST_LEAF: Final = 20  # windows
 _WEAKEST: Final = 0.03  # of people, whom no tree needs to keep
 _LET_GO: Final = 0.005  # of all others may be let go
-_SLACK: Final = 0.2
+_STRICTER: Final = np.float32(0.7)  # than that, as most who are let go by it are hardly sure in the end
+_AFTER: Final = np.float32(32.0)  # trees: the first ones tell people from others by less
 _LAST: Final = -4.0
 """Score below which nothing is told."""
 
@@ -84,6 +85,7 @@ def _letting_go(cascade: Cascade, people: NDArray[np.float32]) -> Cascade:
     """Set after each tree what nearly all people have, who end up well."""
     running = cascade.running(people)
     is_found = running[:, -1] > np.quantile(running[:, -1], _WEAKEST)
-    least = (np.quantile(running[is_found], _LET_GO, axis=0) - _SLACK).astype(np.float32)
+    least = np.quantile(running[is_found], _LET_GO, axis=0).astype(np.float32)
+    least += _STRICTER * np.minimum(np.arange(len(least), dtype=np.float32) / _AFTER, 1.0)
     least[-1] = _LAST
     return Cascade(cascade.feature, cascade.threshold, cascade.leaf, least)

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.studies.people_learning.shots import Shot
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.cascade import FEATURES, Cascade
 from peopleboy.tracker.proposals.channels import Cells
@@ -30,7 +30,7 @@ _A_LEVEL: Final = 6  # windows that are placed anywhere
 _AN_IMAGE: Final = 12  # of what is none
 
 
-def windows_with_people(shots: Sequence[Shot], rng: np.random.Generator) -> tuple[Windows, Floats]:
+def windows_with_people(shots: Sequence[PeopleShot], rng: np.random.Generator) -> tuple[Windows, Floats]:
     """Collect windows (N, 1800) that people fill, in images that are varied, each also a cell off.
 
     Returns:
@@ -47,7 +47,7 @@ def windows_with_people(shots: Sequence[Shot], rng: np.random.Generator) -> tupl
     return windows, np.array([offset for _, offset in found]).reshape(-1, 4)
 
 
-def _filled(shot: Shot, rng: np.random.Generator) -> Iterator[tuple[Windows, Floats]]:
+def _filled(shot: PeopleShot, rng: np.random.Generator) -> Iterator[tuple[Windows, Floats]]:
     box = shot.box[shot.is_good]
     for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
         off = np.abs(np.log2(box[:, 3] * level.scale[0] / PERSON_PX))
@@ -59,7 +59,7 @@ def _filled(shot: Shot, rng: np.random.Generator) -> Iterator[tuple[Windows, Flo
                 yield _cut(level.cells, *place), offsets(window, own[None])[0]
 
 
-def windows_anywhere(shots: Sequence[Shot], rng: np.random.Generator) -> Windows:
+def windows_anywhere(shots: Sequence[PeopleShot], rng: np.random.Generator) -> Windows:
     """Collect windows (N, 1800) without people."""
     found: list[Windows] = []
     for original in shots:
@@ -73,7 +73,7 @@ def windows_anywhere(shots: Sequence[Shot], rng: np.random.Generator) -> Windows
     return np.array(found, np.float16).reshape(-1, FEATURES)
 
 
-def mistakes(shots: Sequence[Shot], cascade: Cascade, rng: np.random.Generator, most: int) -> Windows:
+def mistakes(shots: Sequence[PeopleShot], cascade: Cascade, rng: np.random.Generator, most: int) -> Windows:
     """Collect windows (N, 1800) without people that are taken for some, the worst of each image.
 
     Args:
@@ -90,7 +90,7 @@ def mistakes(shots: Sequence[Shot], cascade: Cascade, rng: np.random.Generator, 
     return np.array(found, np.float16).reshape(-1, FEATURES)
 
 
-def _mistakes(shot: Shot, cascade: Cascade) -> list[Windows]:
+def _mistakes(shot: PeopleShot, cascade: Cascade) -> list[Windows]:
     boxes, scores, cuts = [np.empty((0, 4))], [np.empty(0)], []
     for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
         hits = cascade.scan(level.cells, level.rows)
@@ -109,7 +109,9 @@ def _mistakes(shot: Shot, cascade: Cascade) -> list[Windows]:
     return [_cut(*cuts[k]) for k in chosen]
 
 
-def _without(shot: Shot, level: Level, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> list[Windows]:
+def _without(
+    shot: PeopleShot, level: Level, rows: NDArray[np.int64], columns: NDArray[np.int64]
+) -> list[Windows]:
     is_clear = _is_clear(level.boxes(rows, columns), shot)
     return [
         _cut(level.cells, row, column)
@@ -117,7 +119,7 @@ def _without(shot: Shot, level: Level, rows: NDArray[np.int64], columns: NDArray
     ]
 
 
-def _is_clear(box: Floats, shot: Shot) -> NDArray[np.bool_]:
+def _is_clear(box: Floats, shot: PeopleShot) -> NDArray[np.bool_]:
     """Tell which boxes (N, 4) are of nobody; a part of a person is nobody."""
     return np.asarray((iou(box[:, None], shot.box[None]) < _BESIDE).all(axis=1), np.bool_)
 

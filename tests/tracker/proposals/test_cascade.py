@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.proposals.cascade import FEATURES, LEAVES, NODES, Cascade, shipped_cascade
+from peopleboy.tracker.proposals.cascade import FEATURES, LEAVES, NODES, Cascade
 from peopleboy.tracker.proposals.channels import CHANNELS
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 
@@ -140,4 +140,4 @@ def test_other_trees_are_refused(tmp_path: Path, wrong: dict[str, NDArray[np.gen
 
 
 def test_the_trees_that_are_shipped_say_what_they_were_trained_on() -> None:
-    assert "seeds from 1000" in shipped_cascade().about["trained on"]
+    assert "seeds from 1000" in shipped_model().about["trained on"]

@@ -2,99 +2,75 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.scenarios.studies.blind_drive import blind_drive
+from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector
+from peopleboy.scenarios.studies.people_learning.people_film import film_upright
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.frame import THERMAL, Odometry
-from peopleboy.tracker.proposals.detector import PeopleDetector
-from peopleboy.tracker.thermal.mount import Mount, mount_of
+from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector, look
+from peopleboy.tracker.proposals.model import shipped_model
+from peopleboy.tracker.thermal.mount import Mount
 
 Grey = NDArray[np.uint8]
 
 
-def moments(scenario: str, seed: int, seconds: float) -> tuple[list[tuple[Grey, float]], NDArray[np.float64]]:
-    """Images of a run until a time, and the boxes (P, 4) of everybody in plain view at the last one."""
-    images, boxes = [], np.empty((0, 4))
-    for world, observation in blind_drive(load_scenario(scenario), seed):
-        images.append((observation.images[THERMAL].copy(), observation.time_s))
-        if observation.time_s >= seconds:
-            seen = [person.box for person in world.truth().people if person.visible_fraction > 0.8]
-            boxes = np.array(seen, np.float64).reshape(-1, 4)
-            break
-    return images, boxes
-
-
 @pytest.fixture(scope="module")
-def crossing() -> tuple[list[tuple[Grey, float]], NDArray[np.float64]]:
-    return moments("crossing_2", 0, 2.0)
+def shots(tmp_path_factory: pytest.TempPathFactory) -> list[PeopleShot]:
+    """Images of the first second of worlds that nobody learned from."""
+    folder = tmp_path_factory.mktemp("films")
+    for seed in (0, 1, 3):
+        film_upright(random_scenario(seed, 1.3), seed).save(folder / f"{seed}.npz")
+    return list(shots_of(sorted(folder.iterdir())))
 
 
-def test_people_of_the_library_are_found(
-    crossing: tuple[list[tuple[Grey, float]], NDArray[np.float64]],
-) -> None:
-    images, boxes = crossing
-    detector = PeopleDetector()
-    for image, time_s in images:
-        found = detector.update(image, time_s)
-    assert len(boxes)
-    assert (iou(boxes[:, None], found.box[None]).max(axis=1) > 0.5).all()
+def test_people_of_random_worlds_are_found(shots: list[PeopleShot]) -> None:
+    found = judge_detector(shipped_model(), shots, knows_mount=False)
+    assert found.people >= 10
+    assert found.recall(1.0) > 0.6
+    assert found.overlap[found.is_person].mean() > 0.65
 
 
-def test_people_of_random_worlds_are_found() -> None:
-    people = hits = 0
-    for seed in (2, 5, 9):
-        scenario = random_scenario(seed, 2.0)
-        calibration = calibrations_of(scenario.world(seed).robot.cameras).get(THERMAL)
-        detector = PeopleDetector()
-        for world, observation in blind_drive(scenario, seed):
-            grey = observation.images[THERMAL]
-            mount = mount_of(calibration, grey.shape[0])
-            found = detector.update(grey, observation.time_s, None, mount)
-            if observation.time_s >= 1.5:
-                seen = [
-                    person.box
-                    for person in world.truth().people
-                    if person.visible_fraction > 0.8
-                    and person.box is not None
-                    and 30.0 < person.box[3] < 150.0
-                ]
-                boxes = np.array(seen, np.float64).reshape(-1, 4)
-                people += len(boxes)
-                hits += int((iou(boxes[:, None], found.box[None]) > 0.5).any(axis=1).sum())
-                break
-    assert people >= 3
-    assert hits >= 0.6 * people
+def test_a_known_mount_loses_hardly_anybody(shots: list[PeopleShot]) -> None:
+    known, unknown = (
+        judge_detector(shipped_model(), shots, knows_mount=is_known) for is_known in (True, False)
+    )
+    assert known.is_person.sum() >= 0.85 * unknown.is_person.sum()
 
 
-def test_a_mirrored_image_has_mirrored_people(
-    crossing: tuple[list[tuple[Grey, float]], NDArray[np.float64]],
-) -> None:
+def test_a_mirrored_image_has_mirrored_people(shots: list[PeopleShot]) -> None:
     # Trees are not symmetric; those who are surely there are found on either side.
-    image, boxes = crossing[0][-1][0], crossing[1]
-    mirrored = PeopleDetector().update(np.ascontiguousarray(image[:, ::-1]), 0.0)
-    back = mirrored.box.copy()
-    back[:, 0] = image.shape[1] - 1.0 - (back[:, 0] + back[:, 2])
-    assert (iou(boxes[:, None], back[None]).max(axis=1) > 0.5).all()
+    sure = hits = 0
+    for shot in shots:
+        found, other = (
+            look(shipped_model(), one.grey, one.change, None, SMALLEST_PX, least)
+            for one, least in ((shot, 2.0), (shot.mirrored(), 0.0))
+        )
+        back = other.box.copy()
+        back[:, 0] = shot.grey.shape[1] - 1.0 - (back[:, 0] + back[:, 2])
+        sure += len(found.box)
+        hits += int((iou(found.box[:, None], back[None]) > 0.5).any(axis=1).sum())
+    assert sure >= 5
+    assert hits >= 0.8 * sure
 
 
-@pytest.mark.parametrize(("gain", "offset"), [(0.8, 0.0), (1.0, -20.0), (0.7, 60.0)])
-def test_gain_and_offset_hardly_matter(gain: float, offset: float) -> None:
-    (image, _), *_ = moments("single_stationary", 1, 0.0)[0]
-    # Greys as an image of automatic gain has them: nothing at either end.
-    image = (40.0 + 0.6 * image).astype(np.uint8)
-    other = np.clip(gain * image + offset, 0.0, 255.0).round().astype(np.uint8)
-    found, again = (PeopleDetector(least_score=1.0).update(one, 0.0) for one in (image, other))
-    assert len(found.score)
-    assert iou(found.box[:1], again.box[:1])[0] > 0.7
-    assert again.score[0] == pytest.approx(found.score[0], abs=1.5)
+@pytest.mark.parametrize(("gain", "offset"), [(0.8, 0.0), (1.0, 30.0), (0.7, 20.0)])
+def test_gain_and_offset_hardly_matter(shots: list[PeopleShot], gain: float, offset: float) -> None:
+    sure = hits = 0
+    for shot in shots:
+        image = (0.8 * shot.grey).round().astype(np.uint8)  # room at the upper end
+        other = (gain * image + offset).round().astype(np.uint8)
+        change, less = (0.8 * shot.change).astype(np.uint8), (0.8 * gain * shot.change).astype(np.uint8)
+        found = look(shipped_model(), image, change, None, SMALLEST_PX, 2.0)
+        again = look(shipped_model(), other, less, None, SMALLEST_PX, 0.0)
+        sure += len(found.box)
+        hits += int((iou(found.box[:, None], again.box[None]) > 0.6).any(axis=1).sum())
+    assert sure >= 5
+    assert hits >= 0.8 * sure
 
 
-def test_scores_fall_and_nobody_below_the_least_is_told(
-    crossing: tuple[list[tuple[Grey, float]], NDArray[np.float64]],
-) -> None:
-    image = crossing[0][-1][0]
+def test_scores_fall_and_nobody_below_the_least_is_told(shots: list[PeopleShot]) -> None:
+    image = shots[0].grey
     found = PeopleDetector(least_score=0.5).update(image, 0.0)
     assert (np.diff(found.score) <= 0.0).all()
     assert (found.score >= 0.5).all()

@@ -64,3 +64,9 @@ def test_what_the_motion_of_the_camera_explains_is_no_change() -> None:
     now = np.asarray(now, np.uint8)
     assert change(before, now, np.eye(3)).mean() > 10.0
     assert not change(before, now, moved).any()
+
+
+def test_what_has_come_into_view_is_no_change() -> None:
+    now = np.roll(speckled(), 12, axis=1)
+    moved = np.array([[1.0, 0.0, 12.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    assert change(speckled(), now, moved).mean() < 1.0
