@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, film_upright
-from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.channels import FIRST_DIRECTION, GRADIENT, MOTION, PAD
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
+from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.pyramid import levels
 
 WORLDS = (3, 20, 27)
