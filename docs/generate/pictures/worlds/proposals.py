@@ -19,7 +19,7 @@ from peopleboy.tracker.proposals.pyramid import levels
 WORLDS = (3, 20, 27)
 """Seeds of worlds; of each that image is shown in which most people are plain to see."""
 
-_STEP = 16  # of greys, so that the file is small
+_STEP = 24  # of greys, so that the file is small
 _CHANNELS = {GRADIENT: "gradient", FIRST_DIRECTION: "gradient to the right", MOTION: "motion"}
 
 
@@ -28,7 +28,7 @@ def proposals() -> Figure:
     figure, axes = panels(
         [f"world {seed}" for seed in WORLDS]
         + [f"{name} in world {WORLDS[0]}" for name in _CHANNELS.values()],
-        5.6,
+        4.8,
         3,
     )
     for seed, channel, panel, below in zip(WORLDS, _CHANNELS, axes[:3], axes[3:], strict=True):
