@@ -23,6 +23,7 @@ WEIGHTS: Final = Path(__file__).parent / "weights" / "people.npz"
 
 _ABOUT: Final = "about"
 _ARRAYS: Final = ("feature", "threshold", "leaf")
+_KINDS: Final = tuple(np.dtype(kind) for kind in (np.int16, np.float32, np.float32))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,7 +89,7 @@ def _are_trees(arrays: list[NDArray[Any]], trees: tuple[int, ...]) -> bool:
     return (
         feature.shape == threshold.shape == (*trees, NODES)
         and leaf.shape == (*trees, LEAVES)
-        and (feature.dtype, threshold.dtype, leaf.dtype) == (np.int16, np.float32, np.float32)
+        and tuple(array.dtype for array in arrays) == _KINDS
         and bool(((feature >= 0) & (feature < FEATURES)).all())
         and not bool(np.isnan(threshold).any())
         and bool(np.isfinite(leaf).all())

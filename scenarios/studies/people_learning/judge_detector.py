@@ -92,7 +92,8 @@ def log_odds_line(model: PeopleModel, shots: Sequence[PeopleShot]) -> tuple[floa
     hidden.
 
     Raises:
-        BadInput: scikit-learn is missing, or nothing is proposed.
+        BadInput: scikit-learn is missing, only people or none are proposed, or people score no more than
+            what is none.
     """
     try:
         from sklearn.linear_model import LogisticRegression  # here, as it comes with the extra `train`
@@ -105,11 +106,13 @@ def log_odds_line(model: PeopleModel, shots: Sequence[PeopleShot]) -> tuple[floa
             found = look(model, side.grey, side.change, None, SMALLEST_PX, _LEAST_SCORE)
             overlap = iou(found.box[:, None], side.box[None])
             scores += found.score.tolist()
-            is_somebody += [bool(there) for there in (overlap >= _THERE).any(axis=1)]
+            is_somebody += np.any(overlap >= _THERE, axis=1).tolist()
     if all(is_somebody) or not any(is_somebody):
         raise BadInput(f"{sum(is_somebody)} of {len(is_somebody)} proposals are people; take more worlds")
     line = LogisticRegression(C=1e6).fit(np.array(scores)[:, None], is_somebody)
     gain, offset = float(line.coef_[0, 0]), float(line.intercept_[0])
+    if gain <= 0.0:
+        raise BadInput(f"people score no more than what is none, gain {gain:.3f}; take more worlds")
     return gain, offset
 
 

@@ -43,13 +43,18 @@ class PeopleFilmTask:
         """File of the film."""
         return Path(self.folder) / f"{self.name}.npz"
 
+    @property
+    def is_own(self) -> bool:
+        """Whether it is seen in the span of the robot's own camera."""
+        return self.seed % _OWN_EVERY == 0
+
     def __call__(self, tell: Tell) -> None:  # noqa: ARG002
         """Film it."""
         film_upright(self._scenario(), self.seed).save(self.film)
 
     def _scenario(self) -> Scenario:
         world = random_world(self.seed)
-        if self.seed % _OWN_EVERY == 0:
+        if self.is_own:
             world = as_the_library(world)
         return parse_scenario(world, source=self.name, folder=Path())
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -36,7 +37,7 @@ TESTS: Final = 30
 ROUNDS: Final = (Boosting(48, 0.3), Boosting(128, 0.2), Boosting(256, 0.15), Boosting(640, 0.1))
 """After each but the last, mistakes are collected, and learned from in the next."""
 
-_HELD_BACK: Final = 10  # of so many worlds one is not learned from
+_HELD_BACK: Final = 10  # of so many worlds, or of fewer, one is not learned from
 _MISTAKES: Final = 9000  # a round
 _OTHERS: Final = 24000  # windows without people that are in memory: 3.6 kB each
 _FIRST_OTHERS: Final = 12000
@@ -50,7 +51,7 @@ def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) 
     Args:
         out: the folder.
         workers: who films.
-        worlds: how many to learn from.
+        worlds: how many to learn from, at least 2: the last tenth is held back, to make scores log odds.
         ship: whether to put the trees in the place of the tracker's own.
 
     Returns:
@@ -66,13 +67,14 @@ def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) 
     tests = [PeopleFilmTask(str(films), seed) for seed in range(TESTS)]
     tasks = [PeopleFilmTask(str(films), seed) for seed in range(FIRST_SEED, FIRST_SEED + worlds)]
     work_through([task for task in (*tests, *tasks) if not task.film.is_file()], workers, "films")
-    films_of = [task.film for task in tasks]
-    model = teach(
-        list(shots_of(films_of[: -len(films_of) // _HELD_BACK])),
-        list(shots_of(films_of[-len(films_of) // _HELD_BACK :])),
-        np.random.default_rng(0),
-    )
-    about = {"trained on": f"{worlds} random worlds, seeds from {FIRST_SEED}"}
+    held = math.ceil(worlds / _HELD_BACK)
+    lessons, others = ([task.film for task in part] for part in (tasks[:-held], tasks[-held:]))
+    model = teach(list(shots_of(lessons)), list(shots_of(others)), np.random.default_rng(0))
+    own = sum(task.is_own for task in tasks)
+    about = {
+        "trained on": f"{worlds} random worlds, seeds from {FIRST_SEED}, {own} of them in the robot's own "
+        f"span; {held} held back"
+    }
     path = WEIGHTS if ship else out / WEIGHTS.name
     with writing_to(path.parent), whole(path) as part:
         path.parent.mkdir(parents=True, exist_ok=True)

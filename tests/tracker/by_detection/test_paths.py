@@ -11,8 +11,7 @@ from peopleboy.tracker.by_detection.config import PathConfig
 from peopleboy.tracker.by_detection.paths import advanced, begun, boxes_of, corrected, distances
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import Odometry
-
-from .test_viewpoint import SHAPE, calibration
+from tests.tracker.by_detection.test_viewpoint import SHAPE, calibration
 
 VIEW = Viewpoint.of(calibration(0.0, 1.2), SHAPE)
 CONFIG = PathConfig()

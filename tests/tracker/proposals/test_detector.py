@@ -17,10 +17,10 @@ Grey = NDArray[np.uint8]
 
 @pytest.fixture(scope="module")
 def shots(tmp_path_factory: pytest.TempPathFactory) -> list[PeopleShot]:
-    """Images of the first second of worlds that nobody learned from."""
+    """The first image of worlds that nobody learned from."""
     folder = tmp_path_factory.mktemp("films")
-    for seed in (0, 1, 3):
-        film_upright(random_scenario(seed, 1.3), seed).save(folder / f"{seed}.npz")
+    for seed in (0, 1, 3, 7):
+        film_upright(random_scenario(seed, 0.3), seed).save(folder / f"{seed}.npz")
     return list(shots_of(sorted(folder.iterdir())))
 
 

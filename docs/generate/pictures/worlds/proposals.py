@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, film_upright
-from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.channels import FIRST_DIRECTION, GRADIENT, MOTION, PAD
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
+from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.pyramid import levels
 
 WORLDS = (3, 20, 27)
 """Seeds of worlds; of each that image is shown in which most people are plain to see."""
 
-_STEP = 16  # of greys, so that the file is small
+_STEP = 24  # of greys, so that the file is small
 _CHANNELS = {GRADIENT: "gradient", FIRST_DIRECTION: "gradient to the right", MOTION: "motion"}
 
 
@@ -28,7 +28,7 @@ def proposals() -> Figure:
     figure, axes = panels(
         [f"world {seed}" for seed in WORLDS]
         + [f"{name} in world {WORLDS[0]}" for name in _CHANNELS.values()],
-        5.6,
+        4.8,
         3,
     )
     for seed, channel, panel, below in zip(WORLDS, _CHANNELS, axes[:3], axes[3:], strict=True):
