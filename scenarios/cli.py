@@ -13,7 +13,12 @@ from peopleboy.scenarios.commands.browse import list_command, schema, show
 from peopleboy.scenarios.commands.compare_footage import compare_footage
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.export import export
-from peopleboy.scenarios.commands.learn import train_foreground, train_places, train_windows
+from peopleboy.scenarios.commands.learn import (
+    train_detector,
+    train_foreground,
+    train_places,
+    train_windows,
+)
 from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
 from peopleboy.scenarios.commands.report import report
@@ -46,6 +51,7 @@ COMMANDS = (
     train_foreground,
     train_places,
     train_windows,
+    train_detector,
     reproduce,
 )
 

@@ -18,6 +18,7 @@ from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
 from peopleboy.tracker.attention.people.colour_look import ColourLook
 from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, Spotted
+from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.frame import Calibration, Frame
 from peopleboy.tracker.fusion.ahead_tracker import AheadTracker
 from peopleboy.tracker.fusion.fused_tracker import FusedTracker
@@ -98,7 +99,7 @@ Factory = Callable[[np.random.Generator], Tracker]
 
 
 DEFAULT_TRACKER: Final = "peopleboy"
-FOOTAGE_TRACKER: Final = "footage"
+FOOTAGE_TRACKER: Final = "anywhere"
 
 
 def explanation_of(tracker: Tracker) -> object:
@@ -113,6 +114,10 @@ def knows_again(tracker: Tracker) -> bool:
 
 def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
     return PeopleTracker(VARIANTS[name], rng, shipped_order() if name == LEARNED else None)
+
+
+def _by_detection_tracker(rng: np.random.Generator) -> ByDetectionTracker:  # noqa: ARG001
+    return ByDetectionTracker()
 
 
 def _panoramic_paper_tracker(rng: np.random.Generator) -> PanoramicPaperTracker:  # noqa: ARG001
@@ -152,6 +157,7 @@ def _attentive_fused_tracker(rng: np.random.Generator) -> AttentiveTracker[Colou
 
 TRACKERS: Final[dict[str, Factory]] = {
     **{name: partial(_contour_tracker, name) for name in VARIANTS},
+    FOOTAGE_TRACKER: _by_detection_tracker,
     "panoramic-paper": _panoramic_paper_tracker,
     "panoramic": _panoramic_tracker,
     "handover": _handover_tracker,

@@ -14,6 +14,7 @@ from benchmarks.peers.ours import Contestant, Ours
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.variants import VARIANTS
+from peopleboy.tracker.trackers import FOOTAGE_TRACKER
 
 RATE_HZ = 15.0
 # The package counts in frames at 30 Hz: five seconds. Of 1, 2, 5 and 10 s it is best for the oracle's IDF1,
@@ -70,7 +71,7 @@ PEERS: dict[str, Callable[[TrueBoxes], Contestant]] = {
 
 def contestants() -> list[str]:
     """Name all who can compete."""
-    return [*VARIANTS, *PEERS]
+    return [*VARIANTS, FOOTAGE_TRACKER, *PEERS]
 
 
 def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:

@@ -11,13 +11,12 @@ from typing import Any
 from docs.generate.markdown import table
 from peopleboy.tracker.thermal import config as source
 from peopleboy.tracker.thermal.config import FilterConfig, LimitsConfig, TrackerConfig
-from peopleboy.tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS_OCCLUSION
+from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS_OCCLUSION
 
 COLUMNS: Mapping[str, TrackerConfig] = {
     "thesis": THESIS_OCCLUSION,
     "paper": PAPER,
     "peopleboy": PEOPLEBOY,
-    "footage": FOOTAGE,
 }
 
 

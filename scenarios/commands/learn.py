@@ -1,4 +1,4 @@
-"""Commands that learn from scenes drawn at random: `train-foreground`, `train-places`, `train-windows`."""
+"""Commands that learn from scenes drawn at random, such as `train-foreground`."""
 
 from __future__ import annotations
 
@@ -107,3 +107,28 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
 
     for path in give_window_lesson(out, chosen_workers(workers, scheduler), scenes=scenes, ship=ship):
         click.echo(path)
+
+
+@click.command("train-detector")
+@click.option(
+    "--worlds", type=click.IntRange(min=2), default=300, show_default=True, help="How many to learn from."
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("runs/people"),
+    show_default=True,
+    help="Folder for the films and the detector.",
+)
+@click.option("--ship", is_flag=True, help="Put the detector in the place of the tracker's own.")
+@workers_options
+def train_detector(worlds: int, out: Path, ship: bool, workers: int | None, scheduler: str | None) -> None:
+    """Learn what people look like to a thermal camera, from random worlds.
+
+    They have the seeds from 1000 on; the last tenth is held back, to make scores log odds, and those of 0 to
+    29 tell how good it is. Needs scikit-learn: .[train]. Films that are there are not made again.
+    """
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.studies.people_learning.people_lesson import give_people_lesson
+
+    click.echo(give_people_lesson(out, chosen_workers(workers, scheduler), worlds=worlds, ship=ship))

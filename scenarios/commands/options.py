@@ -10,7 +10,7 @@ SEED = "[default: 0, or that of a run's own scenario.yaml]"
 
 # Spelled out, since the trackers themselves take a second to load, which --help should not.
 TRACKERS = (
-    "peopleboy, learned, footage, thesis, colour, thermal, paper, panoramic-paper, panoramic, handover, "
+    "peopleboy, learned, anywhere, thesis, colour, thermal, paper, panoramic-paper, panoramic, handover, "
     "rgbd, rgbd-printed, fused, attentive, attentive-printed or attentive-fused; truth, which is told; or "
     "module:Class, your own"
 )

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from peopleboy.scenarios.footage.track_footage import Tracked
 
 _TRACKERS = (
-    "footage, peopleboy, learned, thesis, colour, thermal or paper; rgbd or rgbd-printed with --depth; "
+    "anywhere, peopleboy, learned, thesis, colour, thermal or paper; rgbd or rgbd-printed with --depth; "
     "or module:Class, your own"
 )
 
@@ -56,7 +56,7 @@ _TRACKERS = (
     type=click.Path(path_type=Path),
     help="CSV file of how it moved: advance_m, aside_m, turn_deg for each picture.  [default: it stands]",
 )
-@click.option("--tracker", help=f"One of {_TRACKERS}.  [default: footage; rgbd with --depth]")
+@click.option("--tracker", help=f"One of {_TRACKERS}.  [default: anywhere; rgbd with --depth]")
 @click.option(
     "--truth",
     type=click.Path(path_type=Path),

@@ -54,7 +54,7 @@ class ThermalViews:
             BadInput: a picture that cannot be used, or a colour picture too few or too many.
         """
         options, radiometry, notes = self._options, self._options.radiometry, self._footage.notes
-        to_grey = grey_maker(radiometry, is_robots=options.tracker != FOOTAGE_TRACKER)
+        to_grey = None
         for number, (thermal, picture) in enumerate(self._pictures()):
             if number == 0:
                 check_first(thermal, options)
@@ -62,6 +62,12 @@ class ThermalViews:
             values = radiometry.values(thermal, notes)
             if number == 0:
                 check_plausible(radiometry, values)
+            if to_grey is None:
+                to_grey = grey_maker(
+                    radiometry,
+                    is_grey=thermal.dtype == np.uint8,
+                    is_robots=options.tracker != FOOTAGE_TRACKER,
+                )
             images: dict[str, NDArray[np.uint8]] = {THERMAL: to_grey(values)}
             if picture is not None:
                 images[COLOUR] = colour_picture(picture, "--colour")

@@ -13,6 +13,7 @@ from peopleboy.scenarios.drawing.palette import Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.recording.marks import Lines, Points, colours_of, lines_of, particle_points
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS
@@ -25,6 +26,8 @@ from peopleboy.tracker.track import Track
 _STEPS = (0.0, 1.0, 2.0)
 _SHADES = np.array([(215, 48, 39), (255, 255, 191), (69, 117, 180)])
 OUT_OF_VIEW: Rgb = (110, 110, 110)
+LIKELY: Rgb = (116, 173, 209)
+UNLIKELY: Rgb = (110, 110, 110)
 _HALF = 0.5  # share of a section that must be in view
 
 
@@ -41,6 +44,15 @@ def explained_lines(explanation: object, tick: Tick) -> Lines:  # noqa: ARG001
 def _(explanation: ContourExplanation, tick: Tick) -> Lines:
     evidence = evidence_of(tick.observation.images["thermal"], tick.tracks, explanation)
     return section_marks(tick.tracks, evidence, explanation)
+
+
+@explained_lines.register
+def _(explanation: DetectionExplanation, tick: Tick) -> Lines:  # noqa: ARG001
+    likely = explanation.scores > 0.0
+    return Lines(
+        lines_of([box_outline(box) for box in explanation.boxes], 2),
+        colours_of([LIKELY if is_likely else UNLIKELY for is_likely in likely.tolist()]),
+    )
 
 
 @explained_lines.register
@@ -97,6 +109,13 @@ def explained_likeness(explanation: object) -> Mapping[int, float]:  # noqa: ARG
 @explained_likeness.register
 def _(explanation: AttentiveExplanation) -> Mapping[int, float]:
     return explanation.likeness
+
+
+def box_outline(box: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Draw a box (4,) [px] as a closed line (5, 2)."""
+    left, top, width, height = box
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]])
+    return np.asarray(corners * (width, height) + (left, top))
 
 
 def section_marks(

@@ -157,8 +157,19 @@ def _measure(values: NDArray[np.float32]) -> NDArray[np.float64]:
     return np.array([low, high, clutter, noise], dtype=np.float64)
 
 
-def grey_maker(radiometry: Radiometry, *, is_robots: bool) -> Callable[[NDArray[np.float32]], Grey]:
-    """Choose how values become grey: trackers of the robot know degC, the one for footage knows none."""
+def grey_maker(
+    radiometry: Radiometry, *, is_grey: bool, is_robots: bool
+) -> Callable[[NDArray[np.float32]], Grey]:
+    """Choose how values become grey.
+
+    Args:
+        radiometry: what is known of the pixels.
+        is_grey: whether the pictures have 8 bits.
+        is_robots: whether the tracker is one that knows degC, rather than that of footage, to which only
+            contrast matters.
+    """
     if radiometry.is_known and is_robots:
         return robot_grey
+    if is_grey and not radiometry.is_known and not is_robots:
+        return _whole_grey
     return AutomaticGrey(least_span=LEAST_SPAN_C if radiometry.is_known else 0.0)

@@ -43,7 +43,6 @@ class ContourConfig:
     clutter_share: float = 0.0
     # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
     cold_response: float = 1.0
-    cold_feet_response: float = 1.0  # the same for feet colder than the floor
     # Weight of an eighth section, the line under the feet; those of the other seven add up to 1.
     feet_weight: float = 0.0
     unseen_response: float = 0.0  # response of a point outside the image
@@ -195,7 +194,6 @@ class AppearanceConfig:
     """By how much the thermal pattern of one person differs from frame to frame, and what it tells."""
 
     grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)  # of the mean of head, torso, legs, 0..1
-    needs_colour: bool = False  # whether nobody is recognised by the thermal pattern alone
 
     def __post_init__(self) -> None:
         refuse_unless(min(self.grey_spread) > 0, self, "grey_spread", "positive")
@@ -246,11 +244,10 @@ class HeightConfig:
     """
 
     overlapped_spread: float = 0.0  # of a person who is overlapped or hidden
-    seen_spread: float = 0.0  # of a person who is seen whole
     memory_s: float = 0.5  # time constant of that height
 
     def __post_init__(self) -> None:
-        check_not_negative(self, "overlapped_spread", "seen_spread")
+        check_not_negative(self, "overlapped_spread")
         check_positive(self, "memory_s")
 
 

@@ -329,9 +329,8 @@ def _carried_on(
     if policy.keeps_off(person):
         shares = overlap_shares(state, surroundings.others, config)
         factor = person_factor(shares, surroundings.strength)
-        spread = config.height.overlapped_spread if is_overlapped else config.height.seen_spread
-        if spread > 0:
-            factor = factor * _height_kept(person, state, spread)
+        if is_overlapped and config.height.overlapped_spread > 0:
+            factor = factor * _height_kept(person, state, config.height.overlapped_spread)
     belief = weigh(state, own_view, config.person, config, factor, likeness)
     return policy.judge(person, belief, surroundings, view, rng)
 

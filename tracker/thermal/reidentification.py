@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from peopleboy.tracker.thermal.appearance.appearance_model import knows_colour, squared_distances
+from peopleboy.tracker.thermal.appearance.appearance_model import squared_distances
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.particle_filter import FrameView
 from peopleboy.tracker.thermal.particles import H, X, Y
@@ -67,8 +67,6 @@ def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, confi
 def appearance_distance(found: TrackedPerson, person: TrackedPerson, config: TrackerConfig) -> float:
     """Measure the squared distance of looks; that of the same person where looks cannot tell."""
     if config.appearance is None or found.appearance is None or person.appearance is None:
-        return LOOKS2
-    if config.appearance.needs_colour and not knows_colour(found.appearance.mean):
         return LOOKS2
     distance = float(squared_distances(found.appearance.mean[None], person.appearance)[0])
     return LOOKS2 if np.isnan(distance) else distance

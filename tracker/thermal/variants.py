@@ -10,7 +10,6 @@ from typing import Final
 from peopleboy.tracker.thermal.colour_config import (
     FAR_AFFINE,
     ROBOT_PARALLAX,
-    SAME_VIEW,
     ColourConfig,
 )
 from peopleboy.tracker.thermal.config import (
@@ -181,51 +180,12 @@ PEOPLEBOY = TrackerConfig(
 )
 """What works on the robot: the default."""
 
-FOOTAGE = replace(
-    PEOPLEBOY,
-    contour=replace(
-        PEOPLEBOY.contour,
-        inner_depth=2.0,
-        saturation_grey=22.0,
-        clutter_share=0.0,
-        hottest_grey=256,
-        cold_feet_response=-0.25,
-    ),
-    likelihood=replace(PEOPLEBOY.likelihood, threshold=0.35),
-    motion=replace(PEOPLEBOY.motion, noise_y=10.0, noise_w=6.0, noise_h=6.0, uses_odometry=False),
-    detector=replace(
-        PEOPLEBOY.detector,
-        count=8000,
-        fresh_share=0.75,
-        limits=replace(_LIMITS, y=(0.0, 1.0), h=(0.05, 0.28)),
-    ),
-    person=replace(PEOPLEBOY.person, count=2000, limits=replace(_LIMITS, y=(0.0, 1.0)), floor=-math.inf),
-    life=replace(PEOPLEBOY.life, birth_confidence=0.9),
-    box=BoxConfig(width_per_w=2.0, height_per_h=3.5),
-    colour=replace(_PEOPLEBOY_COLOUR, affine=SAME_VIEW, parallax=0.0),
-    appearance=AppearanceConfig(grey_spread=(0.15, 0.1, 0.15), needs_colour=True),
-    depth=replace(PEOPLEBOY.depth, order="contour"),
-    height=HeightConfig(overlapped_spread=0.1, seen_spread=0.3, memory_s=2.0),
-)
-"""For footage of any camera, in which degC, horizon and the camera's own motion are unknown.
-
-People may stand anywhere in the image, so that the detector draws more samples, up to the largest body that
-fits in; nothing is too hot. The background has a contrast of its own: inner points lie deeper, where a real
-person is and something that merely has edges is not, the threshold is lower, and a birth takes more. Ground
-in the sun is warmer than feet, so that feet may be either. People change their size slowly, and nobody who
-grows over others is believed. Stairs and railings hide feet, so that who is in front is told by whose contour
-and looks are seen as much as by the floor. A colour picture, if there is one, shows what the thermal one
-shows. The box is that of the thesis, whose people were real ones in wide clothes. Values were chosen on
-simulated scenes, with garments warmer and colder than the walls, and on a real clip.
-"""
-
 LEARNED: Final = "learned"
 """The default with a learned order in depth."""
 
 VARIANTS: Final[Mapping[str, TrackerConfig]] = {
     "peopleboy": PEOPLEBOY,
     LEARNED: PEOPLEBOY,
-    "footage": FOOTAGE,
     "thesis": THESIS_OCCLUSION,
     "thermal": THESIS,
     "colour": THESIS_COLOUR,

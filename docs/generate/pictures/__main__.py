@@ -23,7 +23,7 @@ from docs.generate.pictures import (
     tracker,
 )
 from docs.generate.pictures.paper import save
-from docs.generate.pictures.worlds import hard_scenes, light
+from docs.generate.pictures.worlds import hard_scenes, light, proposals
 from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import draw_parts
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
@@ -53,6 +53,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "attention_parts": draw_parts,
     "all_round": all_round.all_round,
     "handed_over": all_round.handed_over,
+    "proposals": proposals.proposals,
     "detector": tracker.detector,
     "contour": tracker.contour,
     "explained_away": occlusion.explained_away,

@@ -10,7 +10,7 @@ from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
 from peopleboy.tracker.thermal.particles import equally_weighted
 from peopleboy.tracker.thermal.reidentification import least_mismatch, most_alike_and_nearest
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
-from peopleboy.tracker.thermal.variants import FOOTAGE, PEOPLEBOY
+from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status
 from tests.helpers.images.drawn_people import blank
 
@@ -55,19 +55,6 @@ def test_of_two_with_the_same_looks_the_nearer_one_is_least_mismatch():
 @pytest.mark.parametrize("found", [person(9, colour=5.0), person(9, h=80.0)])
 def test_a_stranger_is_nobody_who_was_lost(found):
     assert least_mismatch(found, (person(1, hidden_s=0.3),), VIEW, PEOPLEBOY) is None
-
-
-def thermal_only(one):
-    appearance = one.appearance.recent.copy().reshape(-1, 3, 4)
-    appearance[..., :3] = np.nan
-    return replace(one, appearance=ColourModel(appearance.reshape(-1, 12), 10))
-
-
-def test_in_footage_nobody_far_away_is_recognised_by_the_thermal_pattern_alone():
-    lost, found = person(1, x=60.0, hidden_s=0.5), person(9, x=160.0)
-    assert least_mismatch(found, (lost,), VIEW, FOOTAGE) is lost
-    assert least_mismatch(thermal_only(found), (thermal_only(lost),), VIEW, PEOPLEBOY) is not None
-    assert least_mismatch(thermal_only(found), (thermal_only(lost),), VIEW, FOOTAGE) is None
 
 
 def test_the_thesis_asks_that_the_nearest_is_also_the_most_alike():

@@ -9,7 +9,7 @@ import pytest
 
 from peopleboy.tracker.frame import THERMAL, Frame, Odometry
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import FOOTAGE, PAPER, PEOPLEBOY, THESIS
+from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
 from tests.helpers.calls.refused import refused
@@ -25,7 +25,6 @@ def alone(config):
 
 VARIANTS = {
     "default": alone(PEOPLEBOY),
-    "footage": alone(FOOTAGE),
     "thesis": alone(THESIS),
     "paper": alone(PAPER),
 }
@@ -92,7 +91,7 @@ def test_a_walking_person_keeps_one_id_and_a_box_near_the_truth():
     assert np.abs(late).max() < 6
 
 
-@pytest.mark.parametrize(("name", "later"), [("default", 1), ("footage", 1)])
+@pytest.mark.parametrize(("name", "later"), [("default", 1)])
 def test_a_person_who_was_lost_comes_back_as_itself_if_it_is_remembered(name, later):
     frames = [person_frame(i / 15) for i in range(20)]
     frames += [Frame(images={THERMAL: blank()}, time_s=i / 15) for i in range(20, 45)]

@@ -60,11 +60,6 @@ class AppearanceView:
         return (each * self.scale).reshape(len(state), -1)
 
 
-def knows_colour(features: Floats) -> bool:
-    """Tell whether any colour is among the looks (F,) of a person."""
-    return not bool(np.isnan(features.reshape(PARTS, 4)[:, :3]).all())
-
-
 def visible(features: Floats, state: Floats, hiding: Regions) -> Floats:
     """Blank out, in place, the features (N, F) of parts that lie behind people with regions (M, 4)."""
     if len(hiding):

@@ -143,9 +143,8 @@ def build_response(config: ContourConfig) -> Floats:
     difference = np.arange(1 - GREYS, GREYS, dtype=np.float64)
     response = np.tanh(difference / config.saturation_grey) if config.saturation_grey > 0 else difference
     table = np.tile(response, (SECTIONS, 1))
-    # A garment may be colder than what is behind it, feet than sunny ground; a head hardly ever is.
+    # A garment may be colder than what is behind it; a head hardly ever is.
     table[SHOULDER_LEFT:FEET] = np.where(difference < 0, config.cold_response * response, response)
-    table[FEET] = np.where(difference < 0, config.cold_feet_response * response, response)
     return table.astype(np.float32)
 
 

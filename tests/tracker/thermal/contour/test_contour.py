@@ -206,12 +206,6 @@ def test_the_response_is_odd_for_the_head_and_saturates():
     assert response[FEET, 0] == pytest.approx(-1)
 
 
-def test_feet_colder_than_the_ground_may_speak_for_a_person():
-    response = build_response(ContourConfig(saturation_grey=18.0, cold_feet_response=-0.25))
-    assert response[FEET, 0] == pytest.approx(0.25)
-    assert response[FEET, -1] == pytest.approx(1)
-
-
 def test_section_weights_sum_to_one():
     assert section_weights(LITERAL).sum() == pytest.approx(1)
     assert section_weights(PEOPLEBOY.contour).sum() == pytest.approx(1)

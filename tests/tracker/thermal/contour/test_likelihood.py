@@ -137,7 +137,7 @@ def test_samples_from_the_prior_have_the_speeds_they_are_given():
         lambda: DepthConfig(order="height"),
         lambda: DepthConfig(growth=0.0),
         lambda: HeightConfig(memory_s=0.0),
-        lambda: HeightConfig(seen_spread=-0.1),
+        lambda: HeightConfig(overlapped_spread=-0.1),
         lambda: StayBehindConfig(head_covered=1.5),
     ],
 )

@@ -1,0 +1,59 @@
+"""What the detector of people finds, and what it looks at."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
+
+from docs.generate.pictures.paper import panels, show
+from peopleboy.scenarios.random_worlds.random_world import random_scenario
+from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, film_upright
+from peopleboy.tracker.proposals.channels import FIRST_DIRECTION, GRADIENT, MOTION, PAD
+from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
+from peopleboy.tracker.proposals.model import shipped_model
+from peopleboy.tracker.proposals.pyramid import levels
+
+WORLDS = (3, 20, 27)
+"""Seeds of worlds; of each that image is shown in which most people are plain to see."""
+
+_STEP = 24  # of greys, so that the file is small
+_CHANNELS = {GRADIENT: "gradient", FIRST_DIRECTION: "gradient to the right", MOTION: "motion"}
+
+
+def proposals() -> Figure:
+    """Three images with what is found in them; below, channels of the first."""
+    figure, axes = panels(
+        [f"world {seed}" for seed in WORLDS]
+        + [f"{name} in world {WORLDS[0]}" for name in _CHANNELS.values()],
+        4.8,
+        3,
+    )
+    for seed, channel, panel, below in zip(WORLDS, _CHANNELS, axes[:3], axes[3:], strict=True):
+        film = film_upright(random_scenario(seed), seed)
+        _found(panel, film, k := _plainest(film))
+        if seed == WORLDS[0]:
+            cells = next(levels(film.grey[k], film.change[k], None, SMALLEST_PX)).cells
+        _channel(below, cells, channel)
+    return figure
+
+
+def _plainest(film: PeopleFilm) -> int:
+    plain = film.is_upright & (film.visible > 0.8) & (film.box[:, 3] > SMALLEST_PX)
+    return int(np.bincount(film.image[plain], minlength=len(film.grey)).argmax())
+
+
+def _found(panel: Axes, film: PeopleFilm, k: int) -> None:
+    show(panel, film.grey[k] // _STEP * _STEP)
+    found = look(shipped_model(), film.grey[k], film.change[k], film.seen_by(), SMALLEST_PX, 0.0)
+    for (left, top, width, height), score in zip(found.box.tolist(), found.score.tolist(), strict=True):
+        panel.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor="tab:orange", lw=1.5))
+        panel.text(left, top - 2.0, f"{score:.1f}", color="tab:orange", fontsize=8)
+
+
+def _channel(panel: Axes, cells: NDArray[np.float32], channel: int) -> None:
+    image = cells[channel, PAD:-PAD, PAD:-PAD]
+    bright = 255.0 * np.clip(image / np.quantile(image, 0.995), 0.0, 1.0)
+    show(panel, bright.astype(np.uint8) // _STEP * _STEP)

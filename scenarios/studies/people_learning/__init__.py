@@ -1,0 +1,1 @@
+"""Teaching the detector of people in thermal images, with rendered ones."""

@@ -1,0 +1,129 @@
+"""The whole lesson: films of random worlds, three rounds of mistakes, and how good it is in other worlds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+
+from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.running.engine.engine import work_through
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector, log_odds_line
+from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
+from peopleboy.scenarios.studies.people_learning.teach_cascade import Boosting, teach_cascade
+from peopleboy.scenarios.studies.people_learning.teach_placing import teach_placing
+from peopleboy.scenarios.studies.people_learning.window_mining import (
+    mistakes,
+    windows_anywhere,
+    windows_with_people,
+)
+from peopleboy.tracker.proposals.model import WEIGHTS, PeopleModel
+
+FIRST_SEED: Final = 1000
+"""Of worlds to learn from."""
+
+TESTS: Final = 30
+"""Worlds to judge by: those of the first seeds."""
+
+ROUNDS: Final = (Boosting(48, 0.3), Boosting(128, 0.2), Boosting(256, 0.15), Boosting(640, 0.1))
+"""After each but the last, mistakes are collected, and learned from in the next."""
+
+_HELD_BACK: Final = 10  # of so many worlds, or of fewer, one is not learned from
+_MISTAKES: Final = 9000  # a round
+_OTHERS: Final = 24000  # windows without people that are in memory: 3.6 kB each
+_FIRST_OTHERS: Final = 12000
+
+
+def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) -> Path:
+    """Learn what people look like to a thermal camera, and leave films and trees in a folder.
+
+    Films that are there are used.
+
+    Args:
+        out: the folder.
+        workers: who films.
+        worlds: how many to learn from, at least 2: the last tenth is held back, to make scores log odds.
+        ship: whether to put the trees in the place of the tracker's own.
+
+    Returns:
+        The file of the trees.
+
+    Raises:
+        BadInput: a path that cannot be used, scikit-learn is missing, or too few people.
+        TasksFailed: some films failed, after all others were done.
+    """
+    films = out / "films"
+    with writing_to(out):
+        films.mkdir(parents=True, exist_ok=True)
+    tests = [PeopleFilmTask(str(films), seed) for seed in range(TESTS)]
+    tasks = [PeopleFilmTask(str(films), seed) for seed in range(FIRST_SEED, FIRST_SEED + worlds)]
+    work_through([task for task in (*tests, *tasks) if not task.film.is_file()], workers, "films")
+    held = math.ceil(worlds / _HELD_BACK)
+    lessons, others = ([task.film for task in part] for part in (tasks[:-held], tasks[-held:]))
+    model = teach(list(shots_of(lessons)), list(shots_of(others)), np.random.default_rng(0))
+    own = sum(task.is_own for task in tasks)
+    about = {
+        "trained on": f"{worlds} random worlds, seeds from {FIRST_SEED}, {own} of them in the robot's own "
+        f"span; {held} held back"
+    }
+    path = WEIGHTS if ship else out / WEIGHTS.name
+    with writing_to(path.parent), whole(path) as part:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        replace(model, about=about | _judged(model, [task.film for task in tests])).save(part)
+    return path
+
+
+def teach(
+    shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot], rng: np.random.Generator
+) -> PeopleModel:
+    """Teach trees on images, each time with the mistakes of those before.
+
+    Args:
+        shots: to learn from.
+        others_of: of other worlds, by which scores are made log odds.
+        rng: draws what is learned from.
+
+    Raises:
+        BadInput: scikit-learn is missing, or too few people.
+    """
+    people, places = windows_with_people(shots, rng)
+    others = _some(windows_anywhere(shots, rng), _FIRST_OTHERS, rng)
+    _say(f"{len(shots)} images, {len(people)} windows with people")
+    for number, boosting in enumerate(ROUNDS, 1):
+        cascade = teach_cascade(people, others, boosting)
+        if number < len(ROUNDS):
+            found = mistakes(shots, cascade, rng, _MISTAKES)
+            _say(f"round {number} of {len(ROUNDS)}: {len(others)} windows without, {len(found)} mistakes")
+            others = _some(np.concatenate([others, found]), _OTHERS, rng)
+    model = PeopleModel(cascade, teach_placing(people, places))
+    return replace(model, cascade=cascade.calibrated(*log_odds_line(model, others_of)))
+
+
+def _some(windows: NDArray[np.float16], most: int, rng: np.random.Generator) -> NDArray[np.float16]:
+    return windows if len(windows) <= most else windows[rng.permutation(len(windows))[:most]]
+
+
+def _judged(model: PeopleModel, films: Sequence[Path]) -> dict[str, str]:
+    """Say in words how well it does in worlds that it has not seen."""
+    told = {
+        f"on worlds 0 to {TESTS - 1}, {mount}": judge_detector(
+            model, shots_of(films), knows_mount=mount == "mount known"
+        ).in_words()
+        for mount in ("mount known", "mount unknown")
+    }
+    for where, words in told.items():
+        _say(f"{where}: {words}")
+    return told
+
+
+def _say(words: str) -> None:
+    Console(stderr=True).print(words, highlight=False)

@@ -1,0 +1,132 @@
+"""Windows with people, and such without as are taken for people."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.proposals.cascade import FEATURES, Cascade
+from peopleboy.tracker.proposals.channels import Cells
+from peopleboy.tracker.proposals.detector import SMALLEST_PX
+from peopleboy.tracker.proposals.placing import offsets
+from peopleboy.tracker.proposals.pyramid import STEP, Level, levels
+from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS
+
+Floats = NDArray[np.float64]
+Windows = NDArray[np.float16]
+
+_VARIETIES: Final = 2  # of each image
+_FITS: Final = 1.1 * math.log2(STEP) / 2.0  # a person is looked for in the level, or two, of about their size
+_BESIDE: Final = 0.3  # IoU with a person from which on a window is no example of what is none
+_ALIKE: Final = 0.6  # IoU of windows of which one is enough
+_LEAST_SCORE: Final = -1.0  # of a mistake that there is something to learn from
+_A_LEVEL: Final = 6  # windows that are placed anywhere
+_AN_IMAGE: Final = 12  # of what is none
+
+
+def windows_with_people(shots: Sequence[PeopleShot], rng: np.random.Generator) -> tuple[Windows, Floats]:
+    """Collect windows (N, 1800) that people fill, in images that are varied, each also a cell off.
+
+    Returns:
+        The windows, and what is to be known of each (N, 4): see `placing.offsets`.
+    """
+    found = [
+        example
+        for shot in shots
+        if shot.is_good.any()
+        for _ in range(_VARIETIES)
+        for example in _filled(shot.varied(rng), rng)
+    ]
+    windows = np.array([window for window, _ in found], np.float16).reshape(-1, FEATURES)
+    return windows, np.array([offset for _, offset in found]).reshape(-1, 4)
+
+
+def _filled(shot: PeopleShot, rng: np.random.Generator) -> Iterator[tuple[Windows, Floats]]:
+    box = shot.box[shot.is_good]
+    for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
+        off = np.abs(np.log2(box[:, 3] * level.scale[0] / PERSON_PX))
+        for own in box[off < _FITS]:
+            row, column = level.windows(own[None])[0].round().astype(int).tolist()
+            aside = rng.integers(-1, 2, 2).tolist()
+            for place in sorted({(row, column), (row + aside[0], column + aside[1])}):
+                window = level.boxes(*(np.array([index]) for index in place))
+                yield _cut(level.cells, *place), offsets(window, own[None])[0]
+
+
+def windows_anywhere(shots: Sequence[PeopleShot], rng: np.random.Generator) -> Windows:
+    """Collect windows (N, 1800) without people."""
+    found: list[Windows] = []
+    for original in shots:
+        shot, here = original.varied(rng), []
+        for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
+            _, high, wide = level.cells.shape
+            rows = rng.integers(0, high - ROWS + 1, _A_LEVEL)
+            columns = rng.integers(0, wide - COLUMNS + 1, _A_LEVEL)
+            here += _without(shot, level, rows, columns)
+        found += [here[k] for k in rng.permutation(len(here))[:_AN_IMAGE]]
+    return np.array(found, np.float16).reshape(-1, FEATURES)
+
+
+def mistakes(shots: Sequence[PeopleShot], cascade: Cascade, rng: np.random.Generator, most: int) -> Windows:
+    """Collect windows (N, 1800) without people that are taken for some, the worst of each image.
+
+    Args:
+        shots: images, of which each is looked at as it is or mirrored.
+        cascade: what errs.
+        rng: draws which images.
+        most: how many are enough.
+    """
+    found: list[Windows] = []
+    for k in rng.permutation(len(shots)).tolist():
+        found += _mistakes(shots[k].varied(rng), cascade)
+        if len(found) >= most:
+            break
+    return np.array(found, np.float16).reshape(-1, FEATURES)
+
+
+def _mistakes(shot: PeopleShot, cascade: Cascade) -> list[Windows]:
+    boxes, scores, cuts = [np.empty((0, 4))], [np.empty(0)], []
+    for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
+        hits = cascade.scan(level.cells, level.rows)
+        is_bad = hits.score >= _LEAST_SCORE
+        boxes.append(level.boxes(hits.row[is_bad], hits.column[is_bad]))
+        scores.append(hits.score[is_bad])
+        places = zip(hits.row[is_bad].tolist(), hits.column[is_bad].tolist(), strict=True)
+        cuts += [(level.cells, row, column) for row, column in places]
+    box, score = np.concatenate(boxes), np.concatenate(scores)
+    is_left = _is_clear(box, shot)
+    chosen: list[int] = []
+    for k in np.argsort(-score, kind="stable").tolist():
+        if is_left[k] and len(chosen) < _AN_IMAGE:
+            chosen.append(k)
+            is_left &= iou(box[k], box) < _ALIKE
+    return [_cut(*cuts[k]) for k in chosen]
+
+
+def _without(
+    shot: PeopleShot, level: Level, rows: NDArray[np.int64], columns: NDArray[np.int64]
+) -> list[Windows]:
+    is_clear = _is_clear(level.boxes(rows, columns), shot)
+    return [
+        _cut(level.cells, row, column)
+        for row, column in zip(rows[is_clear].tolist(), columns[is_clear].tolist(), strict=True)
+    ]
+
+
+def _is_clear(box: Floats, shot: PeopleShot) -> NDArray[np.bool_]:
+    """Tell which boxes (N, 4) are of nobody; a part of a person is nobody."""
+    return np.asarray((iou(box[:, None], shot.box[None]) < _BESIDE).all(axis=1), np.bool_)
+
+
+def _cut(cells: Cells, row: int, column: int) -> Windows:
+    """Give the features (1800,) of a window; beyond what there is, it goes on as it ends."""
+    _, high, wide = cells.shape
+    rows = np.clip(np.arange(row, row + ROWS), 0, high - 1)
+    columns = np.clip(np.arange(column, column + COLUMNS), 0, wide - 1)
+    return cells[:, rows[:, None], columns].astype(np.float16).ravel()

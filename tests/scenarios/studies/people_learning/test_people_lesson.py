@@ -1,0 +1,76 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from peopleboy.scenarios.studies.people_learning import people_lesson
+from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector
+from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
+from peopleboy.scenarios.studies.people_learning.teach_cascade import Boosting
+from peopleboy.tracker.proposals.model import PeopleModel
+from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.calls.refused import assert_names
+from tests.helpers.images.drawn_films import drawn_film
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lesson on drawn films, of few trees."""
+    monkeypatch.setattr(people_lesson, "ROUNDS", (Boosting(6, 0.5), Boosting(8, 0.5)))
+    monkeypatch.setattr(people_lesson, "TESTS", 2)
+    monkeypatch.setattr(PeopleFilmTask, "__call__", lambda task, _: drawn_film(task.seed).save(task.film))
+
+
+@pytest.mark.usefixtures("quick")
+def test_drawn_people_are_learned_and_found_in_other_images(shots: list[PeopleShot]) -> None:
+    model = people_lesson.teach(shots[:30], shots[30:36], np.random.default_rng(0))
+    found = judge_detector(model, shots[36:], knows_mount=False)
+    assert (found.people, found.images) == (12, 12)
+    assert found.recall(1.0) > 0.7
+    assert found.overlap[found.is_person].mean() > 0.65
+
+
+@pytest.mark.usefixtures("quick")
+def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: Path) -> None:
+    assert run_cli("train-detector", "--worlds", 4, "--out", tmp_path, "--workers", 1) == 0
+    names = {path.name for path in (tmp_path / "films").iterdir()}
+    assert names == {f"world_{seed}.npz" for seed in (0, 1, 1000, 1001, 1002, 1003)}
+    about = PeopleModel.load(tmp_path / "people.npz").about
+    assert about["trained on"] == (
+        "4 random worlds, seeds from 1000, 1 of them in the robot's own span; 1 held back"
+    )
+    assert "average precision" in about["on worlds 0 to 1, mount known"]
+
+
+@pytest.mark.usefixtures("quick")
+@pytest.mark.parametrize(("worlds", "learned", "held"), [(2, 1, 1), (10, 9, 1), (11, 9, 2), (20, 18, 2)])
+def test_a_tenth_of_the_worlds_is_held_back_and_at_least_one(
+    worlds: int, learned: int, held: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    split: list[int] = []
+
+    def stop(shots: list[PeopleShot], others_of: list[PeopleShot], _: object) -> PeopleModel:
+        split.extend((len(shots), len(others_of)))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(PeopleFilmTask, "__call__", lambda task, _: drawn_film(0, 1).save(task.film))
+    monkeypatch.setattr(people_lesson, "teach", stop)
+    run_cli("train-detector", "--worlds", worlds, "--out", tmp_path, "--workers", 1)
+    assert split == [learned, held]
+
+
+def test_a_single_world_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert_names(refusal(capsys, "train-detector", "--worlds", 1, "--out", tmp_path / "out"), "--worlds", "2")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "taken").write_text("in the way")
+    assert_names(
+        refusal(capsys, "train-detector", "--out", tmp_path / "taken" / "out"), "taken", "cannot write here"
+    )

@@ -1,0 +1,93 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
+from tests.helpers.images.drawn_films import drawn_film
+
+
+def test_boxes_to_learn_from_are_those_of_the_film_as_wide_as_the_torso(shots: list[PeopleShot]) -> None:
+    for shot, box in zip(shots, drawn_film(0).box, strict=False):
+        np.testing.assert_array_equal(shot.box, [box])
+        assert shot.is_good.all()
+
+
+@pytest.mark.parametrize(
+    ("visible", "inside", "is_upright", "is_good"),
+    [
+        (1.0, 1.0, True, True),
+        (0.5, 1.0, True, True),
+        (0.36, 0.6, True, True),
+        (0.4, 1.0, True, False),  # mostly hidden
+        (0.3, 0.6, True, False),  # hidden, and cut off
+        (0.45, 0.45, True, False),  # cut off
+        (1.0, 1.0, False, False),  # low
+    ],
+)
+def test_who_is_partly_hidden_can_be_learned_from_and_who_mostly_is_cannot(
+    visible: float, inside: float, is_upright: bool, is_good: bool, tmp_path: Path
+) -> None:
+    film = drawn_film(0, 1)
+    film.visible[:], film.inside[:], film.is_upright[:] = visible, inside, is_upright
+    film.save(tmp_path / "film.npz")
+    assert [shot.is_good.tolist() for shot in shots_of([tmp_path / "film.npz"])] == [[is_good]]
+
+
+def test_of_whom_nothing_is_seen_nobody_is_told(tmp_path: Path) -> None:
+    film = drawn_film(0, 1)
+    film.shown_px[:] = 8.0
+    film.save(tmp_path / "film.npz")
+    assert len(next(shots_of([tmp_path / "film.npz"])).box) == 0
+
+
+def test_a_shot_mirrored_twice_is_itself(shots: list[PeopleShot]) -> None:
+    again = shots[0].mirrored().mirrored()
+    np.testing.assert_array_equal(again.grey, shots[0].grey)
+    np.testing.assert_array_equal(again.change, shots[0].change)
+    np.testing.assert_allclose(again.box, shots[0].box)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_in_another_span_greys_below_it_are_black_and_others_on_a_line(
+    seed: int, shots: list[PeopleShot]
+) -> None:
+    before, after = shots[seed], shots[seed].spanned(np.random.default_rng(seed))
+    assert after.box is before.box
+    assert after.is_good is before.is_good
+    order = np.argsort(before.grey.ravel(), kind="stable")
+    greys, others = before.grey.ravel()[order].astype(float), after.grey.ravel()[order].astype(float)
+    assert (np.diff(others) >= 0.0).all()
+    assert (before.grey[after.grey == 0].max(initial=0) <= before.grey[after.grey > 0]).all()
+    is_inside = (others > 0.0) & (others < 255.0)
+    if len(set(greys[is_inside])) > 2:
+        gain, offset = np.polyfit(greys[is_inside], others[is_inside], 1)
+        assert np.abs(gain * greys[is_inside] + offset - others[is_inside]).max() < 1.5
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_was_and_is_below_the_span_does_not_change(seed: int, shots: list[PeopleShot]) -> None:
+    before, after = shots[seed], shots[seed].spanned(np.random.default_rng(seed))
+    coldest = before.grey[after.grey == 0].max(initial=0) - 2.0  # a gain of 0.6 makes a grey of 1.6 black
+    was_black = before.grey.astype(float) + before.change <= coldest
+    assert not after.change[was_black].any()
+    assert after.change[~was_black].any()
+
+
+def test_spans_go_from_all_of_the_image_to_hardly_any(shots: list[PeopleShot]) -> None:
+    rng = np.random.default_rng(0)
+    black = [float((shots[0].spanned(rng).grey == 0).mean()) for _ in range(100)]
+    assert min(black) < 0.1
+    assert 0.85 < max(black) < 1.0
+
+
+def test_half_of_all_examples_are_mirrored_and_half_are_in_another_span(shots: list[PeopleShot]) -> None:
+    rng = np.random.default_rng(0)
+    sides = {True: shots[0].mirrored(), False: shots[0]}
+    varied = [shots[0].varied(rng) for _ in range(200)]
+    is_mirrored = [bool(np.allclose(one.box, sides[True].box)) for one in varied]
+    is_spanned = [
+        not np.array_equal(one.grey, sides[side].grey) for one, side in zip(varied, is_mirrored, strict=True)
+    ]
+    assert 70 < sum(is_mirrored) < 130
+    assert 70 < sum(is_spanned) < 130

@@ -1,0 +1,124 @@
+"""Tests of the tracker by detection, on proposals that are made up and on its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pytest
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.track import Status, Track
+
+RATE_HZ = 15.0
+RED, BLUE = (200, 30, 30), (30, 30, 200)
+Box = tuple[float, float, float, float]
+
+
+class Told:
+    """A finder that is told what to find."""
+
+    def __init__(self, boxes: Sequence[Sequence[Box]], score: float = 3.0) -> None:
+        self._boxes, self._score = iter(boxes), score
+
+    def __call__(self, frame: Frame) -> tuple[np.ndarray, np.ndarray]:  # noqa: ARG002
+        boxes = np.array(next(self._boxes), np.float64).reshape(-1, 4)
+        return boxes, np.full(len(boxes), self._score)
+
+
+def walker(middle: float, height: float = 100.0) -> Box:
+    return middle - 0.135 * height, 60.0, 0.27 * height, height
+
+
+def frames(boxes: Sequence[Sequence[Box]], clothes: Sequence[tuple[int, int, int]] = ()) -> Iterator[Frame]:
+    """Draw nothing but clothes, one colour for each box."""
+    for number, here in enumerate(boxes):
+        picture = np.full((240, 320, 3), 120, np.uint8)
+        for box, colour in zip(here, clothes, strict=False):
+            left, top, width, height = (round(value) for value in box)
+            picture[top : top + height, max(left, 0) : max(left + width, 0)] = colour
+        images = {THERMAL: np.zeros((240, 320), np.uint8), COLOUR: picture}
+        yield Frame(images=images if clothes else {THERMAL: images[THERMAL]}, time_s=number / RATE_HZ)
+
+
+def tracked(
+    boxes: Sequence[Sequence[Box]], score: float = 3.0, clothes: Sequence[tuple[int, int, int]] = ()
+) -> list[tuple[Track, ...]]:
+    tracker = ByDetectionTracker(find=Told(boxes, score))
+    return [tracker.update(frame) for frame in frames(boxes, clothes)]
+
+
+def numbers(tracks: tuple[Track, ...]) -> set[int]:
+    return {track.id for track in tracks if track.status is Status.TRACKED}
+
+
+def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
+    boxes = [[walker(60.0 + 3.0 * i)] for i in range(45)]
+    seen = tracked(boxes)
+    assert all(numbers(tracks) == {1} for tracks in seen[15:])
+    assert seen[-1][0].boxes[THERMAL] == pytest.approx(boxes[-1][0], abs=3.0)
+
+
+def test_what_looks_a_little_like_a_person_and_never_moves_is_not_told() -> None:
+    still, walking = [[walker(100.0)]] * 60, [[walker(60.0 + 3.0 * i)] for i in range(60)]
+    assert not any(tracked(still, score=0.4))
+    assert tracked(walking, score=0.4)[-1]
+
+
+def test_two_who_cross_keep_their_numbers() -> None:
+    boxes = [[walker(60.0 + 4.0 * i), walker(240.0 - 4.0 * i, 90.0)] for i in range(45)]
+    seen = tracked(boxes, clothes=(RED, BLUE))
+    first = {track.id: track.boxes[THERMAL][0] for track in seen[15]}
+    last = {track.id: track.boxes[THERMAL][0] for track in seen[-1]}
+    assert first.keys() == last.keys() == {1, 2}
+    for number in (1, 2):
+        assert (first[number] < 120.0) == (last[number] > 150.0)
+
+
+@pytest.mark.parametrize(("again", "number"), [(RED, 1), (BLUE, 2)])
+def test_who_comes_back_elsewhere_in_the_same_colours_keeps_the_number_and_nobody_else_does(
+    again: tuple[int, int, int], number: int
+) -> None:
+    away = [[walker(60.0 + 3.0 * i)] for i in range(30)] + [[]] * 60
+    back = [[walker(250.0 - 3.0 * i)] for i in range(30)]
+    tracker = ByDetectionTracker(find=Told(away + back))
+    shots = [*frames(away, (RED,))]
+    shots += [
+        Frame(images=frame.images, time_s=frame.time_s + len(away) / RATE_HZ)
+        for frame in frames(back, (again,))
+    ]
+    seen = [tracker.update(frame) for frame in shots]
+    assert numbers(seen[29]) == {1}
+    assert not seen[80]
+    assert numbers(seen[-1]) == {number}
+
+
+def test_who_is_behind_somebody_is_said_to_be_hidden_by_them() -> None:
+    front = walker(160.0, 150.0)
+    boxes = [
+        [walker(40.0 + 4.0 * i, 80.0), front] if abs(40.0 + 4.0 * i - 160.0) > 15.0 else [front]
+        for i in range(45)
+    ]
+    hidden = [
+        track for tracks in tracked(boxes) for track in tracks if track.status is Status.TOTALLY_OCCLUDED
+    ]
+    assert hidden
+    assert {track.occluder for track in hidden} == {1} or {track.occluder for track in hidden} == {2}
+
+
+def test_who_is_pointed_out_is_told_at_once() -> None:
+    boxes = [[walker(100.0 + 2.0 * i)] for i in range(5)]
+    tracker = ByDetectionTracker(find=Told(boxes))
+    tracker.introduce(boxes[0][0])
+    seen = [tracker.update(frame) for frame in frames(boxes)]
+    assert all({track.id for track in tracks} == {1} for tracks in seen)
+
+
+def test_time_must_go_forward() -> None:
+    tracker = ByDetectionTracker(find=Told([[], []]))
+    frame = next(frames([[]]))
+    tracker.update(frame)
+    with pytest.raises(BadInput, match="time_s must go forward"):
+        tracker.update(frame)

@@ -1,0 +1,116 @@
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.random_worlds.random_world import random_scenario
+from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector
+from peopleboy.scenarios.studies.people_learning.people_film import film_upright
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector, look
+from peopleboy.tracker.proposals.model import shipped_model
+from peopleboy.tracker.thermal.mount import Mount
+
+Grey = NDArray[np.uint8]
+
+
+@pytest.fixture(scope="module")
+def shots(tmp_path_factory: pytest.TempPathFactory) -> list[PeopleShot]:
+    """The first image of worlds that nobody learned from."""
+    folder = tmp_path_factory.mktemp("films")
+    for seed in (0, 1, 3, 7):
+        film_upright(random_scenario(seed, 0.3), seed).save(folder / f"{seed}.npz")
+    return list(shots_of(sorted(folder.iterdir())))
+
+
+def test_people_of_random_worlds_are_found(shots: list[PeopleShot]) -> None:
+    found = judge_detector(shipped_model(), shots, knows_mount=False)
+    assert found.people >= 10
+    assert found.recall(1.0) > 0.6
+    assert found.overlap[found.is_person].mean() > 0.65
+
+
+def test_a_known_mount_loses_hardly_anybody(shots: list[PeopleShot]) -> None:
+    known, unknown = (
+        judge_detector(shipped_model(), shots, knows_mount=is_known) for is_known in (True, False)
+    )
+    assert known.is_person.sum() >= 0.85 * unknown.is_person.sum()
+
+
+def test_a_mirrored_image_has_mirrored_people(shots: list[PeopleShot]) -> None:
+    # Trees are not symmetric; those who are surely there are found on either side.
+    sure = hits = 0
+    for shot in shots:
+        found, other = (
+            look(shipped_model(), one.grey, one.change, None, SMALLEST_PX, least)
+            for one, least in ((shot, 2.0), (shot.mirrored(), 0.0))
+        )
+        back = other.box.copy()
+        back[:, 0] = shot.grey.shape[1] - 1.0 - (back[:, 0] + back[:, 2])
+        sure += len(found.box)
+        hits += int((iou(found.box[:, None], back[None]) > 0.5).any(axis=1).sum())
+    assert sure >= 5
+    assert hits >= 0.8 * sure
+
+
+@pytest.mark.parametrize(("gain", "offset"), [(0.8, 0.0), (1.0, 30.0), (0.7, 20.0)])
+def test_gain_and_offset_hardly_matter(shots: list[PeopleShot], gain: float, offset: float) -> None:
+    sure = hits = 0
+    for shot in shots:
+        image = (0.8 * shot.grey).round().astype(np.uint8)  # room at the upper end
+        other = (gain * image + offset).round().astype(np.uint8)
+        change, less = (0.8 * shot.change).astype(np.uint8), (0.8 * gain * shot.change).astype(np.uint8)
+        found = look(shipped_model(), image, change, None, SMALLEST_PX, 2.0)
+        again = look(shipped_model(), other, less, None, SMALLEST_PX, 0.0)
+        sure += len(found.box)
+        hits += int((iou(found.box[:, None], again.box[None]) > 0.6).any(axis=1).sum())
+    assert sure >= 5
+    assert hits >= 0.8 * sure
+
+
+def test_scores_fall_and_nobody_below_the_least_is_told(shots: list[PeopleShot]) -> None:
+    image = shots[0].grey
+    found = PeopleDetector(least_score=0.5).update(image, 0.0)
+    assert (np.diff(found.score) <= 0.0).all()
+    assert (found.score >= 0.5).all()
+    assert len(PeopleDetector(least_score=np.inf).update(image, 0.0).score) == 0
+
+
+def plain(value: int) -> Grey:
+    return np.full((120, 160), value, np.uint8)
+
+
+def test_the_image_of_about_a_fifth_of_a_second_ago_tells_what_moves() -> None:
+    detector, odometry, mount = PeopleDetector(), Odometry(), Mount(59.5, 150.0, 1.2)
+    changes = [detector._change(plain(10 * k), k / 15.0, odometry, mount).max() for k in range(8)]
+    assert changes == [0, 10, 20, 30, 30, 30, 30, 30]
+
+
+def test_what_is_older_than_twice_that_tells_nothing() -> None:
+    detector = PeopleDetector()
+    detector._change(plain(0), 0.0, None, None)
+    assert not detector._change(plain(90), 1.0, None, None).any()
+
+
+def test_time_that_goes_back_and_an_image_of_another_size_begin_anew() -> None:
+    detector = PeopleDetector()
+    for k in range(3):
+        detector._change(plain(0), 5.0 + k / 15.0, None, None)
+    assert not detector._change(plain(90), 0.0, None, None).any()
+    assert not detector._change(np.full((60, 80), 90, np.uint8), 0.1, None, None).any()
+
+
+def test_the_turn_of_a_robot_with_odometry_is_no_motion() -> None:
+    rng, mount = np.random.default_rng(0), Mount(59.5, 150.0, 1.2)
+    wide = np.kron(rng.integers(0, 256, (30, 60)), np.ones((4, 4))).astype(np.uint8)
+    step = Odometry(turn_rad=4.0 / 150.0)  # 4 px in the middle of the image
+    known = PeopleDetector()
+    for k in range(4):
+        start = 40 - 4 * k
+        change = known._change(wide[:, start : start + 160].copy(), k / 15.0, step, mount)
+    still = PeopleDetector()
+    for k in range(4):
+        start = 40 - 4 * k
+        other = still._change(wide[:, start : start + 160].copy(), k / 15.0, Odometry(), mount)
+    assert change[20:100, 40:120].mean() < 0.5 * other[20:100, 40:120].mean()

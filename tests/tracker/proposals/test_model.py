@@ -1,0 +1,88 @@
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from peopleboy.tracker.proposals.cascade import FEATURES, LEAVES, NODES
+from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
+from peopleboy.tracker.proposals.placing import OFFSETS
+from tests.helpers.calls.refused import refused
+from tests.helpers.images.drawn_trees import PLACING_TREES, TREES, drawn_cascade, drawn_placing
+
+PLACING = (OFFSETS, PLACING_TREES)
+
+
+def drawn_model() -> PeopleModel:
+    return PeopleModel(drawn_cascade(), drawn_placing(), {"trained on": "nothing"})
+
+
+def test_trees_come_back_from_their_file(tmp_path: Path) -> None:
+    model = drawn_model()
+    model.save(tmp_path / "people.npz")
+    read = PeopleModel.load(tmp_path / "people.npz")
+    assert read.about == model.about
+    for part in ("cascade", "placing"):
+        before, after = getattr(model, part), getattr(read, part)
+        for name in before.__dataclass_fields__:
+            np.testing.assert_array_equal(getattr(after, name), getattr(before, name), strict=True)
+
+
+def test_a_missing_file_names_the_command(tmp_path: Path) -> None:
+    with refused("none.npz", "train-detector"):
+        PeopleModel.load(tmp_path / "none.npz")
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04 broken", b"trees: [1, 2]"])
+def test_what_is_no_archive_is_refused(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "bad.npz").write_bytes(content)
+    with refused("bad.npz", "is no file of weights"):
+        PeopleModel.load(tmp_path / "bad.npz")
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.99])
+def test_a_file_that_is_cut_off_is_refused(tmp_path: Path, share: float) -> None:
+    path = tmp_path / "cut.npz"
+    drawn_model().save(path)
+    path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
+    with refused("cut.npz", "is no file of weights"):
+        PeopleModel.load(path)
+
+
+@pytest.mark.parametrize("lack", ["feature", "least", "placing_feature", "placing_leaf", "about"])
+def test_a_file_that_lacks_something_is_refused(tmp_path: Path, lack: str) -> None:
+    drawn_model().save(tmp_path / "whole.npz")
+    with np.load(tmp_path / "whole.npz") as archive:
+        np.savez(tmp_path / "less.npz", **{name: archive[name] for name in archive if name != lack})
+    with refused("less.npz", "is no file of weights"):
+        PeopleModel.load(tmp_path / "less.npz")
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "wrong"),
+    [
+        ("cascade", "feature", np.full((TREES, NODES), FEATURES)),
+        ("cascade", "feature", np.full((TREES, NODES), -1)),
+        ("cascade", "feature", np.zeros((TREES, NODES + 1))),
+        ("cascade", "leaf", np.full((TREES, LEAVES), np.nan, np.float32)),
+        ("cascade", "leaf", np.zeros((TREES, LEAVES))),
+        ("cascade", "threshold", np.full((TREES, NODES), np.nan, np.float32)),
+        ("cascade", "least", np.zeros(TREES + 1, np.float32)),
+        ("cascade", "least", np.zeros((), np.float32)),
+        ("placing", "feature", np.full((*PLACING, NODES), FEATURES)),
+        ("placing", "feature", np.zeros((PLACING_TREES, NODES))),
+        ("placing", "leaf", np.full((*PLACING, LEAVES), np.inf, np.float32)),
+        ("placing", "leaf", np.zeros((OFFSETS + 1, PLACING_TREES, LEAVES), np.float32)),
+        ("placing", "threshold", np.zeros((*PLACING, NODES))),
+    ],
+)
+def test_other_trees_are_refused(tmp_path: Path, part: str, name: str, wrong: Any) -> None:
+    model = drawn_model()
+    replace(model, **{part: replace(getattr(model, part), **{name: wrong})}).save(tmp_path / "other.npz")
+    with refused("other.npz", "holds no trees of depth 3 on the 1800 features", "train-detector"):
+        PeopleModel.load(tmp_path / "other.npz")
+
+
+def test_the_trees_that_are_shipped_say_what_they_were_trained_on() -> None:
+    assert "seeds from 1000" in shipped_model().about["trained on"]

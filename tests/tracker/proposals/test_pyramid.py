@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from peopleboy.tracker.proposals.cascade import FEATURES
+from peopleboy.tracker.proposals.channels import CHANNELS
+from peopleboy.tracker.proposals.pyramid import STEP, levels
+from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS, boxes_of, cells_of
+from peopleboy.tracker.thermal.mount import Mount
+
+GREY: NDArray[np.uint8] = np.kron(
+    np.random.default_rng(0).integers(0, 256, (60, 80)), np.ones((4, 4))
+).astype(np.uint8)
+STILL = np.zeros_like(GREY)
+MOUNT = Mount(horizon_px=119.5, focal_px=300.0, height_m=1.2)
+
+
+def test_a_window_and_the_box_of_its_person_belong_together() -> None:
+    cells = np.array([[3.0, 5.0], [0.0, -2.0], [17.5, 40.25]])
+    box = boxes_of(cells[:, 0], cells[:, 1], (1.3, 1.31))
+    np.testing.assert_allclose(cells_of(box, (1.3, 1.31)), cells)
+    np.testing.assert_allclose(box[:, 3], PERSON_PX / 1.3)
+
+
+def test_levels_go_from_the_smallest_people_to_those_as_high_as_the_image() -> None:
+    heights = [PERSON_PX / level.scale[0] for level in levels(GREY, STILL, None, 24.0)]
+    assert heights[0] == pytest.approx(24.0, rel=0.01)
+    assert heights[-1] > 0.6 * 240
+    np.testing.assert_allclose(np.diff(np.log(heights)), np.log(STEP), atol=0.05)
+
+
+def test_a_window_has_all_features_of_the_trees() -> None:
+    level = next(levels(GREY, STILL, None, 24.0))
+    assert level.cells[:, :ROWS, :COLUMNS].size == FEATURES
+    assert level.cells.shape[0] == CHANNELS
+
+
+def test_a_known_mount_leaves_out_rows_and_changes_nothing_in_the_others() -> None:
+    for whole, part in zip(levels(GREY, STILL, None, 24.0), levels(GREY, STILL, MOUNT, 24.0), strict=True):
+        assert part.scale == whole.scale
+        first, end = part.rows
+        shift = part.first
+        assert end - first <= whole.rows[1] - whole.rows[0]
+        np.testing.assert_allclose(
+            part.cells[:, first : end + ROWS - 1], whole.cells[:, first + shift : end + ROWS - 1 + shift],
+            atol=1e-3,
+        )  # fmt: skip
+        row, column = np.array([first]), np.array([4])
+        np.testing.assert_allclose(part.boxes(row, column), whole.boxes(row + shift, column))
+
+
+@pytest.mark.parametrize("stature_m", [1.4, 1.7, 2.0])
+@pytest.mark.parametrize("mount", [MOUNT, Mount(60.0, 300.0, 1.2), Mount(119.5, 300.0, 1.6)])
+def test_whoever_stands_is_looked_for_with_a_known_mount(stature_m: float, mount: Mount) -> None:
+    for level in levels(GREY, STILL, mount, 24.0):
+        height = PERSON_PX / level.scale[0]
+        foot = mount.horizon_px + height * mount.height_m / stature_m
+        if foot < 240.0 and foot - height > 0.0:
+            row = level.windows(np.array([[100.0, foot - height, 10.0, height]]))[0, 0]
+            assert level.rows[0] <= row <= level.rows[1] - 1
+
+
+def test_people_who_cannot_stand_in_view_cost_nothing() -> None:
+    assert not list(levels(GREY, STILL, Mount(horizon_px=-2000.0, focal_px=300.0, height_m=1.2), 24.0))
+
+
+def test_an_image_too_small_for_a_window_has_no_level() -> None:
+    assert not list(levels(GREY[:20, :20], STILL[:20, :20], None, 24.0))

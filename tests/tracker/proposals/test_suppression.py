@@ -1,0 +1,39 @@
+import numpy as np
+
+from peopleboy.tracker.proposals.suppression import suppress
+
+
+def test_of_boxes_alike_the_surest_is_kept_as_the_mean_of_all() -> None:
+    box = np.array([[10.0, 10.0, 20.0, 50.0], [12.0, 10.0, 20.0, 50.0], [100.0, 10.0, 20.0, 50.0]])
+    found = suppress(box, np.array([1.0, 1.0, 3.0]))
+    np.testing.assert_allclose(found.box, [[100.0, 10.0, 20.0, 50.0], [11.0, 10.0, 20.0, 50.0]])
+    np.testing.assert_allclose(found.score, [3.0, 1.0])
+
+
+def test_a_box_weighs_as_much_as_its_score_is_sure() -> None:
+    box = np.array([[10.0, 0.0, 20.0, 50.0], [14.0, 0.0, 20.0, 50.0]])
+    found = suppress(box, np.log([3.0, 1.0]))
+    np.testing.assert_allclose(found.box, [[11.0, 0.0, 20.0, 50.0]])
+
+
+def test_a_part_of_a_person_is_nobody_else_and_does_not_move_them() -> None:
+    box = np.array([[10.0, 10.0, 20.0, 50.0], [12.0, 12.0, 10.0, 24.0]])
+    found = suppress(box, np.array([2.0, 1.0]))
+    np.testing.assert_allclose(found.box, box[:1])
+
+
+def test_those_side_by_side_are_two() -> None:
+    box = np.array([[10.0, 10.0, 20.0, 50.0], [22.0, 10.0, 20.0, 50.0]])
+    assert len(suppress(box, np.array([2.0, 1.0])).score) == 2
+
+
+def test_nothing_stays_nothing() -> None:
+    found = suppress(np.empty((0, 4)), np.empty(0))
+    assert found.box.shape == (0, 4)
+    assert found.score.shape == (0,)
+
+
+def test_what_is_too_weak_to_be_kept_still_counts_in_the_mean() -> None:
+    box = np.array([[10.0, 0.0, 20.0, 50.0], [14.0, 0.0, 20.0, 50.0], [90.0, 0.0, 20.0, 50.0]])
+    found = suppress(box, np.log([3.0, 1.0, 1.0]), least=0.5)
+    np.testing.assert_allclose(found.box, [[11.0, 0.0, 20.0, 50.0]])

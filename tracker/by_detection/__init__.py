@@ -1,0 +1,1 @@
+"""People tracked by what a learned detector proposes: any camera, any room."""

@@ -1,0 +1,266 @@
+"""The tracker by detection: what is proposed in single images becomes people who last."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.boxes import area, cover, intersection, iou
+from peopleboy.tracker.by_detection.config import ByDetectionConfig
+from peopleboy.tracker.by_detection.explanation import DetectionExplanation
+from peopleboy.tracker.by_detection.finder import Finder, ThermalFinder
+from peopleboy.tracker.by_detection.matching import matched
+from peopleboy.tracker.by_detection.paths import (
+    NOBODY,
+    Floats,
+    advanced,
+    begun,
+    boxes_of,
+    carried,
+    corrected,
+    distances,
+)
+from peopleboy.tracker.by_detection.proposed import Proposed
+from peopleboy.tracker.by_detection.target import Target
+from peopleboy.tracker.by_detection.viewpoint import Viewpoint
+from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
+from peopleboy.tracker.thermal.whereabouts import places_on_floor
+from peopleboy.tracker.track import Box, FloorPlace, Track
+
+FIRST_STEP_S: Final = 1 / 15
+_STANDING: Final = Odometry()
+_COVERED: Final = 0.35  # share of a box that is hidden by who stands in front
+_LOWER: Final = 0.03  # who stands so much lower in the image, in heights, is in front
+_CLEAR: Final = 0.2  # overlap with others up to which looks are learned
+_TAKEN: Final = 0.45  # overlap with somebody from which a proposal is nobody new
+_ABOVE_GROUND: Final = 0.04  # of the distance: error of how far something moved
+
+
+class _Instant(NamedTuple):
+    """When a frame was taken [s], how long after the last one [s], and from where."""
+
+    time_s: float
+    dt_s: float
+    view: Viewpoint
+
+
+class ByDetectionTracker:
+    """Follows people in metres round the camera by what a detector proposes in each image.
+
+    A track is told once enough speaks for it. What never moved needs more: a thing that looks like a person
+    goes on to look so.
+    """
+
+    def __init__(self, config: ByDetectionConfig | None = None, find: Finder | None = None) -> None:
+        """Make one that finds people by the learned detector, or by something else."""
+        self._config = ByDetectionConfig() if config is None else config
+        self._find = ThermalFinder(self._config.existence.weakest) if find is None else find
+        self._introduced: Box | None = None
+        self._explanation = DetectionExplanation(boxes=np.empty((0, 4)), scores=np.empty(0))
+        self._targets: list[Target] = []
+        self._paths = NOBODY
+        self._last_s: float | None = None
+        self._born = 0
+        self._view: tuple[Calibration | None, tuple[int, int], Viewpoint] | None = None
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """The thermal camera, and the colour one, by which people are known again."""
+        return (THERMAL, COLOUR)
+
+    @property
+    def explanation(self) -> DetectionExplanation:
+        """What was proposed in the last frame."""
+        return self._explanation
+
+    def introduce(self, box: Box) -> None:
+        """Tell that a person is at this box [px] in the next frame, as for trackers of single objects."""
+        self._introduced = box
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame and tell who is seen.
+
+        Raises:
+            BadInput: time that does not go forward.
+        """
+        image, config = frame.grey(THERMAL), self._config
+        view = self._viewpoint(frame.calibrations.get(THERMAL), (image.shape[0], image.shape[1]))
+        now = _Instant(frame.time_s, self._time_step(frame.time_s), view)
+        self._carry_on(now.dt_s, frame.odometry or _STANDING)
+        boxes, scores = self._find(frame)
+        is_strong = scores > config.existence.weakest
+        proposed = Proposed.of(frame, boxes[is_strong], scores[is_strong], view)
+        expected = self._boxes(view)
+        found = self._matched(expected, proposed, now)
+        self._take_in(found, expected, proposed, now)
+        self._begin(set(found.values()), proposed, now)
+        if self._introduced is not None:
+            self._meet(np.array([self._introduced]), frame, now)
+            self._introduced = None
+        self._judge(now.time_s)
+        self._explanation = DetectionExplanation(boxes=proposed.boxes, scores=proposed.scores)
+        return self._tracks(frame, now)
+
+    def _viewpoint(self, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
+        if self._view is None or self._view[0] is not calibration or self._view[1] != shape:
+            self._view = calibration, shape, Viewpoint.of(calibration, shape)
+        return self._view[2]
+
+    def _time_step(self, time_s: float) -> float:
+        last_s, self._last_s = self._last_s, time_s
+        if last_s is None:
+            return FIRST_STEP_S
+        if time_s <= last_s:
+            raise BadInput(f"time_s must go forward, got {time_s} after {last_s}")
+        return time_s - last_s
+
+    def _carry_on(self, dt_s: float, moved: Odometry) -> None:
+        self._paths = advanced(self._paths, dt_s, moved, self._config.path)
+        for target in self._targets:
+            target.origin_m = carried(target.origin_m[None], moved)[0]
+
+    def _boxes(self, view: Viewpoint) -> Floats:
+        return boxes_of(self._paths, view, np.array([target.ratio for target in self._targets]))
+
+    def _matched(self, expected: Floats, proposed: Proposed, now: _Instant) -> dict[int, int]:
+        if not self._targets or len(proposed) == 0:
+            return {}
+        return matched(
+            self._targets,
+            distances(self._paths, proposed.boxes, now.view, self._config.path),
+            iou(expected[:, None], proposed.boxes[None]),
+            *proposed.likeness(self._targets),
+            proposed.scores,
+            now.time_s,
+            self._config.matching,
+        )
+
+    def _take_in(self, found: dict[int, int], expected: Floats, proposed: Proposed, now: _Instant) -> None:
+        """Correct those who were found, and look for who hides the others."""
+        config = self._config
+        is_told = np.array([target.is_told for target in self._targets], bool)
+        mutual = iou(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
+        hidden_by = _hidden_by(expected, is_told, found)
+        for row, target in enumerate(self._targets):
+            if row in found:
+                seen = found[row]
+                target.see(
+                    float(proposed.scores[seen]), proposed.ratio(seen), now.time_s, now.dt_s, config.existence
+                )
+                if not (is_told & (mutual[row] > _CLEAR)).any():
+                    target.learn(proposed.looks[seen], proposed.colours[seen])
+            else:
+                front = hidden_by[row]
+                target.miss(None if front is None else self._targets[front].id, now.dt_s, config.existence)
+        if found:
+            rows = np.array(sorted(found))
+            boxes = proposed.boxes[[found[row] for row in rows]]
+            later = corrected(self._paths.take(rows), boxes, now.view, config.path)
+            self._paths = self._paths.replaced(rows, later)
+
+    def _begin(self, taken: set[int], proposed: Proposed, now: _Instant) -> None:
+        """Begin to follow whoever is proposed where nobody is."""
+        config = self._config
+        is_free = proposed.scores >= config.existence.birth
+        is_free[list(taken)] = False
+        recent = [target.seen_s > now.time_s - config.matching.lost_s for target in self._targets]
+        if any(recent):
+            known = self._boxes(now.view)[np.array(recent)]
+            is_free &= (iou(proposed.boxes[:, None], known[None]) < _TAKEN).all(axis=1)
+        self._add(np.flatnonzero(is_free), proposed, now)
+
+    def _meet(self, box: Floats, frame: Frame, now: _Instant) -> None:
+        """Follow somebody who is pointed out, instead of whoever was found there."""
+        strangers = (iou(self._boxes(now.view)[:, None], box[None]) < _TAKEN).all(axis=1)
+        kept = np.flatnonzero(strangers) if self._targets else np.empty(0, int)
+        self._paths = self._paths.take(kept)
+        self._targets = [self._targets[row] for row in kept]
+        self._add(np.zeros(1, int), Proposed.of(frame, box, np.zeros(1), now.view), now)
+        self._tell(self._targets[-1])
+
+    def _add(self, free: NDArray[np.intp], proposed: Proposed, now: _Instant) -> None:
+        """Begin to follow some of those who are proposed."""
+        if len(free) == 0:
+            return
+        new = begun(proposed.boxes[free], now.view, self._config.path)
+        self._paths = self._paths.joined(new)
+        self._targets += [
+            Target(
+                born_s=now.time_s,
+                seen_s=now.time_s,
+                looks=proposed.looks[row],
+                colours=proposed.colours[row],
+                ratio=proposed.ratio(row),
+                origin_m=feet[:3],
+            )
+            for row, feet in zip(free.tolist(), new.mean, strict=True)
+        ]
+
+    def _judge(self, time_s: float) -> None:
+        """Tell of those who are sure, and forget those who are gone."""
+        config = self._config.existence
+        deviation = np.sqrt(np.diagonal(self._paths.covariance, axis1=1, axis2=2))
+        for target, mean, error in zip(self._targets, self._paths.mean, deviation, strict=True):
+            target.moved_m = max(target.moved_m, _surely_apart_m(target.origin_m, mean, error))
+            if not target.is_told and target.is_confirmed(config):
+                self._tell(target)
+        kept = [row for row, target in enumerate(self._targets) if not target.is_forgotten(time_s, config)]
+        self._paths = self._paths.take(np.array(kept, int))
+        self._targets = [self._targets[row] for row in kept]
+
+    def _tell(self, target: Target) -> None:
+        self._born += 1
+        target.id = self._born
+        target.log_odds = max(target.log_odds, self._config.existence.confirmed)
+
+    def _tracks(self, frame: Frame, now: _Instant) -> tuple[Track, ...]:
+        shown = [
+            (target, _box(box))
+            for target, box in zip(self._targets, self._boxes(now.view).tolist(), strict=True)
+            if target.is_shown(now.time_s, self._config.existence)
+        ]
+        shown.sort(key=lambda pair: pair[0].id)
+        statuses = [target.status(now.time_s) for target, _ in shown]
+        calibration = frame.calibrations.get(THERMAL)
+        places: Sequence[FloorPlace | None] = [None] * len(shown)
+        if calibration is not None:
+            places = places_on_floor([box for _, box in shown], statuses, calibration)
+        return tuple(
+            Track(
+                id=target.id,
+                boxes={THERMAL: box},
+                place=place,
+                confidence=target.confidence,
+                status=status,
+                age_s=now.time_s - target.born_s,
+                occluder=target.occluder,
+            )
+            for (target, box), status, place in zip(shown, statuses, places, strict=True)
+        )
+
+
+def _box(numbers: Sequence[float]) -> Box:
+    left, top, width, height = numbers
+    return left, top, width, height
+
+
+def _hidden_by(expected: Floats, is_told: NDArray[np.bool_], found: dict[int, int]) -> list[int | None]:
+    """Tell for each of K people with boxes (K, 4) who of those who were found may hide it."""
+    covered = cover(intersection(expected[:, None], expected[None]), area(expected)[:, None])
+    foot = expected[:, 1] + expected[:, 3]
+    hides = (covered > _COVERED) & (foot[None] > (foot - _LOWER * expected[:, 3])[:, None]) & is_told[None]
+    hides &= np.isin(np.arange(len(expected)), list(found))[None] & ~np.eye(len(expected), dtype=bool)
+    return [
+        int(np.argmax(covered[row] * hides[row])) if hides[row].any() else None for row in range(len(hides))
+    ]
+
+
+def _surely_apart_m(origin_m: Floats, mean: Floats, error: Floats) -> float:
+    """Tell how far along the floor somebody surely is from the origin, errors of distance taken off."""
+    aside = abs(mean[0] - origin_m[0]) - 2.0 * error[0]
+    ahead = abs(mean[2] - origin_m[2]) - 2.0 * error[2] - 2.0 * _ABOVE_GROUND * mean[2]
+    return float(np.hypot(max(aside, 0.0), max(ahead, 0.0)))

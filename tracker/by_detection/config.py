@@ -1,0 +1,107 @@
+"""Settings of the tracker by detection. Lengths are metres, times seconds, scores log odds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Final
+
+STATURE_M: Final = 1.72
+"""How tall everybody is taken to be: what a height in the image says of the distance."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathConfig:
+    """How people move, and how well a box tells where they are.
+
+    Attributes:
+        acceleration_m_s2: deviation of the acceleration to the right, down, and away.
+        speed_m_s: deviation of the velocity of somebody just found, along the same.
+        column: deviation of a box's middle column, in its heights.
+        foot: deviation of its lower end, in its heights.
+        log_height: deviation of the logarithm of its height, stature and posture included.
+        floor_m: deviation of feet from the floor, where it is known.
+    """
+
+    acceleration_m_s2: tuple[float, float, float] = (0.8, 0.2, 0.8)
+    speed_m_s: tuple[float, float, float] = (1.0, 0.2, 1.0)
+    column: float = 0.05
+    foot: float = 0.06
+    log_height: float = 0.1
+    floor_m: float = 0.15
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MatchingConfig:
+    """What it costs to take a proposal for a person.
+
+    Attributes:
+        gate: Mahalanobis distance of proposals that are nobody's own.
+        path: cost of a unit of it.
+        overlap: cost of boxes that do not overlap at all.
+        looks: cost of looks that are the opposite.
+        score: what a unit of the proposal's score takes off.
+        highest: cost that is too high.
+        lost_s: who was not seen for longer comes after all others.
+        looks_of_lost: least likeness of who was lost, -1 to 1, where colours are not known.
+        colours_of_same: likeness of colours from which on somebody is the same, wherever he comes back.
+    """
+
+    gate: float = 3.5
+    path: float = 0.35
+    overlap: float = 1.0
+    looks: float = 1.0
+    score: float = 0.05
+    highest: float = 2.6
+    lost_s: float = 0.7
+    looks_of_lost: float = 0.35
+    colours_of_same: float = 0.3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExistenceConfig:
+    """When somebody is believed to be there, by the log odds that add up.
+
+    Attributes:
+        weakest: proposals of a lower score are not looked at.
+        birth: score of a proposal that may be somebody new.
+        independent_s: images so far apart speak for themselves.
+        highest_score: what one image can say at most.
+        highest: what all can say.
+        confirmed: log odds at which somebody is told.
+        still_doubt: what is taken off the score of who never moved: a thing that looks like a person stands.
+        hopeless: log odds below which nobody is followed.
+        moved_m: how far somebody went who moves.
+        missed: what an image without somebody says who should be seen.
+        missed_hidden: the same of somebody behind others.
+        doubt_s: who was not found for so long is told no more.
+        hidden_doubt_s: the same of somebody behind others.
+        forget_s: who was not found for so long is forgotten.
+        brief_s: of who was seen for less than that, `brief_forget_s`.
+        brief_forget_s: who was hardly seen is forgotten sooner.
+    """
+
+    weakest: float = -2.0
+    birth: float = 0.0
+    independent_s: float = 0.25
+    highest_score: float = 3.0
+    highest: float = 8.0
+    confirmed: float = 1.5
+    still_doubt: float = 0.5
+    hopeless: float = -0.5
+    moved_m: float = 0.25
+    missed: float = 1.0
+    missed_hidden: float = 0.3
+    doubt_s: float = 0.35
+    hidden_doubt_s: float = 1.0
+    forget_s: float = 10.0
+    brief_s: float = 1.0
+    brief_forget_s: float = 2.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ByDetectionConfig:
+    """All settings of the tracker by detection."""
+
+    path: PathConfig = field(default_factory=PathConfig)
+    matching: MatchingConfig = field(default_factory=MatchingConfig)
+    existence: ExistenceConfig = field(default_factory=ExistenceConfig)

@@ -1,0 +1,56 @@
+"""What is proposed in one image, and how it looks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.by_detection.colours import Colours, colours_of
+from peopleboy.tracker.by_detection.looks import Pattern, patterns
+from peopleboy.tracker.by_detection.target import Target
+from peopleboy.tracker.by_detection.viewpoint import Viewpoint
+from peopleboy.tracker.frame import THERMAL, Floats, Frame
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Proposed:
+    """M proposals.
+
+    Attributes:
+        boxes: (M, 4) [px].
+        scores: (M,) log odds.
+        looks: (M, 72) in the thermal image.
+        colours: (M, 512) of clothes; 0 where nobody knows.
+    """
+
+    boxes: Floats
+    scores: Floats
+    looks: Pattern
+    colours: Colours
+
+    @classmethod
+    def of(cls, frame: Frame, boxes: Floats, scores: Floats, view: Viewpoint) -> Proposed:
+        """Look at what is proposed in a frame."""
+        image = frame.grey(THERMAL).astype(np.float32)
+        return cls(boxes, scores, patterns(image, boxes), colours_of(frame, boxes, view))
+
+    def __len__(self) -> int:
+        return len(self.boxes)
+
+    def likeness(self, targets: list[Target]) -> tuple[Floats, NDArray[np.bool_]]:
+        """Tell how alike K targets and these are.
+
+        Returns:
+            (K, M) -1 to 1, by colours where they are known, else by warmth, and whether they are (K, M).
+            Colours of the same clothes are mostly above 0.5, and of others below -0.4; warmth tells little.
+        """
+        warm = np.stack([target.looks for target in targets]) @ self.looks.T
+        worn = np.stack([target.colours for target in targets])
+        is_known = np.logical_and.outer(worn.any(axis=1), self.colours.any(axis=1))
+        return np.where(is_known, 2.0 * worn @ self.colours.T - 1.0, warm).astype(np.float64), is_known
+
+    def ratio(self, row: int) -> float:
+        """Give the width of a box over its height."""
+        return float(self.boxes[row, 2] / self.boxes[row, 3])

@@ -1,0 +1,94 @@
+"""From metres round a camera to its image: people as upright lines on their feet.
+
+The level frame has its origin in the camera: x to the right, y down, z ahead along the floor [m].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.by_detection.config import STATURE_M
+from peopleboy.tracker.frame import Calibration, PinholeCalibration
+
+Floats = NDArray[np.float64]
+
+VIEW_ANGLE_DEG: Final = 44.0
+"""Vertical, of a camera of which nothing is known."""
+
+NEAREST_M: Final = 0.3
+_ROBOT_FROM_LEVEL: Final = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+_UP: Final = np.array([0.0, -STATURE_M, 0.0])
+_STEP_M: Final = 1e-3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Viewpoint:
+    """How a camera looks into the level frame.
+
+    Attributes:
+        focal_px: focal lengths along columns and rows.
+        centre_px: where the optical axis meets the image.
+        camera_from_level: (3, 3) rotation.
+        floor_m: how far below the camera the floor is; None if nobody knows.
+    """
+
+    focal_px: tuple[float, float]
+    centre_px: tuple[float, float]
+    camera_from_level: Floats
+    floor_m: float | None
+
+    @classmethod
+    def of(cls, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
+        """Take a camera's calibration; one of which nothing is known is level.
+
+        Args:
+            calibration: of the camera; None if nobody knows it.
+            shape: rows and columns of its image [px].
+        """
+        if isinstance(calibration, PinholeCalibration):
+            matrix = calibration.intrinsics
+            return cls(
+                (float(matrix[0, 0]), float(matrix[1, 1])),
+                (float(matrix[0, 2]), float(matrix[1, 2])),
+                calibration.robot_from_camera[:3, :3].T @ _ROBOT_FROM_LEVEL,
+                calibration.position_m[2],
+            )
+        rows, columns = shape
+        focal = rows / 2.0 / math.tan(math.radians(VIEW_ANGLE_DEG) / 2.0)
+        return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None)
+
+    def seen(self, feet_m: Floats) -> Floats:
+        """Tell how people with these feet (K, 3) are seen: (K, 3) middle column, foot row, log height."""
+        foot, head = self._pixels(feet_m), self._pixels(feet_m + _UP)
+        height = np.maximum(foot[:, 1] - head[:, 1], 1.0)
+        return np.stack([(foot[:, 0] + head[:, 0]) / 2.0, foot[:, 1], np.log(height)], axis=1)
+
+    def slopes(self, feet_m: Floats) -> Floats:
+        """Give the derivatives (K, 3, 3) of `seen` by x, y, z of the feet."""
+        sides = [self.seen(feet_m + step) - self.seen(feet_m - step) for step in _STEP_M * np.eye(3)]
+        return np.stack(sides, axis=2) / (2.0 * _STEP_M)
+
+    def feet(self, boxes: Floats) -> Floats:
+        """Tell where people with these boxes (K, 4) stand, (K, 3), if they are of the usual stature."""
+        left, top, width, height = boxes.T
+        rays = self._rays(np.stack([left + width / 2.0, top + height], axis=1))
+        heads = self._rays(np.stack([left + width / 2.0, top], axis=1))
+        # Both rays meet the upright line at one distance z: STATURE_M = z (slope of feet - slope of head).
+        ahead = STATURE_M / np.maximum(rays[:, 1] - heads[:, 1], 1e-3)
+        return rays * np.maximum(ahead, NEAREST_M)[:, None]
+
+    def _pixels(self, points_m: Floats) -> Floats:
+        turned = points_m @ self.camera_from_level.T
+        depth = np.maximum(turned[:, 2], 0.05)
+        return turned[:, :2] / depth[:, None] * self.focal_px + self.centre_px
+
+    def _rays(self, pixels: Floats) -> Floats:
+        """Give directions (K, 3) in the level frame, of depth 1 along the floor."""
+        straight = np.column_stack([(pixels - self.centre_px) / self.focal_px, np.ones(len(pixels))])
+        level = straight @ self.camera_from_level
+        return level / np.maximum(level[:, 2:], 1e-3)

@@ -1,0 +1,102 @@
+"""All trees of the detector, and their file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.proposals.cascade import DEPTH, FEATURES, LEAVES, NODES, Cascade
+from peopleboy.tracker.proposals.placing import OFFSETS, Placing
+from peopleboy.tracker.weights_archive import opened_archive
+
+COMMAND: Final = "peopleboy train-detector"
+WEIGHTS: Final = Path(__file__).parent / "weights" / "people.npz"
+"""The trees that come with the tracker."""
+
+_ABOUT: Final = "about"
+_ARRAYS: Final = ("feature", "threshold", "leaf")
+_KINDS: Final = tuple(np.dtype(kind) for kind in (np.int16, np.float32, np.float32))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PeopleModel:
+    """What people look like.
+
+    Attributes:
+        cascade: tells whether somebody is in a window.
+        placing: tells where in it.
+        about: what they were learned from, for the reader.
+    """
+
+    cascade: Cascade
+    placing: Placing
+    about: Mapping[str, str] = field(default_factory=dict)
+
+    def save(self, path: Path) -> None:
+        """Write a NumPy archive without pickles."""
+        content: dict[str, Any] = {
+            "least": self.cascade.least,
+            _ABOUT: np.array(json.dumps(dict(self.about))),
+        }
+        for trees, prefix in ((self.cascade, ""), (self.placing, "placing_")):
+            content |= {prefix + name: getattr(trees, name) for name in _ARRAYS}
+            content[prefix + "feature"] = trees.feature.astype(np.int16)
+        with path.open("wb") as file:
+            np.savez_compressed(file, **content)
+
+    @classmethod
+    def load(cls, path: Path) -> PeopleModel:
+        """Read trees.
+
+        Raises:
+            BadInput: a file that is missing, is none, or holds other trees.
+        """
+        with opened_archive(path, COMMAND) as archive:
+            about = json.loads(str(archive[_ABOUT]))
+            least = np.asarray(archive["least"])
+            whether, where = (
+                [np.asarray(archive[prefix + name]) for name in _ARRAYS] for prefix in ("", "placing_")
+            )
+        trees = len(least) if least.ndim == 1 else 0
+        is_right = (
+            trees > 0
+            and least.dtype == np.float32
+            and not np.isnan(least).any()
+            and _are_trees(whether, (trees,))
+            and _are_trees(where, (OFFSETS, where[0].shape[1] if where[0].ndim == 3 else 0))
+        )
+        if not is_right:
+            raise BadInput(
+                f"holds no trees of depth {DEPTH} on the {FEATURES} features of a window; "
+                f"`{COMMAND}` makes some",
+                file=str(path),
+            )
+        cascade = Cascade(whether[0].astype(np.int32), whether[1], whether[2], least)
+        return cls(cascade, Placing(where[0].astype(np.int32), where[1], where[2]), about)
+
+
+def _are_trees(arrays: list[NDArray[Any]], trees: tuple[int, ...]) -> bool:
+    """Tell whether features, thresholds and leaves are those of so many trees."""
+    feature, threshold, leaf = arrays
+    return (
+        feature.shape == threshold.shape == (*trees, NODES)
+        and leaf.shape == (*trees, LEAVES)
+        and tuple(array.dtype for array in arrays) == _KINDS
+        and bool(((feature >= 0) & (feature < FEATURES)).all())
+        and not bool(np.isnan(threshold).any())
+        and bool(np.isfinite(leaf).all())
+    )
+
+
+@cache
+def shipped_model() -> PeopleModel:
+    """Read the trees that come with the tracker."""
+    return PeopleModel.load(WEIGHTS)

@@ -1,0 +1,89 @@
+"""Where exactly in a window somebody is: boosted trees that move and size its box."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.proposals.cascade import DEPTH, NODES
+from peopleboy.tracker.proposals.channels import Cells
+from peopleboy.tracker.proposals.window import COLUMNS, ROWS, Floats
+
+OFFSETS: Final = 4
+"""Numbers that tell a person's box from its window: see `offsets`."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placing:
+    """Trees for each of the numbers.
+
+    Attributes:
+        feature: (4, T, 7) int32, as in a `Cascade`.
+        threshold: (4, T, 7) float32.
+        leaf: (4, T, 8) float32; the sum of what all trees say is the number.
+    """
+
+    feature: NDArray[np.int32]
+    threshold: NDArray[np.float32]
+    leaf: NDArray[np.float32]
+
+    def boxes(
+        self, cells: Cells, row: NDArray[np.int64], column: NDArray[np.int64], window: Floats
+    ) -> Floats:
+        """Give the boxes (N, 4) of those who fill windows that begin in some cells, with boxes (N, 4)."""
+        told = np.empty((len(row), OFFSETS), np.float32)
+        _place(cells, row, column, self.feature, self.threshold, self.leaf, told)
+        return moved(window, told.astype(np.float64))
+
+
+def offsets(window: Floats, box: Floats) -> Floats:
+    """Tell boxes (N, 4) from those of their windows (N, 4).
+
+    Returns:
+        (N, 4) of the middle to the right and the top down, in heights of the window, the logarithm of the
+        height over the window's, and the width in heights of the window.
+    """
+    height = window[:, 3]
+    aside = box[:, 0] + box[:, 2] / 2.0 - window[:, 0] - window[:, 2] / 2.0
+    return np.stack(
+        [aside / height, (box[:, 1] - window[:, 1]) / height, np.log(box[:, 3] / height), box[:, 2] / height],
+        axis=1,
+    )
+
+
+def moved(window: Floats, told: Floats) -> Floats:
+    """Give the boxes (N, 4) that are told from those of windows (N, 4) by `offsets` (N, 4)."""
+    height = window[:, 3]
+    width = told[:, 3] * height
+    middle = window[:, 0] + window[:, 2] / 2.0 + told[:, 0] * height
+    return np.stack(
+        [middle - width / 2.0, window[:, 1] + told[:, 1] * height, width, height * np.exp(told[:, 2])], axis=1
+    )
+
+
+@njit(cache=True, nogil=True)
+def _place(
+    cells: Cells,
+    row: NDArray[np.int64],
+    column: NDArray[np.int64],
+    feature: NDArray[np.int32],
+    threshold: Cells,
+    leaf: Cells,
+    told: Cells,
+) -> None:  # pragma: no cover
+    for number in range(len(row)):
+        for offset in range(feature.shape[0]):
+            total = np.float32(0.0)
+            for tree in range(feature.shape[1]):
+                node = 0
+                for _ in range(DEPTH):
+                    channel, within = divmod(feature[offset, tree, node], ROWS * COLUMNS)
+                    down, right = divmod(within, COLUMNS)
+                    seen = cells[channel, row[number] + down, column[number] + right]
+                    node = 2 * node + 1 + (seen > threshold[offset, tree, node])
+                total += leaf[offset, tree, node - NODES]
+            told[number, offset] = total

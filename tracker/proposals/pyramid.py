@@ -1,0 +1,127 @@
+"""An image in the sizes at which people of all sizes fill the window."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.proposals.channels import PAD, Cells, Image, Memory, channels, noise_of
+from peopleboy.tracker.proposals.window import CELL_PX, COLUMNS, PERSON_PX, ROWS, Floats, boxes_of, cells_of
+from peopleboy.tracker.thermal.mount import Mount
+
+STEP: Final = 2.0 ** (1.0 / 3.0)
+"""Between the sizes of people of one level and the next."""
+
+_STATURES_M: Final = (1.4, 2.0)  # of who is looked for
+_SLACK: Final = 0.15  # of a person's height: the pitch of the camera, the gait, and cells are none of a ray's
+_CONTEXT: Final = 12
+"""Cells above and below a window that its channels depend on."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Level:
+    """One size of the image.
+
+    Attributes:
+        cells: (9, h, w) channels, of those rows that are looked at and some around; with a border.
+        first: row of the first cell in the whole level, the border's not counted.
+        rows: the first row of `cells` where a window may begin, and the one after the last.
+        scale: pixels of the level per pixel of the image, down and right.
+    """
+
+    cells: Cells
+    first: int
+    rows: tuple[int, int]
+    scale: tuple[float, float]
+
+    def boxes(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> Floats:
+        """Give the boxes (N, 4) [px] of the people who fill windows, by their first cell in `cells`."""
+        corner = np.stack([row + self.first - PAD, column - PAD]).astype(np.float64)
+        return boxes_of(corner[0], corner[1], self.scale)
+
+    def windows(self, box: Floats) -> Floats:
+        """Give row and column (N, 2) in `cells` of the windows that people of boxes (N, 4) fill."""
+        return np.asarray(cells_of(box, self.scale) + np.array([PAD - self.first, PAD]), np.float64)
+
+
+def levels(
+    grey: NDArray[np.uint8],
+    change: NDArray[np.uint8],
+    mount: Mount | None,
+    smallest_px: float,
+    memory: Memory | None = None,
+) -> Iterator[Level]:
+    """Yield an image's levels, the one for the smallest people first.
+
+    Args:
+        grey: (H, W) image.
+        change: (H, W) by how much greys changed.
+        mount: of the camera; if it is known, only rows are looked at where people may stand.
+        smallest_px: height of the smallest people.
+        memory: for the channels; a level then holds until the next one is asked for.
+    """
+    whole = grey.astype(np.float32)
+    image, changes = _Halves(whole), _Halves(change.astype(np.float32))
+    noise, person_px = noise_of(whole), smallest_px
+    rows, columns = grey.shape
+    while True:
+        scale = PERSON_PX / person_px
+        high, wide = round(rows * scale / CELL_PX), round(columns * scale / CELL_PX)
+        if high < ROWS or wide < COLUMNS:
+            return
+        down, right = CELL_PX * high / rows, CELL_PX * wide / columns
+        start, end = _beginnings(mount, high, down)
+        if end > start:
+            first, last = max(start - _CONTEXT, 0), min(end + ROWS + _CONTEXT, high)
+            scaled = image.sized((CELL_PX * wide, CELL_PX * high), scale)
+            changed = changes.sized((wide, high), scale / CELL_PX)
+            cells = channels(
+                scaled[CELL_PX * first : CELL_PX * last],
+                changed[first:last],
+                noise * min(1.0, scale),
+                memory,
+            )
+            yield Level(cells, first, (start + PAD - first, end + PAD - first), (down, right))
+        person_px *= STEP
+
+
+class _Halves:
+    """An image, half of it, a quarter of it and so on, of which others are made without skipping pixels."""
+
+    def __init__(self, image: Image) -> None:
+        self._images = [image]
+
+    def sized(self, size: tuple[int, int], scale: float) -> Image:
+        """Give the image in another size (columns, rows), which is about a scale of its own."""
+        return np.asarray(cv2.resize(self._at(scale), size), np.float32)
+
+    def _at(self, scale: float) -> Image:
+        """Give the smallest that is as large as a scale asks for."""
+        halvings = max(math.floor(-math.log2(scale) + 1e-9), 0)
+        while len(self._images) <= halvings:
+            rows, columns = self._images[-1].shape
+            half = ((columns + 1) // 2, (rows + 1) // 2)
+            smaller = cv2.resize(self._images[-1], half, interpolation=cv2.INTER_AREA)
+            self._images.append(np.asarray(smaller, np.float32))
+        return self._images[halvings]
+
+
+def _beginnings(mount: Mount | None, high: int, down: float) -> tuple[int, int]:
+    """Tell in which rows of cells windows may begin; the border's are below 0 and beyond."""
+    everywhere = (-PAD, high + PAD - ROWS + 1)
+    if mount is None:
+        return everywhere
+    # Whoever stands has the feet as far below the horizon as the camera is high.
+    height = PERSON_PX / down
+    feet = [mount.horizon_px + height * mount.height_m / stature for stature in _STATURES_M]
+    box = np.array([[0.0, foot - height, 0.0, height] for foot in (min(feet), max(feet))])
+    slack = _SLACK * PERSON_PX / CELL_PX
+    upper, lower = cells_of(box, (down, down))[:, 0].tolist()
+    start, end = int(np.floor(upper - slack)), int(np.ceil(lower + slack)) + 1
+    return max(start, everywhere[0]), min(end, everywhere[1])
