@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from peopleboy.tracker.fusion.ahead_tracker import _depth as depth_of
+from peopleboy.tracker.fusion.ahead_tracker import _without as without
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.matching import apart, cheapest, cost, is_beside
 from peopleboy.tracker.fusion.person import Person, newborn
@@ -82,3 +85,12 @@ def test_as_many_as_can_be_are_matched_as_cheaply_as_can_be(table: list[list[flo
     assert all(np.isfinite(matrix[row, column]) for row, column in found.items())
     assert len(set(found.values())) == len(found) == -best[0]
     assert np.isclose(sum(matrix[row, column] for row, column in found.items()), best[1])
+
+
+def test_a_track_that_is_somebody_elses_now_is_taken_from_who_had_it() -> None:
+    had = replace(person(6.0, 0.0), depth=5, heat=3)
+    assert without(had, depth_of, {5: had.id}) is had
+    assert without(had, depth_of, {7: 2}) is had
+    later = without(had, depth_of, {5: 2})
+    assert depth_of(later) not in {5, None}
+    assert later.heat == 3
