@@ -10,7 +10,6 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from statistics import mean
 from typing import Any, Final
 
 import click
@@ -43,14 +42,13 @@ ROOMS: Final[Mapping[str, Mapping[str, float]]] = {
     "a room of 31 degC": {"floor_c": 30.0, "walls_c": 31.0, "ceiling_c": 32.0, "surroundings_c": 31.0},
 }
 DURATION_S: Final = 12.0
-_FOOTAGE: Final = click.Path(exists=True, path_type=Path)
 _FOLDER: Final = click.Path(exists=True, file_okay=False, path_type=Path)
-GOAL: Final = 85.0  # [%] of its frames in which one id shall keep a person
 
 
 @click.command()
-@click.option("--clip", type=_FOOTAGE, help="Footage with truth of one person, by many seeds.")
-@click.option("--clips", type=_FOLDER, help="Folder of clips, NAME/thermal and NAME/gt.txt, or as --clip.")
+@click.option(
+    "--clips", type=_FOLDER, help="Folder of clips, NAME/thermal and NAME/gt.txt, or pictures with truth."
+)
 @click.option(
     "--tracker",
     "trackers",
@@ -72,23 +70,22 @@ GOAL: Final = 85.0  # [%] of its frames in which one id shall keep a person
 @click.option(
     "--rate-hz", type=click.FloatRange(min=0.1), help="Of --clips.  [default: as `peopleboy track`]"
 )
-@click.option("--seeds", type=click.IntRange(min=1), help="[default: 32 for --clip, 1 for --clips]")
+@click.option(
+    "--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="Of trackers, with --clips."
+)
 @click.option(
     "--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes, with --clips."
 )
-def main(clip: Path | None, clips: Path | None, seeds: int | None, **how: Any) -> None:
-    """Print how people are kept in scenes of the library, how one is in a clip, or how trackers do on clips.
+def main(clips: Path | None, seeds: int, **how: Any) -> None:
+    """Print how people are kept in scenes of the library, or how trackers do on clips.
 
     Figures are percent. Those of --clips are left in runs/clips.json, too.
     """
     if clips is not None:
-        _show_clips(ClipsOptions(home=clips, seeds=seeds or 1, **how))
+        _show_clips(ClipsOptions(home=clips, seeds=seeds, **how))
         return
     with tempfile.TemporaryDirectory() as folder:
-        if clip is None:
-            _show_rooms(Path(folder))
-        else:
-            _show_clip(clip, seeds or 32, Path(folder))
+        _show_rooms(Path(folder))
 
 
 def _show_clips(options: ClipsOptions) -> None:
@@ -136,21 +133,6 @@ def _play(scene: str, temperatures: Mapping[str, float], home: Path) -> None:
     path.write_text(yaml.safe_dump(changed), encoding="utf-8")
     options = RunOptions(seed=0, out=home, frames=True, tracker="truth", record=False)
     run(load_scenario(path), options, lambda *_: None)
-
-
-def _show_clip(clip: Path, seeds: int, folder: Path) -> None:
-    shares, found = [], []
-    for seed in range(seeds):
-        options = TrackOptions(footage=clip, out=folder / str(seed), seed=seed)
-        scores = _tracked(options)
-        shares.append(scores.mot.identity.idr)
-        found.append(scores.thesis.cr)
-    enough = sum(share >= GOAL for share in shares)
-    click.echo(
-        f"One id keeps the annotated person in {mean(shares):.1f} % of its frames, mean of {seeds} seeds "
-        f"({min(shares):.0f}..{max(shares):.0f}; {enough} of them {GOAL:.0f} or more); "
-        f"any id in {mean(found):.1f} %."
-    )
 
 
 def _tracked(options: TrackOptions) -> Scores:
