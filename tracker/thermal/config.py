@@ -220,19 +220,13 @@ class InteractionConfig:
 class DepthConfig:
     """Who is in front of whom, and what that means for the evidence."""
 
-    # By whose feet are lower ("foot"), by looks as well ("appearance"), by contours too ("contour"); None:
-    # nobody is in front of anybody.
+    # By whose feet are lower ("foot"), by looks as well ("appearance"); None: nobody is in front of anybody.
     order: str | None = None
     removes_front: bool = False  # points of the contour on people in front are left out of the evidence
     growth: float = 1.0  # by which the people in front are enlarged for that
 
     def __post_init__(self) -> None:
-        refuse_unless(
-            self.order in (None, "foot", "appearance", "contour"),
-            self,
-            "order",
-            "foot, appearance or contour",
-        )
+        refuse_unless(self.order in (None, "foot", "appearance"), self, "order", "foot or appearance")
         check_positive(self, "growth")
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.appearance.appearance_model import squared_distances
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.contour.likelihood import covered_by, fitness
+from peopleboy.tracker.thermal.contour.likelihood import covered_by
 from peopleboy.tracker.thermal.particle_filter import FrameView
 from peopleboy.tracker.thermal.particles import STATE_SIZE, Floats
 from peopleboy.tracker.thermal.tracked_person import TrackedPerson, moved_on
@@ -22,10 +22,6 @@ FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
 LOOKS = 12.0  # difference of squared distances of looks that counts 1
 MOST = 4.0  # for which looks count at most
 # Where it is not known whether people stand on one floor, or how well their feet are seen:
-LOOSE_FOOT_PX = 12.0  # [px] of 240 rows
-LOOSE_FOOT_MOST = 3.0
-FIT = 0.03  # difference of the contours' fitness that counts 1
-FIT_MOST = 6.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,14 +33,12 @@ class ExpectedPerson:
         state: (9,) where it should be by now.
         region: (4,) left, top, width, height [px] of that.
         unlikeness: squared distance of what is seen there from the person's looks; 0 where nothing is known.
-        fit: how well the contour fits the image there, as if nobody were in front (equation 4.3).
     """
 
     person: TrackedPerson
     state: NDArray[np.float64]
     region: Regions
     unlikeness: float = 0.0
-    fit: float = 0.0
 
 
 def expected(
@@ -54,16 +48,12 @@ def expected(
     states = [
         moved_on(person.shown if person.is_hidden else person.belief.estimate, view) for person in persons
     ]
-    unlikeness, fits = [0.0] * len(persons), [0.0] * len(persons)
-    rows, order = np.array(states, dtype=np.float32).reshape(-1, STATE_SIZE), config.depth.order
-    if order in ("appearance", "contour") and view.appearance is not None and len(persons) > 1:
-        features = view.appearance.describe(rows)
+    unlikeness = [0.0] * len(persons)
+    if config.depth.order == "appearance" and view.appearance is not None and len(persons) > 1:
+        features = view.appearance.describe(np.array(states, dtype=np.float32).reshape(-1, STATE_SIZE))
         unlikeness = [_unlikeness(*each) for each in zip(persons, features, strict=True)]
-    if order == "contour" and len(persons) > 1:
-        differences = view.model.differences(view.image, rows)
-        fits = fitness(differences, view.model.weights, config.likelihood).tolist()
     regions = regions_of(states, config)
-    return [ExpectedPerson(*each) for each in zip(persons, states, regions, unlikeness, fits, strict=True)]
+    return [ExpectedPerson(*each) for each in zip(persons, states, regions, unlikeness, strict=True)]
 
 
 def _unlikeness(person: TrackedPerson, features: Floats) -> float:
@@ -95,22 +85,8 @@ def likelier_front(one: ExpectedPerson, other: ExpectedPerson, view: FrameView) 
     return lower + _clearer_appearance(one, other)
 
 
-def plainer_contour(one: ExpectedPerson, other: ExpectedPerson, view: FrameView) -> float:
-    """Weigh up whose contour is seen, whose looks, and whose feet are lower; none of them decides alone.
-
-    The contour of the one in front is seen whole. On stairs and behind railings feet tell little.
-    """
-    lower = lower_foot(one, other, view) / (LOOSE_FOOT_PX * view.size)
-    plainer = (one.fit - other.fit) / FIT
-    return _at_most(lower, LOOSE_FOOT_MOST) + _at_most(plainer, FIT_MOST) + _clearer_appearance(one, other)
-
-
 def _clearer_appearance(one: ExpectedPerson, other: ExpectedPerson) -> float:
-    return _at_most((other.unlikeness - one.unlikeness) / LOOKS, MOST)
-
-
-def _at_most(lead: float, most: float) -> float:
-    return min(max(lead, -most), most)
+    return min(max((other.unlikeness - one.unlikeness) / LOOKS, -MOST), MOST)
 
 
 def front_to_back(
@@ -128,7 +104,7 @@ def front_to_back(
     return tuple(sorted(figures, key=cmp_to_key(compare)))
 
 
-ORDERS: Mapping[str, Order] = {"foot": lower_foot, "appearance": likelier_front, "contour": plainer_contour}
+ORDERS: Mapping[str, Order] = {"foot": lower_foot, "appearance": likelier_front}
 """Ways to compare by name."""
 
 
