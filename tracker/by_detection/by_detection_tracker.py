@@ -87,13 +87,11 @@ class ByDetectionTracker:
         Raises:
             BadInput: time that does not go forward.
         """
-        image, config = frame.grey(THERMAL), self._config
+        image = frame.grey(THERMAL)
         view = self._viewpoint(frame.calibrations.get(THERMAL), (image.shape[0], image.shape[1]))
         now = _Instant(frame.time_s, self._time_step(frame.time_s), view)
         self._carry_on(now.dt_s, frame.odometry or _STANDING)
-        boxes, scores = self._find(frame)
-        is_strong = scores > config.existence.weakest
-        proposed = Proposed.of(frame, boxes[is_strong], scores[is_strong], view)
+        proposed = Proposed.of(frame, *self._find(frame), view)
         expected = self._boxes(view)
         found = self._matched(expected, proposed, now)
         self._take_in(found, expected, proposed, now)

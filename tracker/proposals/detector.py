@@ -107,4 +107,4 @@ def look(
         row, column = hits.row[is_sure], hits.column[is_sure]
         boxes.append(model.placing.boxes(level.cells, row, column, level.boxes(row, column)))
         scores.append(hits.score[is_sure])
-    return suppress(np.concatenate(boxes), np.concatenate(scores), least_score)
+    return suppress(np.concatenate(boxes), np.concatenate(scores))

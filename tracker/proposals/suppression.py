@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -28,7 +27,7 @@ class Proposals(NamedTuple):
     score: Floats
 
 
-def suppress(box: Floats, score: Floats, least: float = -math.inf) -> Proposals:
+def suppress(box: Floats, score: Floats) -> Proposals:
     """Keep the best of boxes that share much of the smaller one's area, each the mean of those like it.
 
     Greedy (Dollár et al., PAMI 2012). A box weighs exp(score) in the mean.
@@ -36,14 +35,11 @@ def suppress(box: Floats, score: Floats, least: float = -math.inf) -> Proposals:
     Args:
         box: (N, 4) [px].
         score: (N,).
-        least: score of those that are kept; the others count in means only.
     """
     order = np.argsort(-score, kind="stable")
     box, score = box[order], score[order]
     is_left, kept, means = np.ones(len(box), np.bool_), [], []
     for k in range(len(box)):
-        if score[k] < least:
-            break
         if not is_left[k]:
             continue
         shared = cover(intersection(box[k], box), np.minimum(area(box[k]), area(box)))

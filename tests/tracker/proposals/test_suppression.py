@@ -31,9 +31,3 @@ def test_nothing_stays_nothing() -> None:
     found = suppress(np.empty((0, 4)), np.empty(0))
     assert found.box.shape == (0, 4)
     assert found.score.shape == (0,)
-
-
-def test_what_is_too_weak_to_be_kept_still_counts_in_the_mean() -> None:
-    box = np.array([[10.0, 0.0, 20.0, 50.0], [14.0, 0.0, 20.0, 50.0], [90.0, 0.0, 20.0, 50.0]])
-    found = suppress(box, np.log([3.0, 1.0, 1.0]), least=0.5)
-    np.testing.assert_allclose(found.box, [[11.0, 0.0, 20.0, 50.0]])
