@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from peopleboy.bad_input import BadInput
+from peopleboy.own_code import OwnCodeFailed
 from peopleboy.scenarios.commands.browse import list_command, schema, show
 from peopleboy.scenarios.commands.compare_footage import compare_footage
 from peopleboy.scenarios.commands.evaluate import evaluate
@@ -79,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> Any:
         code = 130
     except BadInput as error:
         code = _complain(str(error))
-    except TasksFailed as error:
+    except (OwnCodeFailed, TasksFailed) as error:
         click.echo(f"peopleboy: {error}", err=True)
         code = FAILED
     sys.exit(code if isinstance(code, int) else 0)

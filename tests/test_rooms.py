@@ -20,7 +20,7 @@ FILES = room_files()
 ARROWS = graph(FILES)
 AT_LOAD = graph(FILES, only_at_load=True)
 ALLOWED = {"sim": set(), "tracker": set(), "behaviours": set(), "scenarios": {"sim", "tracker", "behaviours"}}
-SHARED = {"peopleboy.bad_input", "peopleboy.wording"}
+SHARED = {"peopleboy.bad_input", "peopleboy.own_code", "peopleboy.wording"}
 FOLDERS = sorted({str(path.parent.relative_to(ROOT)) for path in FILES.values()})
 ELSEWHERE = ("tests", "benchmarks", "docs", "examples", "src")
 MOST_MODULES = 15

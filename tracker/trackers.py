@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib import import_module
-from pathlib import Path
 from typing import Final, Protocol, runtime_checkable
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
+from peopleboy.own_code import load_own
 from peopleboy.tracker.attention.attend import PersonLook
 from peopleboy.tracker.attention.attention_config import PRINTED as PRINTED_ATTENTION
 from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
@@ -188,19 +186,12 @@ def make_tracker(name: str, rng: np.random.Generator) -> Tracker:
 
 
 def _own_tracker(name: str, rng: np.random.Generator) -> Tracker:
-    home, _, member = name.partition(":")
-    if (here := str(Path.cwd())) not in sys.path:
-        sys.path.insert(0, here)
-    try:
-        factory = getattr(import_module(home), member)
-    except (ImportError, ValueError) as error:
-        raise BadInput(f"tracker {name!r}: module {home!r} cannot be imported: {error}") from error
-    except AttributeError as error:
-        raise BadInput(f"tracker {name!r}: there is no {member!r} in {home}") from error
-    try:
-        tracker = factory(rng)
-    except TypeError as error:
-        raise BadInput(f"tracker {name!r}: must be called with a numpy.random.Generator: {error}") from error
+    tracker = load_own("tracker", name, "with a numpy.random.Generator")(rng)
     if not isinstance(tracker, Tracker):
         raise BadInput(f"tracker {name!r}: is no tracker; give it `cameras` and `update(frame)`")
+    cameras = tracker.cameras
+    if not isinstance(cameras, tuple) or not all(isinstance(camera, str) for camera in cameras):
+        raise BadInput(
+            f"tracker {name!r}: `cameras` must be a tuple of names, such as ('thermal',), got {cameras!r}"
+        )
     return tracker

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from peopleboy.bad_input import BadInput
+from peopleboy.own_code import at_frame
 from peopleboy.scenarios.footage.footage_log import FootageLog
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import Views, open_views
@@ -15,6 +16,7 @@ from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import check_named
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.frame import DEPTH
@@ -48,19 +50,26 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
         report: called after each picture with its number and how many there should be.
 
     Raises:
-        BadInput: footage, truth or an option cannot be used; nothing is written then.
+        BadInput: footage, truth or an option cannot be used, or the tracker gave what cannot be; nothing is
+            written then.
+        OwnCodeFailed: the tracker raised an error; nothing is written either.
     """
     _check_apart(options)
     views = open_views(options)
     truth = _truth_of(options, views)
-    tracker = _tracker_of(options, views, truth)
+    tracker = CheckedTracker(
+        _tracker_of(options, views, truth), f"tracker {options.tracker!r}", views.cameras
+    )
     about = _about(options, views)
     began = time.perf_counter()
     with whole_folder(options.out, about, overwrite=options.overwrite, kind="run") as folder:
         log = FootageLog(folder, options, views, truth)
         with log:
             for frame in views:
-                log.add(frame, tracker.update(frame), explanation_of(tracker))
+                with at_frame(log.frames + 1):
+                    tracks = tracker.update(frame)
+                    explanation = explanation_of(tracker)
+                log.add(frame, tracks, explanation)
                 report(log.frames, views.expected)
         scores = log.finish()
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}

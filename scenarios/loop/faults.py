@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.schema.robot import FaultSpec
-from peopleboy.scenarios.loop.loop import Stage
+from peopleboy.scenarios.loop.loop import Stage, TrackerDown
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
@@ -97,10 +97,10 @@ class FaultyTracker:
         """Take in the next frame, or fail.
 
         Raises:
-            RuntimeError: the scenario wants it.
+            TrackerDown: the scenario wants it.
         """
         if "tracker_raises" in active(self._faults, frame.time_s):
-            raise RuntimeError("as the scenario asks")
+            raise TrackerDown("RuntimeError: as the scenario asks")
         return self._tracker.update(frame)
 
 

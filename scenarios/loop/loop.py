@@ -11,10 +11,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.percept import Percept, SeenPerson
+from peopleboy.own_code import at_frame
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.thermal_box import thermal_box
 from peopleboy.sim.cameras.camera_config import CameraConfig
@@ -89,8 +89,12 @@ class Stage(Protocol):
         ...
 
 
+class TrackerDown(RuntimeError):  # noqa: N818
+    """A tracker is out of order, which the robot is to get over: it drives on without anybody in sight."""
+
+
 class Eyes:
-    """The tracker, and whether what it says can be relied on: images may stay out, and it may fail.
+    """The tracker, and whether what it says can be relied on: images may stay out, and it may be down.
 
     Attributes:
         tracks: those of the newest image that was understood.
@@ -124,31 +128,36 @@ class Eyes:
         self._newest, self._images = observation, images
         try:
             self.tracks = self._tracker.update(make_frame(observation, self._calibrations, before))
-        except BadInput:
-            raise
-        except Exception as error:  # a robot among people outlives its tracker
+        except TrackerDown as error:  # a robot among people outlives its tracker
             self.tracks = ()
-            return tell((), fault=f"the tracker failed: {type(error).__name__}: {error}")
+            return tell((), fault=f"the tracker failed: {error}")
         return tell(self.tracks)
 
 
 def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: int) -> Iterator[Tick]:
-    """Run the loop for a number of frames, from the world's present instant on."""
+    """Run the loop for a number of frames, from the world's present instant on.
+
+    Raises:
+        BadInput: tracker or behaviour gave what cannot be used; it is said at which frame.
+        OwnCodeFailed: one that is checked failed.
+    """
     eyes = Eyes(tracker, calibrations_of(world.cameras))
     for frame in range(1, frames + 1):
-        observation = world.observe()
-        command = behaviour.command(eyes.look(observation))
-        yield Tick(
-            frame=frame,
-            observation=observation,
-            truths=world.truths(),
-            tracks=eyes.tracks,
-            explanation=explanation_of(tracker),
-            mode=behaviour.mode,
-            command=command,
-            reason=behaviour.reason,
-            following=behaviour.following,
-        )
+        with at_frame(frame):
+            observation = world.observe()
+            command = behaviour.command(eyes.look(observation))
+            tick = Tick(
+                frame=frame,
+                observation=observation,
+                truths=world.truths(),
+                tracks=eyes.tracks,
+                explanation=explanation_of(tracker),
+                mode=behaviour.mode,
+                command=command,
+                reason=behaviour.reason,
+                following=behaviour.following,
+            )
+        yield tick
         if frame < frames:
             world.step(command.linear_m_s, command.angular_rad_s, is_emergency=command.is_emergency)
 

@@ -145,6 +145,10 @@ def read_run(folder: Path) -> dict[str, Any]:
         about = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise BadInput(f"{path}: cannot be read as a run; give the folder of a finished run") from error
+    if isinstance(about, dict) and about.get("status") == "failed":
+        told = about.get("error")
+        why = f": {told['message']}" if isinstance(told, dict) and "message" in told else ""
+        raise BadInput(f"{path}: this run failed{why}; mend that, and run it again")
     if not isinstance(about, dict) or about.get("status") != "complete":
         raise BadInput(
             f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"

@@ -13,6 +13,8 @@ from typing import Any, TextIO
 
 import yaml
 
+from peopleboy.bad_input import BadInput
+from peopleboy.own_code import OwnCodeFailed, in_one_line, traceback_of
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.camera_truth import CameraTruth, further_cameras, gt_lines, open_text
 from peopleboy.scenarios.run_folder.image_files import make_image_folders, write_images
@@ -39,9 +41,9 @@ _VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet
 class RunFolder:
     """Writes one run; use it as a context manager.
 
-    `run.json` says "running" from the first moment on, "complete" after `complete`, and "cut off" when the
-    block is left by an error or an interrupt. The text files grow line by line, the tables are written at
-    the end, also of a run that was cut off.
+    `run.json` says "running" from the first moment on, "complete" after `complete`, "cut off" when the block
+    is left by an interrupt, and "failed" when it is left by an error, of which it then tells. The text files
+    grow line by line, the tables are written at the end, also of a run that was cut off or failed.
     """
 
     def __init__(
@@ -86,8 +88,10 @@ class RunFolder:
             camera.close()
         if not self._is_complete:
             self._write_tables()
-        status = "complete" if self._is_complete and kind is None else "cut off"
-        self._write_json("run.json", {"status": status, "frames": len(self._robot), **self._about})
+        state: Mapping[str, Any] = {"status": "complete" if self._is_complete and kind is None else "cut off"}
+        if isinstance(error, Exception):
+            state = {"status": "failed", "error": _told(error)}
+        self._write_json("run.json", {**state, "frames": len(self._robot), **self._about})
 
     def write(self, tick: Tick, events: Sequence[Mapping[str, Any]]) -> None:
         """Write one tick and what happened at it."""
@@ -138,6 +142,14 @@ class RunFolder:
 
     def _write_json(self, name: str, content: Mapping[str, Any]) -> None:
         (self.path / name).write_text(json.dumps(dict(content), indent=2) + "\n", encoding="utf-8")
+
+
+def _told(error: Exception) -> dict[str, str]:
+    """Say what ended a run; bad input is explained in one line, and has no traceback."""
+    if isinstance(error, BadInput):
+        return {"message": str(error)}
+    message = str(error) if isinstance(error, OwnCodeFailed) else in_one_line(error)
+    return {"message": message, "traceback": traceback_of(error)}
 
 
 def versions() -> dict[str, str]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
+from peopleboy.own_code import traceback_in
 from peopleboy.scenarios.files.own_files import keep_own_files
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
@@ -20,6 +21,7 @@ from peopleboy.scenarios.running.watchers import Watchers
 from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.sim.world import World
+from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.trackers import knows_again
 
 FOLLOWERS = ("follow_person", "patrol")
@@ -64,7 +66,9 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         report: called after every tick with the number of all ticks, such as by a progress bar.
 
     Raises:
-        BadInput: an option cannot be used; nothing is written then.
+        BadInput: an option cannot be used, and nothing is written then; or tracker or behaviour gave what
+            cannot be used, and the folder says that the run failed.
+        OwnCodeFailed: tracker or behaviour raised an error; the folder says so, with the traceback.
     """
     if options.seed < 0:
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
@@ -86,6 +90,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
     } | ({"mounted_for_tracker": mounted} if mounted else {})
     with ExitStack() as stack:
         world = stack.enter_context(World(config))
+        stack.enter_context(traceback_in(options.out / "run.json"))
         claim_folder(options.out, overwrite=options.overwrite)
         folder = stack.enter_context(
             RunFolder(
@@ -113,7 +118,8 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         watchers = Watchers(config, title, recorder)
         frames = round(scenario.duration_s * config.control_hz)
         stage = FaultySensors(world, scenario.spec.faults, config.robot.sonar.farthest_m)
-        eyes = FaultyTracker(tracker, scenario.spec.faults)
+        checked = CheckedTracker(tracker, f"tracker {name!r}", config.robot.cameras)
+        eyes = FaultyTracker(checked, scenario.spec.faults)
         for tick in closed_loop(stage, eyes, scenario.make_behaviour(), frames):
             events = watchers.update(tick)
             folder.write(tick, [event.to_json() for event in events])

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from peopleboy.bad_input import BadInput
+from peopleboy.own_code import OwnCodeFailed, in_one_line
 
 Result_co = TypeVar("Result_co", covariant=True)
 
@@ -66,11 +65,7 @@ def attempt(task: Task[Any], tell: Tell) -> Any:
         return task(tell)
     except BadInput as error:
         return Failure(task.name, str(error), is_refused=True)
+    except OwnCodeFailed as error:
+        return Failure(task.name, str(error))
     except Exception as error:
-        return Failure(task.name, _in_one_line(error))
-
-
-def _in_one_line(error: Exception) -> str:
-    at = traceback.extract_tb(error.__traceback__)[-1]
-    words = " ".join(f"{type(error).__name__}: {error}".split())
-    return f"{words} ({Path(at.filename).name}, line {at.lineno})"
+        return Failure(task.name, in_one_line(error))

@@ -1,0 +1,122 @@
+"""Classes that users bring, by module:Class, and what is told of an error in one."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from peopleboy.bad_input import BadInput
+
+
+class OwnCodeFailed(Exception):  # noqa: N818
+    """A tracker or a behaviour raised an error, which is the cause of this one.
+
+    The message is one line that says who, when and what. The command line prints it as it is and exits with
+    code 1.
+    """
+
+
+def load_own(what: str, name: str, call: str) -> Callable[..., Any]:
+    """Find the class that "module:Class" names, where Python looks for modules, and in the working directory.
+
+    Args:
+        what: what it is to be, such as "tracker".
+        name: what the user gave.
+        call: how it will be called, for messages, such as "with no argument".
+
+    Returns:
+        A function that makes one; what keeps it from that is bad input.
+
+    Raises:
+        BadInput: there is no such module or class, or the module cannot be imported.
+    """
+    home, _, member = name.partition(":")
+    if (here := str(Path.cwd())) not in sys.path:
+        sys.path.insert(0, here)
+    try:
+        module = import_module(home)
+    except (ImportError, ValueError) as error:
+        raise BadInput(f"{what} {name!r}: module {home!r} cannot be imported: {error}") from error
+    except Exception as error:
+        raise BadInput(
+            f"{what} {name!r}: module {home!r} cannot be imported: {in_one_line(error)}"
+        ) from error
+    if not hasattr(module, member):
+        raise BadInput(f"{what} {name!r}: there is no {member!r} in {home}")
+
+    def make(*arguments: object) -> Any:
+        try:
+            return getattr(module, member)(*arguments)
+        except BadInput as error:
+            raise BadInput(f"{what} {name!r}: {error}") from error
+        except Exception as error:
+            raise BadInput(
+                f"{what} {name!r}: cannot be made; it is called {call}: {in_one_line(error)}"
+            ) from error
+
+    return make
+
+
+@contextmanager
+def blamed(who: str) -> Iterator[None]:
+    """Tell of an error in the block whose it is, such as "tracker 'my_module:MyTracker'".
+
+    Raises:
+        BadInput: it was raised in the block.
+        OwnCodeFailed: any other error was.
+    """
+    try:
+        yield
+    except BadInput as error:
+        raise BadInput(f"{who}: {error}") from error
+    except Exception as error:
+        raise OwnCodeFailed(f"{who} failed: {in_one_line(error)}") from error
+
+
+@contextmanager
+def at_frame(frame: int) -> Iterator[None]:
+    """Tell of an error in the block at which frame it was.
+
+    Raises:
+        BadInput: it was raised in the block.
+        OwnCodeFailed: it was raised in the block.
+    """
+    try:
+        yield
+    except BadInput as error:
+        raise BadInput(f"frame {frame}: {error}") from error
+    except OwnCodeFailed as error:
+        raise OwnCodeFailed(f"frame {frame}: {error}") from error.__cause__
+
+
+@contextmanager
+def traceback_in(path: Path) -> Iterator[None]:
+    """Tell of an error of such a class in the block where its traceback is kept.
+
+    Raises:
+        OwnCodeFailed: it was raised in the block.
+    """
+    try:
+        yield
+    except OwnCodeFailed as error:
+        raise OwnCodeFailed(f"{error}; the traceback is in {path}") from error.__cause__
+
+
+def in_one_line(error: Exception) -> str:
+    """Give kind, message and place of an error."""
+    at = traceback.extract_tb(error.__traceback__)[-1]
+    words = " ".join(f"{type(error).__name__}: {error}".split())
+    if isinstance(error, SyntaxError):  # which says by itself where it is
+        return words
+    return f"{words} ({Path(at.filename).name}, line {at.lineno})"
+
+
+def traceback_of(error: Exception) -> str:
+    """Give the traceback of an error; of one in a user's class, that of its cause."""
+    cause = error.__cause__ if isinstance(error, OwnCodeFailed) else None
+    return "".join(traceback.format_exception(error if cause is None else cause))

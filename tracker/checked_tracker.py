@@ -1,0 +1,124 @@
+"""A tracker whose every answer is looked at, so that a mistake is told where it is made."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping
+from numbers import Integral, Real
+from typing import Any
+
+from peopleboy.bad_input import BadInput
+from peopleboy.own_code import blamed
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
+
+
+class CheckedTracker:
+    """Gives what a tracker gives, if that is what a tracker may give.
+
+    Args:
+        tracker: whose answers they are.
+        who: names it in messages, such as "tracker 'my_module:MyTracker'".
+        cameras: names of those that there are.
+    """
+
+    def __init__(self, tracker: Tracker, who: str, cameras: Collection[str]) -> None:
+        self._tracker = tracker
+        self._who = who
+        self._known = frozenset(cameras)
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """Those of the tracker."""
+        return self._tracker.cameras
+
+    @property
+    def knows_again(self) -> bool:
+        """Whether the tracker does."""
+        return knows_again(self._tracker)
+
+    @property
+    def explanation(self) -> object:
+        """That of the tracker.
+
+        Raises:
+            OwnCodeFailed: the tracker raised an error.
+        """
+        with blamed(self._who):
+            return explanation_of(self._tracker)
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Let it take in the next frame, and look at what it tells.
+
+        Raises:
+            BadInput: that is no tuple of possible tracks.
+            OwnCodeFailed: it raised an error.
+        """
+        with blamed(self._who):
+            tracks = self._tracker.update(frame)
+            for fault in _faults(tracks, self._known):
+                raise BadInput(fault)
+            return tracks
+
+
+def _faults(tracks: object, cameras: Collection[str]) -> Iterator[str]:
+    """Tell what is wrong with what `update` gave, and what would be right."""
+    if not isinstance(tracks, tuple):
+        yield f"update(frame) must give a tuple of Track, got {type(tracks).__name__}"
+        return
+    seen: set[int] = set()
+    for track in tracks:
+        if not isinstance(track, Track):
+            yield f"update(frame) must give a tuple of Track, got a {type(track).__name__} in it"
+            return
+        if not _is_whole(track.id) or track.id < 1:
+            yield f"id must be a whole number from 1, got {track.id!r}"
+        if track.id in seen:
+            yield f"ids must differ from each other in a frame, got {track.id} twice"
+        seen.add(track.id)
+        for fault in (*_box_faults(track.boxes, cameras), *_other_faults(track)):
+            yield f"track {track.id}: {fault}"
+
+
+def _box_faults(boxes: object, cameras: Collection[str]) -> Iterator[str]:
+    if not isinstance(boxes, Mapping):
+        yield f"boxes must be by camera, as {{'thermal': (left, top, width, height)}}, got {boxes!r}"
+        return
+    for camera, box in boxes.items():
+        if camera not in cameras:
+            yield f"boxes must be in images of {', '.join(sorted(cameras))}, got camera {camera!r}"
+        if not _are_numbers(box, 4) or min(box[2:]) < 0.0:
+            yield f"box in {camera!r} must be a tuple, finite left, top, width >= 0, height >= 0 [px], got {box}"
+
+
+def _other_faults(track: Track) -> Iterator[str]:
+    place, status = track.place, _one_of(Status, track.status)
+    if place is not None and not _are_numbers(place.position_m, 2):
+        yield f"position_m must be a tuple of finite metres ahead and left, got {place.position_m!r}"
+    if place is not None and not _are_numbers(place.covariance_m2, 3):
+        yield f"covariance_m2 must be a tuple of finite xx, xy, yy, got {place.covariance_m2!r}"
+    if not _are_numbers((track.confidence,), 1) or not 0.0 <= track.confidence <= 1.0:
+        yield f"confidence must be from 0 to 1, got {track.confidence!r}"
+    if status:
+        yield f"status must be {status}, got {track.status!r}"
+    if not _are_numbers((track.age_s,), 1):
+        yield f"age_s must be finite seconds, got {track.age_s!r}"
+    if track.occluder is not None and not _is_whole(track.occluder):
+        yield f"occluder must be None or the id of a track, got {track.occluder!r}"
+
+
+def _one_of(kind: type[Status], value: object) -> str:
+    """Name those that there are, unless the value is one."""
+    return "" if isinstance(value, kind) else " or ".join(f"{kind.__name__}.{one.name}" for one in kind)
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, Integral)
+
+
+def _are_numbers(values: Any, count: int) -> bool:
+    """Tell whether it is a tuple of so many finite numbers."""
+    if not isinstance(values, tuple) or len(values) != count:
+        return False
+    return all(isinstance(one, Real) and math.isfinite(one) for one in values)
