@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.percept import Percept
 
 
+@runtime_checkable
 class Behaviour(Protocol):
     """Anything that drives the robot.
 

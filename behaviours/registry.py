@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Behaviour
+from peopleboy.behaviours.checked_behaviour import make_own_behaviour
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson
@@ -26,7 +27,8 @@ def make_behaviour(
     """Make a behaviour by its name; whatever it commands, the sonars limit.
 
     Args:
-        name: "stand", "follow_person", "follow_corridor", "patrol" or "scripted".
+        name: "stand", "follow_person", "follow_corridor", "patrol" or "scripted"; or "module:Class", a class
+            of your own, which is called without an argument.
         script: for "scripted", pairs of a time [s] and the command from then on.
         follow: for "follow_person", its gains and limits.
         corridor: for "follow_corridor", its sense, gains and limits.
@@ -35,6 +37,8 @@ def make_behaviour(
     Raises:
         BadInput: there is no such behaviour, or the script's times do not rise.
     """
+    if ":" in name:
+        return Guarded(make_own_behaviour(name), safety)
     makers: dict[str, Callable[[], Behaviour]] = {
         "stand": Stand,
         "follow_person": lambda: FollowPerson(follow),
@@ -43,5 +47,6 @@ def make_behaviour(
         "scripted": lambda: Scripted(script),
     }
     if name not in makers:
-        raise BadInput(f"behaviour: unknown name '{name}'; there are {', '.join(sorted(makers))}")
+        known = ", ".join(sorted(makers))
+        raise BadInput(f"behaviour: unknown name '{name}'; there are {known}, and your own as module:Class")
     return Guarded(makers[name](), safety)

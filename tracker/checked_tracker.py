@@ -89,7 +89,7 @@ def _box_faults(boxes: object, cameras: Collection[str]) -> Iterator[str]:
         if camera not in cameras:
             yield f"boxes must be in images of {', '.join(sorted(cameras))}, got camera {camera!r}"
         if not _are_numbers(box, 4) or min(box[2:]) < 0.0:
-            yield f"box in {camera!r} must be a tuple, finite left, top, width >= 0, height >= 0 [px], got {box}"
+            yield f"box in {camera!r} must be a tuple: finite left, top, width >= 0, height >= 0, got {box}"
 
 
 def _other_faults(track: Track) -> Iterator[str]:

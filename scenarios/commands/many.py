@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import tracker_option, workers_options
+from peopleboy.scenarios.commands.options import behaviour_option, tracker_option, workers_options
 from peopleboy.scenarios.scores.show_scores import print_spread
 
 
@@ -29,6 +29,7 @@ from peopleboy.scenarios.scores.show_scores import print_spread
     help="Where the runs' folders go.",
 )
 @tracker_option
+@behaviour_option
 @workers_options
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
 def sweep(
@@ -37,6 +38,7 @@ def sweep(
     randomise: int | None,
     out: Path,
     tracker: str | None,
+    behaviour: str | None,
     workers: int | None,
     scheduler: str | None,
     overwrite: bool,
@@ -54,11 +56,10 @@ def sweep(
     if (scenario is None) == (randomise is None) or (randomise is not None and seeds is not None):
         raise BadInput("sweep: give a scenario, with --seeds or without, or --randomise N")
     if scenario is None:
-        runs = sweep_worlds(range(randomise or 0), out, tracker, who, overwrite=overwrite)
+        runs = sweep_worlds(range(randomise or 0), out, tracker, who, behaviour, overwrite=overwrite)
     else:
-        runs = run_seeds(
-            scenario, range(10 if seeds is None else seeds), out, tracker, who, overwrite=overwrite
-        )
+        count = range(10 if seeds is None else seeds)
+        runs = run_seeds(scenario, count, out, tracker, who, behaviour, overwrite=overwrite)
     print_spread(evaluate_runs(runs))
 
 
@@ -67,7 +68,8 @@ def sweep(
     "--controllers",
     default="follow_person,follow_person@truth",
     show_default=True,
-    help="Behaviours, each with @ and a tracker if it is to see by another one, or by the truth.",
+    help="Behaviours, or module:Class of your own, each with @ and a tracker if it is to see by another one, "
+    "or by the truth.",
 )
 @click.option(
     "--scenario",

@@ -17,6 +17,11 @@ TRACKERS = (
 tracker_option = click.option(
     "--tracker", help=f"One of {TRACKERS}.  [default: the scenario's, or peopleboy]"
 )
+behaviour_option = click.option(
+    "--behaviour",
+    help="What drives the robot: stand, follow_person, follow_corridor or patrol; or module:Class, your "
+    "own.  [default: the scenario's]",
+)
 
 _COUNT = "Processes at the same time; 1 for none but this one.  [default: one a core]"
 _ADDRESS = "Work on the cluster of this Dask scheduler instead."

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import SEED, tracker_option, workers_options
+from peopleboy.scenarios.commands.options import SEED, behaviour_option, tracker_option, workers_options
 from peopleboy.scenarios.scores.show_scores import print_corridor, print_following, print_scores, print_spread
 
 if TYPE_CHECKING:
@@ -27,10 +27,11 @@ if TYPE_CHECKING:
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
-    help="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER for another tracker]",
+    help="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER, -BEHAVIOUR for others]",
 )
 @click.option("--frames", is_flag=True, help="Write every image of every camera as PNG too.")
 @tracker_option
+@behaviour_option
 @click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
 @click.option(
@@ -44,6 +45,7 @@ def run(
     out: Path | None,
     frames: bool,
     tracker: str | None,
+    behaviour: str | None,
     renderer: str,
     no_rrd: bool,
     live: bool,
@@ -66,11 +68,17 @@ def run(
     is_suite = scenario in suite_names()
     if is_suite and seed is not None:
         raise BadInput(f"--seed {seed}: suite {scenario} has seeds of its own; leave it out")
+    if is_suite and behaviour is not None:
+        raise BadInput(f"--behaviour {behaviour}: suite {scenario} has drives of its own; leave it out")
     loaded = None if is_suite else load_scenario(scenario)
     number = seed if seed is not None else 0 if loaded is None else loaded.seed
     name = scenario if loaded is None else f"{loaded.name}-{number}"
     if tracker is not None and (loaded is None or tracker != loaded.tracker):
         name += f"-{tracker.replace(':', '.')}"
+    if loaded is not None and behaviour is not None:
+        if behaviour != loaded.robot.behaviour:
+            name += f"-{behaviour.replace(':', '.')}"
+        loaded = loaded.steered_by(behaviour)
     options = RunOptions(
         seed=number,
         out=out if out is not None else Path("runs") / name,

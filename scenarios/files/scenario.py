@@ -45,6 +45,7 @@ class Scenario:
         ground: where people can walk.
         files: contents of the files of its own that it names, by path from its own folder.
         drive: commands, one a control step, that the robot repeats instead of behaving; None to behave.
+        own_behaviour: module:Class of a user's own that drives in place of what the file says; None for that.
     """
 
     spec: ScenarioSpec
@@ -53,6 +54,7 @@ class Scenario:
     ground: Ground
     files: Mapping[str, bytes]
     drive: tuple[Command, ...] | None = None
+    own_behaviour: str | None = None
 
     @property
     def name(self) -> str:
@@ -151,9 +153,20 @@ class Scenario:
         return replace(self, drive=tuple(drive))
 
     def steered_by(self, behaviour: str) -> Scenario:
-        """The same scenario, but another behaviour drives the robot."""
+        """The same scenario, but another behaviour drives the robot.
+
+        One of your own, by module:Class, does not get into the file: its task is that of the file's.
+
+        Raises:
+            BadInput: there is no such behaviour.
+        """
+        make_behaviour(behaviour)  # refuses an unknown name
+        if ":" in behaviour:
+            return replace(self, drive=None, own_behaviour=behaviour)
         robot = self.robot.model_copy(update={"behaviour": behaviour})
-        return replace(self, spec=self.spec.model_copy(update={"robot": robot}), drive=None)
+        return replace(
+            self, spec=self.spec.model_copy(update={"robot": robot}), drive=None, own_behaviour=None
+        )
 
     def make_behaviour(self) -> Behaviour:
         """What drives the robot, fresh from the start."""
@@ -164,7 +177,10 @@ class Scenario:
             for c in self.robot.commands
         ]
         return make_behaviour(
-            self.robot.behaviour, script=script, follow=self.follow_config(), corridor=self.corridor_config()
+            self.own_behaviour or self.robot.behaviour,
+            script=script,
+            follow=self.follow_config(),
+            corridor=self.corridor_config(),
         )
 
     def follow_config(self) -> FollowConfig:

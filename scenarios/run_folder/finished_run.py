@@ -42,6 +42,7 @@ class About(BaseModel):
     frames: Annotated[int, Field(ge=0)]
     versions: dict[str, str]
     images: bool = False
+    behaviour: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

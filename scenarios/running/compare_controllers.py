@@ -25,7 +25,7 @@ GROUPS = ("following", "corridor")  # of metrics.json: how the robot drove
 
 @dataclass(frozen=True, slots=True)
 class Controller:
-    """A behaviour by name, and the tracker that is its eyes; written behaviour@tracker."""
+    """A behaviour by name or module:Class, and the tracker that is its eyes; written behaviour@tracker."""
 
     behaviour: str
     eyes: str

@@ -31,6 +31,9 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
         raise BadInput(
             f"{options.out}: was run with tracker {run.about.tracker!r}; give --overwrite, or another --out"
         )
+    if run.about.behaviour != scenario.own_behaviour:
+        was = run.about.behaviour or run.scenario.robot.behaviour
+        raise BadInput(f"{options.out}: was run with behaviour {was!r}; give --overwrite, or another --out")
     if options.frames and not run.about.images:
         return False
     mounted = scenario.mounting(camera_names(tracker))

@@ -93,7 +93,8 @@ def film(
     Raises:
         BadInput: the robot follows what a tracker sees, and has no recorded drive.
     """
-    if scenario.robot.behaviour not in ("stand", "scripted") and scenario.drive is None:
+    goes_by_sight = scenario.own_behaviour or scenario.robot.behaviour not in ("stand", "scripted")
+    if goes_by_sight and scenario.drive is None:
         raise BadInput(
             f"{scenario.name}: its robot goes where the tracker sees a person, so frames cannot be kept; "
             "take a scenario whose robot stands or is scripted"

@@ -88,6 +88,8 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         "images": options.frames,
         "gains": about_gains(config.robot.cameras),
     } | ({"mounted_for_tracker": mounted} if mounted else {})
+    if scenario.own_behaviour is not None:
+        about["behaviour"] = scenario.own_behaviour
     with ExitStack() as stack:
         world = stack.enter_context(World(config))
         stack.enter_context(traceback_in(options.out / "run.json"))

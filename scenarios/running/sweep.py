@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions
@@ -13,7 +14,14 @@ from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
 
 
 def sweep(
-    scenario: str, seeds: Iterable[int], out: Path, tracker: str | None, workers: Workers, *, overwrite: bool
+    scenario: str,
+    seeds: Iterable[int],
+    out: Path,
+    tracker: str | None,
+    workers: Workers,
+    behaviour: str | None = None,
+    *,
+    overwrite: bool,
 ) -> list[Path]:
     """Run a scenario once per seed, without recordings; a sweep that was killed goes on where it was.
 
@@ -24,7 +32,7 @@ def sweep(
         BadInput: as for a single run, or a complete run in its place is another one.
         TasksFailed: some runs failed.
     """
-    loaded = load_scenario(scenario)
+    loaded = _steered(load_scenario(scenario), behaviour)
     options = [
         RunOptions(
             seed=seed, out=out / f"{loaded.name}-{seed}", tracker=tracker, record=False, overwrite=overwrite
@@ -36,7 +44,13 @@ def sweep(
 
 
 def sweep_worlds(
-    seeds: Iterable[int], out: Path, tracker: str | None, workers: Workers, *, overwrite: bool
+    seeds: Iterable[int],
+    out: Path,
+    tracker: str | None,
+    workers: Workers,
+    behaviour: str | None = None,
+    *,
+    overwrite: bool,
 ) -> list[Path]:
     """Run worlds drawn at random, one by each seed, otherwise as `sweep`.
 
@@ -49,10 +63,14 @@ def sweep_worlds(
     """
     tasks = []
     for seed in seeds:
-        world = random_scenario(seed)
+        world = _steered(random_scenario(seed), behaviour)
         options = RunOptions(
             seed=seed, out=out / world.name, tracker=tracker, record=False, overwrite=overwrite
         )
         tasks.append(RunTask(world, options))
     play(unfinished(tasks), workers, "random worlds")
     return [task.options.out for task in tasks]
+
+
+def _steered(scenario: Scenario, behaviour: str | None) -> Scenario:
+    return scenario if behaviour is None else scenario.steered_by(behaviour)

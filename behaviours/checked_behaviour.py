@@ -1,0 +1,67 @@
+"""A behaviour of a user's own, whose every answer is looked at, so that a mistake is told where it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from numbers import Integral
+
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.behaviour import Behaviour
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.percept import Percept
+from peopleboy.own_code import blamed, load_own
+
+
+class CheckedBehaviour:
+    """Gives what a behaviour gives, if that is what a behaviour may give.
+
+    Args:
+        behaviour: whose answers they are.
+        who: names it in messages, such as "behaviour 'my_module:MyBehaviour'".
+    """
+
+    def __init__(self, behaviour: Behaviour, who: str) -> None:
+        self._behaviour = behaviour
+        self._who = who
+        self.mode, self.reason, self.following = behaviour.mode, behaviour.reason, behaviour.following
+
+    def command(self, percept: Percept) -> Command:
+        """Let it look, and look at what it wants and says.
+
+        Raises:
+            BadInput: that is no command, or mode, reason or following are none.
+            OwnCodeFailed: it raised an error.
+        """
+        with blamed(self._who):
+            command = self._behaviour.command(percept)
+            self.mode, self.reason = self._behaviour.mode, self._behaviour.reason
+            self.following = self._behaviour.following
+            for fault in _faults(command, self.mode, self.reason, self.following):
+                raise BadInput(fault)
+            return command
+
+
+def make_own_behaviour(name: str) -> CheckedBehaviour:
+    """Make the behaviour that "module:Class" names, by calling the class without any argument.
+
+    Raises:
+        BadInput: there is none, or what is there is no behaviour.
+        OwnCodeFailed: its mode, reason or following raised an error.
+    """
+    behaviour, who = load_own("behaviour", name, "without an argument")(), f"behaviour {name!r}"
+    with blamed(who):
+        if not isinstance(behaviour, Behaviour):
+            raise BadInput("is none; give it `command(percept)`, `mode`, `reason` and `following`")
+        return CheckedBehaviour(behaviour, who)
+
+
+def _faults(command: object, mode: object, reason: object, following: object) -> Iterator[str]:
+    """Tell what is wrong with what a behaviour gave, and what would be right."""
+    if not isinstance(command, Command):
+        yield f"command(percept) must give a Command, got {command!r}"
+    if not (isinstance(mode, str) and mode):
+        yield f"mode must be a word, got {mode!r}"
+    if not isinstance(reason, str):
+        yield f"reason must be text, got {reason!r}"
+    if not (following is None or isinstance(following, Integral)):
+        yield f"following must be None or the id of a person, got {following!r}"
