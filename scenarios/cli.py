@@ -10,6 +10,7 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed
+from peopleboy.scenarios.commands.adopt import adopt
 from peopleboy.scenarios.commands.browse import list_command, schema, show
 from peopleboy.scenarios.commands.compare_footage import compare_footage
 from peopleboy.scenarios.commands.evaluate import evaluate
@@ -41,6 +42,7 @@ COMMANDS = (
     evaluate,
     compare,
     track,
+    adopt,
     compare_footage,
     view,
     watch,

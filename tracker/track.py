@@ -11,12 +11,13 @@ Box = tuple[float, float, float, float]
 
 
 class Status(StrEnum):
-    """How well a person is seen right now."""
+    """How well a person is seen right now; unknown where nobody tells, as of tracks made elsewhere."""
 
     TENTATIVE = "tentative"
     TRACKED = "tracked"
     PARTLY_OCCLUDED = "partly occluded"
     TOTALLY_OCCLUDED = "totally occluded"
+    UNKNOWN = "unknown"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

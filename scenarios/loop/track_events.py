@@ -90,4 +90,6 @@ def why_lost(now: Track, was: Track, width_px: int) -> str:
     if was.status is Status.TOTALLY_OCCLUDED:
         by = "" if was.occluder is None else f" by track {was.occluder}"
         return f"hidden{by} for too long to know where"
+    if was.status is Status.UNKNOWN:
+        return "unknown, as its tracker does not tell"
     return f"the contour is gone, confidence {now.confidence:.2f}"

@@ -48,7 +48,7 @@ def write_report(paths: Sequence[Path], out: Path) -> list[str]:
     check_place(out)
     columns = read_columns(paths)
     moments = pictured_moments(columns)
-    lines = [*lacking(columns), *_without_images(moments)]
+    lines = [*lacking(columns), *_unknown(columns), *_without_images(moments)]
     write_page(render(columns, moments, lines), out)
     return lines
 
@@ -88,6 +88,16 @@ def render(columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: 
     )
 
 
+def _unknown(columns: Sequence[Column]) -> list[str]:
+    """Say what tracks that were made elsewhere do not tell, a line a tracker."""
+    adopted = {f.run.about.tracker: f.run.about.adopted for column in columns for f in column.runs}
+    return [
+        f"the tracks of {name} were made elsewhere: their {listed(told.unknown)} are unknown"
+        for name, told in adopted.items()
+        if told is not None
+    ]
+
+
 def _without_images(moments: Sequence[PicturedMoment]) -> list[str]:
     """Say that images cannot be rendered again here, if any would have to be."""
     line = "PyBullet is not installed; so the moments of runs without --frames are drawn as boxes only"
@@ -112,7 +122,7 @@ def _first_repeated(singles: Sequence[Column]) -> int:
 def _settings(column: Column) -> list[tuple[str, str]]:
     """What is needed to do it again, name and value."""
     run, runs = column.found.run, [found.run for found in column.runs]
-    played, about = _said(run), run.about
+    played, about, adopted = _said(run), run.about, run.about.adopted
     robot: Any = played.get("robot", {})
     behaviour = robot.get("behaviour", "stand") if isinstance(robot, dict) else "stand"
     seeds = ", ".join(dict.fromkeys(str(one.about.seed) for one in runs))
@@ -121,7 +131,9 @@ def _settings(column: Column) -> list[tuple[str, str]]:
         ("what happens", " ".join(str(played.get("description", "")).split()) if column.is_single else ""),
         ("seed" if column.is_single else "seeds", seeds),
         ("tracker", about.tracker),
-        ("robot", str(behaviour) if played else ""),
+        ("tracks", "" if adopted is None else f"{adopted.tracks}, made elsewhere"),
+        ("robot", about.behaviour or (str(behaviour) if played else "")),
+        ("eyes of the robot", "" if adopted is None else adopted.driven_by),
         ("images", _images(run)),
         ("faults", _faults(played.get("faults", []))),
         ("renderer", about.renderer),
@@ -129,8 +141,9 @@ def _settings(column: Column) -> list[tuple[str, str]]:
         ("versions", ", ".join(f"{name} {version}" for name, version in about.versions.items())),
         ("folder", str(run.folder if column.is_single else run.folder.parent)),
     ]
-    if not lacking([column]):
-        command = f"peopleboy run {run.folder}/scenario.yaml --tracker {about.tracker} --out NEW"
+    if not lacking([column]) and adopted is None:
+        steered = "" if about.behaviour is None else f" --behaviour {about.behaviour}"
+        command = f"peopleboy run {run.folder}/scenario.yaml --tracker {about.tracker}{steered} --out NEW"
         rows.append(("again", command))
     return [(name, value) for name, value in rows if value]
 

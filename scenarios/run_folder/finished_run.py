@@ -29,6 +29,16 @@ _FILES = (
 )  # fmt: skip
 
 
+class Adopted(BaseModel):
+    """What run.json says of tracks that were made elsewhere."""
+
+    model_config = ConfigDict(strict=True, frozen=True)
+
+    tracks: str
+    driven_by: str
+    unknown: list[str]
+
+
 class About(BaseModel):
     """What run.json must say of a run of a scenario; it may say more."""
 
@@ -43,6 +53,7 @@ class About(BaseModel):
     versions: dict[str, str]
     images: bool = False
     behaviour: str | None = None
+    adopted: Adopted | None = None
 
 
 @dataclass(frozen=True, eq=False)

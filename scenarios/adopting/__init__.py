@@ -1,0 +1,1 @@
+"""Tracks made elsewhere, put into the folder of a run of their own."""

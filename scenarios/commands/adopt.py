@@ -1,0 +1,49 @@
+"""The command `adopt`: tracks made elsewhere, as a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
+@click.argument("tracks", metavar="TRACKS", type=click.Path(path_type=Path))
+@click.option("--name", required=True, help="What their tracker is called.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder to leave.  [default: beside RUN, SCENARIO-SEED-NAME]",
+)
+@click.option("--camera", default="thermal", show_default=True, help="In whose images the boxes are.")
+@click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
+@click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
+def adopt(
+    run: Path, tracks: Path, name: str, out: Path | None, camera: str, no_rrd: bool, overwrite: bool
+) -> None:
+    """Take tracks that were made elsewhere, of the images of RUN, for those of a run.
+
+    TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1; frames are
+    from 1 on, and boxes in pixels of the camera's images. Leaves a folder with RUN's scenario and truth and with
+    these tracks, which report, view, evaluate and export take like any other. What such text does not tell,
+    status and place on the floor, is said to be unknown. The images are rendered again, and are those of RUN.
+    """
+    from peopleboy.scenarios.adopting.adopt import Adoption
+    from peopleboy.scenarios.adopting.adopt import adopt as take
+    from peopleboy.scenarios.progress_bar import progress_bar
+    from peopleboy.scenarios.run_folder.finished_run import open_run
+    from peopleboy.scenarios.scores.headline import headline
+    from peopleboy.scenarios.scores.show_scores import print_scores
+
+    about = open_run(run).about
+    folder = out if out is not None else run.resolve().parent / f"{about.scenario}-{about.seed}-{name}"
+    what = Adoption(
+        run=run, tracks=tracks, name=name, out=folder, camera=camera, record=not no_rrd, overwrite=overwrite
+    )
+    with progress_bar(name, unit="frames") as show:
+        scores = take(what, show)
+    print_scores(scores.people)
+    click.echo(headline(scores))
+    click.echo("Status and place on the floor of these tracks are unknown.")
+    click.echo(folder)
