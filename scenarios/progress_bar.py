@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from contextvars import ContextVar
 from typing import Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+_IS_HIDDEN: ContextVar[bool] = ContextVar("is_hidden", default=False)
 
 
 class Show(Protocol):
@@ -19,6 +22,21 @@ class Show(Protocol):
 
 
 @contextmanager
+def no_progress() -> Iterator[None]:
+    """Show no bar in the block."""
+    before = _IS_HIDDEN.set(True)
+    try:
+        yield
+    finally:
+        _IS_HIDDEN.reset(before)
+
+
+def progress_console() -> Console:
+    """Give the console on which progress is told; it is silent where nobody wants to be told."""
+    return Console(stderr=True, quiet=_IS_HIDDEN.get())
+
+
+@contextmanager
 def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
     """Have a bar on a terminal; it appears when first moved, so that a mistake found before is told alone.
 
@@ -26,7 +44,7 @@ def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
         title: stands before the bar.
         unit: what is counted, if the bar is to tell how many a second.
     """
-    console = Console(stderr=True)
+    console = progress_console()
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -35,7 +53,9 @@ def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
         TextColumn("{task.fields[note]}"),
         TimeRemainingColumn(),
     )
-    progress = Progress(*columns, console=console, refresh_per_second=5, disable=not console.is_terminal)
+    progress = Progress(
+        *columns, console=console, refresh_per_second=5, disable=console.quiet or not console.is_terminal
+    )
     task = progress.add_task(title, total=None, rate="", note="")
     with ExitStack() as running:
 

@@ -25,9 +25,10 @@ def adopt(
     """Take tracks that were made elsewhere, of the images of RUN, for those of a run.
 
     TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1; frames are
-    from 1 on, and boxes in pixels of the camera's images. Leaves a folder with RUN's scenario and truth and with
-    these tracks, which report, view, evaluate and export take like any other. What such text does not tell,
-    status and place on the floor, is said to be unknown. The images are rendered again, and are those of RUN.
+    from 1 on, and boxes in pixels of the camera's images. Leaves a folder with RUN's scenario and truth
+    and with these tracks, which report, view, evaluate and export take like any other. What such text does
+    not tell, status and place on the floor, is said to be unknown. The images are rendered again, and are
+    those of RUN.
     """
     from peopleboy.scenarios.adopting.adopt import Adoption
     from peopleboy.scenarios.adopting.adopt import adopt as take

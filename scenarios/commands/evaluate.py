@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.show_scores import print_scores, print_spread
+from peopleboy.scenarios.commands.options import Output, output_options
 
 
 @click.command()
@@ -29,17 +29,27 @@ from peopleboy.scenarios.scores.show_scores import print_scores, print_spread
     help="People count if more than this share of them is seen; 0.3 leaves out slivers at the border.",
 )
 @click.option("--camera", default="thermal", show_default=True, help="In whose image boxes are scored.")
+@output_options
 def evaluate(
-    runs: Sequence[Path], truth: Path | None, tracks: Path | None, min_visible: float, camera: str
+    runs: Sequence[Path],
+    truth: Path | None,
+    tracks: Path | None,
+    min_visible: float,
+    camera: str,
+    output: Output,
 ) -> None:
     """Score tracks against truth: one pair of files, or the folders of any number of runs.
 
-    A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs give mean and
-    standard deviation over them, beside the figure of all their frames. Where a tracker says where on the
-    floor people stand, its errors are told in metres; one that gives no boxes is scored on the floor alone.
+    A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs of one
+    tracker give mean and standard deviation over them, beside the figure of all their frames. Runs of several
+    trackers stand side by side, with how each differs from the first over runs of the same scenario and seed.
+    Where a tracker says where on the floor people stand, its errors are told in metres; one that gives no
+    boxes is scored on the floor alone.
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in
-    from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
+    from peopleboy.scenarios.scores.by_tracker import ScoredRun, figures_of_all, score_by_tracker
+    from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
+    from peopleboy.scenarios.scores.show_scores import print_runs
 
     if camera != "thermal" and not runs:
         raise BadInput("evaluate: --camera goes with folders of runs; give --truth RUN/truth/CAMERA.gt.txt")
@@ -47,8 +57,10 @@ def evaluate(
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
     if runs:
         found = [run for folder in runs for run in runs_in(folder)]
-        print_spread(evaluate_runs(found, min_visible, camera))
+        groups = score_by_tracker(found, min_visible, camera)
     elif truth is None or tracks is None:
         raise BadInput("evaluate: --truth and --tracks go together")
     else:
-        print_scores(evaluate_files(truth, tracks, min_visible=min_visible))
+        scores = evaluate_files(truth, tracks, min_visible=min_visible)
+        groups = {str(tracks): [ScoredRun(str(tracks), str(tracks), None, scores)]}
+    output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))

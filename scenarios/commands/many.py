@@ -8,8 +8,13 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import behaviour_option, tracker_option, workers_options
-from peopleboy.scenarios.scores.show_scores import print_spread
+from peopleboy.scenarios.commands.options import (
+    Output,
+    behaviour_option,
+    output_options,
+    tracker_option,
+    workers_options,
+)
 
 
 @click.command()
@@ -32,6 +37,7 @@ from peopleboy.scenarios.scores.show_scores import print_spread
 @behaviour_option
 @workers_options
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
+@output_options
 def sweep(
     scenario: str | None,
     seeds: int | None,
@@ -42,6 +48,7 @@ def sweep(
     workers: int | None,
     scheduler: str | None,
     overwrite: bool,
+    output: Output,
 ) -> None:
     """Run a scenario with many seeds, or many random worlds, without recordings, and score them together.
 
@@ -50,7 +57,8 @@ def sweep(
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.running.sweep import sweep as run_seeds
     from peopleboy.scenarios.running.sweep import sweep_worlds
-    from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
+    from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
+    from peopleboy.scenarios.scores.show_scores import print_runs
 
     who = chosen_workers(workers, scheduler)
     if (scenario is None) == (randomise is None) or (randomise is not None and seeds is not None):
@@ -60,7 +68,8 @@ def sweep(
     else:
         count = range(10 if seeds is None else seeds)
         runs = run_seeds(scenario, count, out, tracker, who, behaviour, overwrite=overwrite)
-    print_spread(evaluate_runs(runs))
+    groups = score_by_tracker(runs)
+    output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))
 
 
 @click.command()
@@ -91,6 +100,7 @@ def sweep(
 )
 @workers_options
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
+@output_options
 def compare(
     controllers: str,
     scenarios: Sequence[str],
@@ -99,6 +109,7 @@ def compare(
     workers: int | None,
     scheduler: str | None,
     overwrite: bool,
+    output: Output,
 ) -> None:
     """Let controllers drive through the same scenes, and print how they did, with confidence intervals.
 
@@ -107,12 +118,16 @@ def compare(
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.running.compare_controllers import compare, parse_controller
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.running.show_comparison import show_comparison
+    from peopleboy.scenarios.running.show_comparison import keep_comparison, show_comparison
 
     who = chosen_workers(workers, scheduler)
     chosen = [parse_controller(text) for text in controllers.split(",")]
     names = [load_scenario(scenario).name for scenario in scenarios]
+    found = []
     for scenario, name in zip(scenarios, names, strict=True):
         runs = compare(scenario, chosen, range(seeds), out / name, who, overwrite=overwrite)
-        show_comparison(name, runs, out / name)
-        click.echo(out / name / "comparison.png")
+        found.append(keep_comparison(name, runs, out / name))
+        if output.is_wordy:
+            show_comparison(name, runs)
+            click.echo(out / name / "comparison.png")
+    output.figures(lambda: {"comparisons": found})

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import wraps
+from typing import Any
 
 import click
 
@@ -31,3 +35,47 @@ def workers_options(command: Callable[..., None]) -> Callable[..., None]:
     """Let a command say who does the work; `chosen_workers` takes both."""
     scheduler = click.option("--scheduler", metavar="tcp://...", help=_ADDRESS)
     return click.option("--workers", type=click.IntRange(min=1), help=_COUNT)(scheduler(command))
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """What of its figures a command prints.
+
+    Attributes:
+        as_json: figures as one JSON document, and nothing else.
+        is_quiet: nothing else in any case, not even progress.
+    """
+
+    as_json: bool
+    is_quiet: bool
+
+    @property
+    def is_wordy(self) -> bool:
+        """Whether people are to be told."""
+        return not (self.as_json or self.is_quiet)
+
+    def figures(self, give: Callable[[], object], show: Callable[[], None] = lambda: None) -> None:
+        """Give figures as JSON, or show them to people."""
+        if self.as_json:
+            click.echo(json.dumps(give(), indent=2))
+        elif self.is_wordy:
+            show()
+
+
+def output_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Let a command, which takes an `Output` named output, say how its figures are to be printed."""
+
+    @wraps(command)
+    def with_output(*arguments: Any, as_json: bool, quiet: bool, **options: Any) -> None:
+        output = Output(as_json, quiet)
+        if quiet:
+            from peopleboy.scenarios.progress_bar import no_progress
+
+            with no_progress():
+                command(*arguments, output=output, **options)
+        else:
+            command(*arguments, output=output, **options)
+
+    as_json = click.option("--json", "as_json", is_flag=True, help="Print figures alone, as a JSON document.")
+    quiet = click.option("--quiet", is_flag=True, help="Print nothing but what --json asks for, and errors.")
+    return as_json(quiet(with_output))

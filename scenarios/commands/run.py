@@ -10,8 +10,14 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import SEED, behaviour_option, tracker_option, workers_options
-from peopleboy.scenarios.scores.show_scores import print_corridor, print_following, print_scores, print_spread
+from peopleboy.scenarios.commands.options import (
+    SEED,
+    Output,
+    behaviour_option,
+    output_options,
+    tracker_option,
+    workers_options,
+)
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.files.scenario import Scenario
@@ -39,6 +45,7 @@ if TYPE_CHECKING:
 )
 @workers_options
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
+@output_options
 def run(
     scenario: str,
     seed: int | None,
@@ -52,6 +59,7 @@ def run(
     workers: int | None,
     scheduler: str | None,
     overwrite: bool,
+    output: Output,
 ) -> None:
     """Run a scenario headless, and leave a folder with truth, tracks, scores and a recording.
 
@@ -73,11 +81,8 @@ def run(
     loaded = None if is_suite else load_scenario(scenario)
     number = seed if seed is not None else 0 if loaded is None else loaded.seed
     name = scenario if loaded is None else f"{loaded.name}-{number}"
-    if tracker is not None and (loaded is None or tracker != loaded.tracker):
-        name += f"-{tracker.replace(':', '.')}"
+    name += _others(loaded, tracker, behaviour)
     if loaded is not None and behaviour is not None:
-        if behaviour != loaded.robot.behaviour:
-            name += f"-{behaviour.replace(':', '.')}"
         loaded = loaded.steered_by(behaviour)
     options = RunOptions(
         seed=number,
@@ -88,10 +93,13 @@ def run(
         record=not no_rrd,
         overwrite=overwrite,
     )
-    if live and (loaded is None or no_rrd):
-        raise BadInput("--live: shows the recording of one run; give one scenario, without --no-rrd")
+    if live and (loaded is None or no_rrd or not output.is_wordy):
+        raise BadInput(
+            "--live: shows the recording of one run, and tells where; give one scenario, without --no-rrd, "
+            "--json and --quiet"
+        )
     if loaded is None:
-        _run_suite(scenario, options, chosen_workers(workers, scheduler))
+        _run_suite(scenario, options, chosen_workers(workers, scheduler), output)
         return
     if workers is not None or scheduler is not None:
         raise BadInput(f"{scenario}: is one run, which has no use for --workers or --scheduler; leave it out")
@@ -99,13 +107,29 @@ def run(
         if live:
             viewer = stack.enter_context(live_viewer(click.echo))
             options = replace(options, viewer=viewer)
-        _run_one(loaded, options)
+        _run_one(loaded, options, output)
 
 
-def _run_one(scenario: Scenario, options: RunOptions) -> None:
-    from peopleboy.scenarios.scores.headline import headline
+def _others(scenario: Scenario | None, tracker: str | None, behaviour: str | None) -> str:
+    """Name tracker and behaviour, as far as they are not those of the scenario, as a folder's name ends."""
+    usual = () if scenario is None else (scenario.tracker, scenario.robot.behaviour)
+    others = [each for each in (tracker, behaviour) if each is not None and each not in usual]
+    return "".join(f"-{each.replace(':', '.')}" for each in others)
+
+
+def _run_one(scenario: Scenario, options: RunOptions, output: Output) -> None:
+    from peopleboy.scenarios.running.run import tracker_name
 
     scores = _run_shown(scenario, options)
+    about = {"run": str(options.out), "scenario": scenario.name, "seed": options.seed}
+    about["tracker"] = tracker_name(scenario, options)
+    output.figures(lambda: about | {"figures": scores.to_json()}, lambda: _show(scores, options))
+
+
+def _show(scores: RunScores, options: RunOptions) -> None:
+    from peopleboy.scenarios.scores.headline import headline
+    from peopleboy.scenarios.scores.show_scores import print_corridor, print_following, print_scores
+
     print_scores(scores.people)
     if scores.following is not None:
         print_following(scores.following)
@@ -119,12 +143,10 @@ def _run_one(scenario: Scenario, options: RunOptions) -> None:
 
 def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
     """Run a scenario with a bar that tells frames, frame rate and what the robot does."""
-    from rich.console import Console
-
-    from peopleboy.scenarios.progress_bar import progress_bar
+    from peopleboy.scenarios.progress_bar import progress_bar, progress_console
     from peopleboy.scenarios.running.run import run as run_scenario
 
-    preparing = Console(stderr=True).status("building the world; the very first time takes a minute")
+    preparing = progress_console().status("building the world; the very first time takes a minute")
     with preparing, progress_bar(scenario.name, unit="frames") as show:
 
         def report(tick: Tick, frames: int) -> None:
@@ -134,11 +156,14 @@ def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
         return run_scenario(scenario, options, report)
 
 
-def _run_suite(name: str, options: RunOptions, workers: Workers) -> None:
+def _run_suite(name: str, options: RunOptions, workers: Workers, output: Output) -> None:
     from peopleboy.scenarios.running.run_suite import run_suite
-    from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
+    from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
+    from peopleboy.scenarios.scores.show_scores import print_runs
 
     folders = run_suite(name, options, workers)
-    print_spread(evaluate_runs(folders))
-    for path in folders:
-        click.echo(path)
+    groups = score_by_tracker(folders)
+    output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))
+    if output.is_wordy:
+        for path in folders:
+            click.echo(path)

@@ -7,6 +7,7 @@ import math
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -24,21 +25,37 @@ _COLUMNS = 4
 _DOTS = np.random.default_rng(0).uniform(-0.12, 0.12, 1000)
 
 
-def show_comparison(scenario: str, runs: Mapping[Controller, Sequence[Figures]], out: Path) -> None:
-    """Print the table, and write comparison.png and comparison.json."""
-    rng = np.random.default_rng(0)
-    means = {controller: intervals(figures, rng) for controller, figures in runs.items()}
-    names = list(dict.fromkeys(name for of_one in means.values() for name in of_one))
+def show_comparison(scenario: str, runs: Mapping[Controller, Sequence[Figures]]) -> None:
+    """Print the table."""
+    means = _means(runs)
     seeds = len(next(iter(runs.values())))
     table = Table(title=f"{scenario}, {seeds} seeds: mean [95 % interval]", title_justify="left", box=None)
     table.add_column("figure")
     for controller in means:
         table.add_column(str(controller), justify="right")
-    for name in names:
+    for name in _names(means):
         table.add_row(_label(name), *[_cell(of_one.get(name), name) for of_one in means.values()])
     Console(width=None if sys.stdout.isatty() else 44 + 30 * len(means)).print(table)
-    _write_figures(out / "comparison.json", scenario, runs, means)
-    _draw(out / "comparison.png", scenario, names, runs, means)
+
+
+def keep_comparison(
+    scenario: str, runs: Mapping[Controller, Sequence[Figures]], out: Path
+) -> Mapping[str, Any]:
+    """Write comparison.png and comparison.json, and give what the latter says."""
+    means = _means(runs)
+    content = _content(scenario, runs, means)
+    (out / "comparison.json").write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+    _draw(out / "comparison.png", scenario, _names(means), runs, means)
+    return content
+
+
+def _means(runs: Mapping[Controller, Sequence[Figures]]) -> Mapping[Controller, Mapping[str, Interval]]:
+    rng = np.random.default_rng(0)
+    return {controller: intervals(figures, rng) for controller, figures in runs.items()}
+
+
+def _names(means: Mapping[Controller, Mapping[str, Interval]]) -> list[str]:
+    return list(dict.fromkeys(name for of_one in means.values() for name in of_one))
 
 
 def _label(name: str) -> str:
@@ -63,13 +80,12 @@ def _cell(interval: Interval | None, name: str) -> str:
     return f"{mean:.2f} [{low:.2f}, {high:.2f}]"
 
 
-def _write_figures(
-    path: Path,
+def _content(
     scenario: str,
     runs: Mapping[Controller, Sequence[Figures]],
     means: Mapping[Controller, Mapping[str, Interval]],
-) -> None:
-    content = {
+) -> dict[str, Any]:
+    return {
         "scenario": scenario,
         "controllers": {
             str(controller): {
@@ -82,7 +98,6 @@ def _write_figures(
             for controller, of_one in runs.items()
         },
     }
-    path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
 
 def _or_none(value: float) -> float | None:

@@ -9,10 +9,13 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.table import Table
 
+from peopleboy.scenarios.scores.bootstrap import Interval
+from peopleboy.scenarios.scores.by_tracker import Difference, Groups, differences
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
-from peopleboy.tracker.evaluation.table import NEED_EVERYBODY, rows, spread
+from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread
+from peopleboy.wording import counted
 
 
 def print_scores(scores: Scores) -> None:
@@ -44,14 +47,22 @@ def _print_rows(title: str, rows: Sequence[Row]) -> None:
     _print(table)
 
 
-def print_spread(sequences: Sequence[Scores]) -> None:
-    """Print every figure over several runs: of all frames together, and mean and deviation over runs."""
-    if len(sequences) == 1:
-        print_scores(sequences[0])
+def print_runs(groups: Groups) -> None:
+    """Print every figure of runs: those of one tracker together, those of several side by side."""
+    if len(groups) > 1:
+        _print_beside(groups)
         return
-    table = _table(
-        f"people, {len(sequences)} runs", "figure", "all frames", "mean of runs", "deviation", "meaning"
-    )
+    ((tracker, runs),) = groups.items()
+    if len(runs) == 1:
+        print_scores(runs[0].scores)
+    else:
+        _print_spread(tracker, [run.scores for run in runs])
+
+
+def _print_spread(tracker: str, sequences: Sequence[Scores]) -> None:
+    """Print figures over several runs: of all frames together, and mean and deviation over runs."""
+    title = f"people, {len(sequences)} runs of {tracker}"
+    table = _table(title, "figure", "all frames", "mean of runs", "deviation", "meaning")
     whole = combine(sequences)
     for row, over in zip(rows(whole), spread(sequences), strict=True):
         if not row.figure.is_told_by(whole):
@@ -61,6 +72,44 @@ def print_spread(sequences: Sequence[Scores]) -> None:
         table.add_row(row.figure.name, *numbers, row.figure.meaning)
     _print(table)
     _tell_unknown(whole)
+
+
+def _print_beside(groups: Groups) -> None:
+    """Print figures of each tracker's runs, and how trackers differ over scenes that they share."""
+    wholes = [combine([run.scores for run in runs]) for runs in groups.values()]
+    compared = differences(groups)
+    table = _table(
+        "people, all frames of each tracker's runs",
+        "figure",
+        *[f"{tracker}, {counted(len(runs), 'run')}" for tracker, runs in groups.items()],
+        *[f"{one.tracker} - {one.other}, {counted(one.pairs, 'pair')}" for one in compared],
+    )
+    for figure in FIGURES:
+        if not any(figure.is_told_by(whole) for whole in wholes):
+            continue
+        values = [_number(figure.of(whole), figure.unit) for whole in wholes]
+        apart = [_interval(one.figures[figure.name], figure.unit, one.pairs) for one in compared]
+        table.add_row(figure.name, *values, *apart)
+    console = Console(width=None if sys.stdout.isatty() else 30 + 30 * (len(wholes) + len(compared)))
+    console.print(table)
+    console.print(f"\n{_how_they_differ(compared)}\n", soft_wrap=True)
+
+
+def _how_they_differ(compared: Sequence[Difference]) -> str:
+    pairs = max(one.pairs for one in compared)
+    if pairs == 0:
+        return (
+            "No two runs have the same scenario and seed: how the trackers differ in one scene is not known."
+        )
+    text = "A difference is the mean over runs of the same scenario and seed"
+    return f"{text}, with its 95 % bootstrap interval." if pairs > 1 else f"{text}; one pair has no interval."
+
+
+def _interval(interval: Interval, unit: str, pairs: int) -> str:
+    if math.isnan(interval.mean):
+        return "-"
+    mean, low, high = (f"{value:+.2f}" for value in (interval.mean, interval.low, interval.high))
+    return f"{mean} {unit}".rstrip() + (f" [{low}, {high}]" if pairs > 1 else "")
 
 
 def _single_person(scores: Scores) -> str:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from peopleboy.scenarios.running.compare_controllers import Controller, compare, intervals, parse_controller
 from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.scenarios.running.show_comparison import show_comparison
+from peopleboy.scenarios.running.show_comparison import keep_comparison, show_comparison
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from tests.helpers.calls.refused import refused
 
@@ -53,11 +53,13 @@ def test_a_comparison_is_printed_drawn_and_kept(tmp_path, capsys):
         Controller("a", "truth"): [{"followed": 0.5, "jerk_m_s3": 1.0}, {"followed": 1.0, "jerk_m_s3": NAN}],
         Controller("b", "truth"): [{"lateral_m": 0.1}, {"lateral_m": 0.1}],
     }
-    show_comparison("scene", runs, tmp_path)
+    content = keep_comparison("scene", runs, tmp_path)
+    show_comparison("scene", runs)
     printed = capsys.readouterr().out
     assert "followed, %" in printed
     assert "75.00 [50.00, 100.00]" in printed
-    kept = json.loads((tmp_path / "comparison.json").read_text())["controllers"]
+    assert content == json.loads((tmp_path / "comparison.json").read_text())
+    kept = content["controllers"]
     assert kept["b@truth"]["mean"]["lateral_m"] == pytest.approx([0.1] * 3)
     assert kept["a@truth"]["runs"][1]["jerk_m_s3"] is None
     assert (tmp_path / "comparison.png").stat().st_size > 5000

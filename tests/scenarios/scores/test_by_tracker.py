@@ -1,0 +1,142 @@
+"""Runs of one tracker are taken together, those of several are compared pair by pair and never pooled."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from peopleboy.scenarios.scores.bootstrap import bootstrap
+from peopleboy.scenarios.scores.by_tracker import ScoredRun, differences
+from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+from tests.helpers.calls.command_line import run_cli
+from tests.helpers.runs.exported import SCENE, make_run
+
+FRAMES = 20
+
+
+def found(count: int) -> Scores:
+    """One person who is found in so many of the frames."""
+    frame, found = np.arange(1, FRAMES + 1), np.arange(1, count + 1)
+    truth = TrueBoxes(
+        frame=frame,
+        id=np.ones(FRAMES),
+        box=np.tile([9.0, 9.0, 9.0, 9.0], (FRAMES, 1)),
+        counted=np.ones(FRAMES),
+        visible=np.ones(FRAMES),
+    )
+    tracks = TrackBoxes(
+        frame=found, id=np.ones(count), box=np.tile([9.0] * 4, (count, 1)), confidence=np.ones(count)
+    )
+    return evaluate(truth, tracks, frames=FRAMES)
+
+
+def runs(tracker: str, **counts: int) -> list[ScoredRun]:
+    return [ScoredRun(name, tracker, (name[0], int(name[1])), found(count)) for name, count in counts.items()]
+
+
+def test_a_difference_is_over_the_scenes_that_both_saw_with_the_interval_of_the_pairs() -> None:
+    groups = {
+        "ours": runs("ours", a0=10, a1=12, a2=14, b0=20),
+        "theirs": runs("theirs", a2=20, a0=12, a1=16, c0=1),
+    }
+    (one,) = differences(groups)
+    assert (one.tracker, one.other, one.pairs) == ("theirs", "ours", 3)
+    expected = bootstrap([10.0, 20.0, 30.0], np.random.default_rng(0))
+    assert one.figures["CR"].mean == pytest.approx(20.0)
+    assert (one.figures["CR"].low, one.figures["CR"].high) == pytest.approx(
+        (expected.low, expected.high), abs=2.0
+    )
+    assert 10.0 - 1e-9 <= one.figures["CR"].low < 20.0 < one.figures["CR"].high <= 30.0 + 1e-9
+
+
+def test_a_scene_that_a_tracker_saw_twice_has_no_pair() -> None:
+    groups = {"ours": runs("ours", a0=10) + runs("ours", a0=12), "theirs": runs("theirs", a0=12)}
+    (one,) = differences(groups)
+    assert one.pairs == 0
+    assert np.isnan(one.figures["CR"].mean)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two runs of one tracker, one of another."""
+    folder = tmp_path_factory.mktemp("trackers")
+    scene = SCENE | {"duration_s": 1.0}
+    for name, options in {
+        "one": ("--seed", "0"),
+        "two": ("--seed", "1"),
+        "true": ("--seed", "1", "--tracker", "truth"),
+    }.items():
+        make_run(scene, folder / name, *options)
+    return folder
+
+
+def test_runs_of_one_tracker_are_pooled_and_those_of_two_stand_side_by_side(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    assert run_cli("evaluate", folder / "one", folder / "two") == 0
+    assert "people, 2 runs of peopleboy" in capsys.readouterr().out
+    assert run_cli("evaluate", folder / "one", folder / "two", folder / "true") == 0
+    told = capsys.readouterr().out
+    for part in (
+        "peopleboy, 2 runs",
+        "truth, 1 run",
+        "truth - peopleboy, 1 pair",
+        "one pair has no interval",
+    ):
+        assert part in told
+    assert "mean of runs" not in told
+    assert run_cli("evaluate", folder / "one", folder / "true") == 0
+    assert "No two runs have the same scenario and seed" in capsys.readouterr().out
+
+
+def document(capsys: pytest.CaptureFixture[str], *arguments: object) -> Any:
+    """Give the one JSON document that a command prints."""
+    capsys.readouterr()
+    assert run_cli(*arguments, "--json") == 0
+    told = capsys.readouterr()
+    assert told.err == ""
+    return json.loads(told.out)
+
+
+def test_figures_as_json_are_those_of_metrics_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    told = document(capsys, "evaluate", folder / "two", folder / "true")
+    for name, tracker in (("two", "peopleboy"), ("true", "truth")):
+        metrics = json.loads((folder / name / "metrics.json").read_text(encoding="utf-8"))
+        (run,) = told["trackers"][tracker]["runs"]
+        assert (run["run"], run["scene"], run["seed"]) == (str(folder / name), "tiny", 1)
+        assert run["figures"]["thesis"] == metrics["thesis"]
+        assert told["trackers"][tracker]["all_frames"]["mot"] == metrics["mot"]
+    (apart,) = told["differences"]
+    assert (apart["tracker"], apart["from"], apart["pairs"]) == ("truth", "peopleboy", 1)
+    theirs, ours = (
+        told["trackers"][tracker]["all_frames"]["thesis"]["CR"] for tracker in ("truth", "peopleboy")
+    )
+    assert apart["figures"]["CR"] == pytest.approx([theirs - ours] * 3)
+    files = ("--truth", folder / "two" / "truth" / "gt.txt", "--tracks", folder / "two" / "tracks.txt")
+    (alone,) = document(capsys, "evaluate", *files)["trackers"].values()
+    assert alone["all_frames"]["thesis"] == told["trackers"]["peopleboy"]["all_frames"]["thesis"]
+
+
+def test_run_sweep_and_compare_print_one_document_or_nothing(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = folder / "tiny.yaml"
+    told = document(capsys, "run", scene, "--tracker", "truth", "--out", tmp_path / "run", "--no-rrd")
+    assert told["figures"] == json.loads((tmp_path / "run" / "metrics.json").read_text(encoding="utf-8"))
+    assert (told["scenario"], told["seed"], told["tracker"]) == ("tiny", 0, "truth")
+    many = ("--seeds", "1", "--workers", "1", "--out", tmp_path / "many")
+    swept = document(capsys, "sweep", scene, "--tracker", "truth", *many)
+    assert swept["trackers"]["truth"]["all_frames"]["thesis"] == told["figures"]["thesis"]
+    compare = ("compare", "--controllers", "follow_person@truth", "--scenario", scene, *many)
+    (compared,) = document(capsys, *compare)["comparisons"]
+    assert compared["scenario"] == "tiny"
+    for command in (("sweep", scene, "--tracker", "truth", *many), compare, ("evaluate", folder / "one")):
+        assert run_cli(*command, "--quiet") == 0
+        told = capsys.readouterr()
+        assert (told.out, told.err) == ("", "")
