@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.import_graph import ROOT
+from tests.helpers.pages import DOCS, blocks
 
 pytestmark = pytest.mark.install
 
@@ -99,6 +100,21 @@ def test_the_wheel_works_beside_a_users_own_modules_of_the_same_names(whole: Pat
     done = call(whole, home, "run", "crossing_pair", "--tracker", "learned", "--no-rrd", "--out", "learned")
     assert done.returncode == 0, done.stderr
     assert (home / "learned" / "metrics.json").is_file()
+
+
+def test_a_tracker_a_controller_and_tracks_of_ones_own_go_through_everything_from_an_empty_folder(
+    whole: Path, tmp_path: Path
+) -> None:
+    path = os.pathsep.join([str(whole), os.environ["PATH"]])
+    for block in blocks(DOCS / "tasks" / "own-tracker.md"):
+        if block.title:
+            (tmp_path / block.title).write_text(block.code, encoding="utf-8")
+            continue
+        program = ["python", "-c"] if block.language == "python" else ["bash", "-euc"]
+        done = run(["env", f"PATH={path}", *program, block.code], tmp_path)
+        assert done.returncode == 0, f"{block.where}: {done.stderr}"
+    for name in ("one", "both", "warmest"):
+        assert (tmp_path / "runs" / name / "recording.rrd").is_file()
 
 
 def test_the_studies_find_their_tables_in_the_wheel(whole: Path, home: Path) -> None:
