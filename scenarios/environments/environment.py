@@ -14,6 +14,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.command import Command
 from peopleboy.scenarios.environments.episode_figures import EpisodeFigures, Figures
 from peopleboy.scenarios.environments.observations import (
     KINDS,
@@ -31,6 +32,7 @@ from peopleboy.scenarios.environments.situation import Episode
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.loop.tracker_by_name import camera_names, check_cameras, make_eyes
@@ -141,6 +143,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._frames = round(self._scenario.duration_s * config.control_hz)
         self._frame = 0
         self._action = (0.0, 0.0)
+        self._commands: list[Command] = []
+        self._is_varied = bool(chosen)
         self._tracker: Tracker = make_eyes(self._tracker_name, self._seed, self._world.truth)
         check_cameras(self._tracker, config.robot.cameras)
         plan, follow = self._scenario.plan, self._scenario.follow_config()
@@ -167,7 +171,11 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         world = self._running()
         shares = _check_action(action)
         limits = self._limits
-        world.step(shares[0] * limits.max_linear_m_s, shares[1] * limits.max_angular_rad_s)
+        command = Command(
+            linear_m_s=shares[0] * limits.max_linear_m_s, angular_rad_s=shares[1] * limits.max_angular_rad_s
+        )
+        world.step(command.linear_m_s, command.angular_rad_s)
+        self._commands.append(command)
         self._frame += 1
         observation = self._observe()
         situation = self._episode.judge(self._scene)
@@ -203,6 +211,42 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """
         self._running(even_over=True)
         return self._figures.metrics()
+
+    def save(self, folder: str | Path, *, record: bool = True, overwrite: bool = False) -> None:
+        """Write the episode so far as a run's folder, to be reported, viewed and exported.
+
+        The world is played once more, with the commands of the episode, so that it takes as long as a run. Its
+        tracks are those of the environment's tracker; of `observation="truth"`, those of the true boxes.
+
+        Args:
+            folder: where to.
+            record: whether to write a recording.
+            overwrite: whether an earlier run there may be replaced.
+
+        Raises:
+            BadInput: there is no episode yet, it was varied by options or had images or physics that no run
+                has, or the folder cannot be written to.
+        """
+        from peopleboy.scenarios.environments.save_episode import save_episode  # here, as it loads a recorder
+        from peopleboy.scenarios.running.run import RunOptions
+
+        config = self._running(even_over=True).config
+        usual = self._scenario.world(self._seed)
+        if self._is_varied:
+            raise BadInput("save: the episode was varied by options, which no run can be; reset without")
+        if config.physics_hz != usual.physics_hz:
+            raise BadInput(f"save: a run has physics_hz={usual.physics_hz}, got {config.physics_hz}")
+        if self._kind == "tracks" and self._robot != usual.robot:
+            raise BadInput(f"save: images of a run are as the scenario says, not of {self._size} pixels")
+        options = RunOptions(
+            seed=self._seed,
+            out=Path(folder),
+            tracker=ORACLE if self._kind == "truth" else self._tracker_name,
+            record=record,
+            overwrite=overwrite,
+        )
+        frames = min(self._frame + 1, self._frames)
+        save_episode(self._scenario, self._commands, frames, options, config.control_hz)
 
     def close(self) -> None:
         """Free the physics world."""
