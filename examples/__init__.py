@@ -1,1 +1,1 @@
-"""Controllers of your own, learned and written, run from the root of the repository."""
+"""Controllers and trackers as your own might be, run from the root of the repository."""

@@ -215,7 +215,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     def save(self, folder: str | Path, *, record: bool = True, overwrite: bool = False) -> None:
         """Write the episode so far as a run's folder, to be reported, viewed and exported.
 
-        The world is played once more, with the commands of the episode, so that it takes as long as a run. Its
+        The world is played once more with the episode's commands, so that it takes as long as a run. Its
         tracks are those of the environment's tracker; of `observation="truth"`, those of the true boxes.
 
         Args:

@@ -1,4 +1,6 @@
+import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ from click.testing import CliRunner
 from examples import price_of_perception
 from examples.follower_view import SIZE, FollowerView
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from tests.helpers.runs.exported import make_run
 
 SCENE = """
 name: tiny
@@ -16,6 +19,14 @@ place: {kind: corridor, length_m: 9.0, width_m: 3.0}
 people: [{name: anna, path: [{at_m: [6.5, 0.3], face: robot}]}]
 robot: {at_m: [1.5, 0.0], behaviour: follow_person}
 """
+
+WALKING: dict[str, Any] = {
+    "name": "walking",
+    "description": "Somebody walks past a robot that stands.",
+    "duration_s": 2.5,
+    "place": {"kind": "room", "length_m": 9.0, "width_m": 6.0},
+    "robot": {"at_m": [1.0, 0.0]},
+}
 
 
 @pytest.fixture
@@ -72,3 +83,14 @@ def test_a_follower_is_trained_kept_without_pickles_and_compared(scene: Path, tm
     assert trained.output.endswith(again.output)
     with np.load(kept, allow_pickle=False) as weights:
         assert all(weights[name].dtype == np.float32 for name in weights)
+
+
+@pytest.mark.parametrize("name", ["BackgroundSort", "HogByteTrack"])
+def test_trackers_of_others_find_somebody_who_walks_across(name: str, tmp_path: Path) -> None:
+    pytest.importorskip("trackers")
+    walk = [{"at_m": [4.5, -1.2]}, {"at_m": [4.5, 1.2], "speed_m_s": 1.0}]
+    scene = WALKING | {"people": [{"name": "anna", "path": walk}]}
+    run = make_run(scene, tmp_path / "run", "--tracker", f"examples.peers:{name}")
+    metrics = json.loads((run / "metrics.json").read_text(encoding="utf-8"))
+    assert metrics["thesis"]["CR"] > 30.0
+    assert metrics["thesis"]["CP"] > 40.0
