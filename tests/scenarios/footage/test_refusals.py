@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
 
+from peopleboy.bad_input import BadInput
+from peopleboy.own_code import OwnCodeFailed
 from peopleboy.tracker.footage.grey import CENTIKELVIN, Radiometry
 from peopleboy.tracker.footage.plausible import check_plausible
 from tests.helpers.calls.footage_calls import call, call_afresh, refusal
@@ -77,3 +79,26 @@ def test_counts_of_temperatures_are_never_black_hot(tmp_path):
     clip = write_counts(tmp_path / "clip", 3)
     told = refusal(clip, "--out", tmp_path / "out", "--scale", "centikelvin", "--black-hot")
     assert_names(told, "--black-hot", "--scale")
+
+
+@pytest.mark.parametrize(
+    ("answer", "says"),
+    [
+        ("None", ("tracker 'foot_none:Mine'", "tuple of Track")),
+        ("1 / 0", ("tracker 'foot_zero:Mine' failed", "foot_zero.py, line 5")),
+    ],
+)
+def test_a_mistake_of_ones_own_tracker_is_told_with_its_frame_and_leaves_nothing(
+    tmp_path, monkeypatch, answer, says
+):
+    module = says[0].split("'")[1].removesuffix(":Mine")
+    (tmp_path / f"{module}.py").write_text(
+        "class Mine:\n    cameras = ('thermal',)\n    def __init__(self, rng): pass\n"
+        f"    def update(self, frame):\n        return () if frame.time_s < 0.1 else {answer}\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    clip = write_folder(tmp_path / "clip", 4)
+    done = call(clip, "--out", tmp_path / "out", "--tracker", f"{module}:Mine")
+    assert isinstance(done.exception, BadInput if answer == "None" else OwnCodeFailed)
+    assert_names(str(done.exception), "frame 3", *says)
+    assert not (tmp_path / "out").exists()
