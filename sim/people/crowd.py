@@ -13,7 +13,7 @@ from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.places.place import Place, air_of
+from peopleboy.sim.places.place import Place, air_of, is_outdoors
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Detail, Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
@@ -84,10 +84,12 @@ class Crowd:
 
     def _make(self, config: PersonConfig, seed: int) -> Person:
         name = f"person.{config.name}"
-        finisher = (
-            Finisher(config, air_of(self._place), stream(seed, f"{name}.looks")) if self._is_fine else None
-        )
-        return Person(config, stream(seed, name), finisher)
+        return Person(config, stream(seed, name), self._finisher(config, seed) if self._is_fine else None)
+
+    def _finisher(self, config: PersonConfig, seed: int) -> Finisher:
+        """Who refines a person, by the air of the place."""
+        rng = stream(seed, f"person.{config.name}.looks")
+        return Finisher(config, air_of(self._place), rng, is_outdoors=is_outdoors(self._place))
 
     def _add(self, person: Person) -> None:
         for part in self._visible_parts(person):

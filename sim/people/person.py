@@ -24,6 +24,8 @@ from peopleboy.sim.people.body.body_shapes import (
 from peopleboy.sim.people.body.clothes import dress
 from peopleboy.sim.people.body.gait import Gait, lowest_sole
 from peopleboy.sim.people.body.joints import joint_points
+from peopleboy.sim.people.body.manner import USUAL, held_arms
+from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
 from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations
 from peopleboy.sim.people.body.reaching import arm_length, least_stoop, stoop, turn_arm
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
@@ -53,10 +55,12 @@ _ARM_POSTURES: dict[Arms, Posture | None] = {
 _BAG_LOOK = Material(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
 _BAG_HAND = "right"
 _BAG_SWING = 0.25
+_HELD_SWING = 0.2  # of what free arms swing
 _ARM = ("upper_arm", "forearm", "hand")
 _FREE = 0.3  # share up to which the other hand may still take over, as who has just come yet turns
 _AHEAD_M = 0.1  # so far to the left the right hand reaches as well
 _SWAY_RAD, _SWAY_HZ = 0.006, 0.23
+_LOOK_RATIO = 0.57  # how often one looks about, to how often one sways
 # Who turns on the spot takes small steps: as if the feet went round a circle, and so many cycles a turn.
 _TURNING_RADIUS_M = 0.04
 _CYCLES_PER_RAD = 0.4
@@ -88,7 +92,7 @@ class Person:
         self.name = config.name
         self.present = config.enter_s <= 0.0
         self._size = measure(config.height_m, config.sex, config.build)
-        geometry = _geometry(config, self._size)
+        geometry = _geometry(config, self._size, NOTHING_MORE if finisher is None else finisher.outfit)
         materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
         if finisher is not None:
             materials = finisher.finish(materials, geometry)
@@ -98,7 +102,9 @@ class Person:
         self._joint_bone, self._joint_offset = joint_points(self._size)
         self._offsets = joint_offsets(self._size)
         self._soles = sole_points(config.height_m)
-        self._gait = Gait(self._offsets, config.height_m)
+        self._manner = USUAL if finisher is None else finisher.manner
+        self._gait = Gait(self._offsets, config.height_m, self._manner)
+        self._held, self._is_held = held_arms(self._manner.holds)
         self._walker = Walker(config.path, config.yields, self.radius_m)
         self._phase = float(rng.uniform())
         self._sway_phase = float(rng.uniform())
@@ -281,6 +287,8 @@ class Person:
         if self._arms is not None:
             weights[self._arms] = max(weights[self._arms], 1.0 - arms)
             arms = 1.0
+        steady = self._held + _HELD_SWING * (rotations - standing)
+        rotations[self._is_held] = steady[self._is_held]
         rotations[ARM_BONES] += min(arms, 1.0) * (standing - rotations)[ARM_BONES]
         if self.config.bag:
             self._steady_bag_arm(rotations, standing)
@@ -301,6 +309,7 @@ class Person:
         angle = 2.0 * math.pi * (_SWAY_HZ * self._time_s + self._sway_phase)
         lean = _SWAY_RAD * np.array([math.sin(angle), math.cos(0.71 * angle), 0.0])
         rotations[BONE_INDEX["pelvis"]] += lean
+        rotations[BONE_INDEX["head"], 2] += self._manner.looks_about_rad * math.sin(_LOOK_RATIO * angle)
         for side in ("left", "right"):
             rotations[BONE_INDEX[f"{side}_foot"]] -= lean
 
@@ -313,8 +322,9 @@ def _ease(share: float) -> float:
     return share * share * (3.0 - 2.0 * share)
 
 
-def _geometry(config: PersonConfig, size: BodySize) -> dict[str, PartGeometry]:
-    parts = build_body(size, config.clothes.hair, config.clothes.thickness_m())
+def _geometry(config: PersonConfig, size: BodySize, outfit: Outfit) -> dict[str, PartGeometry]:
+    thickness_m = config.clothes.thickness_m()
+    parts = build_body(size, config.clothes.hair, thickness_m)
     if config.bag:
         parts[BAG_PART] = bag(_BAG_HAND, size.stature_m)
-    return parts
+    return put_on(parts, size, outfit, thickness_m)

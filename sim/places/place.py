@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.places.moving import Mover
-from peopleboy.sim.shapes.materials import Material
+from peopleboy.sim.shapes.materials import Covering, Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Quaternion, Vector
 
 # What is lower than a step or higher than a head is in nobody's way.
@@ -92,6 +92,12 @@ class Place:
 def air_of(place: Place) -> float:
     """Tell the temperature [degC] of the air of a place, which people's surfaces follow."""
     return place.surroundings_c
+
+
+def is_outdoors(place: Place) -> bool:
+    """Tell whether there is a street, over which wind blows."""
+    floors = (fixture.part.material.covering for fixture in place.fixtures if fixture.part is not None)
+    return Covering.STREET in floors
 
 
 def _ground_box(mover: Mover, time_s: float) -> NDArray[np.float64] | None:

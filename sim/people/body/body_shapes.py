@@ -65,11 +65,13 @@ def _turn_z_to(direction: NDArray[np.float64]) -> Quaternion:
     return (-y / norm, x / norm, 0.0, norm / 2.0)
 
 
-def _sphere(centre: Vector, radius: float) -> Shape:
+def sphere(centre: Vector, radius: float) -> Shape:
+    """Make a sphere [m]."""
     return Shape(kind=ShapeKind.SPHERE, size=(radius, 0.0, 0.0), position=centre)
 
 
-def _box(centre: Vector, size: Vector) -> Shape:
+def box(centre: Vector, size: Vector) -> Shape:
+    """Make a box of these full extents [m]."""
     return Shape(kind=ShapeKind.BOX, size=size, position=centre)
 
 
@@ -97,9 +99,9 @@ def _head(size: BodySize, hair: str) -> dict[str, PartGeometry]:
     jaw = 0.029
     face = (
         capsule((0.0155 * h, 0.0, (crown - 0.060) * h), (0.0155 * h, 0.0, 0.020 * h), (front - 0.0155) * h),
-        _sphere((0.021 * h, 0.0, (table.CHIN_HEIGHT - ATLAS_HEIGHT + jaw) * h), jaw * h),
+        sphere((0.021 * h, 0.0, (table.CHIN_HEIGHT - ATLAS_HEIGHT + jaw) * h), jaw * h),
         capsule((front * h, 0.0, 0.030 * h), ((front + 0.006) * h, 0.0, 0.022 * h), 0.006 * h),
-        *(_sphere((-0.004 * h, lateral(s) * breadth * 0.92 * h, 0.030 * h), 0.0115 * h) for s in SIDES),
+        *(sphere((-0.004 * h, lateral(s) * breadth * 0.92 * h, 0.030 * h), 0.0115 * h) for s in SIDES),
     )
     neck_radius = size.radius_of(g.neck_circumference) * 0.98
     neck_rise = ATLAS_HEIGHT - NECK_HEIGHT
@@ -120,7 +122,7 @@ def _hair(h: float, breadth: float, front: float, crown: float, hair: str) -> tu
     if hair == "long":
         return (skull, nape, *(_strand(h, z, lateral(side)) for side in SIDES))
     if hair == "cap":
-        peak = _box(((front + 0.012) * h, 0.0, (z - 0.002) * h), (0.062 * h, 0.072 * h, 0.006 * h))
+        peak = box(((front + 0.012) * h, 0.0, (z - 0.002) * h), (0.062 * h, 0.072 * h, 0.006 * h))
         return (skull, nape, peak)
     return (skull, nape)
 
@@ -157,9 +159,9 @@ def _chest(size: BodySize, cloth: float) -> PartGeometry:
         for ends, thickness in ((slope, 0.028), (edge, 0.038), (ribs, radius)):
             shapes.append(capsule(_times(h, ends[0]), _times(h, ends[1]), thickness * h + cloth))
         joint = (0.0, y * joint_y, shoulder_z - 0.022)
-        shapes.append(_sphere(_times(h, joint), 0.024 * h + cloth))
+        shapes.append(sphere(_times(h, joint), 0.024 * h + cloth))
         if size.sex == "female":
-            shapes.append(_sphere(_times(h, (radius - 0.030, y * 0.040, -0.012)), 0.043 * h + cloth))
+            shapes.append(sphere(_times(h, (radius - 0.030, y * 0.040, -0.012)), 0.043 * h + cloth))
     return PartGeometry(
         bone="chest", shapes=tuple(shapes), offset_m=(0.0, 0.0, (_CHEST_CENTRE - THORAX_HEIGHT) * h)
     )
@@ -272,7 +274,7 @@ def _foot(h: float) -> tuple[Shape, ...]:
     breadth = table.FOOT_BREADTH * h
     toe = 0.0165 * h
     return (
-        _box(((heel_x + ball_x) / 2, 0.0, sole + 0.011 * h), (ball_x - heel_x, breadth * 0.9, 0.022 * h)),
+        box(((heel_x + ball_x) / 2, 0.0, sole + 0.011 * h), (ball_x - heel_x, breadth * 0.9, 0.022 * h)),
         capsule((toe_x, -breadth / 2 + toe, sole + toe), (toe_x, breadth / 2 - toe, sole + toe), toe),
         capsule((-0.010 * h, 0.0, -0.012 * h), (ball_x, 0.0, sole + 0.021 * h), 0.021 * h),
     )
@@ -289,7 +291,7 @@ def sole_points(stature_m: float) -> NDArray[np.float64]:
 def bag(side: str, stature_m: float) -> PartGeometry:
     """A briefcase hanging from a hand."""
     drop = (table.HAND_LENGTH * 0.75) * stature_m
-    return PartGeometry(bone=f"{side}_hand", shapes=(_box((0.0, 0.0, -drop - 0.15), (0.38, 0.10, 0.28)),))
+    return PartGeometry(bone=f"{side}_hand", shapes=(box((0.0, 0.0, -drop - 0.15), (0.38, 0.10, 0.28)),))
 
 
 def bone_index(parts: Mapping[str, PartGeometry]) -> NDArray[np.int64]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.people.body.body_shapes import SIDES, sole_points
+from peopleboy.sim.people.body.manner import USUAL, Manner, bearing
 from peopleboy.sim.people.body.motion_capture import CLIP_LEG_M, fourier_basis, load_walking_clip
 from peopleboy.sim.people.body.postures import standing_rotations
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral
@@ -20,7 +21,6 @@ _AMPLITUDES = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.0, 1.2, 1.4])
 _FULL_SPEED_M_S = 1.1  # a stride as long as the clip's, for a leg as long as the clip's
 # The left foot of the clip is on the floor between these phases [cycles].
 _HEEL_STRIKE, _TOE_OFF = 0.485, 1.085
-_TOE_OUT_RAD = math.radians(7.0)
 _FLAT_RAD = math.radians(3.0)
 _MAX_REACH = 0.998  # [leg lengths] a walking knee is never quite straight
 _STANDING_REACH = 0.9998
@@ -28,9 +28,9 @@ _LEAD = (
     0.055  # [cycles] how far the body is ahead of the middle of its feet, which makes the most of the legs
 )
 _BOB = 0.7  # people rise and fall less in each step than stiff legs would make them
-# The clip's figure holds its arms far off and leans forward; people take less of both.
-_ARM_SPREAD = 0.35
-_LEAN = 0.5
+_LEAN = 0.5  # the clip's figure leans forward; people do so less
+# Who stands on one leg shifts the hips over it, and drops the other one.
+_HIP_SHIFT, _HIP_DROP_RAD = 0.018, math.radians(5.0)
 
 
 class Gait:
@@ -43,12 +43,13 @@ class Gait:
     follow by inverse kinematics.
     """
 
-    def __init__(self, offsets: Array, stature_m: float) -> None:
+    def __init__(self, offsets: Array, stature_m: float, manner: Manner = USUAL) -> None:
         self._offsets = offsets
+        self._manner, self._stature_m = manner, stature_m
         self._soles = sole_points(stature_m)
         leg = -offsets[BONE_INDEX["left_shin"], 2] - offsets[BONE_INDEX["left_foot"], 2]
         self._scale = leg / CLIP_LEG_M
-        self.unit_stride_m = load_walking_clip().stride_m * self._scale
+        self.unit_stride_m = load_walking_clip().stride_m * self._scale * manner.stride
         tables = [self._make_table(float(a)) for a in _AMPLITUDES]
         self._rotations = np.stack([rotations for rotations, _ in tables])  # (A, P, 17, 3)
         self._sway = np.stack([sway for _, sway in tables])  # (A, P, 3)
@@ -92,6 +93,7 @@ class Gait:
         phases = np.arange(_PHASES) / _PHASES
         rotations = self._clip_rotations(phases, amplitude)
         sway = fourier_basis(phases) @ load_walking_clip().sway * self._scale * min(amplitude, 1.0)
+        sway[:, 1] += max(1.0 - amplitude / 0.5, 0.0) * self._manner.leans * _HIP_SHIFT * self._stature_m
         feet = {side: self._foot_path(side, phases, amplitude) for side in SIDES}
         share = min(amplitude / 0.3, 1.0)
         reach = _STANDING_REACH + share * (_MAX_REACH - _STANDING_REACH)
@@ -105,11 +107,15 @@ class Gait:
         coefficients = load_walking_clip().rotations
         swing = np.tensordot(fourier_basis(phases)[:, 1:], coefficients[1:], axes=1)
         mean = coefficients[0].copy()
-        mean[ARM_BONES, 0::2] *= _ARM_SPREAD
+        mean[ARM_BONES, 0::2] *= self._manner.arm_spread
         mean[BONE_INDEX["pelvis"]] *= _LEAN
         share = min(amplitude / 0.5, 1.0)
         standing = standing_rotations()
+        swing[:, ARM_BONES] *= self._manner.arm_swing
         rotations: Array = standing + share * (mean - standing) + min(amplitude, 1.1) * swing
+        rotations += bearing(self._manner)
+        drop = (1.0 - share) * self._manner.leans * _HIP_DROP_RAD
+        rotations[:, [BONE_INDEX["pelvis"], BONE_INDEX["abdomen"]], 0] += drop, -1.3 * drop
         return rotations
 
     def _foot_path(self, side: str, phases: Array, amplitude: float) -> tuple[Array, Array]:
@@ -131,8 +137,10 @@ class Gait:
             self._swing(time, amplitude, axis=1) + 0.035 * min(amplitude, 1.2) * np.sin(np.pi * time) * lift,
             z[swinging] + 0.02 * min(amplitude / 0.5, 1.0) * lift,
         )
-        hip_y = self._offsets[BONE_INDEX["left_thigh"], 1] * (1.0 - 0.45 * min(amplitude / 0.5, 1.0))
-        y = lateral(side) * (hip_y + math.sin(_TOE_OUT_RAD) * self._rolled(pitch))
+        manner, walks = self._manner, min(amplitude / 0.5, 1.0)
+        hip_y = self._offsets[BONE_INDEX["left_thigh"], 1] * (manner.stance_width - manner.narrows * walks)
+        x += 0.5 * (1.0 - walks) * lateral(side) * manner.stance_ahead * self._stature_m
+        y = lateral(side) * (hip_y + math.sin(manner.toe_out_rad) * self._rolled(pitch))
         return np.stack([x, y, z], axis=-1), pitch
 
     def _clip_pitch(self, own: Array, amplitude: float) -> Array:
@@ -159,7 +167,7 @@ class Gait:
         middle = (_TOE_OFF - _HEEL_STRIKE) / 2.0 - _LEAD
         anchor = self.stride_m(amplitude) * (middle - since_strike)
         height = -self._soles[0, 2] * np.cos(pitch) + self._pivot(pitch) * np.sin(pitch)
-        return anchor + math.cos(_TOE_OUT_RAD) * self._rolled(pitch), height
+        return anchor + math.cos(self._manner.toe_out_rad) * self._rolled(pitch), height
 
     def _swing(self, time: Array, amplitude: float, axis: int) -> Array:
         """Join the end of a stance (time 0) to the next (time 1) by a cubic of the same velocities."""
@@ -201,7 +209,7 @@ class Gait:
         distance = np.minimum(np.linalg.norm(gap, axis=1), thigh + shin - 1e-6)
         knee = np.arccos(np.clip((distance**2 - thigh**2 - shin**2) / (2.0 * thigh * shin), -1.0, 1.0))
         before_knee = np.arctan2(shin * np.sin(knee), thigh + shin * np.cos(knee))
-        yaw = lateral(side) * _TOE_OUT_RAD
+        yaw = lateral(side) * self._manner.toe_out_rad
         across = np.array([-math.sin(yaw), math.cos(yaw), 0.0])
         up = -gap / np.linalg.norm(gap, axis=1, keepdims=True)
         front = np.cross(across, up)

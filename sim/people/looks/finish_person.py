@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.body_shapes import BAG_PART, PartGeometry
 from peopleboy.sim.people.body.clothes import COLOURS, Garment
+from peopleboy.sim.people.body.manner import draw_manner
+from peopleboy.sim.people.body.outfit import Outfit, draw_outfit
 from peopleboy.sim.people.looks.cloth import OPEN, Worn, add_trimmings, paint_cloth, paint_shoes
 from peopleboy.sim.people.looks.faces import paint_face, paint_hair, paint_skin
 from peopleboy.sim.people.looks.sheets import Mesh, crumple, make_mesh
 from peopleboy.sim.people.looks.traits import draw_traits
-from peopleboy.sim.people.looks.warmth import ROOM_C, bare_c, cloth_c, share_of_skin, under_cloth_c
+from peopleboy.sim.people.looks.warmth import ROOM_C, bare_c, cloth_c, share_of_skin, under_cloth_c, wind_loss
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.shapes.finishes import Finish
 from peopleboy.sim.shapes.materials import Material, Rgb
@@ -22,7 +24,9 @@ from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 _CLOTH_TEXEL_M, _SKIN_TEXEL_M, _FACE_TEXEL_M, _HAIR_TEXEL_M = 0.007, 0.010, 0.003, 0.006
 # Garments of a kind fit tightly or hang: deviation of how far they are from the air, as a share of that.
-_FIT = 0.14
+_FIT = 0.2
+_BAG_COLOURS = ("black", "dark_brown", "grey", "navy", "khaki", "red")
+_WIND_M_S = (0.3, 2.5)  # air against who walks on a street, more or less sheltered
 _SHIRT_C, _SHIRT_RGB = 30.2, COLOURS["white"]
 _FOLD_M = 0.12  # between folds round a part of 1 m; they grow by the root of its girth
 _COLD_HANDS = {"hand": 1.0, "foot": 0.8, "forearm": 0.4, "shin": 0.3}  # share by part
@@ -34,15 +38,24 @@ class Finisher:
     In air of 21 degC the mean temperature of a part is, over many people, as it is without.
     """
 
-    def __init__(self, config: PersonConfig, air_c: float, rng: np.random.Generator) -> None:
-        self._traits = draw_traits(config, air_c, rng)
+    def __init__(
+        self, config: PersonConfig, air_c: float, rng: np.random.Generator, *, is_outdoors: bool = False
+    ) -> None:
         clothes = config.clothes
+        self.outfit = draw_outfit(rng, clothes, config.sex, config.bag)
+        self.manner = draw_manner(
+            rng, _hand_that_carries(config, self.outfit), has_straps=_has_straps(self.outfit)
+        )
+        self._traits = draw_traits(config, self.outfit, air_c, rng)
         names = (clothes.hair, clothes.shoes, clothes.bottom, clothes.top)
         worn = [(garment, name) for (garment, _), name in zip(clothes.garments(), names, strict=True)]
         self._worn = {part: (g, name) for g, name in worn for part in g.covers if name != "bald"}
+        self._worn |= dict.fromkeys(self.outfit.covers, self._worn["chest"])
         self._fit = {name: _FIT * float(np.clip(rng.normal(), -2.0, 2.0)) for name in names}
         self._stature_m = config.height_m
-        self._hair = clothes.hair
+        self._hair = "cap" if self.outfit.headgear != "none" else clothes.hair
+        self._bag_rgb = COLOURS[str(rng.choice(_BAG_COLOURS))]
+        self._loss = wind_loss(float(rng.uniform(*_WIND_M_S))) if is_outdoors else 1.0
         self._air_c, self._rng = air_c, rng
 
     def finish(
@@ -50,6 +63,7 @@ class Finisher:
     ) -> dict[str, Material]:
         """Refine looks by part, as `dress` gives them, of parts of these shapes."""
         skin_rgb, hair_rgb = materials["head"].rgb, materials["hair"].rgb
+        materials = {**materials, **dict.fromkeys(self.outfit.covers, materials["chest"])}
         brows = COLOURS["dark_brown"] if self._hair in ("bald", "cap") else hair_rgb
         return {
             part: self._finish_part(part, materials[part], shape, brows if part == "head" else skin_rgb)
@@ -58,7 +72,8 @@ class Finisher:
 
     def _finish_part(self, part: str, material: Material, geometry: PartGeometry, second: Rgb) -> Material:
         if part == BAG_PART:
-            return replace(material, temperature_c=self._air_c + material.temperature_c - ROOM_C)
+            warmer_k = material.temperature_c - ROOM_C
+            return replace(material, temperature_c=self._air_c + warmer_k, rgb=self._bag_rgb)
         bare = part.removeprefix("left_").removeprefix("right_")
         if part not in self._worn:
             skin_c = self._skin_c(material.temperature_c, part, bare)
@@ -79,7 +94,7 @@ class Finisher:
 
     def _surface_c(self, at_room_c: float, part: str, name: str) -> float:
         """[degC] of a garment's surface on this person."""
-        surface_c = cloth_c(at_room_c, part, self._air_c)
+        surface_c = cloth_c(at_room_c, part, self._air_c, self._loss)
         own_k = share_of_skin(at_room_c) * self._traits.warmer_k + self._fit[name] * (surface_c - self._air_c)
         return surface_c + own_k
 
@@ -129,6 +144,16 @@ class Finisher:
         return paint.finish(_SHIRT_RGB if name in OPEN else skin)
 
 
+def _hand_that_carries(config: PersonConfig, outfit: Outfit) -> str | None:
+    if config.bag:
+        return "right"
+    return outfit.side if outfit.carried == "shopping_bag" else None
+
+
+def _has_straps(outfit: Outfit) -> bool:
+    return outfit.carried in ("rucksack", "shoulder_bag")
+
+
 def _fold_m(depth_m: float) -> float:
     return float(_FOLD_M * (2.0 * np.pi * depth_m) ** 0.5)
 
@@ -148,8 +173,10 @@ def _reach(shape: Shape) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     half = np.full(3, shape.size[0])
     if shape.kind == ShapeKind.BOX:
         half = np.array(shape.size) / 2.0
-    elif shape.kind == ShapeKind.CAPSULE:
+    elif shape.kind in (ShapeKind.CAPSULE, ShapeKind.CYLINDER):
         x, y, z, w = shape.orientation
         axis = np.array([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])
-        half = np.abs(axis) * shape.size[0] / 2.0 + shape.size[1]
+        is_flat = shape.kind == ShapeKind.CYLINDER
+        across = np.sqrt(np.maximum(1.0 - axis**2, 0.0)) if is_flat else 1.0
+        half = np.abs(axis) * shape.size[0] / 2.0 + across * shape.size[1]
     return at - half, at + half

@@ -7,13 +7,13 @@ from typing import Literal
 
 import numpy as np
 
+from peopleboy.sim.people.body.outfit import Outfit
 from peopleboy.sim.people.person_config import PersonConfig
 
-Strap = Literal["none", "shoulder", "rucksack"]
+Strap = Literal["none", "left", "right", "both"]
 
 _GLASSES = 0.36  # of adults wear them all the time (Institut für Demoskopie Allensbach, Brillenstudie 2014)
 _BEARD = 0.35  # of men, a stubble or more: our choice
-_STRAPS: tuple[tuple[Strap, float], ...] = (("none", 0.74), ("shoulder", 0.12), ("rucksack", 0.14))
 _USUAL_SPEED_M_S = 1.2
 _K_PER_M_S = 1.2  # who walks faster is warmer
 _OPEN_JACKET, _BELT, _PHONE, _PARTED = 0.55, 0.5, 0.3, 0.6
@@ -28,7 +28,7 @@ class Traits:
         hands_k, nose_k: [K] hands and feet, and the nose, against other people's.
         sweat: 0..1 how wet the back is.
         glasses, beard, open_jacket, belt, phone: whether there is one.
-        strap: of a bag on the back or at the side.
+        strap: of what is carried, from which shoulder it comes.
         parting: where the hair is parted, -1 the right side, 1 the left, 0 nowhere.
     """
 
@@ -45,13 +45,12 @@ class Traits:
     parting: float
 
 
-def draw_traits(config: PersonConfig, air_c: float, rng: np.random.Generator) -> Traits:
+def draw_traits(config: PersonConfig, outfit: Outfit, air_c: float, rng: np.random.Generator) -> Traits:
     """Draw a person's traits; speed and warm air make them warmer and wetter."""
     speeds = [waypoint.speed_m_s for waypoint in config.path[1:]]
     busy_k = _K_PER_M_S * (float(np.mean(speeds)) - _USUAL_SPEED_M_S) if speeds else 0.0
     warmer_k = float(np.clip(busy_k, -0.8, 1.2) + 0.7 * _normal(rng))
     cold_hands_k = 1.3 * _normal(rng)
-    strap = _STRAPS[int(rng.choice(len(_STRAPS), p=[share for _, share in _STRAPS]))][0]
     parting = float(rng.choice([-1.0, 1.0])) * float(rng.uniform() < _PARTED)
     return Traits(
         warmer_k=warmer_k,
@@ -63,9 +62,16 @@ def draw_traits(config: PersonConfig, air_c: float, rng: np.random.Generator) ->
         open_jacket=bool(rng.uniform() < _OPEN_JACKET),
         belt=bool(rng.uniform() < _BELT),
         phone=bool(rng.uniform() < _PHONE),
-        strap="none" if config.bag else strap,
+        strap=_strap(outfit),
         parting=parting,
     )
+
+
+def _strap(outfit: Outfit) -> Strap:
+    """A bag at one side hangs from the other shoulder."""
+    if outfit.carried == "shoulder_bag":
+        return "left" if outfit.side == "right" else "right"
+    return "both" if outfit.carried == "rucksack" else "none"
 
 
 def _normal(rng: np.random.Generator) -> float:

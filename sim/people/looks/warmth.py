@@ -13,6 +13,7 @@ import numpy as np
 ROOM_C = 21.0  # air of the catalogue's temperatures
 WARMEST_SKIN_C = 36.8
 _COVERED_SKIN_C = 33.4  # skin under clothes, in air of 21 degC
+_BY_RADIATION, _IN_A_ROOM = 4.5, 8.5  # W / (m2 K); in a room convection has the rest
 _LEAST, _MOST = 0.2, 0.95  # of r: a warm shoe, a stocking
 
 # [K] how much colder or warmer skin is than in air of 21 degC, in air of _AIR_C: an hour in still air of 50 %
@@ -55,6 +56,23 @@ def under_cloth_c(part: str, air_c: float) -> float:
     return bare_c(_COVERED_SKIN_C, part, air_c)
 
 
-def cloth_c(at_room_c: float, part: str, air_c: float) -> float:
-    """Tell the temperature [degC] of a garment's surface that has another one in air of 21 degC."""
-    return air_c + (under_cloth_c(part, air_c) - air_c) * share_of_skin(at_room_c)
+def wind_loss(moving_m_s: float) -> float:
+    """How many times as much heat a surface loses in air that moves so fast against it [m/s] as in a room.
+
+    Source: ISO 7730:2005, clause 4.1: 12.1 W / (m2 K) by convection at 1 m/s, which grows with the root of
+    speed; 4.5 W / (m2 K) by radiation.
+    """
+    return max((12.1 * float(np.sqrt(moving_m_s)) + _BY_RADIATION) / _IN_A_ROOM, 1.0)
+
+
+def cloth_c(at_room_c: float, part: str, air_c: float, loss: float = 1.0) -> float:
+    """Tell the temperature [degC] of a garment's surface that has another one in still air of 21 degC.
+
+    Args:
+        at_room_c: [degC] that one.
+        part: what it covers.
+        air_c: [degC] of the air.
+        loss: how many times as much heat the surface loses as in a room: r = 1 / (1 + loss h R).
+    """
+    r = share_of_skin(at_room_c)
+    return air_c + (under_cloth_c(part, air_c) - air_c) * r / (r + loss * (1.0 - r))

@@ -15,6 +15,9 @@ def depth_inside(shape: Shape, points: np.ndarray) -> np.ndarray:
         length, radius, _ = shape.size
         local[:, 2] -= np.clip(local[:, 2], -length / 2, length / 2)
         return radius - np.linalg.norm(local, axis=-1)
+    if shape.kind == ShapeKind.CYLINDER:
+        length, radius, _ = shape.size
+        return np.minimum(length / 2 - np.abs(local[:, 2]), radius - np.linalg.norm(local[:, :2], axis=-1))
     assert shape.kind == ShapeKind.BOX
     return (np.array(shape.size) / 2 - np.abs(local)).min(axis=-1)
 

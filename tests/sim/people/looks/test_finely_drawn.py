@@ -33,12 +33,16 @@ def play(settings: WorldConfig) -> list[tuple[dict[str, np.ndarray], np.ndarray,
     return found
 
 
-def test_truth_is_the_same_in_full_detail_and_people_look_otherwise() -> None:
+def test_people_walk_the_same_way_and_look_otherwise() -> None:
     for (plain, cover, boxes), (full, again, boxes_again) in zip(play(PLAIN), play(FULL), strict=True):
-        assert np.array_equal(cover, again)
-        assert boxes == boxes_again
-        is_person = cover > 0
-        assert 0.02 < is_person.mean() < 0.5
+        assert 0.02 < (again > 0).mean() < 0.5
+        assert again[cover > 0].mean() > 0.8
+        for one, other in zip(boxes, boxes_again, strict=True):
+            assert one is not None
+            assert other is not None
+            assert one[1] == pytest.approx(other[1], abs=0.06 * (one[3] - one[1]))
+            assert one[3] == pytest.approx(other[3], abs=0.06 * (one[3] - one[1]))
+        is_person = (cover > 0) & (again > 0)
         assert (plain["colour"][is_person] != full["colour"][is_person]).any(axis=1).mean() > 0.5
 
 

@@ -33,7 +33,7 @@ def finish_of(material: Material) -> Finish:
 
 def test_in_a_room_people_are_on_average_as_warm_as_without() -> None:
     plain, fine = crowd(None), crowd(21.0)
-    for part in plain[0]:
+    for part in plain[0].keys() - {"pelvis"}:  # over which shirts hang, some of them
         before, after = (np.mean([each[part].temperature_c for each in many]) for many in (plain, fine))
         assert after == pytest.approx(before, abs=0.5), part
         painted = (

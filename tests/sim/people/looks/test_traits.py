@@ -1,16 +1,19 @@
 import numpy as np
 import pytest
 
+from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit
 from peopleboy.sim.people.looks.traits import Traits, draw_traits
 from peopleboy.sim.people.person import PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 
 
-def people(air_c: float = 21.0, speed: float = 1.2, **settings: object) -> list[Traits]:
+def people(
+    air_c: float = 21.0, speed: float = 1.2, outfit: Outfit = NOTHING_MORE, **settings: object
+) -> list[Traits]:
     path = (Waypoint(at_m=(0.0, 0.0)), Waypoint(at_m=(9.0, 0.0), speed_m_s=speed))
     config = PersonConfig(name="ann", path=path, **settings)
     rng = stream(0, "looks")
-    return [draw_traits(config, air_c, rng) for _ in range(2000)]
+    return [draw_traits(config, outfit, air_c, rng) for _ in range(2000)]
 
 
 def mean(traits: list[Traits], name: str) -> float:
@@ -37,6 +40,8 @@ def test_cold_hands_go_with_cold_noses() -> None:
     assert found.std(axis=0).min() > 0.5
 
 
-def test_a_quarter_carry_something_on_straps_but_not_beside_a_bag() -> None:
-    assert np.mean([each.strap != "none" for each in people()]) == pytest.approx(0.26, abs=0.03)
-    assert all(each.strap == "none" for each in people(bag=True))
+def test_straps_come_from_the_shoulders_that_bags_hang_from() -> None:
+    def strap(carried: str) -> str:
+        return people(outfit=Outfit(carried=carried, side="right"))[0].strap
+
+    assert [strap(each) for each in ("rucksack", "shoulder_bag", "shopping_bag")] == ["both", "left", "none"]

@@ -1,0 +1,233 @@
+"""What changes somebody's outline beside the catalogue of clothes: coats, wide legs, hair, hats, bags."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Final, Literal
+
+import numpy as np
+
+from peopleboy.sim.people.body import anthropometry as table
+from peopleboy.sim.people.body.anthropometry import BodySize, Sex
+from peopleboy.sim.people.body.body_shapes import (
+    BAG_PART,
+    SIDES,
+    PartGeometry,
+    box,
+    capsule,
+    sphere,
+)
+from peopleboy.sim.people.body.clothes import Clothes
+from peopleboy.sim.people.body.skeleton import ATLAS_HEIGHT, lateral
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind, Vector
+
+Coat = Literal["none", "hip", "long"]
+Headgear = Literal["none", "hood", "hat"]
+Hairdo = Literal["plain", "bun", "tail"]
+Carried = Literal["nothing", "rucksack", "shoulder_bag", "shopping_bag"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outfit:
+    """What one person wears how, and carries; the defaults are as the catalogue has it.
+
+    Attributes:
+        coat: how far a jacket reaches: over the hips, or to the middle of the thighs.
+        leg_m: [m] radius of trouser legs at their hem; 0 follows the leg.
+        sleeve_m: [m] radius of sleeves at the wrist; 0 follows the arm.
+        hair_m: [m] how far hair stands off the head.
+        hairdo: how hair is worn.
+        headgear: beside caps, which are of the catalogue.
+        carried: on the back, at the side or in a hand.
+        side: on which it is, "left" or "right".
+    """
+
+    coat: Coat = "none"
+    leg_m: float = 0.0
+    sleeve_m: float = 0.0
+    hair_m: float = 0.0
+    hairdo: Hairdo = "plain"
+    headgear: Headgear = "none"
+    carried: Carried = "nothing"
+    side: str = "right"
+
+    @property
+    def covers(self) -> tuple[str, ...]:
+        """Parts that the top covers beside those of the catalogue."""
+        legs = tuple(f"{side}_thigh" for side in SIDES) if self.coat == "long" else ()
+        hips = () if self.coat == "none" else ("pelvis",)
+        return (*hips, *legs, *(("hair",) if self.headgear == "hood" else ()))
+
+
+NOTHING_MORE: Final = Outfit()
+
+# How often: our own count in the streets and shops of a town, rounded.
+_LONG_COAT, _OVER_HIPS = 0.3, 0.45  # of jackets; the others end at the waist
+_HOOD_UP, _HAT = 0.12, 0.04  # of those who could
+_TAIL, _BUN = 0.25, 0.12  # of long hair
+_CARRIED: Final[dict[Carried, float]] = {
+    "nothing": 0.52, "rucksack": 0.18, "shoulder_bag": 0.18, "shopping_bag": 0.12,
+}  # fmt: skip
+_HOOD_M: Final = 0.016  # [m] how thick a hood is
+_HOODED: Final = ("jacket", "fleece")
+_LONG_TOPS: Final = ("jacket", "fleece", "wool_jumper", "shirt", "t_shirt", "checked_shirt")
+
+
+def draw_outfit(rng: np.random.Generator, clothes: Clothes, sex: Sex, has_bag: bool) -> Outfit:
+    """Draw how somebody wears these clothes, and what they carry beside a bag that they have already."""
+    reach, hood, hair, loose = (float(rng.uniform()) for _ in range(4))
+    carried = list(_CARRIED)[int(rng.choice(len(_CARRIED), p=list(_CARRIED.values())))]
+    is_long = clothes.hair == "long"
+    return Outfit(
+        coat=_coat(clothes.top, reach),
+        leg_m=_leg(clothes.bottom, sex, loose),
+        sleeve_m=float(rng.uniform(0.045, 0.062)) if clothes.top in (*_HOODED, "lab_coat") else 0.0,
+        hair_m=float(rng.uniform(0.0, 0.035 if is_long else 0.018))
+        if clothes.hair in ("short", "long")
+        else 0.0,
+        hairdo=("tail" if hair < _TAIL else "bun" if hair < _TAIL + _BUN else "plain")
+        if is_long
+        else "plain",
+        headgear=_headgear(clothes, hood),
+        carried="nothing" if has_bag else carried,
+        side="left" if float(rng.uniform()) < 0.5 else "right",
+    )
+
+
+def _coat(top: str, draw: float) -> Coat:
+    if top == "jacket" and draw < _LONG_COAT:
+        return "long"
+    return "hip" if top in _LONG_TOPS and draw < _LONG_COAT + _OVER_HIPS else "none"
+
+
+def _leg(bottom: str, sex: Sex, draw: float) -> float:
+    """Hems of trousers are 30 to 48 cm round, women's more often narrow."""
+    if bottom not in ("jeans", "trousers"):
+        return 0.0
+    return 0.056 + 0.020 * draw if sex == "male" else 0.046 + 0.030 * draw**2
+
+
+def _headgear(clothes: Clothes, draw: float) -> Headgear:
+    if clothes.hair == "cap":
+        return "none"
+    if draw < _HOOD_UP:
+        return "hood" if clothes.top in _HOODED else "none"
+    return "hat" if draw < _HOOD_UP + _HAT else "none"
+
+
+def put_on(
+    parts: Mapping[str, PartGeometry], size: BodySize, outfit: Outfit, thickness_m: Mapping[str, float]
+) -> dict[str, PartGeometry]:
+    """Add what an outfit adds to a body's parts: shapes, and the part of what is carried."""
+    h = size.stature_m
+    more: dict[str, tuple[Shape, ...]] = {
+        "hair": _head(size, outfit),
+        "pelvis": _tails(size, outfit, thickness_m),
+    }
+    for side in SIDES:
+        more[f"{side}_thigh"] = _skirts(size, outfit, thickness_m.get(f"{side}_thigh", 0.0), side)
+        more[f"{side}_shin"] = _hem(h, outfit.leg_m)
+        more[f"{side}_forearm"] = _cuff(h, outfit.sleeve_m)
+    worn = {name: replace(part, shapes=(*part.shapes, *more.get(name, ()))) for name, part in parts.items()}
+    if outfit.carried != "nothing":
+        worn[BAG_PART] = _carried(size, outfit, thickness_m.get("chest", 0.0))
+    return worn
+
+
+def _tube(start: Vector, end: Vector, radius: float) -> Shape:
+    """A cylinder between the middles of its two ends [m]: cloth that ends straight."""
+    return replace(capsule(start, end, radius), kind=ShapeKind.CYLINDER)
+
+
+def _tails(size: BodySize, outfit: Outfit, thickness_m: Mapping[str, float]) -> tuple[Shape, ...]:
+    """The part of a coat that hangs over the hips, a little off them."""
+    if outfit.coat == "none":
+        return ()
+    h, g = size.stature_m, size.girths
+    radius = g.buttock_depth / 2.0 * h + thickness_m.get("chest", 0.0)
+    half = max(g.hip_breadth / 2.0 * h + thickness_m.get("chest", 0.0) - radius, 0.01)
+    return tuple(
+        _tube((-0.004 * h, y * half, -0.045 * h), (-0.002 * h, y * half * 0.85, 0.060 * h), radius)
+        for y in (1.0, -1.0)
+    )
+
+
+def _skirts(size: BodySize, outfit: Outfit, cloth: float, side: str) -> tuple[Shape, ...]:
+    """Half of a long coat's lower end, which swings with a thigh and is wider than it."""
+    if outfit.coat != "long":
+        return ()
+    h = size.stature_m
+    length = (table.HIP_HEIGHT - table.KNEE_HEIGHT) * h
+    radius = size.radius_of(size.girths.thigh_circumference) + cloth + 0.004
+    ends = ((0.0, 0.0, -0.1 * length), (0.0, lateral(side) * 0.014, -0.72 * length))
+    return (_tube(*ends, radius),)
+
+
+def _hem(h: float, radius: float) -> tuple[Shape, ...]:
+    """A trouser leg that hangs from the knee; its end is open, and lies on the shoe."""
+    if radius == 0.0:
+        return ()
+    shank = (table.KNEE_HEIGHT - table.ANKLE_HEIGHT) * h
+    return (_tube((-0.002 * h, 0.0, -0.1 * shank), (-0.008 * h, 0.0, -shank - 0.012), radius),)
+
+
+def _cuff(h: float, radius: float) -> tuple[Shape, ...]:
+    if radius == 0.0:
+        return ()
+    return (_tube((0.0, 0.0, -0.02), (0.0, 0.0, -0.97 * table.FOREARM_LENGTH * h), radius),)
+
+
+def _head(size: BodySize, outfit: Outfit) -> tuple[Shape, ...]:
+    """What is on a head beside its hair as the catalogue has it."""
+    h = size.stature_m
+    breadth, front = size.girths.head_breadth / 2.0 * h, size.girths.head_length / 2.0 * h
+    middle = (breadth - front, 0.0, (1.0 - ATLAS_HEIGHT) * h - breadth)
+    return (*_mop(h, breadth, middle, outfit), *_cover(h, breadth, middle, outfit.headgear))
+
+
+def _mop(h: float, breadth: float, middle: Vector, outfit: Outfit) -> tuple[Shape, ...]:
+    """Hair that stands off, no higher than the stature, and what it is tied to."""
+    back, _, z = middle
+    shapes: list[Shape] = []
+    if outfit.hair_m > 0.0:
+        low = z - outfit.hair_m
+        shapes.append(capsule((back, 0.0, low), (-0.006 * h, 0.0, low), breadth + outfit.hair_m))
+        shapes.append(sphere((back, 0.0, z - 0.03 * h), 0.9 * breadth + outfit.hair_m))
+    if outfit.hairdo == "bun":
+        shapes.append(sphere((back - 0.045 * h, 0.0, z + 0.012 * h), 0.023 * h))
+    if outfit.hairdo == "tail":
+        shapes.append(capsule((back - 0.042 * h, 0.0, z), (back - 0.052 * h, 0.0, z - 0.11 * h), 0.016 * h))
+    return tuple(shapes)
+
+
+def _cover(h: float, breadth: float, middle: Vector, headgear: Headgear) -> tuple[Shape, ...]:
+    """A hood, round a face and on the shoulders, or a hat's brim."""
+    z = middle[2]
+    if headgear == "hat":
+        brim = (0.012, 0.085 * h, 0.0)
+        return (Shape(kind=ShapeKind.CYLINDER, size=brim, position=(0.0, 0.0, z + 0.004 * h)),)
+    if headgear == "none":
+        return ()
+    sides = tuple(
+        capsule((-0.004 * h, y * 0.030 * h, z), (-0.012 * h, y * 0.032 * h, -0.035 * h), 0.022 * h)
+        for y in (1.0, -1.0)
+    )
+    nape = capsule((-0.020 * h, 0.0, z), (-0.024 * h, 0.0, -0.035 * h), 0.034 * h)
+    return (capsule(middle, (0.010 * h, 0.0, z), breadth + _HOOD_M), *sides, nape)
+
+
+def _carried(size: BodySize, outfit: Outfit, cloth: float) -> PartGeometry:
+    """A rucksack, or a bag at the hip or in a hand."""
+    h, g, y = size.stature_m, size.girths, lateral(outfit.side)
+    if outfit.carried == "rucksack":
+        x = -(g.chest_depth / 2.0 * h + cloth + 0.05)
+        ends = tuple(capsule((x, -0.06, z), (x, 0.06, z), 0.075) for z in (-0.12, 0.19))
+        return PartGeometry(bone="chest", shapes=(*ends, box((x, 0.0, 0.035), (0.15, 0.27, 0.31))))
+    if outfit.carried == "shoulder_bag":
+        middle = (-0.02, y * (g.hip_breadth / 2.0 * h + cloth + 0.055), 0.03)
+        return PartGeometry(bone="pelvis", shapes=(box(middle, (0.30, 0.10, 0.23)),))
+    drop = table.HAND_LENGTH * 0.75 * h
+    return PartGeometry(
+        bone=f"{outfit.side}_hand", shapes=(box((0.0, 0.0, -drop - 0.19), (0.30, 0.13, 0.34)),)
+    )

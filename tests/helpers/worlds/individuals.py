@@ -1,0 +1,22 @@
+"""People of full detail for tests: each with a gait, clothes and bags of its own."""
+
+from dataclasses import replace
+
+from peopleboy.sim.people.looks.finish_person import Finisher
+from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
+from peopleboy.sim.random_streams import stream
+
+
+def make_individual(
+    seed: int,
+    *,
+    manner: dict[str, object] | None = None,
+    outfit: dict[str, object] | None = None,
+    **settings: object,
+) -> Person:
+    """A person whose manner and outfit are drawn by a seed, but for what is given."""
+    config = PersonConfig(**({"name": "ann", "path": (Waypoint(at_m=(0.0, 0.0)),)} | settings))
+    finisher = Finisher(config, 21.0, stream(seed, "looks"))
+    finisher.manner = replace(finisher.manner, **(manner or {}))
+    finisher.outfit = replace(finisher.outfit, **(outfit or {}))
+    return Person(config, stream(seed, "person"), finisher)
