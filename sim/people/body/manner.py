@@ -8,9 +8,9 @@ from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from peopleboy.sim.people.body.reaching import turn_arm
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, lateral
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, lateral, point_along
 
 Array = NDArray[np.float64]
 Hold = Literal["free", "pocket", "strap", "telephone", "in_front", "carries"]
@@ -64,13 +64,13 @@ _HOLDS: Final[dict[Hold, float]] = {
 }  # fmt: skip
 _BOTH_ALIKE: Final = 0.5  # of those with a hand in a pocket or before the belly, both hands are
 
-# Where the middle of a left palm is, from the shoulder in the chest's frame, as fractions of stature.
-_PALM: Final[dict[Hold, tuple[float, float, float]]] = {
-    "pocket": (0.030, -0.010, -0.320),
-    "strap": (0.095, -0.050, -0.065),
-    "telephone": (0.025, -0.030, 0.095),
-    "in_front": (0.165, -0.085, -0.205),
-    "carries": (0.015, 0.030, -0.365),
+# Whither left elbows and palms are, from the shoulder in the chest's frame, as fractions of stature.
+_ELBOW_AND_PALM: Final[dict[Hold, tuple[tuple[float, float, float], tuple[float, float, float]]]] = {
+    "pocket": ((-0.09, 0.09, -0.14), (0.03, -0.01, -0.32)),
+    "strap": ((0.0, 0.06, -0.175), (0.095, -0.05, -0.065)),
+    "telephone": ((0.12, 0.09, -0.11), (0.03, -0.055, 0.09)),
+    "in_front": ((-0.02, 0.06, -0.175), (0.165, -0.085, -0.205)),
+    "carries": ((0.0, 0.035, -0.18), (0.02, 0.03, -0.37)),
 }
 
 
@@ -121,10 +121,13 @@ def held_arms(holds: tuple[Hold, Hold]) -> tuple[Array, NDArray[np.bool_]]:
     for side, hold in zip(("left", "right"), holds, strict=True):
         if hold == "free":
             continue
-        x, y, z = _PALM[hold]
-        arm = [BONE_INDEX[f"{side}_{bone}"] for bone in ("upper_arm", "forearm", "hand")]
-        rotations[arm] = turn_arm(rotations, side, np.array([x, lateral(side) * y, z]), 1.0)[arm]
-        is_held[arm] = True
+        mirrored = np.array([1.0, lateral(side), 1.0])
+        elbow, palm = (mirrored * point for point in _ELBOW_AND_PALM[hold])
+        upper, fore, hand = (BONE_INDEX[f"{side}_{bone}"] for bone in ("upper_arm", "forearm", "hand"))
+        rotations[upper] = point_along(tuple(elbow))
+        back = Rotation.from_rotvec(rotations[upper]).inv()
+        rotations[fore] = point_along(tuple(back.apply(palm - elbow)))
+        is_held[[upper, fore, hand]] = True
     return rotations, is_held
 
 

@@ -119,17 +119,16 @@ def _headgear(clothes: Clothes, draw: float) -> Headgear:
 def put_on(
     parts: Mapping[str, PartGeometry], size: BodySize, outfit: Outfit, thickness_m: Mapping[str, float]
 ) -> dict[str, PartGeometry]:
-    """Add what an outfit adds to a body's parts: shapes, and the part of what is carried."""
+    """Change a body's parts as an outfit does, and add what is carried. What it hides is left out."""
     h = size.stature_m
-    more: dict[str, tuple[Shape, ...]] = {
-        "hair": _head(size, outfit),
-        "pelvis": _tails(size, outfit, thickness_m),
-    }
+    shapes = {name: part.shapes for name, part in parts.items()}
+    shapes["hair"] = _head(size, outfit, shapes["hair"])
+    shapes["pelvis"] += _tails(size, outfit, thickness_m)
     for side in SIDES:
-        more[f"{side}_thigh"] = _skirts(size, outfit, thickness_m.get(f"{side}_thigh", 0.0), side)
-        more[f"{side}_shin"] = _hem(h, outfit.leg_m)
-        more[f"{side}_forearm"] = _cuff(h, outfit.sleeve_m)
-    worn = {name: replace(part, shapes=(*part.shapes, *more.get(name, ()))) for name, part in parts.items()}
+        shapes[f"{side}_thigh"] += _skirts(size, outfit, thickness_m.get(f"{side}_thigh", 0.0), side)
+        shapes[f"{side}_shin"] = _hem(h, outfit.leg_m, shapes[f"{side}_shin"])
+        shapes[f"{side}_forearm"] = _cuff(h, outfit.sleeve_m, shapes[f"{side}_forearm"])
+    worn = {name: replace(part, shapes=shapes[name]) for name, part in parts.items()}
     if outfit.carried != "nothing":
         worn[BAG_PART] = _carried(size, outfit, thickness_m.get("chest", 0.0))
     return worn
@@ -164,57 +163,61 @@ def _skirts(size: BodySize, outfit: Outfit, cloth: float, side: str) -> tuple[Sh
     return (_tube(*ends, radius),)
 
 
-def _hem(h: float, radius: float) -> tuple[Shape, ...]:
+def _hem(h: float, radius: float, shin: tuple[Shape, ...]) -> tuple[Shape, ...]:
     """A trouser leg that hangs from the knee; its end is open, and lies on the shoe."""
     if radius == 0.0:
-        return ()
+        return shin
     shank = (table.KNEE_HEIGHT - table.ANKLE_HEIGHT) * h
-    return (_tube((-0.002 * h, 0.0, -0.1 * shank), (-0.008 * h, 0.0, -shank - 0.012), radius),)
+    calf = shin[0]
+    return (calf, _tube((-0.002 * h, 0.0, -0.1 * shank), (-0.008 * h, 0.0, -shank - 0.012), radius))
 
 
-def _cuff(h: float, radius: float) -> tuple[Shape, ...]:
+def _cuff(h: float, radius: float, forearm: tuple[Shape, ...]) -> tuple[Shape, ...]:
+    """A sleeve that is as wide at the wrist as at the elbow."""
     if radius == 0.0:
-        return ()
-    return (_tube((0.0, 0.0, -0.02), (0.0, 0.0, -0.97 * table.FOREARM_LENGTH * h), radius),)
+        return forearm
+    elbow = forearm[0]
+    return (elbow, _tube((0.0, 0.0, -0.02), (0.0, 0.0, -0.97 * table.FOREARM_LENGTH * h), radius))
 
 
-def _head(size: BodySize, outfit: Outfit) -> tuple[Shape, ...]:
-    """What is on a head beside its hair as the catalogue has it."""
+def _head(size: BodySize, outfit: Outfit, hair: tuple[Shape, ...]) -> tuple[Shape, ...]:
+    """Hair, and what is on it; a hood hides it."""
     h = size.stature_m
     breadth, front = size.girths.head_breadth / 2.0 * h, size.girths.head_length / 2.0 * h
-    middle = (breadth - front, 0.0, (1.0 - ATLAS_HEIGHT) * h - breadth)
-    return (*_mop(h, breadth, middle, outfit), *_cover(h, breadth, middle, outfit.headgear))
+    back, z = breadth - front, (1.0 - ATLAS_HEIGHT) * h - breadth
+    if outfit.headgear == "hood":
+        return _hood(h, breadth, back, z)
+    brim = Shape(kind=ShapeKind.CYLINDER, size=(0.012, 0.085 * h, 0.0), position=(0.0, 0.0, z + 0.004 * h))
+    mop = hair if outfit.hair_m == 0.0 else (*_mop(h, breadth, (back, z), outfit.hair_m), *hair[2:])
+    return (*mop, *_tied(h, (back, z), outfit.hairdo), *((brim,) if outfit.headgear == "hat" else ()))
 
 
-def _mop(h: float, breadth: float, middle: Vector, outfit: Outfit) -> tuple[Shape, ...]:
-    """Hair that stands off, no higher than the stature, and what it is tied to."""
-    back, _, z = middle
-    shapes: list[Shape] = []
-    if outfit.hair_m > 0.0:
-        low = z - outfit.hair_m
-        shapes.append(capsule((back, 0.0, low), (-0.006 * h, 0.0, low), breadth + outfit.hair_m))
-        shapes.append(sphere((back, 0.0, z - 0.03 * h), 0.9 * breadth + outfit.hair_m))
-    if outfit.hairdo == "bun":
-        shapes.append(sphere((back - 0.045 * h, 0.0, z + 0.012 * h), 0.023 * h))
-    if outfit.hairdo == "tail":
-        shapes.append(capsule((back - 0.042 * h, 0.0, z), (back - 0.052 * h, 0.0, z - 0.11 * h), 0.016 * h))
-    return tuple(shapes)
+def _mop(h: float, breadth: float, at: tuple[float, float], thick: float) -> tuple[Shape, ...]:
+    """Skull cap and nape of hair that stands off so far [m], by half of that upwards and to the front."""
+    back, z = at
+    low, rim = z - 0.5 * thick, 0.0035 * h - 0.5 * thick
+    skull = capsule((back, 0.0, low), (rim, 0.0, low), breadth + thick)
+    return skull, sphere((back, 0.0, z - 0.03 * h), 0.9 * breadth + thick)
 
 
-def _cover(h: float, breadth: float, middle: Vector, headgear: Headgear) -> tuple[Shape, ...]:
-    """A hood, round a face and on the shoulders, or a hat's brim."""
-    z = middle[2]
-    if headgear == "hat":
-        brim = (0.012, 0.085 * h, 0.0)
-        return (Shape(kind=ShapeKind.CYLINDER, size=brim, position=(0.0, 0.0, z + 0.004 * h)),)
-    if headgear == "none":
-        return ()
+def _tied(h: float, at: tuple[float, float], hairdo: Hairdo) -> tuple[Shape, ...]:
+    """What long hair is tied to, behind the head."""
+    back, z = at
+    if hairdo == "bun":
+        return (sphere((back - 0.045 * h, 0.0, z + 0.012 * h), 0.023 * h),)
+    if hairdo == "tail":
+        return (capsule((back - 0.042 * h, 0.0, z), (back - 0.052 * h, 0.0, z - 0.11 * h), 0.016 * h),)
+    return ()
+
+
+def _hood(h: float, breadth: float, back: float, z: float) -> tuple[Shape, ...]:
+    """A hood, over head and ears and on the shoulders."""
     sides = tuple(
         capsule((-0.004 * h, y * 0.030 * h, z), (-0.012 * h, y * 0.032 * h, -0.035 * h), 0.022 * h)
         for y in (1.0, -1.0)
     )
     nape = capsule((-0.020 * h, 0.0, z), (-0.024 * h, 0.0, -0.035 * h), 0.034 * h)
-    return (capsule(middle, (0.010 * h, 0.0, z), breadth + _HOOD_M), *sides, nape)
+    return (capsule((back, 0.0, z), (0.010 * h, 0.0, z), breadth + _HOOD_M), *sides, nape)
 
 
 def _carried(size: BodySize, outfit: Outfit, cloth: float) -> PartGeometry:

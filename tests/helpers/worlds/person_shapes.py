@@ -33,7 +33,7 @@ def person_depth(person, points, parts=None):
 
 
 def surface_points(shape: Shape, count: int = 12) -> np.ndarray:
-    """(N, 3) [m] points on the surface of a sphere, capsule or box, in the part's frame."""
+    """(N, 3) [m] points on the surface of a sphere, capsule, cylinder or box, in the part's frame."""
     angles = np.linspace(0, 2 * np.pi, 2 * count, endpoint=False)
     heights = np.linspace(-1, 1, 2 * count + 1)
     a, z = (g.ravel() for g in np.meshgrid(angles, heights))
@@ -46,7 +46,7 @@ def surface_points(shape: Shape, count: int = 12) -> np.ndarray:
         length, radius, _ = shape.size
         caps = ball * radius + np.array([0, 0, 1]) * np.where(z > 0, length / 2, -length / 2)[:, None]
         tube = np.stack([radius * np.cos(a), radius * np.sin(a), z * length / 2], axis=-1)
-        local = np.concatenate([caps, tube])
+        local = tube if shape.kind == ShapeKind.CYLINDER else np.concatenate([caps, tube])
     return Rotation.from_quat(shape.orientation).apply(local) + np.array(shape.position)
 
 
