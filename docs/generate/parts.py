@@ -11,7 +11,7 @@ from benchmarks.results.tables import read_tables
 from docs.generate import choices
 from docs.generate.commands import commands
 from docs.generate.metrics import metrics
-from docs.generate.random_worlds import distribution
+from docs.generate.random_worlds import bearings, distribution
 from docs.generate.results import results
 from docs.generate.scenario_keys import scenario_keys
 from docs.generate.settings import settings
@@ -25,6 +25,7 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "colours": choices.colours,
     "things": choices.things,
     "random worlds": distribution,
+    "bearings": bearings,
     "commands": commands,
     "trackers": trackers,
     "settings": settings,

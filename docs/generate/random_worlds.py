@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from docs.generate.markdown import table
 from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES
+from peopleboy.sim.people.body.manner import HOLDS, SPREADS
+from peopleboy.sim.people.body.outfit import CARRIED
 
 
 def distribution() -> str:
@@ -22,5 +24,23 @@ def distribution() -> str:
             table(("drawn evenly", "from where to where"), ranges),
             table(("drawn from a few", "how often each"), shares),
             table(("what may be so", "how often"), odds),
+        )
+    )
+
+
+def bearings() -> str:
+    """List how people walk and hold themselves, what their hands do, and what they carry."""
+    spreads = [
+        (each.what, f"{each.mean:g} {each.unit}".rstrip(), f"{each.deviation:g} {each.unit}".rstrip())
+        for each in SPREADS.values()
+    ]
+    shares = [
+        (name, ", ".join(f"{word.replace('_', ' ')} {share:.0%}" for word, share in of))
+        for name, of in (("a hand", HOLDS.items()), ("carried, of those without a `bag`", CARRIED.items()))
+    ]
+    return "\n\n".join(
+        (
+            table(("normal, no further than two deviations", "mean", "deviation"), spreads),
+            table(("drawn from a few", "how often each"), shares),
         )
     )

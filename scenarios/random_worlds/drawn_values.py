@@ -9,7 +9,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from peopleboy.scenarios.files.cast_people import make_config
+from peopleboy.scenarios.files.schema.people import PersonSpec
 from peopleboy.scenarios.random_worlds.distribution import RANGES, SHARES, Range
+from peopleboy.sim.people.looks.finish_person import draw_bearing, looks_stream
 
 Values = dict[str, list[float] | list[str]]
 """By name of what was drawn: a value, or as many as there are."""
@@ -75,6 +78,7 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
         "bottom": [person["clothes"]["bottom"] for person in people],
         "hair": [person["clothes"]["hair"] for person in people],
         "arms": [person["arms"] for person in people],
+        **_bearings(people, played["drawn"]["seed"]),
         "points": [len(person["path"]) for person in people],
         "speed": [point["speed_m_s"] for point in points],
         "pause": [point["pause_s"] for point in points if point["pause_s"] > 0.0],
@@ -85,6 +89,18 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
         "drive_speed": [one["linear_m_s"] for one in robot["commands"] if one["linear_m_s"] != 0.0],
         "drive_turn": [one["angular_deg_s"] for one in robot["commands"] if one["angular_deg_s"] != 0.0],
         "light": [step["level"] for step in played["lights"]],
+    }
+
+
+def _bearings(people: Sequence[Mapping[str, Any]], seed: int) -> dict[str, list[str]]:
+    """Draw again what a world of this seed draws beside its scenario: what people carry, and wear how."""
+    configs = [make_config(PersonSpec.model_validate(person)) for person in people]
+    drawn = [draw_bearing(config, looks_stream(seed, config.name)) for config in configs]
+    return {
+        "carried": [outfit.carried for outfit, _ in drawn],
+        "coat": [outfit.coat for outfit, _ in drawn],
+        "headgear": [outfit.headgear for outfit, _ in drawn],
+        "hands": [hold for _, manner in drawn for hold in manner.holds],
     }
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.poses import quaternions
-from peopleboy.sim.people.looks.finish_person import Finisher
+from peopleboy.sim.people.looks.finish_person import Finisher, looks_stream
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.social_force import PlanarState
@@ -88,7 +88,7 @@ class Crowd:
 
     def _finisher(self, config: PersonConfig, seed: int) -> Finisher:
         """Who refines a person, by the air of the place."""
-        rng = stream(seed, f"person.{config.name}.looks")
+        rng = looks_stream(seed, config.name)
         return Finisher(config, air_of(self._place), rng, is_outdoors=is_outdoors(self._place))
 
     def _add(self, person: Person) -> None:

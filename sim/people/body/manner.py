@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -54,15 +55,44 @@ class Manner:
 
 USUAL: Final = Manner()
 
-# Deviations from person to person are our own choice where no source is named. Steps: 0.41 of stature at
-# 1.3 m/s (Murray, Drought and Kory 1964, Walking patterns of normal men, deviation of a twentieth); toes
-# point 7 degrees out, and feet walk 8 cm apart, by 3.5 cm more or less (ibid.).
-_STRIDE: Final = (1.04, 0.05)
-_TOE_OUT_DEG: Final = (8.0, 5.0)
-_HOLDS: Final[dict[Hold, float]] = {
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """A normal distribution whose tails are cut off at two deviations, and below `least`."""
+
+    mean: float
+    deviation: float
+    unit: str
+    what: str
+    least: float = -math.inf
+
+
+# Steps are 0.41 of stature at 1.3 m/s; toes point 7 degrees out, and feet walk 8 cm apart, by 3.5 cm more or
+# less (Murray, Drought and Kory 1964, Walking patterns of normal men). The rest is our own choice, after
+# people in thermal clips.
+SPREADS: Final[Mapping[str, Spread]] = {
+    "stride": Spread(mean=1.04, deviation=0.05, unit="", what="length of the stride, over the clip's"),
+    "arm_swing": Spread(
+        mean=1.0, deviation=0.3, unit="", what="swing of the arms, over the clip's", least=0.2
+    ),
+    "arms_off": Spread(mean=6.0, deviation=4.0, unit="deg", what="arms off the trunk", least=0.0),
+    "elbow": Spread(mean=10.0, deviation=9.0, unit="deg", what="elbows bent further", least=0.0),
+    "stoop": Spread(mean=3.0, deviation=3.5, unit="deg", what="stoop"),
+    "bow": Spread(mean=5.0, deviation=8.0, unit="deg", what="head bowed"),
+    "aside": Spread(mean=0.0, deviation=14.0, unit="deg", what="head turned aside"),
+    "looks_about": Spread(mean=0.0, deviation=14.0, unit="deg", what="head turning to and fro, either way"),
+    "stance": Spread(
+        mean=1.45, deviation=0.4, unit="", what="feet apart while standing, over the hips' joints", least=0.8
+    ),
+    "step_width": Spread(mean=0.66, deviation=0.2, unit="", what="the same while walking", least=0.25),
+    "ahead": Spread(mean=0.0, deviation=0.025, unit="statures", what="left foot ahead while standing"),
+    "toe_out": Spread(mean=8.0, deviation=5.0, unit="deg", what="toes out", least=-2.0),
+}
+HOLDS: Final[Mapping[Hold, float]] = {
     "free": 0.68, "pocket": 0.13, "strap": 0.05, "telephone": 0.05, "in_front": 0.09,
 }  # fmt: skip
 _BOTH_ALIKE: Final = 0.5  # of those with a hand in a pocket or before the belly, both hands are
+_ARM_SPREAD: Final = (0.35, 0.95)
 
 # Whither left elbows and palms are, from the shoulder in the chest's frame, as fractions of stature.
 _ELBOW_AND_PALM: Final[dict[Hold, tuple[tuple[float, float, float], tuple[float, float, float]]]] = {
@@ -82,28 +112,34 @@ def draw_manner(rng: np.random.Generator, carries: str | None, *, has_straps: bo
         carries: the side of the hand that carries something, if one does.
         has_straps: whether there is a strap over a shoulder for a hand to hold.
     """
+
+    def near(name: str) -> float:
+        spread = SPREADS[name]
+        value = spread.mean + spread.deviation * float(np.clip(rng.normal(), -2.0, 2.0))
+        return max(value, spread.least)
+
     leans = float(rng.choice([-1.0, 1.0])) * float(rng.uniform(0.0, 1.0))
-    stance = max(_near(rng, 1.45, 0.4), 0.8)
+    stance = near("stance")
     return Manner(
-        stride=_near(rng, *_STRIDE),
-        arm_swing=max(_near(rng, 1.0, 0.3), 0.2),
-        arm_spread=float(rng.uniform(0.35, 0.95)),
-        arms_off_rad=math.radians(max(_near(rng, 6.0, 4.0), 0.0)),
-        elbow_rad=math.radians(max(_near(rng, 10.0, 9.0), 0.0)),
-        stoop_rad=math.radians(_near(rng, 3.0, 3.5)),
-        head_rad=(math.radians(_near(rng, 5.0, 8.0)), math.radians(_near(rng, 0.0, 14.0))),
-        looks_about_rad=math.radians(abs(_near(rng, 0.0, 14.0))),
+        stride=near("stride"),
+        arm_swing=near("arm_swing"),
+        arm_spread=float(rng.uniform(*_ARM_SPREAD)),
+        arms_off_rad=math.radians(near("arms_off")),
+        elbow_rad=math.radians(near("elbow")),
+        stoop_rad=math.radians(near("stoop")),
+        head_rad=(math.radians(near("bow")), math.radians(near("aside"))),
+        looks_about_rad=abs(math.radians(near("looks_about"))),
         stance_width=stance,
-        narrows=stance - max(_near(rng, 0.66, 0.2), 0.25),
-        stance_ahead=_near(rng, 0.0, 0.025),
+        narrows=stance - near("step_width"),
+        stance_ahead=near("ahead"),
         leans=leans,
-        toe_out_rad=math.radians(max(_near(rng, *_TOE_OUT_DEG), -2.0)),
+        toe_out_rad=math.radians(near("toe_out")),
         holds=_draw_holds(rng, carries, has_straps=has_straps),
     )
 
 
 def _draw_holds(rng: np.random.Generator, carries: str | None, *, has_straps: bool) -> tuple[Hold, Hold]:
-    names, shares = list(_HOLDS), list(_HOLDS.values())
+    names, shares = list(HOLDS), list(HOLDS.values())
     left, right = (names[int(rng.choice(len(names), p=shares))] for _ in range(2))
     is_alike = float(rng.uniform()) < _BOTH_ALIKE
     if right in ("pocket", "in_front") and is_alike:
@@ -146,8 +182,3 @@ def bearing(manner: Manner) -> Array:
             -manner.elbow_rad,
         )
     return turns
-
-
-def _near(rng: np.random.Generator, mean: float, deviation: float) -> float:
-    """A normal draw whose tails are cut off."""
-    return mean + deviation * float(np.clip(rng.normal(), -2.0, 2.0))

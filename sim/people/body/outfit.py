@@ -66,7 +66,7 @@ NOTHING_MORE: Final = Outfit()
 _LONG_COAT, _OVER_HIPS = 0.3, 0.45  # of jackets; the others end at the waist
 _HOOD_UP, _HAT = 0.12, 0.04  # of those who could
 _TAIL, _BUN = 0.25, 0.12  # of long hair
-_CARRIED: Final[dict[Carried, float]] = {
+CARRIED: Final[Mapping[Carried, float]] = {
     "nothing": 0.52, "rucksack": 0.18, "shoulder_bag": 0.18, "shopping_bag": 0.12,
 }  # fmt: skip
 _HOOD_M: Final = 0.016  # [m] how thick a hood is
@@ -77,7 +77,7 @@ _LONG_TOPS: Final = ("jacket", "fleece", "wool_jumper", "shirt", "t_shirt", "che
 def draw_outfit(rng: np.random.Generator, clothes: Clothes, sex: Sex, has_bag: bool) -> Outfit:
     """Draw how somebody wears these clothes, and what they carry beside a bag that they have already."""
     reach, hood, hair, loose = (float(rng.uniform()) for _ in range(4))
-    carried = list(_CARRIED)[int(rng.choice(len(_CARRIED), p=list(_CARRIED.values())))]
+    carried = list(CARRIED)[int(rng.choice(len(CARRIED), p=list(CARRIED.values())))]
     is_long = clothes.hair == "long"
     return Outfit(
         coat=_coat(clothes.top, reach),

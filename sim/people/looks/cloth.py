@@ -19,7 +19,7 @@ Grid = NDArray[np.float64]
 # is so near to the skin's temperature; where it stands off, so much nearer to the air's.
 _LIES_ON, _STANDS_OFF = 0.85, 0.6
 _THIN_M = 0.010  # thickness at which little of the skin's warmth comes through
-_CUFF = 0.5  # of the warmth of skin that shows in the opening of a sleeve
+_GAP = 0.5  # of the warmth of skin that shows in the openings of sleeves and collars
 _CREASE_K, _CREASE_SHADE, _RELIEF_SHADE = 2.6, 0.3, 0.12
 _EDGE = Soft(0.008)
 
@@ -146,8 +146,9 @@ def add_trimmings(paint: Paint, worn: Worn, traits: Traits, name: str) -> None:
         _wet(paint, traits, at)
     if worn.part == "chest" and name not in (*OPEN, "fleece"):
         _cut_neckline(paint, worn, at, deep=0.33 if name in ("t_shirt", "printed_t_shirt") else 0.47)
-    if worn.part == "forearm":
-        paint.kelvin += _CUFF * (worn.skin_c - worn.cloth_c) * np.clip((at.down - 0.9) / 0.1, 0.0, 1.0)
+    gap = {"forearm": (at.down - 0.9) / 0.1, "chest": (0.1 - at.down) / 0.1}.get(worn.part)
+    if gap is not None:
+        paint.kelvin += _GAP * (worn.skin_c - worn.cloth_c) * np.clip(gap, 0.0, 1.0)
     if worn.part == "abdomen":
         paint.lay(np.where(at.down > 0.93, 0.6, 0.0), kelvin=-0.1 * (worn.cloth_c - worn.air_c), light=0.75)
     if worn.part == "pelvis" and traits.belt and name in _BELTED:

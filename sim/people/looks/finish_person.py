@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.body_shapes import BAG_PART, PartGeometry
 from peopleboy.sim.people.body.clothes import COLOURS, Garment
-from peopleboy.sim.people.body.manner import draw_manner
+from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.outfit import Outfit, draw_outfit
 from peopleboy.sim.people.looks.cloth import OPEN, Worn, add_trimmings, paint_cloth, paint_shoes
 from peopleboy.sim.people.looks.faces import paint_face, paint_hair, paint_skin
@@ -18,6 +18,7 @@ from peopleboy.sim.people.looks.sheets import Mesh, crumple, make_mesh
 from peopleboy.sim.people.looks.traits import draw_traits
 from peopleboy.sim.people.looks.warmth import ROOM_C, bare_c, cloth_c, share_of_skin, under_cloth_c, wind_loss
 from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.finishes import Finish
 from peopleboy.sim.shapes.materials import Material, Rgb
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
@@ -42,10 +43,7 @@ class Finisher:
         self, config: PersonConfig, air_c: float, rng: np.random.Generator, *, is_outdoors: bool = False
     ) -> None:
         clothes = config.clothes
-        self.outfit = draw_outfit(rng, clothes, config.sex, config.bag)
-        self.manner = draw_manner(
-            rng, _hand_that_carries(config, self.outfit), has_straps=_has_straps(self.outfit)
-        )
+        self.outfit, self.manner = draw_bearing(config, rng)
         self._traits = draw_traits(config, self.outfit, air_c, rng)
         names = (clothes.hair, clothes.shoes, clothes.bottom, clothes.top)
         worn = [(garment, name) for (garment, _), name in zip(clothes.garments(), names, strict=True)]
@@ -142,6 +140,18 @@ class Finisher:
         paint = paint_cloth(mesh, sheet, worn)
         add_trimmings(paint, worn, self._traits, name)
         return paint.finish(_SHIRT_RGB if name in OPEN else skin)
+
+
+def looks_stream(seed: int, name: str) -> np.random.Generator:
+    """Give the stream from which a person's looks are drawn, in a world of this seed."""
+    return stream(seed, f"person.{name}.looks")
+
+
+def draw_bearing(config: PersonConfig, rng: np.random.Generator) -> tuple[Outfit, Manner]:
+    """Draw first of all what a person wears how and carries, and how it moves."""
+    outfit = draw_outfit(rng, config.clothes, config.sex, config.bag)
+    carries = _hand_that_carries(config, outfit)
+    return outfit, draw_manner(rng, carries, has_straps=_has_straps(outfit))
 
 
 def _hand_that_carries(config: PersonConfig, outfit: Outfit) -> str | None:

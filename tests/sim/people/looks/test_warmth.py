@@ -2,7 +2,15 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.people.body.clothes import BOTTOMS, SHOES, SKIN_C, TOPS
-from peopleboy.sim.people.looks.warmth import ROOM_C, WARMEST_SKIN_C, bare_c, cloth_c, under_cloth_c
+from peopleboy.sim.people.looks.warmth import (
+    ROOM_C,
+    WARMEST_SKIN_C,
+    bare_c,
+    cloth_c,
+    share_of_skin,
+    under_cloth_c,
+    wind_loss,
+)
 
 AIR_C = np.arange(-5.0, 40.5, 0.5)
 GARMENTS = {**TOPS, **BOTTOMS, **SHOES}
@@ -48,3 +56,16 @@ def test_the_cold_takes_hands_more_than_faces_and_faces_more_than_covered_skin()
 def test_thick_clothes_lose_more_of_a_cold_day_than_thin_ones() -> None:
     thin, thick = (GARMENTS[name].temperature_c for name in ("t_shirt", "jacket"))
     assert cloth_c(thin, "chest", 0.0) - cloth_c(thick, "chest", 0.0) > 2.0 * (thin - thick)
+
+
+def test_wind_cools_clothes_towards_the_air_and_no_wind_does_not() -> None:
+    assert wind_loss(0.05) == 1.0
+    assert wind_loss(1.0) == pytest.approx((12.1 + 4.5) / 8.5)
+    # By the catalogue's own r: the cloth's resistance stays, the surface loses more.
+    r = share_of_skin(30.6)
+    resistance = (1.0 - r) / r
+    windy = cloth_c(30.6, "chest", 21.0, 2.0)
+    assert (windy - 21.0) / (under_cloth_c("chest", 21.0) - 21.0) == pytest.approx(
+        1.0 / (1.0 + 2.0 * resistance)
+    )
+    assert cloth_c(30.6, "chest", 21.0) == pytest.approx(30.6, abs=1e-9)
