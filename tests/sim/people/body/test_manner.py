@@ -8,7 +8,7 @@ from peopleboy.sim.people.body.joints import JOINT_NAMES
 from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, joint_offsets, mirror, place_bones
 from peopleboy.sim.people.looks.finish_person import Finisher
-from peopleboy.sim.people.person import PersonConfig, Waypoint
+from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 from tests.helpers.worlds.individuals import make_individual
 from tests.helpers.worlds.person_shapes import person_depth
@@ -159,3 +159,20 @@ def test_people_of_plain_detail_walk_as_they_always_did() -> None:
         joint(person, name) - [*person.position, 0.0] for name in ("right_wrist", "left_knee", "left_ankle")
     ]
     np.testing.assert_allclose(shown, PLAIN, atol=1e-6)
+
+
+def slid_m(person: Person) -> float:
+    """How far balls of feet that touch the floor slide in all, on a way with starts, stops and a turn."""
+    track = soles(person, 8.0, start=0.0, dt=1 / 60)[:, [1, 4]]
+    on_floor = (track[1:, :, 2] < 0.004) & (track[:-1, :, 2] < 0.004)
+    return float(np.linalg.norm(np.diff(track[..., :2], axis=0), axis=-1)[on_floor].sum())
+
+
+def test_feet_slide_no_farther_than_in_plain_detail_where_people_start_and_stop() -> None:
+    path = (
+        Waypoint(at_m=(0.0, 0.0), pause_s=1.0),
+        Waypoint(at_m=(3.0, 0.0), pause_s=0.5),
+        Waypoint(at_m=(3.0, 2.0)),
+    )
+    individuals = [slid_m(make_individual(seed, path=path)) for seed in range(4)]
+    assert np.mean(individuals) < 1.05 * slid_m(make_person(path=path))
