@@ -193,9 +193,9 @@ def _head(size: BodySize, outfit: Outfit, hair: tuple[Shape, ...]) -> tuple[Shap
 
 
 def _mop(h: float, breadth: float, at: tuple[float, float], thick: float) -> tuple[Shape, ...]:
-    """Skull cap and nape of hair that stands off so far [m], by half of that upwards and to the front."""
+    """Skull cap and nape of hair that stands off so far [m], by half of that upwards; faces stay bare."""
     back, z = at
-    low, rim = z - 0.5 * thick, 0.0035 * h - 0.5 * thick
+    low, rim = z - 0.5 * thick, 0.0035 * h - thick
     skull = capsule((back, 0.0, low), (rim, 0.0, low), breadth + thick)
     return skull, sphere((back, 0.0, z - 0.03 * h), 0.9 * breadth + thick)
 
