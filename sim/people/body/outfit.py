@@ -62,13 +62,15 @@ class Outfit:
 
 NOTHING_MORE: Final = Outfit()
 
-# How often: our own count in the streets and shops of a town, rounded.
-_LONG_COAT, _OVER_HIPS = 0.3, 0.45  # of jackets; the others end at the waist
+# How often: our own choice.
+_LONG_COAT, _OVER_HIPS = 0.3, 0.45  # of jackets; of other tops 0.75 reach over the hips
 _HOOD_UP, _HAT = 0.12, 0.04  # of those who could
 _TAIL, _BUN = 0.25, 0.12  # of long hair
 CARRIED: Final[Mapping[Carried, float]] = {
     "nothing": 0.52, "rucksack": 0.18, "shoulder_bag": 0.18, "shopping_bag": 0.12,
 }  # fmt: skip
+_SLEEVES_M: Final = (0.045, 0.062)
+_HAIR_M: Final = {"short": 0.018, "long": 0.035}  # as thick at most
 _HOOD_M: Final = 0.016  # [m] how thick a hood is
 _HOODED: Final = ("jacket", "fleece")
 _LONG_TOPS: Final = ("jacket", "fleece", "wool_jumper", "shirt", "t_shirt", "checked_shirt")
@@ -76,23 +78,27 @@ _LONG_TOPS: Final = ("jacket", "fleece", "wool_jumper", "shirt", "t_shirt", "che
 
 def draw_outfit(rng: np.random.Generator, clothes: Clothes, sex: Sex, has_bag: bool) -> Outfit:
     """Draw how somebody wears these clothes, and what they carry beside a bag that they have already."""
-    reach, hood, hair, loose = (float(rng.uniform()) for _ in range(4))
+    reach, cover, tied, loose = (float(rng.uniform()) for _ in range(4))
     carried = list(CARRIED)[int(rng.choice(len(CARRIED), p=list(CARRIED.values())))]
-    is_long = clothes.hair == "long"
+    is_sleeve_wide = clothes.top in (*_HOODED, "lab_coat")
+    sleeve_m = float(rng.uniform(*_SLEEVES_M)) if is_sleeve_wide else 0.0
+    thickest_m = _HAIR_M.get(clothes.hair, 0.0)
     return Outfit(
         coat=_coat(clothes.top, reach),
         leg_m=_leg(clothes.bottom, sex, loose),
-        sleeve_m=float(rng.uniform(0.045, 0.062)) if clothes.top in (*_HOODED, "lab_coat") else 0.0,
-        hair_m=float(rng.uniform(0.0, 0.035 if is_long else 0.018))
-        if clothes.hair in ("short", "long")
-        else 0.0,
-        hairdo=("tail" if hair < _TAIL else "bun" if hair < _TAIL + _BUN else "plain")
-        if is_long
-        else "plain",
-        headgear=_headgear(clothes, hood),
+        sleeve_m=sleeve_m,
+        hair_m=float(rng.uniform(0.0, thickest_m)) if thickest_m > 0.0 else 0.0,
+        hairdo=_hairdo(tied) if clothes.hair == "long" else "plain",
+        headgear=_headgear(clothes, cover),
         carried="nothing" if has_bag else carried,
         side="left" if float(rng.uniform()) < 0.5 else "right",
     )
+
+
+def _hairdo(draw: float) -> Hairdo:
+    if draw < _TAIL:
+        return "tail"
+    return "bun" if draw < _TAIL + _BUN else "plain"
 
 
 def _coat(top: str, draw: float) -> Coat:
