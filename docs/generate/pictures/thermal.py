@@ -140,7 +140,7 @@ def _three(detail: Detail) -> WorldConfig:
         )
         for name, at_m, sex, height_m, clothes in _THREE
     )
-    camera = Pinhole(width=256, height=195, vertical_fov_rad=math.radians(27.0))
+    camera = Pinhole(width=240, height=183, vertical_fov_rad=math.radians(27.0))
     thermal = ThermalConfig(camera=camera, netd_k=0.0, fixed_pattern_k=0.0, dead_pixels=0.0)
     colour = ColourConfig(camera=camera, read_noise=0.0, shot_noise=0.0)
     return WorldConfig(
