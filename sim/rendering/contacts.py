@@ -1,4 +1,4 @@
-"""What stands on a floor or near above it, sorted by place: for the soft shadows where things touch it."""
+"""What stands on a floor or near above it: for the soft shadows where things touch it."""
 
 from __future__ import annotations
 
@@ -17,9 +17,6 @@ from peopleboy.sim.shapes.shapes import ShapeKind
 Array = NDArray[np.float64]
 
 REACH_M = 0.4  # farther from what stands there the floor gets all light
-_CELL_M = 0.25
-_MOST = 12  # what one cell holds
-_CELLS = 200  # the longer side of the grid has at most so many cells
 _HIGHEST_M = 0.3  # what hangs higher makes no shadow of this kind
 _FLAT_M = 0.01  # what ends nearer to the ground is floor
 _LEAST_M = 0.03  # what rises less makes none either
@@ -33,41 +30,21 @@ _PLANE = int(ShapeKind.PLANE)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contacts:
-    """Footprints of what stands on the floor, in a grid over the place.
+    """Footprints of what stands on the floor.
 
     Attributes:
         prints: (K, 9) [m] each a rounded rectangle: middle x and y, its axis x and y, half its length, half
             its width, the radius by which it is wider all round, and how high it begins and ends.
-        corner: (2,) [m] x and y where the grid begins.
-        cell_m: [m] side of a cell.
-        count: (Y, X) how many reach a cell.
-        members: (Y, X, 12) which.
         is_floor: (P,) parts that lie flat on the ground.
     """
 
     prints: Array
-    corner: Array
-    cell_m: float
-    count: NDArray[np.int64]
-    members: NDArray[np.int64]
     is_floor: NDArray[np.bool_]
 
 
 def find_contacts(table: ShapeTable, world_from_part: Matrix, hidden: NDArray[np.bool_]) -> Contacts:
     """Find the footprints of all shapes that begin less than 0.3 m above the floor and rise above it."""
-    prints, is_floor = _find_prints(table, world_from_part, hidden)
-    reach = prints[:, 4] + prints[:, 6] + prints[:, 5] + REACH_M
-    small = prints[reach < 12.0]
-    low = (small[:, :2] - reach[reach < 12.0, None]).min(axis=0, initial=math.inf)
-    high = (small[:, :2] + reach[reach < 12.0, None]).max(axis=0, initial=-math.inf)
-    if not len(small):
-        low = high = np.zeros(2)
-    cell = max(_CELL_M, float((high - low).max()) / _CELLS)
-    columns, rows = (int(n) + 1 for n in (high - low) / cell)
-    count = np.zeros((rows, columns), np.int64)
-    members = np.empty((rows, columns, _MOST), np.int64)
-    _sort(prints, low, cell, count, members)
-    return Contacts(prints, low, cell, count, members, is_floor)
+    return Contacts(*_find_prints(table, world_from_part, hidden))
 
 
 @njit(cache=True, error_model="numpy")
@@ -120,30 +97,6 @@ def _print_box(pose: Array, size: Array, row: Array) -> float:
         row[5] += abs(pose[1, i] * row[2] - pose[0, i] * row[3]) * size[i] / 2.0
         up += abs(pose[2, i]) * size[i] / 2.0
     return up
-
-
-@njit(cache=True)
-def _sort(
-    prints: Array, corner: Array, cell: float, count: NDArray[np.int64], members: NDArray[np.int64]
-) -> None:
-    """Put each footprint down in all cells that it reaches."""
-    rows, columns = count.shape
-    half = math.sqrt(0.5) * cell
-    for k in range(len(prints)):
-        x, y = abs(prints[k, 2]), abs(prints[k, 3])
-        beyond = prints[k, 6] + REACH_M
-        wide = prints[k, 4] * x + prints[k, 5] * y + beyond
-        deep = prints[k, 4] * y + prints[k, 5] * x + beyond
-        left = max(math.floor((prints[k, 0] - wide - corner[0]) / cell), 0)
-        right = min(math.floor((prints[k, 0] + wide - corner[0]) / cell), columns - 1)
-        bottom = max(math.floor((prints[k, 1] - deep - corner[1]) / cell), 0)
-        top = min(math.floor((prints[k, 1] + deep - corner[1]) / cell), rows - 1)
-        for j in range(bottom, top + 1):
-            for i in range(left, right + 1):
-                at_x, at_y = corner[0] + (i + 0.5) * cell, corner[1] + (j + 0.5) * cell
-                if count[j, i] < members.shape[2] and gap(prints[k], at_x, at_y) < REACH_M + half:
-                    members[j, i, count[j, i]] = k
-                    count[j, i] += 1
 
 
 @njit(cache=True, fastmath=True)

@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.camera_config import ThermalConfig
@@ -52,8 +53,7 @@ class Drift:
             self._draw(count)
         calibrated_s = count * self._config.shutter_every_s + self._config.shutter_lasts_s if count else 0.0
         minutes = np.float32(max(time_s - calibrated_s, 0.0) / 60.0)
-        offset: NDArray[np.float32] = self._columns + minutes * self._rate
-        return offset
+        return _drifted(self._columns, self._rate, minutes)
 
     def _closures(self, time_s: float) -> int:
         every = self._config.shutter_every_s
@@ -70,3 +70,13 @@ class Drift:
         self._rate = np.float32(config.offset_drift_k_per_min) * rate
         self._columns = np.float32(config.column_noise_k) * gaussian((1, width), rng)
         self._drawn = count
+
+
+@njit(cache=True)
+def _drifted(columns: NDArray[np.float32], rate: NDArray[np.float32], minutes: float) -> NDArray[np.float32]:
+    """Offsets (H, W) of columns (1, W), and of pixels that drift at a rate (H, W) for some minutes."""
+    offset = np.empty_like(rate)
+    for v in range(rate.shape[0]):
+        for u in range(rate.shape[1]):
+            offset[v, u] = columns[0, u] + minutes * rate[v, u]
+    return offset

@@ -26,6 +26,8 @@ BINS: Final = 4800
 """Bins of the histogram, from `COLDEST_C` up; what is colder or hotter is in the first or the last."""
 
 _BLACK, _WHITE = 1.0, 254.0  # of the span's ends, so that neither counts as clipped
+_EDGES = COLDEST_C + BIN_K * np.arange(BINS)
+_CHUNK = 640  # pixels that are looked up together: all that can be done for several at a time is
 
 
 def encode_8bit(temperature_c: Temperatures, lowest_c: float = 24.0, highest_c: float = 36.0) -> Grey:
@@ -119,20 +121,24 @@ def equalised(
         linear_share: of the greys that are shared out evenly over the span.
         least_k: [K].
     """
-    edges = COLDEST_C + BIN_K * np.arange(BINS)
-    inside = (edges > low_c - BIN_K / 2.0) & (edges < high_c - BIN_K / 2.0)
-    counted = np.minimum(shares, plateau) * inside
-    total = counted.sum()
-    evenly = inside / inside.sum()
-    rise = linear_share * evenly + (1.0 - linear_share) * (counted / total if total > 0.0 else evenly)
-    return np.asarray(np.minimum(rise, BIN_K / least_k))
+    first = int(np.searchsorted(_EDGES, low_c - BIN_K / 2.0, side="right"))
+    last = int(np.searchsorted(_EDGES, high_c - BIN_K / 2.0, side="left"))
+    counted, rise = np.zeros(BINS), np.zeros(BINS)
+    np.minimum(shares[first:last], plateau, out=counted[first:last])
+    total, evenly = counted.sum(), 1.0 / (last - first)
+    by_count = counted[first:last] / total if total > 0.0 else evenly
+    rise[first:last] = np.minimum(linear_share * evenly + (1.0 - linear_share) * by_count, BIN_K / least_k)
+    return rise
 
 
 def grey_curve(rise: Bins) -> Bins:
     """Give the grey at the (BINS + 1,) ends of bins, 1..254; what is left over is shared out at both ends."""
-    curve = np.concatenate([[0.0], np.cumsum(rise)])
+    curve = np.zeros(BINS + 1)
+    np.cumsum(rise, out=curve[1:])
     curve += (1.0 - curve[-1]) / 2.0
-    return np.asarray(_BLACK + (_WHITE - _BLACK) * curve)
+    curve *= _WHITE - _BLACK
+    curve += _BLACK
+    return curve
 
 
 def apply(temperature_c: Temperatures, curve: Bins) -> Grey:
@@ -147,18 +153,35 @@ def _part(passed_s: float, follows_s: float) -> float:
 
 @njit(cache=True)
 def _count(temperature_c: Temperatures) -> Bins:
-    counts = np.zeros(BINS)
-    for value in temperature_c:
-        place = (value - COLDEST_C) / BIN_K
-        counts[int(min(max(place, 0.0), BINS - 1.0))] += 1.0
-    return counts
+    # Neighbours are alike: two rows of counts, so that one need not wait for the other.
+    even, odd = np.zeros(BINS, np.int32), np.zeros(BINS, np.int32)
+    pixels, places = len(temperature_c), np.empty(_CHUNK, np.uint16)
+    for first in range(0, pixels, _CHUNK):
+        end = min(_CHUNK, pixels - first)
+        for i in range(end):
+            place = (temperature_c[first + i] - COLDEST_C) / BIN_K
+            places[i] = np.uint16(np.int32(min(max(place, 0.0), BINS - 1.0)))
+        for i in range(0, end - 1, 2):
+            even[places[i]] += 1
+            odd[places[i + 1]] += 1
+        if end % 2 == 1:
+            even[places[end - 1]] += 1
+    return (even + odd).astype(np.float64)
 
 
 @njit(cache=True)
 def _look_up(temperature_c: Temperatures, curve: NDArray[np.float32]) -> Grey:
-    grey = np.empty(temperature_c.shape[0], np.uint8)
-    for i in range(temperature_c.shape[0]):
-        place = min(max((temperature_c[i] - COLDEST_C) / BIN_K, 0.0), BINS - 1e-3)
-        k = int(place)
-        grey[i] = np.uint8(curve[k] + (place - k) * (curve[k + 1] - curve[k]) + 0.5)
+    pixels, one = len(temperature_c), np.uint32(1)
+    grey, places, share = np.empty(pixels, np.uint8), np.empty(_CHUNK, np.uint32), np.empty(_CHUNK)
+    low, high = np.empty(_CHUNK, np.float32), np.empty(_CHUNK, np.float32)
+    for first in range(0, pixels, _CHUNK):
+        end = min(_CHUNK, pixels - first)
+        for i in range(end):
+            place = min(max((temperature_c[first + i] - COLDEST_C) / BIN_K, 0.0), BINS - 1e-3)
+            k = np.int32(place)
+            places[i], share[i] = k, place - k
+        for i in range(end):
+            low[i], high[i] = curve[places[i]], curve[places[i] + one]
+        for i in range(end):
+            grey[first + i] = np.uint8(np.int32(low[i] + share[i] * (high[i] - low[i]) + 0.5))
     return grey
