@@ -15,6 +15,7 @@ from peopleboy.sim.cameras.paintings import paint_row
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
     finish_at,
+    finish_row,
     part_from_pixel,
     pattern_value,
     surface_point,
@@ -22,6 +23,7 @@ from peopleboy.sim.cameras.surfaces import (
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
+from peopleboy.sim.shapes.finishes import TEXEL_STEP
 
 # The room's lamps hang above and a little to one side, so that walls and sides of people differ in shade.
 LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])
@@ -36,30 +38,45 @@ _ROOM = 0.4  # what is mirrored where nothing in particular is, share of the lig
 def _light_row(
     image: NDArray[np.float32],
     factor: NDArray[np.float32],
+    places: NDArray[np.uint32],
     part: NDArray[np.int32],
     normal: NDArray[np.float32],
     colour: NDArray[np.float64],
     kind: NDArray[np.int64],
     paint: NDArray[np.float64],
+    finish: NDArray[np.float64],
+    texels: NDArray[np.int16],
     light: NDArray[np.float64],
     level: float,
 ) -> None:
-    """Fill a row (W, 3) where parts have paintings but no patterns, several pixels at a time."""
+    """Fill a row (W, 3) where parts have paintings or finishes but no patterns, several pixels at a time."""
     width, end = len(part), 0
     x, y, z = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
-    direct, none = np.float32(level * (1.0 - _AMBIENT)), np.float32(0.0)
+    direct, none, step = np.float32(level * (1.0 - _AMBIENT)), np.float32(0.0), np.float32(TEXEL_STEP)
     while end < width:
         first, p = end, part[end]
         while end < width and part[end] == p:
             end += 1
-        if p < 0 or paint[p, 0] < 0.0 or kind[p, 1] != 0:
+        if p < 0 or kind[p, 1] != 0:
             continue
         red, green, blue = np.float32(colour[p, 0]), np.float32(colour[p, 1]), np.float32(colour[p, 2])
         around = np.float32(level * _AMBIENT + colour[p, 6])
-        for u in range(first, end):
-            facing = max(normal[u, 0] * x + normal[u, 1] * y + normal[u, 2] * z, none)
-            shade = (around + direct * facing) * factor[u]
-            image[u, 0], image[u, 1], image[u, 2] = shade * red, shade * green, shade * blue
+        if paint[p, 0] >= 0.0:
+            for u in range(first, end):
+                facing = max(normal[u, 0] * x + normal[u, 1] * y + normal[u, 2] * z, none)
+                shade = (around + direct * facing) * factor[u]
+                image[u, 0], image[u, 1], image[u, 2] = shade * red, shade * green, shade * blue
+        elif len(finish) > 0 and finish[p, 0] >= 0.0:
+            redder, greener = np.float32(finish[p, 5]) - red, np.float32(finish[p, 6]) - green
+            bluer = np.float32(finish[p, 7]) - blue
+            for u in range(first, end):
+                texel = texels[places[u]]
+                facing = max(normal[u, 0] * x + normal[u, 1] * y + normal[u, 2] * z, none)
+                shade = (around + direct * facing) * (step * np.float32(texel[1]))
+                cover = step * np.float32(texel[2])
+                image[u, 0] = shade * (red + cover * redder)
+                image[u, 1] = shade * (green + cover * greener)
+                image[u, 2] = shade * (blue + cover * bluer)
 
 
 @njit(cache=True, fastmath=True)
@@ -82,16 +99,24 @@ def _radiance_image(
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
     has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
-    line = np.empty(width, np.float32)
+    line, places = np.empty(width, np.float32), np.empty(width, np.uint32)
     for v in range(height):
         if has_paint:
             paint_row(line, v, part, depth, matrices, paint, paint_texels, 1)
-            _light_row(image[v], line, part[v], normal[v], colour, kind, paint, light, level)
+        if has_finish:
+            finish_row(places, v, part, depth, matrices, finish)
+        if has_paint or has_finish:
+            _light_row(
+                image[v], line, places, part[v], normal[v], colour, kind, paint, finish, texels, light, level
+            )
         for u in range(width):
             p = part[v, u]
-            if p < 0 or (has_paint and paint[p, 0] >= 0.0 and kind[p, 1] == 0):
+            if p < 0:
                 continue
-            second, is_finished = 0, has_finish and finish[p, 0] >= 0.0
+            is_finished = has_finish and finish[p, 0] >= 0.0
+            if kind[p, 1] == 0 and (is_finished or (has_paint and paint[p, 0] >= 0.0)):
+                continue
+            second = 0
             if kind[p, 1] != 0 or is_finished:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
                 second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)

@@ -1,16 +1,14 @@
 """Edges without stairs: where surfaces meet within a pixel, each gets the share of it that it fills.
 
 Four rays go through a pixel, none in a row or column with another. Beside a pixel that shows something else,
-the ray nearest to that is tried against what both show, and if it meets the other, the next nearest is. What
-they meet looks as one of the two pixels does. So nothing is evaluated twice, and any image of the view can
-do it. Where an image shows no step, nothing is done.
+the ray nearest to that is tried against what both show, and if it meets the other, the next nearest is; if
+not, those of the other pixel are. What they meet looks as one of the two pixels does. So nothing is evaluated
+twice, and any image of the view can do it. Where an image shows no step, nothing is done.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -30,6 +28,7 @@ Pixels = NDArray[np.int32]
 # those on the right, on the left and below; and which rays are next nearest to these.
 _RAYS = np.array([(-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375)])
 _NEXT = (1, 3, 0, 2)
+_BESIDE = np.array([(-1, 0), (0, 1), (0, -1), (1, 0)])  # the pixels nearest to them, in row and column
 
 _BOX = int(ShapeKind.BOX)
 _CAPSULE = int(ShapeKind.CAPSULE)
@@ -37,23 +36,6 @@ _MESH = int(ShapeKind.MESH)
 _NONE = -1
 
 _BEHIND = 1.1  # what is farther than this many times another's depth is behind it all over a pixel
-
-
-class Shapes(NamedTuple):
-    """What rays are tried against.
-
-    Attributes:
-        kind, size, first_surface, surface_shape: as in `ShapeTable`.
-        piece: (M,) the piece that a surface is of: itself, but of a capsule or mesh its first surface.
-        pose: (S, 3, 4) shape from camera.
-    """
-
-    kind: NDArray[np.int64]
-    size: Array
-    first_surface: NDArray[np.int64]
-    surface_shape: Pixels
-    piece: Pixels
-    pose: Array
 
 
 def smooth(
@@ -79,30 +61,8 @@ def smooth(
     if view.surface is None:
         return
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    pose = _shapes_from_camera(table, invert_pose(world_from_camera) @ world_from_part)
-    shapes = Shapes(table.kind, table.size, table.first_surface, table.surface_shape, _pieces_of(table), pose)
-    piece = _find_pieces(view.part, view.surface, shapes.piece)
-    values, least = image.reshape(-1, image.shape[2]), np.float32(contrast)
-    pixel = _find_pixels(image, piece, least)
-    sources = _find_sources(pixel, values, least, view.depth, piece, shapes, lens)
-    _average(values, pixel, sources)
-
-
-@njit(cache=True)
-def _average(values: NDArray[np.float32], pixel: Pixels, sources: Pixels) -> None:
-    channels = values.shape[1]
-    found = np.empty((len(pixel), channels), np.float32)
-    for i in range(len(pixel)):
-        for c in range(channels):
-            found[i, c] = 0.25 * (
-                values[sources[i, 0], c]
-                + values[sources[i, 1], c]
-                + values[sources[i, 2], c]
-                + values[sources[i, 3], c]
-            )
-    for i in range(len(pixel)):
-        for c in range(channels):
-            values[pixel[i], c] = found[i, c]
+    camera_from_part = invert_pose(world_from_camera) @ world_from_part
+    _smooth(image, np.float32(contrast), view.part, view.surface, view.depth, table, camera_from_part, lens)
 
 
 @njit(cache=True)
@@ -132,38 +92,6 @@ def _pieces_of(table: ShapeTable) -> Pixels:
 
 
 @njit(cache=True)
-def _find_pieces(part: Pixels, surface: Pixels, pieces: Pixels) -> Pixels:
-    """(H, W) number of the piece that each pixel shows, -1 for nothing."""
-    height, width = part.shape
-    piece = np.empty((height, width), np.int32)
-    for v in range(height):
-        for u in range(width):
-            piece[v, u] = _NONE if part[v, u] < 0 else pieces[surface[v, u]]
-    return piece
-
-
-@njit(cache=True)
-def _find_pixels(image: NDArray[np.float32], piece: Pixels, contrast: np.float32) -> Pixels:
-    """Number the pixels beside which another piece is seen, and looks different."""
-    height, width = piece.shape
-    pixel, found = np.empty(height * width, np.int32), 0
-    below, above = np.zeros(width, np.bool_), np.zeros(width, np.bool_)
-    for v in range(height):
-        above, below = below, above
-        is_after = False
-        for u in range(width):
-            is_edge = is_after or above[u]
-            is_after = u + 1 < width and piece[v, u + 1] != piece[v, u]
-            is_after = is_after and _differ(image[v, u], image[v, u + 1], contrast)
-            below[u] = v + 1 < height and piece[v + 1, u] != piece[v, u]
-            below[u] = below[u] and _differ(image[v, u], image[v + 1, u], contrast)
-            if is_edge or is_after or below[u]:
-                pixel[found] = v * width + u
-                found += 1
-    return pixel[:found].copy()
-
-
-@njit(cache=True)
 def _differ(one: NDArray[np.float32], other: NDArray[np.float32], contrast: np.float32) -> bool:
     """Whether two values (C,) differ by more than the contrast."""
     for c in range(len(one)):  # noqa: SIM110 (kernels have no generators)
@@ -172,73 +100,127 @@ def _differ(one: NDArray[np.float32], other: NDArray[np.float32], contrast: np.f
     return False
 
 
+@njit(cache=True)
+def _mark(changes: NDArray[np.uint8], v: int, part: Pixels, surface: Pixels) -> None:
+    """Mark the pixels of a row (W,) beside which another surface may be seen: 1 on the right, 2 below."""
+    height, width = part.shape
+    for u in range(width - 1):
+        changes[u] = (part[v, u] != part[v, u + 1]) | (surface[v, u] != surface[v, u + 1])
+    changes[width - 1] = False
+    if v + 1 < height:
+        for u in range(width):
+            is_other = (part[v, u] != part[v + 1, u]) | (surface[v, u] != surface[v + 1, u])
+            changes[u] |= np.uint8(2) * np.uint8(is_other)
+
+
 @njit(cache=True, error_model="numpy")
-def _find_sources(  # noqa: C901 (in one function)
-    pixel: Pixels,
-    values: NDArray[np.float32],
+def _smooth(  # noqa: C901 (in one function)
+    image: NDArray[np.float32],
     contrast: np.float32,
+    part: Pixels,
+    surface: Pixels,
     depth: NDArray[np.float32],
-    piece: Pixels,
-    shapes: Shapes,
+    table: ShapeTable,
+    camera_from_part: Array,
     lens: Lens,
-) -> Pixels:
-    """(E, 4) the numbers of the pixels that look like what each ray meets.
+) -> None:
+    """Try the rays on both sides of each edge, and mix what they meet.
 
     No ray is tried where that would look the same.
 
     All is in one function, as to pass arrays to a kernel costs as much as to try a ray.
     """
-    kind, size, first_surface, shape_of, piece_of, pose = shapes
-    z, pieces = depth.reshape(-1), piece.reshape(-1)
-    sources, scale = np.repeat(pixel, len(_RAYS)).reshape(-1, len(_RAYS)), 1.0 / lens.focal
-    for i in range(len(pixel)):
-        own = pixel[i]
-        v, u = own // lens.width, own % lens.width
-        beside = (
-            own if v == 0 else own - lens.width,
-            own if u == lens.width - 1 else own + 1,
-            own if u == 0 else own - 1,
-            own if v == lens.height - 1 else own + lens.width,
-        )
-        one, depth_one = pieces[own], z[own]
-        for side in range(4):
-            at = beside[side]
-            other = pieces[at]
-            if other == one or not _differ(values[own], values[at], contrast):
+    kind, size, first_surface, shape_of = table.kind, table.size, table.first_surface, table.surface_shape
+    pose, piece_of = _shapes_from_camera(table, camera_from_part), _pieces_of(table)
+    height, width, channels = image.shape
+    # Pixels that get something of others, by how much four times their value changes, and where they are in
+    # these lists: of this row and the next.
+    pixel, more = np.empty((height * width, 2), np.int32), np.empty((height * width, channels), np.float32)
+    places, found = np.full((2, width), -1, np.int32), 0
+    # Eight at a time, as nearly all pixels are beside others of the same surface.
+    changes, scale = np.zeros(-(-width // 8) * 8, np.uint8), 1.0 / lens.focal
+    eight = changes.view(np.uint64)
+    for v in range(height):
+        place, place_below = places[v & 1], places[1 - (v & 1)]
+        place_below[:] = -1
+        _mark(changes, v, part, surface)
+        u = -1
+        while u + 1 < width:
+            u += 1
+            if u % 8 == 0 and eight[u >> 3] == 0:
+                u += 7
                 continue
-            first, last, count = _in_order(one, other, shape_of[one] == shape_of[other], depth_one, z[at])
-            for turn in range(2):
-                # If the ray nearest to the pixel beside meets what that shows, the next nearest may, too, but
-                # not if it has another such pixel nearer to it.
-                k = side if turn == 0 else _NEXT[side]
-                if turn == 1 and pieces[beside[k]] != one:
-                    break
-                x = (u + _RAYS[k, 0] - lens.centre_u) * scale
-                y = (v + _RAYS[k, 1] - lens.centre_v) * scale
-                best, seen = math.inf, last if count == 1 else one
-                for j in range(count):
-                    p = first if j == 0 else last
-                    s = shape_of[p]
-                    if kind[s] == _MESH:
-                        best, seen = 0.0, one
+            for way in range(2):
+                # Right, then below.
+                if changes[u] & (1 << way) == 0:
+                    continue
+                far_v, far_u = (v, u + 1) if way == 0 else (v + 1, u)
+                piece = _NONE if part[v, u] < 0 else piece_of[surface[v, u]]
+                far_piece = _NONE if part[far_v, far_u] < 0 else piece_of[surface[far_v, far_u]]
+                if piece == far_piece or not _differ(image[v, u], image[far_v, far_u], contrast):
+                    continue
+                is_met = False
+                for end in range(2):
+                    # Where the ray on one side meets what the other shows, that one's need not be tried.
+                    if is_met:
                         break
-                    if kind[s] == _BOX:
-                        t, surface = _hit_face(p - first_surface[s], size[s], pose[s], x, y), p
+                    if end == 0:
+                        y0, x0, y1, x1, one, other = v, u, far_v, far_u, piece, far_piece
+                        side = 1 if way == 0 else 3
                     else:
-                        o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
-                        d = (
-                            pose[s, 0, 0] * x + pose[s, 0, 1] * y + pose[s, 0, 2],
-                            pose[s, 1, 0] * x + pose[s, 1, 1] * y + pose[s, 1, 2],
-                            pose[s, 2, 0] * x + pose[s, 2, 1] * y + pose[s, 2, 2],
-                        )
-                        t, local = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
-                        surface = piece_of[first_surface[s] + local]
-                    if t < best:
-                        best, seen = t, surface
-                if seen == one or (seen != other and shape_of[seen] == shape_of[one]):
-                    break
-                sources[i, k] = at
-    return sources
+                        y0, x0, y1, x1, one, other = far_v, far_u, v, u, far_piece, piece
+                        side = 2 if way == 0 else 0
+                    first, last, count = _in_order(
+                        one, other, shape_of[one] == shape_of[other], depth[y0, x0], depth[y1, x1]
+                    )
+                    for turn in range(2):
+                        # If the ray nearest to the pixel beside meets what that shows, the next nearest may,
+                        # too, but not if it has another such pixel nearer to it.
+                        k = side
+                        if turn == 1:
+                            k = _NEXT[side]
+                            y, x = y0 + _BESIDE[k, 0], x0 + _BESIDE[k, 1]
+                            if 0 <= y < height and 0 <= x < width:
+                                beside = _NONE if part[y, x] < 0 else piece_of[surface[y, x]]
+                                if beside != one:
+                                    break
+                        across = (x0 + _RAYS[k, 0] - lens.centre_u) * scale
+                        down = (y0 + _RAYS[k, 1] - lens.centre_v) * scale
+                        best, seen = math.inf, last if count == 1 else one
+                        for j in range(count):
+                            p = first if j == 0 else last
+                            s = shape_of[p]
+                            if kind[s] == _MESH:
+                                best, seen = 0.0, one
+                                break
+                            if kind[s] == _BOX:
+                                t, met = _hit_face(p - first_surface[s], size[s], pose[s], across, down), p
+                            else:
+                                o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
+                                d = (
+                                    pose[s, 0, 0] * across + pose[s, 0, 1] * down + pose[s, 0, 2],
+                                    pose[s, 1, 0] * across + pose[s, 1, 1] * down + pose[s, 1, 2],
+                                    pose[s, 2, 0] * across + pose[s, 2, 1] * down + pose[s, 2, 2],
+                                )
+                                t, local = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
+                                met = piece_of[first_surface[s] + local]
+                            if t < best:
+                                best, seen = t, met
+                        if seen == one or (seen != other and shape_of[seen] == shape_of[one]):
+                            break
+                        is_met = True
+                        row = place if y0 == v else place_below
+                        i = row[x0]
+                        if i < 0:
+                            i = row[x0] = found
+                            pixel[i, 0], pixel[i, 1] = y0, x0
+                            more[i] = np.float32(0.0)
+                            found += 1
+                        for c in range(channels):
+                            more[i, c] += image[y1, x1, c] - image[y0, x0, c]
+    for i in range(found):
+        for c in range(channels):
+            image[pixel[i, 0], pixel[i, 1], c] += np.float32(0.25) * more[i, c]
 
 
 @njit(cache=True, error_model="numpy")
