@@ -238,6 +238,10 @@ class World:
             [paintings.get(key.name) for key in keys],
         )
         self._truth_maker = TruthMaker(keys, self._crowd, part_materials, config.place.movers)
+        self._is_shiny = self._materials.shine > 0.0
+        stands_out = abs(self._materials.thermal[:, 0] - config.place.surroundings_c) > _STANDS_OUT_K
+        is_person, glows = self._truth_maker.person_of_part != NOBODY, self._materials.colour[:, 6] > 0.0
+        self._is_mirrored = is_person | stands_out | glows
         self._rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._glimpse)
 
     def _settle(self) -> None:
@@ -299,10 +303,7 @@ class World:
         """What makes images of full detail, for cameras that can have it."""
         if self.config.detail == "plain" or not isinstance(seen.camera, Pinhole):
             return None
-        materials, person_of_part = self._materials, self._truth_maker.person_of_part
-        stands_out = abs(materials.thermal[:, 0] - self.config.place.surroundings_c) > _STANDS_OUT_K
-        is_mirrored = (person_of_part != NOBODY) | stands_out | (materials.colour[:, 6] > 0.0)
-        return FullDetail(seen, seen.camera, materials.shine > 0.0, is_mirrored)
+        return FullDetail(seen, seen.camera, self._is_shiny, self._is_mirrored)
 
 
 def light_level(place: Place, time_s: float) -> float:

@@ -66,16 +66,6 @@ class Reflection:
     is_surface: Mask
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Mirror:
-    """A plane n . x = offset (world frame), the surfaces in it, and the window [px] of their pixels."""
-
-    normal: Array
-    offset: float
-    surfaces: list[int]
-    window: tuple[int, int, int, int]
-
-
 def find_reflections(
     seen: Seen, camera: Pinhole, is_shiny: Mask, is_mirrored: Mask
 ) -> tuple[Reflection, ...]:
@@ -87,80 +77,102 @@ def find_reflections(
         is_shiny: (P,) parts that mirror.
         is_mirrored: (P,) parts that are seen in mirrors.
     """
-    if seen.view.surface is None or not is_shiny.any():
+    view, scene, eye = seen.view, seen.scene, seen.world_from_camera
+    if view.surface is None or not is_shiny.any():
         return ()
-    mirrors = _find_mirrors(seen, camera, is_shiny)
-    found = (_reflect(seen, camera, mirror, is_mirrored) for mirror in mirrors)
-    return tuple(reflection for reflection in found if reflection is not None)
-
-
-def _find_mirrors(seen: Seen, camera: Pinhole, is_shiny: Mask) -> list[_Mirror]:
-    """The planes that most pixels lie in, most first."""
-    view, table = seen.view, seen.scene.table
-    assert view.surface is not None
-    count, window, example = _count(view.part, view.surface, is_shiny, len(table.surface_part))
-    large = np.flatnonzero(count >= _FEWEST)
-    mirrors: list[_Mirror] = []
-    for surface in large[np.argsort(-count[large], kind="stable")].tolist():
-        if table.kind[table.surface_shape[surface]] not in _FLAT:
-            continue
-        v, u = divmod(int(example[surface]), camera.width)
-        normal = view.normal[v, u].astype(np.float64)
-        ray = np.array([u - camera.centre_px[0], v - camera.centre_px[1], camera.focal_px]) / camera.focal_px
-        pose = seen.world_from_camera
-        offset = float(normal @ (pose[:3, :3] @ ray * view.depth[v, u] + pose[:3, 3]))
-        box = (*window[surface].tolist(),)
-        for i, mirror in enumerate(mirrors):
-            if mirror.normal @ normal > _SAME_COS and abs(mirror.offset - offset) < _SAME_M:
-                mirrors[i] = _Mirror(
-                    mirror.normal, mirror.offset, [*mirror.surfaces, surface], _around(mirror.window, box)
-                )
-                break
-        else:
-            mirrors.append(_Mirror(normal, offset, [surface], box))
-    return mirrors[:_MOST]
-
-
-def _around(a: tuple[int, ...], b: tuple[int, ...]) -> tuple[int, int, int, int]:
-    return min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3])
-
-
-def _reflect(seen: Seen, camera: Pinhole, mirror: _Mirror, is_mirrored: Mask) -> Reflection | None:
-    """Draw what is seen in a mirror; None if that is nothing."""
-    scene, table, eye = seen.scene, seen.scene.table, seen.world_from_camera
-    pose = eye.copy()
-    pose[:3, :3] -= np.outer(2.0 * mirror.normal, mirror.normal @ eye[:3, :3])
-    away = mirror.offset - float(mirror.normal @ eye[:3, 3])
-    pose[:3, 3] += 2.0 * away * mirror.normal
-    up = (mirror.normal @ eye[:3, :3]).tolist()
-    left, top, right, bottom = mirror.window
-    lens = _every(camera, left, top, right, bottom)
-    beyond = _look_into(
-        table, pose, scene.world_from_part, scene.hidden, is_mirrored, (up[0], up[1], up[2], away), lens
+    lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
+    planes, windows, is_surface = _find_mirrors(
+        view.part, view.surface, view.depth, view.normal, scene.table, is_shiny, eye, lens
     )
-    column, row, part, depth, normal, surface, cosine = beyond
-    if column < 0:
-        return None
-    is_surface = np.zeros(len(table.surface_part), np.bool_)
-    is_surface[mirror.surfaces] = True
-    view = View(part, depth, normal, np.zeros(part.shape, np.uint64), surface)
-    return Reflection(left + EVERY * column, top + EVERY * row, view, pose, cosine, is_surface)
+    found = []
+    for plane, window, its_surfaces in zip(planes, windows, is_surface, strict=True):
+        left, top, pose, part, depth, normal, surface, cosine = _look_into(
+            scene.table, eye, scene.world_from_part, scene.hidden, is_mirrored, plane, window, lens
+        )
+        if len(part):
+            beyond = View(part, depth, normal, np.zeros(part.shape, np.uint64), surface)
+            found.append(Reflection(left, top, beyond, pose, cosine, its_surfaces))
+    return tuple(found)
+
+
+@njit(cache=True)
+def _find_mirrors(
+    part: Pixels,
+    surface: Pixels,
+    depth: Image,
+    normal: Image,
+    table: ShapeTable,
+    is_shiny: Mask,
+    eye: Array,
+    lens: Lens,
+) -> tuple[Array, NDArray[np.int64], Mask]:
+    """The planes that most pixels lie in, most first.
+
+    Returns:
+        (K, 4) normals, and how far each plane lies from the origin along its own, world frame; (K, 4) [px]
+        windows of their pixels: left, top, right, bottom; (K, M) the surfaces in them.
+    """
+    count, window, example = _count(part, surface, is_shiny, len(table.surface_part))
+    large = np.flatnonzero(count >= _FEWEST)
+    planes, windows = np.empty((len(large), 4)), np.empty((len(large), 4), np.int64)
+    is_surface, found = np.zeros((len(large), len(count)), np.bool_), 0
+    for s in large[np.argsort(-count[large], kind="mergesort")]:
+        if table.kind[table.surface_shape[s]] not in _FLAT:
+            continue
+        v, u = example[s] // lens.width, example[s] % lens.width
+        z, across, down = depth[v, u], (u - lens.centre_u) / lens.focal, (v - lens.centre_v) / lens.focal
+        offset = 0.0
+        for i in range(3):
+            offset += normal[v, u, i] * ((eye[i, 0] * across + eye[i, 1] * down + eye[i, 2]) * z + eye[i, 3])
+        k = 0
+        while k < found:
+            cosine = 0.0
+            for i in range(3):
+                cosine += planes[k, i] * normal[v, u, i]
+            if cosine > _SAME_COS and abs(planes[k, 3] - offset) < _SAME_M:
+                break
+            k += 1
+        if k == found:
+            planes[k, :3], planes[k, 3], windows[k] = normal[v, u], offset, window[s]
+            found += 1
+        windows[k, :2] = np.minimum(windows[k, :2], window[s, :2])
+        windows[k, 2:] = np.maximum(windows[k, 2:], window[s, 2:])
+        is_surface[k, s] = True
+    most = min(found, _MOST)
+    return planes[:most], windows[:most], is_surface[:most]
 
 
 @njit(cache=True, error_model="numpy")
 def _look_into(
     table: ShapeTable,
-    world_from_camera: Array,
+    eye: Array,
     world_from_part: Array,
     hidden: Mask,
     is_mirrored: Mask,
-    plane: Plane,
+    mirror: Array,
+    window: NDArray[np.int64],
     lens: Lens,
-) -> tuple[int, int, Pixels, Image, Image, Pixels, Image]:
-    """First column and row of what a mirrored camera sees, its parts, depths, normals, surfaces and cosines.
+) -> tuple[int, int, Array, Pixels, Image, Image, Pixels, Image]:
+    """What a mirrored camera sees: all of a `Reflection` but its surfaces; parts (0, 0) if that is nothing.
 
-    The column is -1 if that is nothing; arguments as in `_draw_beyond` and `_keep`.
+    Args:
+        table, world_from_part, hidden: the scene.
+        eye: (4, 4) pose of the camera.
+        is_mirrored: (P,) parts that are seen in mirrors.
+        mirror: (4,) its plane, as `_find_mirrors` gives it.
+        window: (4,) [px] of its pixels.
+        lens: the camera.
     """
+    away = mirror[3] - (mirror[0] * eye[0, 3] + mirror[1] * eye[1, 3] + mirror[2] * eye[2, 3])
+    world_from_camera, up = eye.copy(), np.empty(3)
+    for j in range(3):
+        up[j] = mirror[0] * eye[0, j] + mirror[1] * eye[1, j] + mirror[2] * eye[2, j]
+    for i in range(3):
+        for j in range(3):
+            world_from_camera[i, j] -= 2.0 * mirror[i] * up[j]
+        world_from_camera[i, 3] += 2.0 * away * mirror[i]
+    plane, left, top = (up[0], up[1], up[2], away), window[0], window[1]
+    lens = _every(lens, left, top, window[2], window[3])
     shape = (lens.height, lens.width)
     canvas = Canvas(
         np.zeros(shape),
@@ -176,10 +188,10 @@ def _look_into(
     column, row = max(box[0] - 1, 0), max(box[1] - 1, 0)
     width, height = min(box[2] + 2, lens.width) - column, min(box[3] + 2, lens.height) - row
     if box[0] > box[2] or box[1] > box[3]:
-        column, row, width, height = -1, 0, 0, 0
+        column, row, width, height = 0, 0, 0, 0
     canvas = Canvas(
-        canvas.nearness[row : row + height, max(column, 0) : column + width].copy(),
-        canvas.surface[row : row + height, max(column, 0) : column + width].copy(),
+        canvas.nearness[row : row + height, column : column + width].copy(),
+        canvas.surface[row : row + height, column : column + width].copy(),
         canvas.cover,
         canvas.shading,
         canvas.edges,
@@ -189,10 +201,12 @@ def _look_into(
     shape = (height, width)
     cosine, depth = np.empty(shape, np.float32), np.empty(shape, np.float32)
     part, normal = np.empty(shape, np.int32), np.empty((height, width, 3), np.float32)
-    if not _keep(canvas, table.surface_part, is_mirrored, plane, lens, cosine):
-        column = -1
-    shade(table.surface_part, lens, canvas, world_from_camera, part, depth, normal)
-    return column, row, part, depth, normal, canvas.surface, cosine
+    if _keep(canvas, table.surface_part, is_mirrored, plane, lens, cosine):
+        shade(table.surface_part, lens, canvas, world_from_camera, part, depth, normal)
+    else:
+        part = part[:0]
+    left, top = left + EVERY * column, top + EVERY * row
+    return left, top, world_from_camera, part, depth, normal, canvas.surface, cosine
 
 
 @njit(cache=True)
@@ -209,11 +223,11 @@ def _seen_from(world_from_camera: Array, world_from_part: Array) -> Array:
     return found
 
 
-def _every(camera: Pinhole, left: int, top: int, right: int, bottom: int) -> Lens:
+@njit(cache=True)
+def _every(lens: Lens, left: int, top: int, right: int, bottom: int) -> Lens:
     """A lens for some of the pixels of a window."""
-    u, v = camera.centre_px
-    width, height = (right - left) // EVERY + 2, (bottom - top) // EVERY + 2
-    return Lens(camera.focal_px / EVERY, (u - left) / EVERY, (v - top) / EVERY, width, height)
+    u, v = (lens.centre_u - left) / EVERY, (lens.centre_v - top) / EVERY
+    return Lens(lens.focal / EVERY, u, v, (right - left) // EVERY + 2, (bottom - top) // EVERY + 2)
 
 
 @njit(cache=True, error_model="numpy")
@@ -371,19 +385,21 @@ def _count(
     count, example = np.zeros(surfaces, np.int64), np.zeros(surfaces, np.int64)
     window = np.empty((surfaces, 4), np.int64)
     for v in range(0, height, 2):
-        for u in range(0, width, 2):
-            p = part[v, u]
+        end = 0
+        while end < width:
+            # Pixels of one surface that are next to each other are counted together.
+            first, p, s = end, part[v, end], surface[v, end]
+            while end < width and part[v, end] == p and surface[v, end] == s:
+                end += 2
             if p < 0 or not is_shiny[p]:
                 continue
-            s = surface[v, u]
             if count[s] == 0:
-                window[s, 0] = window[s, 2] = u
-                window[s, 1] = max(v - 1, 0)
-            count[s] += 4
-            window[s, 0] = min(window[s, 0], max(u - 1, 0))
-            window[s, 2] = max(window[s, 2], min(u + 1, width - 1))
+                window[s, 0], window[s, 1], window[s, 2] = first, max(v - 1, 0), first
+            count[s] += 2 * (end - first)
+            window[s, 0] = min(window[s, 0], max(first - 1, 0))
+            window[s, 2] = max(window[s, 2], min(end - 1, width - 1))
             window[s, 3] = min(v + 1, height - 1)
-            example[s] = v * width + u
+            example[s] = v * width + end - 2
     return count, window, example
 
 

@@ -101,24 +101,28 @@ def _mix(
     surroundings: NDArray[np.float64],
 ) -> None:
     """Add to each pixel of a mirror what the nearest pixels of the window see in it."""
-    channels = image.shape[2]
-    for v in range(beyond.shape[0]):
-        for u in range(beyond.shape[1]):
+    (height, width, channels), (rows, columns) = mirrored.shape, part.shape
+    for v in range(height):
+        for u in range(width):
             for c in range(channels):
                 mirrored[v, u, c] = mirrored[v, u, c] - surroundings[c] if beyond[v, u] >= 0 else 0.0
-    for row in range(top, min(top + 2 * beyond.shape[0] - 2, part.shape[0])):
-        j, y = (row - top) >> 1, (row - top + 1) >> 1
-        for column in range(left, min(left + 2 * beyond.shape[1] - 2, part.shape[1])):
-            i, x = (column - left) >> 1, (column - left + 1) >> 1
-            if beyond[j, i] < 0 and beyond[j, x] < 0 and beyond[y, i] < 0 and beyond[y, x] < 0:
+    for j in range(height - 1):
+        for i in range(width - 1):
+            if beyond[j, i] < 0 and beyond[j, i + 1] < 0 and beyond[j + 1, i] < 0 and beyond[j + 1, i + 1] < 0:
                 continue
-            p = part[row, column]
-            if p < 0 or not is_surface[surface[row, column]]:
-                continue
-            share = 0.25 * shine[p] * mirrored_share(reflectance[p], cosine[j, i])
-            for c in range(channels):
-                more = mirrored[j, i, c] + mirrored[j, x, c] + mirrored[y, i, c] + mirrored[y, x, c]
-                image[row, column, c] = max(image[row, column, c] + share * more, 0.0)
+            for k in range(4):
+                # Between rows or columns of the window both count alike.
+                y, x = j + (k >> 1), i + (k & 1)
+                row, column = top + j + y, left + i + x
+                if row >= rows or column >= columns:
+                    continue
+                p = part[row, column]
+                if p < 0 or not is_surface[surface[row, column]]:
+                    continue
+                share = 0.25 * shine[p] * mirrored_share(reflectance[p], cosine[j, i])
+                for c in range(channels):
+                    more = mirrored[j, i, c] + mirrored[j, x, c] + mirrored[y, i, c] + mirrored[y, x, c]
+                    image[row, column, c] = max(image[row, column, c] + share * more, 0.0)
 
 
 @njit(cache=True, fastmath=True)
