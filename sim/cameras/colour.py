@@ -14,6 +14,7 @@ from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.paintings import paint_row
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
+    filled_by_row,
     finish_at,
     finish_row,
     part_from_pixel,
@@ -39,25 +40,33 @@ def _light_row(
     image: NDArray[np.float32],
     factor: NDArray[np.float32],
     places: NDArray[np.uint32],
-    part: NDArray[np.int32],
+    is_filled: NDArray[np.bool_],
+    v: int,
+    parts: NDArray[np.int32],
+    depth: NDArray[np.float32],
     normal: NDArray[np.float32],
+    matrices: NDArray[np.float64],
     colour: NDArray[np.float64],
-    kind: NDArray[np.int64],
-    paint: NDArray[np.float64],
     finish: NDArray[np.float64],
     texels: NDArray[np.int16],
+    paint: NDArray[np.float64],
+    paint_texels: NDArray[np.int16],
     light: NDArray[np.float64],
     level: float,
 ) -> None:
     """Fill a row (W, 3) where parts have paintings or finishes but no patterns, several pixels at a time."""
-    width, end = len(part), 0
+    if paint_texels.shape[1] > 0:
+        paint_row(factor, v, parts, depth, matrices, paint, paint_texels, 1)
+    if len(finish) > 0:
+        finish_row(places, v, parts, depth, matrices, finish)
+    part, width, end = parts[v], parts.shape[1], 0
     x, y, z = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
     direct, none, step = np.float32(level * (1.0 - _AMBIENT)), np.float32(0.0), np.float32(TEXEL_STEP)
     while end < width:
         first, p = end, part[end]
         while end < width and part[end] == p:
             end += 1
-        if p < 0 or kind[p, 1] != 0:
+        if p < 0 or not is_filled[p]:
             continue
         red, green, blue = np.float32(colour[p, 0]), np.float32(colour[p, 1]), np.float32(colour[p, 2])
         around = np.float32(level * _AMBIENT + colour[p, 6])
@@ -66,7 +75,7 @@ def _light_row(
                 facing = max(normal[u, 0] * x + normal[u, 1] * y + normal[u, 2] * z, none)
                 shade = (around + direct * facing) * factor[u]
                 image[u, 0], image[u, 1], image[u, 2] = shade * red, shade * green, shade * blue
-        elif len(finish) > 0 and finish[p, 0] >= 0.0:
+        else:
             redder, greener = np.float32(finish[p, 5]) - red, np.float32(finish[p, 6]) - green
             bluer = np.float32(finish[p, 7]) - blue
             for u in range(first, end):
@@ -100,23 +109,18 @@ def _radiance_image(
     image = np.zeros((height, width, 3), np.float32)
     has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
     line, places = np.empty(width, np.float32), np.empty(width, np.uint32)
+    is_filled = filled_by_row(paint, paint_texels, finish, kind[:, 1].astype(np.float64))
     for v in range(height):
-        if has_paint:
-            paint_row(line, v, part, depth, matrices, paint, paint_texels, 1)
-        if has_finish:
-            finish_row(places, v, part, depth, matrices, finish)
         if has_paint or has_finish:
             _light_row(
-                image[v], line, places, part[v], normal[v], colour, kind, paint, finish, texels, light, level
-            )
+                image[v], line, places, is_filled, v, part, depth, normal[v], matrices, colour, finish,
+                texels, paint, paint_texels, light, level,
+            )  # fmt: skip
         for u in range(width):
             p = part[v, u]
-            if p < 0:
+            if p < 0 or is_filled[p]:
                 continue
-            is_finished = has_finish and finish[p, 0] >= 0.0
-            if kind[p, 1] == 0 and (is_finished or (has_paint and paint[p, 0] >= 0.0)):
-                continue
-            second = 0
+            second, is_finished = 0, has_finish and finish[p, 0] >= 0.0
             if kind[p, 1] != 0 or is_finished:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
                 second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)

@@ -24,9 +24,8 @@ from peopleboy.sim.shapes.paintings import Painting
 _OFFSET = 0.137
 
 # An odd polynomial fitted to atan(ratio) / 2 pi over 0..1.
-_TURN_1, _TURN_3, _TURN_5, _TURN_7 = (np.float32(c) for c in (0.15903002, -0.0511187, 0.02328385, -0.00620832))
-
-COARSER = 3  # times that a finish is there by half as fine again
+_TURN_1, _TURN_3 = np.float32(0.15903002), np.float32(-0.0511187)
+_TURN_5, _TURN_7 = np.float32(0.02328385), np.float32(-0.00620832)
 
 _STRIPES = int(PatternKind.STRIPES)
 _CHECKS = int(PatternKind.CHECKS)
@@ -46,8 +45,7 @@ class MaterialTable:
         phase: (P, 3) [waves] offsets of the smooth variation.
         finish: (P, 8) of each part's finish its first texel (-1 for none), columns, rows, lowest z [m], rows
             a metre, and colour; (0, 8) if no part has one.
-        texels: (N, 3) kelvin, light and cover of all finishes, as `Finish.texels` gives them, each followed
-            by the same three times coarser, by half each time.
+        texels: (N, 3) kelvin, light and cover of all finishes, as `Finish.texels` gives them.
         shine: (P,) how much of what is reflected is mirrored, 0..1.
         paint, paint_texels: paintings, as `make_paint_table` gives them.
     """
@@ -107,29 +105,8 @@ def _lay_out(finishes: Sequence[Finish | None]) -> tuple[NDArray[np.float64], ND
             height, width = finish.kelvin.shape
             first = sum(map(len, texels))
             row[:] = first, width, height, finish.lowest_m, 1.0 / finish.texel_m, *finish.rgb
-            level = finish.texels().reshape(height, width, 3)
-            texels.append(level.reshape(-1, 3))
-            for _ in range(COARSER):
-                level = coarser(level)
-                texels.append(level.reshape(-1, 3))
+            texels.append(finish.texels())
     return (rows if len(texels) > 1 else rows[:0]), np.concatenate(texels)
-
-
-def coarser(texels: NDArray[np.int16]) -> NDArray[np.int16]:
-    """Give the texels (R, C, 3) of a finish at half as many columns and rows, each a mean of nine.
-
-    Columns go all round: with an odd number of them, half of those that are left lie between two.
-    """
-    rows, columns = texels.shape[:2]
-    grid = texels.astype(np.float64)
-    grid = 0.5 * grid + 0.25 * (np.roll(grid, 1, axis=1) + np.roll(grid, -1, axis=1))
-    padded = np.concatenate([grid[:1], grid, grid[-1:]])
-    grid = (0.5 * grid + 0.25 * (padded[:-2] + padded[2:]))[::2]
-    half = (columns + 1) // 2
-    left, share = np.divmod(np.arange(half) * (columns / half), 1.0)
-    before, share = left.astype(np.int64), share[None, :, None]
-    grid = (1.0 - share) * grid[:, before] + share * grid[:, (before + 1) % columns]
-    return np.asarray(np.rint(grid), np.int16)
 
 
 def part_from_pixel(camera: Pinhole, world_from_camera: Matrix, world_from_part: Matrix) -> Matrix:
@@ -238,6 +215,22 @@ def finish_at(
     return TEXEL_STEP * texels[at, 0], TEXEL_STEP * texels[at, 1], TEXEL_STEP * texels[at, 2]
 
 
+@njit(cache=True)
+def filled_by_row(
+    paint: NDArray[np.float64],
+    paint_texels: NDArray[np.int16],
+    finish: NDArray[np.float64],
+    pattern: NDArray[np.float64],
+) -> NDArray[np.bool_]:
+    """(P,) parts that have a painting or a finish but, going by a number of each (P,), no pattern."""
+    has_paint, has_finish = paint_texels.shape[1] > 0, len(finish) > 0
+    is_filled = np.zeros(len(pattern), np.bool_)
+    for p in range(len(pattern)):
+        has_looks = (has_paint and paint[p, 0] >= 0.0) or (has_finish and finish[p, 0] >= 0.0)
+        is_filled[p] = has_looks and pattern[p] == 0.0
+    return is_filled
+
+
 @njit(cache=True, fastmath=True)
 def finish_row(
     places: NDArray[np.uint32],
@@ -268,14 +261,8 @@ def finish_row(
             end += 1
         if p < 0 or finish[p, 0] < 0.0:
             continue
-        m, texel, columns, rows = matrices[p], int(finish[p, 0]), int(finish[p, 1]), int(finish[p, 2])
-        fine = finish[p, 4]
-        pixel_m = depths[first] * math.sqrt(m[0, 0] * m[0, 0] + m[1, 0] * m[1, 0] + m[2, 0] * m[2, 0])
-        for _ in range(COARSER):
-            if pixel_m * fine < 2.0:
-                break
-            texel, columns, rows, fine = texel + rows * columns, (columns + 1) // 2, (rows + 1) // 2, 0.5 * fine
-        around, most = np.float32(columns), np.float32(rows - 0.5)
+        m, texel, columns, fine = matrices[p], np.int32(finish[p, 0]), np.int32(finish[p, 1]), finish[p, 4]
+        around, most = np.float32(columns), np.float32(finish[p, 2] - 0.5)
         slope_x, start_x = np.float32(m[0, 0]), np.float32(m[0, 1] * v + m[0, 2])
         slope_y, start_y = np.float32(m[1, 0]), np.float32(m[1, 1] * v + m[1, 2])
         slope_z, start_z = np.float32(m[2, 0] * fine), np.float32((m[2, 1] * v + m[2, 2]) * fine)
@@ -293,6 +280,6 @@ def finish_row(
             turn = half - turn if x < none else turn
             turn = one - turn if y < none else turn
             column = np.int32(turn * around + half)
-            column = column if column < np.int32(columns) else np.int32(0)
+            column = column if column < columns else np.int32(0)
             row = np.int32(min(max((slope_z * np.float32(u) + start_z) * z + origin_z, none), most))
-            places[u] = np.int32(texel) + row * np.int32(columns) + column
+            places[u] = texel + row * columns + column

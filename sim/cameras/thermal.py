@@ -21,7 +21,9 @@ from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.paintings import paint_row
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
+    filled_by_row,
     finish_at,
+    finish_row,
     part_from_pixel,
     pattern_value,
     smooth_variation,
@@ -30,6 +32,7 @@ from peopleboy.sim.cameras.surfaces import (
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
+from peopleboy.sim.shapes.finishes import TEXEL_STEP
 
 _CONTRAST = 1.0  # [W / (m2 sr)] about a kelvin: fainter edges need no smoothing
 _LOWEST_C, _HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
@@ -92,22 +95,65 @@ def _look_up(table: NDArray[np.float64], low: float, high: float, value: float) 
 
 
 @njit(cache=True, fastmath=True)
+def _finish_row(
+    warmer_k: NDArray[np.float32],
+    places: NDArray[np.uint32],
+    v: int,
+    part: NDArray[np.int32],
+    depth: NDArray[np.float32],
+    matrices: NDArray[np.float64],
+    thermal: NDArray[np.float64],
+    phase: NDArray[np.float64],
+    finish: NDArray[np.float64],
+    texels: NDArray[np.int16],
+) -> None:
+    """Find by how much finishes and variation warm the pixels of a row (W,), several pixels at a time."""
+    width, end = part.shape[1], 0
+    while end < width:
+        first, p = end, part[v, end]
+        while end < width and part[v, end] == p:
+            end += 1
+        if p < 0 or finish[p, 0] < 0.0:
+            continue
+        size_k = thermal[p, 2]
+        for u in range(first, end):
+            x, y, z = surface_point(matrices, p, u, v, depth[v, u])
+            warmer_k[u] = size_k * smooth_variation(x, y, z, thermal[p, 3], phase, p)
+        for u in range(first, end):
+            warmer_k[u] += np.float32(TEXEL_STEP) * np.float32(texels[places[u], 0])
+
+
+@njit(cache=True, fastmath=True)
 def _radiate_row(
     image: NDArray[np.float32],
     warmer_k: NDArray[np.float32],
-    part: NDArray[np.int32],
+    places: NDArray[np.uint32],
+    is_filled: NDArray[np.bool_],
+    v: int,
+    parts: NDArray[np.int32],
+    depth: NDArray[np.float32],
+    matrices: NDArray[np.float64],
     thermal: NDArray[np.float64],
+    phase: NDArray[np.float64],
+    finish: NDArray[np.float64],
+    texels: NDArray[np.int16],
     paint: NDArray[np.float64],
+    paint_texels: NDArray[np.int16],
     surroundings: float,
 ) -> None:
-    """Fill a row (W,) where parts have paintings but no patterns, several pixels at a time."""
-    width, end = len(part), 0
+    """Fill a row (W,) where parts have paintings or finishes but no patterns, several pixels at a time."""
+    if paint_texels.shape[1] > 0:
+        paint_row(warmer_k, v, parts, depth, matrices, paint, paint_texels, 0)
+    if len(finish) > 0:
+        finish_row(places, v, parts, depth, matrices, finish)
+        _finish_row(warmer_k, places, v, parts, depth, matrices, thermal, phase, finish, texels)
+    part, width, end = parts[v], parts.shape[1], 0
     scale, most = np.float32(1.0 / _HALF_K), np.float32(1.0)
     while end < width:
         first, p = end, part[end]
         while end < width and part[end] == p:
             end += 1
-        if p < 0 or paint[p, 0] < 0.0 or thermal[p, 4] != 0.0:
+        if p < 0 or not is_filled[p]:
             continue
         base, emissivity = np.float32((thermal[p, 0] - _MIDDLE_C) / _HALF_K), np.float32(thermal[p, 1])
         rest = np.float32((1.0 - thermal[p, 1]) * surroundings)
@@ -137,17 +183,20 @@ def _radiance_image(
     height, width = part.shape
     image = np.empty((height, width), np.float32)
     has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
-    line = np.empty(width, np.float32)
+    line, places = np.empty(width, np.float32), np.empty(width, np.uint32)
+    is_filled = filled_by_row(paint, paint_texels, finish, thermal[:, 4])
     for v in range(height):
-        if has_paint:
-            paint_row(line, v, part, depth, matrices, paint, paint_texels, 0)
-            _radiate_row(image[v], line, part[v], thermal, paint, surroundings)
+        if has_paint or has_finish:
+            _radiate_row(
+                image[v], line, places, is_filled, v, part, depth, matrices, thermal, phase, finish, texels,
+                paint, paint_texels, surroundings,
+            )  # fmt: skip
         for u in range(width):
             p = part[v, u]
             if p < 0:
                 image[v, u] = surroundings
                 continue
-            if has_paint and paint[p, 0] >= 0.0 and thermal[p, 4] == 0.0:
+            if is_filled[p]:
                 continue
             temperature = thermal[p, 0]
             if has_paint and paint[p, 0] >= 0.0:

@@ -9,6 +9,7 @@ twice, and any image of the view can do it. Where an image shows no step, nothin
 from __future__ import annotations
 
 import math
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray

@@ -3,7 +3,7 @@
 What a mirror shows is what a camera behind it would see, its pose reflected by the mirror's plane: so the ray
 caster draws that as well, in the window in which mirrored people and warm or bright things may be. All else
 only hides them there: what is mirrored besides is taken as the surroundings. As no floor is that smooth, it
-is drawn at every other pixel.
+is drawn at every third pixel.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _BOX = int(ShapeKind.BOX)
 _FLAT = (_BOX, int(ShapeKind.PLANE))
 _NO_AXIS: Point = (0.0, 0.0, 0.0)
 _FEWEST = 30  # pixels of a surface in which anything would be seen
-EVERY = 2  # pixels of the image for one of a reflection, in row and column
+EVERY = 3  # pixels of the image for one of a reflection, in row and column
 _MOST = 6  # planes that mirror at a time, those of most pixels
 _SAME_M, _SAME_COS = 2e-3, 0.99999  # between surfaces in one plane
 _SUNK_M = 0.03  # how far feet may sink into a mirror
@@ -51,7 +51,7 @@ class Reflection:
 
     Attributes:
         left, top: [px] the window's first column and row in the image.
-        view: (h, w) what is seen beyond the mirror at every other pixel of the window in row and column; part
+        view: (h, w) what is seen beyond the mirror at every third pixel of the window in row and column; part
             is -1 where only the surroundings are.
         world_from_camera: (4, 4) pose of the mirrored camera.
         cosine: (h, w) between the plane's normal and the ray to the pixel.
@@ -153,11 +153,13 @@ def _look_into(
     window: NDArray[np.int64],
     lens: Lens,
 ) -> tuple[int, int, Array, Pixels, Image, Image, Pixels, Image]:
-    """What a mirrored camera sees: all of a `Reflection` but its surfaces; parts (0, 0) if that is nothing.
+    """What a mirrored camera sees: all of a `Reflection` but its surfaces; parts (0, w) if that is nothing.
 
     Args:
-        table, world_from_part, hidden: the scene.
+        table: the world's shapes.
         eye: (4, 4) pose of the camera.
+        world_from_part: (P, 4, 4).
+        hidden: (P,) parts that are not there.
         is_mirrored: (P,) parts that are seen in mirrors.
         mirror: (4,) its plane, as `_find_mirrors` gives it.
         window: (4,) [px] of its pixels.
@@ -268,7 +270,8 @@ def _draw_beyond(
                 max(area[0], bounds[0]), max(area[1], bounds[1]),
                 min(area[2], bounds[2]), min(area[3], bounds[3]),
             )  # fmt: skip
-            if area[0] > area[2] or area[1] > area[3]:
+            is_behind = not is_wanted and kind == _BOX and z - _depth_of(size, pose) > farthest
+            if is_behind or area[0] > area[2] or area[1] > area[3]:
                 continue
             if is_wanted:
                 left, top = min(left, area[0]), min(top, area[1])
@@ -358,6 +361,13 @@ def _radius(kind: int, size: Array) -> float:
     return float(size[0]) if kind == _SPHERE else math.inf
 
 
+@njit(cache=True)
+def _depth_of(size: Array, pose: Array) -> float:
+    """How far [m] a box reaches from its middle towards the camera."""
+    depth: float = 0.5 * (abs(pose[2, 0]) * size[0] + abs(pose[2, 1]) * size[1] + abs(pose[2, 2]) * size[2])
+    return depth
+
+
 @njit(cache=True, error_model="numpy")
 def _is_outside(x: float, y: float, z: float, radius: float, lens: Lens) -> bool:
     """Whether a ball lies wholly beyond one of the four sides of what a lens sees, or behind it."""
@@ -429,9 +439,11 @@ def _keep(
             x = (u - lens.centre_u) / lens.focal
             slope = plane[0] * x + plane[1] * y + plane[2]
             cosine[v, u] = max(-slope, 0.0) / math.sqrt(x * x + y * y + 1.0)
+        for u in range(lens.width):
             nearness = canvas.nearness[v, u]
             if nearness == 0.0:
                 continue
+            slope = plane[0] * (u - lens.centre_u) / lens.focal + plane[1] * y + plane[2]
             is_beyond = slope < 0.0 and (plane[3] / slope - _SUNK_M) * nearness <= 1.0
             if is_beyond and wanted[surface_part[canvas.surface[v, u]]]:
                 is_any = True

@@ -73,7 +73,9 @@ class Drift:
 
 
 @njit(cache=True)
-def _drifted(columns: NDArray[np.float32], rate: NDArray[np.float32], minutes: float) -> NDArray[np.float32]:
+def _drifted(
+    columns: NDArray[np.float32], rate: NDArray[np.float32], minutes: np.float32
+) -> NDArray[np.float32]:
     """Offsets (H, W) of columns (1, W), and of pixels that drift at a rate (H, W) for some minutes."""
     offset = np.empty_like(rate)
     for v in range(rate.shape[0]):

@@ -32,12 +32,12 @@ def add_contact_shadows(
     Light on the floor's plane is reckoned at every fourth pixel, and is linear between.
     """
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    light = _light_on_floor(lens, world_from_camera, contacts.prints)
+    light = light_on_floor(lens, world_from_camera, contacts.prints)
     _darken(image, view.part, contacts.is_floor, light)
 
 
 @njit(cache=True, fastmath=True)
-def _light_on_floor(lens: Lens, world_from_camera: Array, prints: Array) -> NDArray[np.float32]:
+def light_on_floor(lens: Lens, world_from_camera: Array, prints: Array) -> NDArray[np.float32]:
     """Share of light that the floor gets where the ray of every fourth pixel meets it, 1 where none does."""
     height, width = lens.height // _EVERY + 2, lens.width // _EVERY + 2
     light = np.ones((height, width), np.float32)

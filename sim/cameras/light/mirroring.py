@@ -65,7 +65,7 @@ def _part_from_pixel(
     world_from_camera: Matrix,
     world_from_part: Matrix,
 ) -> Matrix:
-    """(P, 3, 4) as `surfaces.part_from_pixel`, for a window's pixels from its own corner, every other one."""
+    """(P, 3, 4) as `surfaces.part_from_pixel`, for every few of a window's pixels, from its own corner."""
     matrices, rays, offset = np.empty((len(world_from_part), 3, 4)), np.empty((3, 3)), np.empty(3)
     step = EVERY / focal
     for i in range(3):
@@ -100,29 +100,38 @@ def _mix(
     shine: NDArray[np.float64],
     surroundings: NDArray[np.float64],
 ) -> None:
-    """Add to each pixel of a mirror what the nearest pixels of the window see in it."""
+    """Add to each pixel of a mirror what the window sees in it, linearly between the window's pixels."""
     (height, width, channels), (rows, columns) = mirrored.shape, part.shape
-    for v in range(height):
-        for u in range(width):
-            for c in range(channels):
-                mirrored[v, u, c] = mirrored[v, u, c] - surroundings[c] if beyond[v, u] >= 0 else 0.0
+    _subtract(mirrored, beyond, surroundings)
     for j in range(height - 1):
         for i in range(width - 1):
-            if beyond[j, i] < 0 and beyond[j, i + 1] < 0 and beyond[j + 1, i] < 0 and beyond[j + 1, i + 1] < 0:
+            if max(beyond[j, i], beyond[j, i + 1], beyond[j + 1, i], beyond[j + 1, i + 1]) < 0:
                 continue
-            for k in range(4):
-                # Between rows or columns of the window both count alike.
-                y, x = j + (k >> 1), i + (k & 1)
-                row, column = top + j + y, left + i + x
+            for k in range(EVERY * EVERY):
+                y, x = k // EVERY, k % EVERY
+                row, column = top + EVERY * j + y, left + EVERY * i + x
                 if row >= rows or column >= columns:
                     continue
                 p = part[row, column]
                 if p < 0 or not is_surface[surface[row, column]]:
                     continue
-                share = 0.25 * shine[p] * mirrored_share(reflectance[p], cosine[j, i])
+                share = shine[p] * mirrored_share(reflectance[p], cosine[j, i])
+                down, across = y / EVERY, x / EVERY
                 for c in range(channels):
-                    more = mirrored[j, i, c] + mirrored[j, x, c] + mirrored[y, i, c] + mirrored[y, x, c]
+                    above, below = mirrored[j, i, c], mirrored[j + 1, i, c]
+                    above += across * (mirrored[j, i + 1, c] - above)
+                    below += across * (mirrored[j + 1, i + 1, c] - below)
+                    more = above + down * (below - above)
                     image[row, column, c] = max(image[row, column, c] + share * more, 0.0)
+
+
+@njit(cache=True, fastmath=True)
+def _subtract(mirrored: Image, beyond: NDArray[np.int32], surroundings: NDArray[np.float64]) -> None:
+    """Leave what is seen beyond a mirror, less the surroundings; nothing where nothing is."""
+    for v in range(mirrored.shape[0]):
+        for u in range(mirrored.shape[1]):
+            for c in range(mirrored.shape[2]):
+                mirrored[v, u, c] = mirrored[v, u, c] - surroundings[c] if beyond[v, u] >= 0 else 0.0
 
 
 @njit(cache=True, fastmath=True)

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows, lost_light
+from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows, light_on_floor, lost_light
 from peopleboy.sim.cameras.light.mirroring import mirrored_share
 from peopleboy.sim.geometry.pinhole import Pinhole, transform
+from peopleboy.sim.rendering.canvas import Lens
 from peopleboy.sim.rendering.contacts import REACH_M, find_contacts, gap
 from peopleboy.sim.rendering.edges import smooth
 from peopleboy.sim.rendering.reflections import EVERY, Reflection, find_reflections
@@ -178,6 +179,32 @@ def test_a_wall_takes_half_of_the_light_at_its_foot_and_none_out_of_reach() -> N
     assert lost_light(wall, REACH_M) == 0.0
     losses = [lost_light(wall, away) for away in np.linspace(0.0, REACH_M, 30)]
     assert losses == sorted(losses, reverse=True)
+
+
+@settings(max_examples=15, deadline=None)
+@given(seed=st.integers(0, 9999), turn=st.floats(-3.0, 3.0))
+def test_light_on_the_floor_is_what_all_footprints_leave_of_it(seed: int, turn: float) -> None:
+    rng, count = np.random.default_rng(seed), 12
+    kinds = rng.choice([ShapeKind.BOX, ShapeKind.CAPSULE], count)
+    sizes = [tuple(rng.uniform(0.05, 0.6, 3)) for _ in range(count)]
+    poses = np.stack([at(*rng.uniform((-3.0, -3.0, 0.0), (6.0, 3.0, 0.5))) for _ in range(count)])
+    for pose, about in zip(poses, rng.uniform(0.0, 6.0, count), strict=True):
+        pose[:2, :2] = [[np.cos(about), -np.sin(about)], [np.sin(about), np.cos(about)]]
+    table = make_shape_table(
+        [VisualShape(i, *one, np.eye(4), None) for i, one in enumerate(zip(kinds, sizes, strict=True))]
+    )
+    prints = find_contacts(table, poses, np.zeros(count, np.bool_)).prints
+    turned = np.eye(4)
+    turned[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    eye = turned @ POSE
+    found = light_on_floor(Lens(CAMERA.focal_px, *CAMERA.centre_px, CAMERA.width, CAMERA.height), eye, prints)
+    for j, i in np.ndindex(found.shape):
+        ray = eye[:3, :3] @ np.linalg.inv(CAMERA.intrinsics) @ (4.0 * i, 4.0 * j, 1.0)
+        left = 1.0
+        if ray[2] < 0.0:
+            x, y = (eye[:3, 3] - ray * eye[2, 3] / ray[2])[:2]
+            left = np.prod([1.0 - lost_light(row, gap(row, x, y)) for row in prints])
+        assert found[j, i] == pytest.approx(1.0 - 0.6 * min(1.0 - left, 0.85), abs=1e-5)
 
 
 def test_what_hangs_high_takes_less_light_than_what_stands() -> None:
