@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import count
 from typing import Final
 
 import numpy as np
@@ -54,7 +55,7 @@ class AheadTracker:
         self._pose = RobotPose()
         self._people: tuple[Person, ...] = ()
         self._time_s = -math.inf
-        self._newest = 0
+        self._numbers, self._guests = count(1), count(-1, -1)
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -89,14 +90,15 @@ class AheadTracker:
         people = [one.later(dt_s, self._config) for one in self._people]
         people = self._joined(people, deep, _depth, self._with_depth)
         people = self._joined(people, warm, _heat, self._with_heat)
-        people = Recognition(self._config, frame.time_s).put_right(people)
         people = self._single([self._peeked(one, people, frame) for one in people])
+        recognition = Recognition(self._config, frame.time_s, self._depth.is_lit)
+        people = recognition.put_right(recognition.settled(people, self._numbers))
         self._people = tuple(
             with_width(one, frame, self._pose, self._config.learned_width)
             for one in people
-            if frame.time_s - one.seen_s <= self._config.remembered_s
+            if not self._is_forgotten(one)
         )
-        shown = [one for one in self._people if self._is_shown(one, frame)]
+        shown = [one for one in self._people if not one.is_guest and self._is_shown(one, frame)]
         return tuple(self._track(one, frame) for one in sorted(shown, key=lambda one: one.id))
 
     def _with_depth(self, person: Person, told: Told) -> Person:
@@ -108,22 +110,15 @@ class AheadTracker:
         return person.with_heat(told, self._time_s, self._config)
 
     def _joined(self, people: Sequence[Person], told: Sequence[Told], own: Own, take: Take) -> list[Person]:
-        """Tell people what a tracker knows of them; who is nobody's turns up again, or is new."""
-        found = pairs(people, told, [own(one) for one in people], self._config)
+        """Tell people what a tracker knows of them; whose track is nobody's is a guest."""
+        found = pairs(people, told, [own(one) for one in people], self._time_s, self._config)
         joined = [take(one, told[found[k]]) if k in found else one for k, one in enumerate(people)]
         owners = {told[m].id: people[k].id for k, m in found.items()}
         joined = [_without(one, own, owners) for one in joined]
-        recognition, taken = Recognition(self._config, self._time_s), set(found.values())
+        taken = set(found.values())
         for k, one in enumerate(told):
-            if k in taken or not one.is_seen:
-                continue
-            known = recognition.returned(one, joined, own)
-            if known is not None:
-                here = replace(known, motion=newborn(known.id, one, self._time_s).motion)
-                joined = [take(here, one) if person is known else person for person in joined]
-            elif not self._is_double(one, joined):
-                self._newest += 1
-                joined.append(take(newborn(self._newest, one, self._time_s), one))
+            if k not in taken and one.is_seen and not self._is_double(one, joined):
+                joined.append(take(newborn(next(self._guests), one, self._time_s), one))
         return joined
 
     def _is_double(self, told: Told, people: Sequence[Person]) -> bool:
@@ -164,7 +159,7 @@ class AheadTracker:
             if (
                 person not in kept
                 or person.deep is None
-                or person.warm is not None
+                or (person.warm is not None and person.warm.is_seen)
                 or not person.deep.is_seen
             ):
                 continue
@@ -180,7 +175,7 @@ class AheadTracker:
         if one is not deep:
             return (one,)
         both = replace(deep, warm=double.warm, heat=double.heat)
-        if double.looks is None and double.id < deep.id:
+        if double.looks is None and not double.is_guest and (deep.is_guest or double.id < deep.id):
             return (replace(both, id=double.id, born_s=double.born_s),)
         return (both,)
 
@@ -189,6 +184,10 @@ class AheadTracker:
         if other.deep is not None or warm is None or not warm.is_seen:
             return False
         return apart(deep, warm, self._config.floor_m) < self._config.gate
+
+    def _is_forgotten(self, person: Person) -> bool:
+        limit_s = self._config.away_s if person.is_guest else self._config.remembered_s
+        return self._time_s - person.seen_s > limit_s
 
     def _is_shown(self, person: Person, frame: Frame) -> bool:
         """Tell whether somebody is said to be there: who is hidden for a while, others for a blink."""

@@ -36,6 +36,9 @@ class FusionConfig:
         hidden_share: share of readings before somebody, from which on it is hidden.
         remembered_s: [s] for how long somebody is known who is away.
         reach_m, fastest_m_s: [m], [m/s] how far away from where it was lost somebody may turn up.
+        away_s: [s] after which who is not seen is away, and recognised rather than followed.
+        settled_s: [s] for which it may be undecided who turned up,
+        plain: unless somebody is so much more likely than anybody else.
         lookless_s: [s] after which nobody is recognised by the place alone.
         least_alike: similarity of looks of who turns up again.
         tallest_off_m: [m] by which the height of who turns up again may differ.
@@ -74,6 +77,9 @@ class FusionConfig:
     remembered_s: float = 20.0
     reach_m: float = 1.2
     fastest_m_s: float = 1.4
+    away_s: float = 0.7
+    settled_s: float = 0.5
+    plain: float = 0.5
     lookless_s: float = 3.0
     least_alike: float = 0.7
     tallest_off_m: float = 0.12

@@ -15,7 +15,6 @@ from peopleboy.tracker.fusion.told import Told
 from peopleboy.tracker.rgbd.people.looks import similarity
 
 _NEVER: Final = 1e6
-_HALF_SEEN: Final = 0.5  # what looks count of somebody who is hidden in part
 
 
 def apart(person: Person, told: Told, floor_m: float) -> float:
@@ -28,15 +27,18 @@ def apart(person: Person, told: Told, floor_m: float) -> float:
     return float(away @ np.linalg.solve(error, away))
 
 
-def cost(person: Person, told: Told, own: int | None, config: FusionConfig) -> float:
+def cost(person: Person, told: Told, own: int | None, time_s: float, config: FusionConfig) -> float:
     """Tell how unlikely it is that a person is told of; infinite if it is out of the question.
 
     Args:
         person: where it is expected.
         told: what a tracker tells.
         own: id of that tracker's track that was the person's before.
+        time_s: [s] now.
         config: settings.
     """
+    if time_s - person.seen_s > config.away_s:
+        return np.inf
     away, unlike = apart(person, told, config.floor_m), _unlikeness(person, told, config)
     if told.id == own:
         loyalty = config.loyalty if told.box is None else config.loyalty_heat
@@ -58,15 +60,18 @@ def _unlikeness(person: Person, told: Told, config: FusionConfig) -> float:
     """Rate how different looks and height are; 0 as far as they are not known."""
     found = 0.0
     if told.looks is not None and person.looks is not None:
-        share = 1.0 if told.is_clear else _HALF_SEEN
-        found += share * config.looks_weight * (1.0 - similarity(person.looks, told.looks))
+        found += config.looks_weight * (1.0 - similarity(person.looks, told.looks))
     if told.tall_m is not None and told.is_clear and person.depth is not None:
         found += min(((told.tall_m - person.tall_m) / config.height_sd_m) ** 2, config.most_height)
     return found
 
 
 def pairs(
-    people: Sequence[Person], told: Sequence[Told], owns: Sequence[int | None], config: FusionConfig
+    people: Sequence[Person],
+    told: Sequence[Told],
+    owns: Sequence[int | None],
+    time_s: float,
+    config: FusionConfig,
 ) -> dict[int, int]:
     """Match people and what is told, each at most once, so that all pairs together cost least.
 
@@ -74,13 +79,15 @@ def pairs(
         people: N.
         told: M.
         owns: of each person the id of its track of before.
+        time_s: [s] now.
         config: settings.
 
     Returns:
         Index of what is told by index of the person.
     """
     costs = [
-        [cost(person, one, own, config) for one in told] for person, own in zip(people, owns, strict=True)
+        [cost(person, one, own, time_s, config) for one in told]
+        for person, own in zip(people, owns, strict=True)
     ]
     return cheapest(np.array(costs).reshape(len(people), len(told)))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -27,15 +28,17 @@ class Person:
     """Somebody of whom at least one of the trackers has told.
 
     Attributes:
-        id: number of the fused track.
+        id: number of the fused track; negative of a guest, of whom it is not decided who it is.
         motion: place and velocity in the room.
         heat, depth: ids of the tracks in the thermal and in the depth image that are, or were last, its own.
         warm, deep: what these tell in this frame; None for nothing.
         is_peeked: whether it was found where it was expected in the depth image of this frame.
         tall_m, wide_m, span_m: [m] height, and width of the torso and with the arms.
         looks: (BINS,) histogram of colours; None before any were seen in the light.
+        looked: how often these were seen.
         strange: frames in a row in which it looked otherwise.
-        born_s, seen_s: [s] when it was born, and last seen.
+        born_s, seen_s, looked_s: [s] when it was born, last seen, and last known by its looks.
+        looked_m: (2,) where that was in the room; None for nowhere.
     """
 
     id: int
@@ -49,9 +52,12 @@ class Person:
     wide_m: float = WIDE_M
     span_m: float = SPAN_M
     looks: Floats | None = None
+    looked: int = 0
     strange: int = 0
     born_s: float
     seen_s: float
+    looked_s: float = -math.inf
+    looked_m: Floats | None = None
 
     @property
     def told(self) -> tuple[Told, ...]:
@@ -62,6 +68,11 @@ class Person:
     def is_seen(self) -> bool:
         """Whether the person is seen in this frame."""
         return self.is_peeked or any(one.is_seen for one in self.told)
+
+    @property
+    def is_guest(self) -> bool:
+        """Whether it is not decided who this is."""
+        return self.id < 0
 
     @property
     def status(self) -> Status:
@@ -85,6 +96,7 @@ class Person:
             return person
         if told.is_clear or self.depth is None:
             person = person._measured(told, 1.0 if self.depth is None else config.learned, config)
+        person = person._looking(told, time_s, config)
         return replace(person, motion=self._placed(told, config), seen_s=time_s)
 
     def with_heat(self, told: Told, time_s: float, config: FusionConfig) -> Person:
@@ -98,6 +110,7 @@ class Person:
             self,
             id=other.id,
             looks=other.looks,
+            looked=other.looked,
             tall_m=other.tall_m,
             wide_m=other.wide_m,
             span_m=other.span_m,
@@ -122,26 +135,28 @@ class Person:
         return self.motion.corrected(told.place_m, told.error_m2 + np.eye(2) * further_m**2)
 
     def _measured(self, told: Told, share: float, config: FusionConfig) -> Person:
-        """Learn height, width and looks."""
+        """Learn height and width."""
         tall = self.tall_m if told.tall_m is None else self.tall_m + share * (told.tall_m - self.tall_m)
         if not told.is_clear:
             return replace(self, tall_m=tall)
         span = (
             self.span_m if told.span_m is None else self.span_m + config.learned * (told.span_m - self.span_m)
         )
-        return replace(self, tall_m=tall, span_m=span)._looking(told, config)
+        return replace(self, tall_m=tall, span_m=span)
 
-    def _looking(self, told: Told, config: FusionConfig) -> Person:
+    def _looking(self, told: Told, time_s: float, config: FusionConfig) -> Person:
         """Learn looks, but not those of somebody else."""
         if told.looks is None:
             return self
-        if self.looks is None:
-            return replace(self, looks=told.looks)
-        if similarity(self.looks, told.looks) >= config.least_own:
-            return replace(self, looks=self.looks + config.learned * (told.looks - self.looks), strange=0)
-        if self.strange >= config.relearn_frames:
-            return replace(self, looks=told.looks, strange=0)
-        return replace(self, strange=self.strange + 1)
+        if self.looks is None or self.strange >= config.relearn_frames:
+            return replace(
+                self, looks=told.looks, looked=1, looked_s=time_s, looked_m=told.place_m, strange=0
+            )
+        if similarity(self.looks, told.looks) < config.least_own:
+            return replace(self, strange=self.strange + 1)
+        looked = self.looked + 1
+        looks = self.looks + max(config.learned, 1.0 / looked) * (told.looks - self.looks)
+        return replace(self, looks=looks, looked=looked, looked_s=time_s, looked_m=told.place_m, strange=0)
 
 
 def newborn(number: int, told: Told, time_s: float) -> Person:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
+from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
+from peopleboy.tracker.fusion.matching import cheapest
 from peopleboy.tracker.fusion.person import Person
 from peopleboy.tracker.fusion.told import Told
 from peopleboy.tracker.rgbd.people.looks import similarity
@@ -17,6 +19,7 @@ from peopleboy.tracker.rgbd.people.looks import similarity
 _OWN: Final = 1.0  # what it counts that a track was the person's before
 _UNLIKE: Final = 5.0  # what entirely other looks count
 _GRACE_S: Final = 1.0
+_DOUBTED_S: Final = 0.25  # after which who is not known by looks may be elsewhere
 _DOUBTED: Final = 2  # frames in a row in which somebody looked otherwise who may be taken for another
 
 
@@ -27,26 +30,59 @@ class Recognition:
     Attributes:
         config: settings.
         time_s: [s] now.
+        is_lit: whether there are any looks.
     """
 
     config: FusionConfig
     time_s: float
+    is_lit: bool
 
-    def returned(
-        self, told: Told, people: Sequence[Person], own: Callable[[Person], int | None]
-    ) -> Person | None:
-        """Find who of those who are not seen turns up again; None for nobody.
+    def settled(self, people: Sequence[Person], numbers: Iterator[int]) -> list[Person]:
+        """Number those who turned up, as soon as it is plain who they are, or late enough.
+
+        All of them are compared with all who are away at once. Who is taken for somebody who seemed to be
+        seen, but was not known by looks of late, has that one's number.
 
         Args:
-            told: a track of nobody who is seen.
-            people: everybody who is known.
-            own: gives the id of a person's track of before by the same tracker.
+            people: everybody; who turned up has a negative id.
+            numbers: of people who were never here before.
         """
-        away = {one.id: self._strangeness(one, told, own(one)) for one in people if not one.is_seen}
-        nearest = min(away, key=lambda number: away[number], default=None)
-        if nearest is None or math.isinf(away[nearest]):
-            return None
-        return next(one for one in people if one.id == nearest)
+        guests = [one for one in people if one.is_guest]
+        away = [one for one in people if not one.is_guest and self._is_away(one)]
+        costs = np.array([[self._strangeness(one, guest) for one in away] for guest in guests])
+        costs = costs.reshape(len(guests), len(away))
+        found = cheapest(costs)
+        known = {one.id: one for one in people}
+        for k, guest in enumerate(guests):
+            if not guest.is_seen or not self._is_plain(guest, costs[k], found.get(k)):
+                continue
+            del known[guest.id]
+            named = guest.named(away[found[k]]) if k in found else replace(guest, id=next(numbers))
+            known[named.id] = named
+        return list(known.values())
+
+    def _is_away(self, person: Person) -> bool:
+        """Tell whether somebody may be elsewhere: who is not seen, or not known by looks of late."""
+        is_doubted = self.is_lit and person.looks is not None and self.time_s - person.looked_s > _DOUBTED_S
+        return not person.is_seen or is_doubted
+
+    def _is_plain(self, guest: Person, costs: Floats, chosen: int | None) -> bool:
+        """Tell whether it is time to say who somebody is.
+
+        Args:
+            guest: who turned up.
+            costs: (N,) how unlikely it is that this is each of those who are away.
+            chosen: which of them it is most likely; None for nobody.
+        """
+        is_late = self.time_s - guest.born_s >= self.config.settled_s
+        if not self.is_lit or is_late or len(costs) == 0:
+            return True
+        if guest.looks is None:
+            return False
+        if chosen is None:
+            return bool(np.isinf(costs).all())
+        others = np.delete(costs, chosen)
+        return bool((others - costs[chosen] >= self.config.plain).all())
 
     def put_right(self, people: Sequence[Person]) -> list[Person]:
         """Give people who look like another that one's number.
@@ -57,6 +93,8 @@ class Recognition:
         known = {one.id: one for one in people}
         for number in list(known):
             one = known.get(number)
+            if one is not None and one.is_guest:
+                continue
             other = None if one is None else self._other(one, list(known.values()))
             if one is not None and other is not None:
                 known[other.id] = one.named(other)
@@ -65,23 +103,39 @@ class Recognition:
                     del known[one.id]
         return list(known.values())
 
-    def _strangeness(self, person: Person, told: Told, own: int | None) -> float:
-        """Rate how unlikely it is that somebody turns up here; infinite if it is out of the question."""
-        config, late_s = self.config, self.time_s - person.seen_s
-        slack_m = 2.0 * math.sqrt(float(np.linalg.eigvalsh(told.error_m2)[-1]))
+    def _strangeness(self, person: Person, guest: Person) -> float:
+        """Rate how unlikely it is that a guest is somebody; infinite if it is out of the question."""
+        if person.is_seen and guest.looks is None:
+            return math.inf
+        is_own = person.depth == guest.depth if guest.depth is not None else person.heat == guest.heat
+        return (
+            self._distance(person, guest)
+            + self._unlikeness(person, guest, is_own=is_own)
+            - (_OWN if is_own else 0.0)
+        )
+
+    def _distance(self, person: Person, guest: Person) -> float:
+        """Rate the way since somebody was last known by its looks, or seen if there are none: 1 at most."""
+        config = self.config
+        late_s, last_m = self.time_s - person.seen_s, person.motion.place_m
+        if guest.looks is not None and person.looked_m is not None:
+            late_s, last_m = self.time_s - person.looked_s, person.looked_m
+        slack_m = 2.0 * math.sqrt(float(np.linalg.eigvalsh(guest.motion.place_m2)[-1]))
         reach_m = config.reach_m + config.fastest_m_s * late_s + slack_m
-        found = math.dist(told.place_m, person.motion.place_m) / reach_m
-        if found > 1.0:
-            return math.inf
-        if told.looks is not None and person.looks is not None:
-            alike = similarity(person.looks, told.looks)
-            found += _UNLIKE * (1.0 - alike) if alike >= config.least_alike else math.inf
-        elif told.id != own and late_s > config.lookless_s:
-            return math.inf
-        if told.tall_m is not None and person.depth is not None:
-            off = abs(told.tall_m - person.tall_m) / config.tallest_off_m
-            found += off if off <= 1.0 else math.inf
-        return found - (_OWN if told.id == own else 0.0)
+        found = math.dist(guest.motion.place_m, last_m) / reach_m
+        return found if found <= 1.0 else math.inf
+
+    def _unlikeness(self, person: Person, guest: Person, *, is_own: bool) -> float:
+        """Rate how different looks and height are; height alone decides only where there are no looks."""
+        config = self.config
+        off = 0.0
+        if guest.depth is not None and person.depth is not None:
+            off = abs(guest.tall_m - person.tall_m) / config.tallest_off_m
+        if guest.looks is not None and person.looks is not None:
+            alike = similarity(person.looks, guest.looks)
+            return _UNLIKE * (1.0 - alike) + min(off, 1.0) if alike >= config.least_alike else math.inf
+        is_long_ago = not is_own and self.time_s - person.seen_s > config.lookless_s
+        return math.inf if is_long_ago or off > 1.0 else off
 
     def _is_young(self, person: Person) -> bool:
         return self.time_s - person.born_s < self.config.young_s
@@ -89,7 +143,7 @@ class Recognition:
     def _other(self, person: Person, people: Sequence[Person]) -> Person | None:
         """Find whose looks somebody has who looks otherwise, or is new."""
         told, is_strange = person.deep, person.strange >= self.config.strange_frames
-        if told is None or told.looks is None or not told.is_clear:
+        if told is None or told.looks is None:
             return None
         if not is_strange and not self._is_young(person):
             return None
@@ -106,9 +160,7 @@ class Recognition:
         return next(other for other in people if other.id == best)
 
     def _may_be(self, person: Person, other: Person, told: Told, *, is_strange: bool) -> bool:
-        if other.id == person.id or told.tall_m is None:
-            return False
-        if abs(told.tall_m - other.tall_m) >= self.config.tallest_off_m:
+        if other.id == person.id or other.is_guest or told.tall_m is None:
             return False
         if other.is_seen:
             return is_strange and other.strange >= _DOUBTED

@@ -8,7 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Frame
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame
+from peopleboy.tracker.fusion.colours import colours
 from peopleboy.tracker.fusion.fresh_images import FreshImages
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.glance import REACH_M, glance
@@ -65,6 +66,9 @@ class Heat:
 class Depth:
     """The tracker by depth, without those who are cold.
 
+    Attributes:
+        is_lit: whether colours meant anything in the last image.
+
     Args:
         tracker: finds people in the depth image.
         config: settings.
@@ -74,6 +78,7 @@ class Depth:
         self.tracker = tracker
         self._config = config
         self._images = FreshImages(DEPTH)
+        self.is_lit = False
 
     def told(self, frame: Frame, pose: RobotPose) -> list[Told]:
         """Tell of everybody; nobody without a new image."""
@@ -84,14 +89,16 @@ class Depth:
         explanation = self.tracker.explanation
         assert explanation is not None
         people = {one.id: one for one in explanation.hypotheses}
-        is_lit = float(frame.rgb(DEPTH_COLOUR)[::_EVERY, ::_EVERY].mean()) > LIT
+        self.is_lit = float(frame.rgb(DEPTH_COLOUR)[::_EVERY, ::_EVERY].mean()) > LIT
         told = []
         for track in tracks:
             person = people[track.id]
             is_found = frame.time_s - person.seen_s < _MISSED_S
             body = _body_of(person, explanation.detections) if is_found else None
+            has_looks = self.is_lit and is_found
+            looks = colours(person.place_m, person.body.head_m, frame) if has_looks else None
             if not self._is_cold(track, person, frame):
-                told.append(_deep(track, person, body, pose, is_found=is_found, is_lit=is_lit))
+                told.append(_deep(track, person, body, looks, pose, is_found=is_found))
         return told
 
     def _is_cold(self, track: Track, person: Hypothesis, frame: Frame) -> bool:
@@ -115,7 +122,13 @@ def _warm(track: Track, pose: RobotPose) -> Told:
 
 
 def _deep(
-    track: Track, person: Hypothesis, body: Body | None, pose: RobotPose, *, is_found: bool, is_lit: bool
+    track: Track,
+    person: Hypothesis,
+    body: Body | None,
+    looks: Floats | None,
+    pose: RobotPose,
+    *,
+    is_found: bool,
 ) -> Told:
     place, error = in_room(track, pose)
     return Told(
@@ -127,7 +140,7 @@ def _deep(
         occluder=track.occluder,
         tall_m=(body or person.body).head_m,
         span_m=person.body.width_m,
-        looks=body.looks if body is not None and is_lit else None,
+        looks=looks,
     )
 
 

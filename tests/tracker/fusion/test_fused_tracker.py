@@ -22,14 +22,15 @@ from peopleboy.tracker.rgbd.people.looks import BINS
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
-from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
+from tests.helpers.depth_scene import FOCAL_PX, HEIGHT, WIDTH, Block, depth_of, make_view
 from tests.helpers.images.cardboard import CAMERA
 from tests.helpers.runs.hand_made_tracks import track
 from tests.helpers.runs.synthetic_ticks import ELLIPSE
 
 CALIBRATION = make_view().calibration
 TALL_M = 1.65
-RED, BLUE = 1, 30
+RED, BLUE, GREEN = 5, 50, 29
+PAINT = {RED: (230, 20, 20), BLUE: (20, 20, 230), GREEN: (20, 230, 20)}
 HIDDEN = Status.TOTALLY_OCCLUDED
 
 
@@ -96,6 +97,16 @@ def body(colour: int) -> Body:
     return Body(width_m=0.45, head_m=TALL_M, low_m=0.0, looks=looks(colour))
 
 
+def is_at(one: Track, block: Block) -> bool:
+    return one.place is not None and math.dist(one.place.position_m, (block.z_m + 0.1, -block.x_m)) < 0.05
+
+
+def pixels_of(block: Block, depth: np.ndarray) -> np.ndarray:
+    """Whether a pixel (H, W) shows a block."""
+    off_m = (np.arange(WIDTH) - (WIDTH - 1) / 2) / FOCAL_PX * block.z_m - block.x_m
+    return np.asarray((depth == round(1000 * block.z_m)) & (np.abs(off_m) <= block.width_m / 2))
+
+
 class Around:
     """A panoramic tracker."""
 
@@ -120,6 +131,7 @@ class Scene:
         ahead = AheadTracker(self.heat, self.depth, FusionConfig())  # type: ignore[arg-type]
         self.tracker = FusedTracker(ahead, self.around)  # type: ignore[arg-type]
         self.k = 0
+        self.clothes: dict[Block, int] = {}
 
     def see(
         self,
@@ -132,11 +144,14 @@ class Scene:
     ) -> dict[int, Track]:
         self.k += 1
         self.heat.tracks, self.depth.told = tuple(warm), tuple(deep)
+        self.clothes = {block: colour for block in blocks for one, colour in deep if is_at(one, block)}
         images: dict[str, Any] = {
             THERMAL: np.full((HEIGHT, WIDTH), grey, np.uint8),
             DEPTH: depth_of(list(blocks)),
             DEPTH_COLOUR: np.full((HEIGHT, WIDTH, 3), 120, np.uint8),
         }
+        for block, colour in self.clothes.items():
+            images[DEPTH_COLOUR][pixels_of(block, images[DEPTH])] = PAINT[colour]
         images[THERMAL][0, 0] = images[DEPTH][0, 0] = self.k % 200  # no two images are equal
         calibrations: dict[str, Any] = {THERMAL: CALIBRATION, DEPTH: CALIBRATION}
         if has_panorama:
@@ -272,6 +287,47 @@ def test_who_comes_back_after_long_is_known_by_looks() -> None:
         scene.see()
     assert list(scene.see(there, deep=[by_depth(5, there, BLUE)])) == [2]
     assert set(scene.see(there, here, deep=[by_depth(5, there, BLUE), by_depth(6, here, RED)])) == {1, 2}
+
+
+def test_who_turns_up_without_looks_is_told_when_they_are_seen_or_late_enough() -> None:
+    """Of whom too little is seen for colours it is not decided who it is for half a second."""
+    scene, here, front = Scene(), Block(-1.0, 5.0), Block(0.62, 3.0, width_m=0.7)
+    for _ in range(20):
+        scene.see(here, deep=[by_depth(1, here, RED)])
+    for _ in range(60):
+        scene.see()
+    there = Block(1.05, 5.0)
+    covered = [list(scene.see(front, there, deep=[by_depth(5, there, BLUE)])) for _ in range(10)]
+    assert covered[:7] == [[]] * 7
+    assert covered[-1] == [2]
+    back = Block(-1.2, 5.0)
+    assert list(scene.see(back, deep=[by_depth(6, back, RED)])) == [1]
+
+
+def test_two_who_come_back_at_once_are_told_apart_by_looks() -> None:
+    """Each where the other one was last seen, with the other one's track by depth."""
+    scene, left, right = Scene(), Block(-0.6, 5.0), Block(0.6, 5.0)
+    for _ in range(20):
+        scene.see(left, right, deep=[by_depth(1, left, RED), by_depth(2, right, BLUE)])
+    for _ in range(30):
+        scene.see()
+    for _ in range(3):
+        seen = scene.see(left, right, deep=[by_depth(1, left, BLUE), by_depth(2, right, RED)])
+        places = {number: one.place.position_m[1] > 0 for number, one in seen.items() if one.place}
+        assert places == {1: False, 2: True}
+
+
+def test_whose_track_drifted_away_keeps_the_number_where_the_looks_are() -> None:
+    """The track by depth goes off with a thing beside, and a new one finds the person."""
+    scene, someone, thing = Scene(), Block(0.0, 5.0), Block(0.7, 5.0)
+    for _ in range(20):
+        scene.see(someone, deep=[by_depth(1, someone, RED)])
+    for k in range(12):
+        beside = replace(thing, x_m=min(0.12 * k, 0.7))
+        told = [by_depth(1, beside, GREEN)] + ([by_depth(7, someone, RED)] if k > 8 else [])
+        seen = scene.see(someone, beside, deep=told)
+    assert seen[1].place is not None
+    assert seen[1].place.position_m == pytest.approx((5.1, 0.0), abs=0.1)
 
 
 def test_somebody_covered_in_part_is_shown_where_depth_sees_it() -> None:

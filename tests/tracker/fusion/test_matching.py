@@ -49,8 +49,14 @@ def test_heat_is_sure_of_the_bearing_and_depth_of_the_range_too() -> None:
 def test_looks_and_memory_decide_between_two_places_alike() -> None:
     red = person(6.0, 0.0, looks=looks(1), tall_m=1.7)
     same, other = (told(6.1, 0.0, looks=looks(colour), tall_m=1.7) for colour in (1, 2))
-    assert cost(red, same, None, CONFIG) < cost(red, other, None, CONFIG)
-    assert cost(red, same, 1, CONFIG) == cost(red, same, None, CONFIG) - CONFIG.loyalty
+    assert cost(red, same, None, 0.1, CONFIG) < cost(red, other, None, 0.1, CONFIG)
+    assert cost(red, same, 1, 0.1, CONFIG) == cost(red, same, None, 0.1, CONFIG) - CONFIG.loyalty
+
+
+def test_who_is_away_is_not_followed_even_by_its_own_track() -> None:
+    someone, here = person(6.0, 0.0), told(6.0, 0.0)
+    assert np.isfinite(cost(someone, here, 1, CONFIG.away_s, CONFIG))
+    assert np.isinf(cost(someone, here, 1, CONFIG.away_s + 0.01, CONFIG))
 
 
 def test_a_thermal_track_is_beside_who_is_seen_whole_in_another_bearing_and_not_in_another_range() -> None:
