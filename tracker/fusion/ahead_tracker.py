@@ -65,7 +65,7 @@ class AheadTracker:
     @property
     def explanation(self) -> ContourExplanation:
         """What the thermal tracker believes, by the numbers of the people."""
-        number = {one.warm.id: one.id for one in self._people if one.warm is not None}
+        number = {one.warm.id: one.id for one in self._known if one.warm is not None}
         return BothExplanations.of(self._heat.tracker.explanation, None, number).thermal
 
     @property
@@ -98,8 +98,12 @@ class AheadTracker:
             for one in people
             if not self._is_forgotten(one)
         )
-        shown = [one for one in self._people if not one.is_guest and self._is_shown(one, frame)]
+        shown = [one for one in self._known if self._is_shown(one, frame)]
         return tuple(self._track(one, frame) for one in sorted(shown, key=lambda one: one.id))
+
+    @property
+    def _known(self) -> list[Person]:
+        return [one for one in self._people if not one.is_guest]
 
     def _with_depth(self, person: Person, told: Told) -> Person:
         return person.with_depth(told, self._time_s, self._config)
@@ -218,7 +222,7 @@ class AheadTracker:
         """Name who hides a person, by either tracker; None for nobody."""
         for told, own in ((person.deep, _depth), (person.warm, _heat)):
             if told is not None and told.occluder is not None:
-                found = [one.id for one in self._people if own(one) == told.occluder and one.id != person.id]
+                found = [one.id for one in self._known if own(one) == told.occluder and one.id != person.id]
                 if found:
                     return found[0]
         return None

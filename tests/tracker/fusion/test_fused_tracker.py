@@ -304,6 +304,19 @@ def test_who_turns_up_without_looks_is_told_when_they_are_seen_or_late_enough() 
     assert list(scene.see(back, deep=[by_depth(6, back, RED)])) == [1]
 
 
+def test_of_whom_it_is_not_decided_who_it_is_nothing_is_told() -> None:
+    """Neither a contour nor whom it hides."""
+    scene, here, there, behind = Scene(), Block(-1.0, 5.0), Block(1.0, 4.0), Block(0.0, 6.0)
+    for _ in range(20):
+        scene.see(here, deep=[by_depth(1, here, RED)])
+    for _ in range(60):
+        scene.see(behind, deep=[by_depth(2, behind, BLUE)])
+    warm = [by_heat(7, there), by_heat(8, behind, status=Status.PARTLY_OCCLUDED, occluder=7)]
+    seen = scene.see(behind, there, warm=warm, deep=[by_depth(2, behind, BLUE)])
+    assert set(seen) == set(scene.tracker.explanation.both.thermal.ellipses) == {2}
+    assert seen[2].occluder is None
+
+
 def test_two_who_come_back_at_once_are_told_apart_by_looks() -> None:
     """Each where the other one was last seen, with the other one's track by depth."""
     scene, left, right = Scene(), Block(-0.6, 5.0), Block(0.6, 5.0)
