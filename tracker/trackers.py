@@ -30,9 +30,8 @@ from peopleboy.tracker.panoramic.people.place_file import load_places
 from peopleboy.tracker.rgbd.rgbd_config import PRINTED, RgbdConfig
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
-from peopleboy.tracker.thermal.occlusion.learned_order import shipped_order
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import LEARNED, VARIANTS
+from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import Box, Track
 
 
@@ -111,7 +110,7 @@ def knows_again(tracker: Tracker) -> bool:
 
 
 def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
-    return PeopleTracker(VARIANTS[name], rng, shipped_order() if name == LEARNED else None)
+    return PeopleTracker(VARIANTS[name], rng)
 
 
 def _by_detection_tracker(rng: np.random.Generator) -> ByDetectionTracker:  # noqa: ARG001

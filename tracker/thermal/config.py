@@ -141,6 +141,7 @@ class FilterConfig:
     sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0: the probability, or the paper's fitness
     estimate_share: float = 1.0  # share of the samples, the best ones, that makes the estimate
     estimate_reach: float = math.inf  # only those within so many semi-axes of the best
+    resamples_core: bool = False  # whether a person's next samples come from those alone, and not from all
     floor: float = -math.inf  # least fitness for the weight: what a hidden person would have anywhere
 
     def __post_init__(self) -> None:
@@ -220,13 +221,17 @@ class InteractionConfig:
 class DepthConfig:
     """Who is in front of whom, and what that means for the evidence."""
 
-    # By whose feet are lower ("foot"), by looks as well ("appearance"); None: nobody is in front of anybody.
+    # By whose feet are lower ("foot"), by looks as well ("appearance"), by a boosted classifier ("learned");
+    # None: nobody is in front of anybody.
     order: str | None = None
+    table: str = "thesis"  # tracker whose boosted classifier that is
+    remembers_feet: bool = False  # the classifier takes feet as last seen whole, and not the contour's end
     removes_front: bool = False  # points of the contour on people in front are left out of the evidence
     growth: float = 1.0  # by which the people in front are enlarged for that
 
     def __post_init__(self) -> None:
-        refuse_unless(self.order in (None, "foot", "appearance"), self, "order", "foot or appearance")
+        known = (None, "foot", "appearance", "learned")
+        refuse_unless(self.order in known, self, "order", "foot, appearance or learned")
         check_positive(self, "growth")
 
 

@@ -18,14 +18,14 @@ from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanati
 from peopleboy.tracker.thermal.mount import Mount, mount_of, seen_from
 from peopleboy.tracker.thermal.mount_belief import MountBelief, believed_from, is_learnable, tells_mount
 from peopleboy.tracker.thermal.occlusion.depth_order import (
-    ORDERS,
     ExpectedPerson,
     Order,
     Surroundings,
     expected,
-    front_to_back,
+    sorted_by_lead,
     surroundings_of,
 )
+from peopleboy.tracker.thermal.occlusion.learned_order import make_order
 from peopleboy.tracker.thermal.occlusion.policy import OcclusionPolicy, make_policy
 from peopleboy.tracker.thermal.particle_filter import (
     Belief,
@@ -65,8 +65,7 @@ class PeopleTracker:
         self._mount: tuple[Calibration | None, int, Mount] | None = None
         self._belief: MountBelief | None = None  # of a camera that nobody calibrated
         self._rng = rng
-        by = config.depth.order
-        self._order = None if by is None else order or ORDERS[by]
+        self._order = order or make_order(config.depth)
         self._policy = make_policy(config)
         self._model: ContourModel | None = None
         self._clutter: float | None = None
@@ -291,8 +290,8 @@ def _follow(
     that those in front can be taken out of the evidence for those behind.
     """
     figures: Sequence[ExpectedPerson] = expected(persons, view, config)
-    if order is not None:
-        figures = front_to_back(figures, order, view)
+    if order is not None and len(figures) > 1:
+        figures = [figures[row] for row in sorted_by_lead(order(figures, view))]
     samples = _shared_filter(config, len(persons))
     followed: list[TrackedPerson] = []
     for number, figure in enumerate(figures):
@@ -319,7 +318,8 @@ def _carried_on(
 ) -> TrackedPerson:
     """Predict, weigh and judge one person."""
     is_overlapped = bool(surroundings.front) or person.is_hidden
-    particles = person.belief.particles if person.is_hidden else person.belief.core
+    is_core = samples.resamples_core and not person.is_hidden
+    particles = person.belief.core if is_core else person.belief.particles
     state = advance(particles, view, samples, config, rng, policy.motion_of(person), not is_overlapped)
     own_view = view
     if surroundings.front and config.depth.removes_front:

@@ -156,6 +156,7 @@ PEOPLEBOY = TrackerConfig(
         limits=_LIMITS,
         sharpness=20.0,
         estimate_share=0.3,
+        resamples_core=True,
         floor=0.2,
     ),
     life=LifeConfig(
@@ -174,18 +175,18 @@ PEOPLEBOY = TrackerConfig(
     ),
     colour=_PEOPLEBOY_COLOUR,
     appearance=AppearanceConfig(),
-    depth=DepthConfig(order="appearance", removes_front=True, growth=1.2),
+    depth=DepthConfig(order="appearance", remembers_feet=True, removes_front=True, growth=1.2),
     height=HeightConfig(overlapped_spread=0.1),
     occlusion=WalkOnConfig(remembers_lost=True, shows_only_sure=True),
 )
 """What works on the robot: the default."""
 
-LEARNED: Final = "learned"
+PEOPLEBOY_LEARNED = replace(PEOPLEBOY, depth=replace(PEOPLEBOY.depth, order="learned", table="peopleboy"))
 """The default with a learned order in depth."""
 
 VARIANTS: Final[Mapping[str, TrackerConfig]] = {
     "peopleboy": PEOPLEBOY,
-    LEARNED: PEOPLEBOY,
+    "learned": PEOPLEBOY_LEARNED,
     "thesis": THESIS_OCCLUSION,
     "thermal": THESIS,
     "colour": THESIS_COLOUR,

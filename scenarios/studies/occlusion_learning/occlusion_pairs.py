@@ -14,7 +14,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.occlusion.depth_order import ExpectedPerson, Order, lower_foot
+from peopleboy.tracker.thermal.occlusion.depth_order import ExpectedPerson, Leads, Order, lower_foot
 from peopleboy.tracker.thermal.occlusion.learned_order import features_of
 from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES, Features, overlapping_pairs
 from peopleboy.tracker.thermal.particle_filter import FrameView
@@ -53,17 +53,26 @@ class PairExample:
 
 @dataclass(slots=True)
 class RecordingOrder:
-    """Answers like another order, and keeps what it was asked since `asked` was last cleared."""
+    """Answers like another order, and keeps what it was asked since `asked` was last cleared.
 
+    Attributes:
+        remembers_feet: as in `pair_features`.
+        order: who answers.
+        asked: the people who overlap, two by two, with their features.
+    """
+
+    remembers_feet: bool
     order: Order = lower_foot
     asked: list[tuple[ExpectedPerson, ExpectedPerson, Features]] = field(default_factory=list)
 
-    def __call__(self, one: ExpectedPerson, other: ExpectedPerson, view: FrameView) -> float:
+    def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
         """Tell who is in front."""
-        pairs = overlapping_pairs(np.stack([one.state, other.state]))
-        if len(pairs) > 0 and not (one.person.is_hidden or other.person.is_hidden):
-            self.asked.append((one, other, features_of((one, other), pairs, view)[0]))
-        return self.order(one, other, view)
+        seen = [figure for figure in figures if not figure.person.is_hidden]
+        if len(seen) > 1:
+            pairs = overlapping_pairs(np.stack([figure.state for figure in seen]))
+            features = features_of(seen, pairs, view, remembers_feet=self.remembers_feet)
+            self.asked += [(seen[i], seen[j], row) for (i, j), row in zip(pairs, features, strict=True)]
+        return self.order(figures, view)
 
 
 @dataclass(slots=True)
@@ -109,7 +118,7 @@ def collect(scenario: str, seed: int, config: TrackerConfig) -> Iterator[PairExa
     from peopleboy.sim.world import World  # here, as examples that are there can be read without PyBullet
 
     loaded = load_scenario(scenario)
-    order, episodes = RecordingOrder(), Episodes()
+    order, episodes = RecordingOrder(config.depth.remembers_feet), Episodes()
     people = PeopleTracker(config, stream(seed, "tracker"), order)
     with World(loaded.world(seed)) as world:
         frames = round(loaded.duration_s * world.config.control_hz)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cmp_to_key
 from typing import Protocol
 
 import numpy as np
@@ -21,7 +20,8 @@ from peopleboy.tracker.thermal.whereabouts import Regions, overlap_shares, regio
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
 LOOKS = 12.0  # difference of squared distances of looks that counts 1
 MOST = 4.0  # for which looks count at most
-# Where it is not known whether people stand on one floor, or how well their feet are seen:
+
+Leads = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,44 +64,57 @@ def _unlikeness(person: TrackedPerson, features: Floats) -> float:
 
 
 class Order(Protocol):
-    """Compares two people whose regions overlap."""
+    """Compares people with each other."""
 
-    def __call__(self, one: ExpectedPerson, other: ExpectedPerson, view: FrameView) -> float:
-        """Tell who is in front: positive if the one is, negative if the other is; 0 if nobody knows."""
+    def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
+        """Tell who of M people is in front of whom.
+
+        Returns:
+            (M, M) how clearly the row's person is in front of the column's: positive if it is, negative if the
+            other is; 0 if they do not overlap, or nobody knows.
+        """
         ...
 
 
-def lower_foot(one: ExpectedPerson, other: ExpectedPerson, view: FrameView) -> float:  # noqa: ARG001
-    """Take the one whose feet are lower in the image for the nearer one: both stand on one floor."""
-    return one.person.foot - other.person.foot
+def lower_foot(figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:  # noqa: ARG001
+    """Take those whose feet are lower in the image for the nearer ones: all stand on one floor."""
+    return _leads([figure.person.foot for figure in figures])
 
 
-def likelier_front(one: ExpectedPerson, other: ExpectedPerson, view: FrameView) -> float:
+def likelier_front(figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
     """Weigh up whose feet are lower and whose looks are seen where it is expected.
 
     Where two people overlap, the image shows the looks of the one in front; the one behind looks wrong.
     """
-    lower = lower_foot(one, other, view) / (FOOT_PX * view.size)
-    return lower + _clearer_appearance(one, other)
+    clearer = -_leads([figure.unlikeness for figure in figures]) / LOOKS
+    return lower_foot(figures, view) / (FOOT_PX * view.size) + np.clip(clearer, -MOST, MOST)
 
 
-def _clearer_appearance(one: ExpectedPerson, other: ExpectedPerson) -> float:
-    return min(max((other.unlikeness - one.unlikeness) / LOOKS, -MOST), MOST)
+def _leads(values: Sequence[float]) -> Leads:
+    value = np.array(values, dtype=np.float64)
+    return value[:, None] - value[None]
 
 
-def front_to_back(
-    figures: Sequence[ExpectedPerson], order: Order, view: FrameView
-) -> tuple[ExpectedPerson, ...]:
-    """Sort people from front to back by pairwise comparison; who was born first wins a tie.
+def sorted_by_lead(lead: Leads) -> tuple[int, ...]:
+    """Sort M people from front to back by their leads over each other.
 
-    Source: thesis, section 7.1.
+    Whoever nobody else is in front of comes first, and so on with the rest. Where leads go round in a circle,
+    whom the fewest are in front of comes first; then whose leads over the rest add up to more; then the
+    lower number. So the result never depends on the sequence of the comparisons.
+
+    Args:
+        lead: (M, M) of the row's person over the column's; 0 where they do not overlap, or nobody knows.
+
+    Source: thesis, section 7.1, which leaves circles open.
     """
-
-    def compare(one: ExpectedPerson, other: ExpectedPerson) -> int:
-        lead = order(one, other, view)
-        return int(np.sign(-lead)) if lead != 0 else one.person.id - other.person.id
-
-    return tuple(sorted(figures, key=cmp_to_key(compare)))
+    rest = list(range(len(lead)))
+    order: list[int] = []
+    while rest:
+        among = lead[np.ix_(rest, rest)]
+        behind = (among < 0).sum(axis=1)
+        first = min(range(len(rest)), key=lambda i: (behind[i], -among[i].sum(), rest[i]))
+        order.append(rest.pop(first))
+    return tuple(order)
 
 
 ORDERS: Mapping[str, Order] = {"foot": lower_foot, "appearance": likelier_front}

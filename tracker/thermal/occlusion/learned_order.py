@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.occlusion.depth_order import ExpectedPerson
+from peopleboy.tracker.thermal.config import DepthConfig
+from peopleboy.tracker.thermal.occlusion.depth_order import ORDERS, ExpectedPerson, Leads, Order
 from peopleboy.tracker.thermal.occlusion.learned_table import TABLES, LearnedTable
 from peopleboy.tracker.thermal.occlusion.pair_features import (
     FEATURES,
@@ -20,6 +21,8 @@ from peopleboy.tracker.thermal.occlusion.pair_features import (
 )
 from peopleboy.tracker.thermal.particle_filter import FrameView
 
+LEARNED: Final = "learned"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LearnedOrder:
@@ -29,14 +32,16 @@ class LearnedOrder:
         weights: (T, 6) of the features, unscaled; their sign holds the parity.
         threshold: (T,) above which a classifier votes against the one.
         importance: (T,) sums to 1.
+        remembers_feet: whether feet are where they were last seen whole, or where the contour ends.
     """
 
     weights: Features
     threshold: Features
     importance: Features
+    remembers_feet: bool = True
 
     @classmethod
-    def build(cls, table: LearnedTable) -> LearnedOrder:
+    def build(cls, table: LearnedTable, *, remembers_feet: bool = True) -> LearnedOrder:
         """Lay a table out for quick use."""
         weak = table.classifiers
         scale = np.array([table.scale[name] for name in FEATURES])
@@ -47,6 +52,7 @@ class LearnedOrder:
             parity[:, None] * weights,
             parity * np.array([w.threshold for w in weak]),
             importance / importance.sum(),
+            remembers_feet,
         )
 
     def votes(self, features: Features) -> Features:
@@ -66,57 +72,39 @@ class LearnedOrder:
         """
         return (self.votes(features) - self.votes(-features)) / 2
 
-    def __call__(self, one: ExpectedPerson, other: ExpectedPerson, view: FrameView) -> float:
-        """Compare two people: positive if the one is in front, negative if the other is."""
-        return float(self._leads((one, other), np.array([[0, 1]]), view)[0])
-
-    def leads(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Features:
+    def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
         """Compare all people (M,) whose boxes overlap: the lead (M, M) of the row's over the column's.
 
-        All pairs at once cost hardly more than one. `sorted_by_lead` makes an order of it.
+        All pairs at once cost hardly more than one.
         """
         pairs = overlapping_pairs(np.array([figure.state for figure in figures]))
         leads = np.zeros((len(figures), len(figures)))
-        leads[pairs[:, 0], pairs[:, 1]] = self._leads(figures, pairs, view)
+        features = features_of(figures, pairs, view, remembers_feet=self.remembers_feet)
+        leads[pairs[:, 0], pairs[:, 1]] = self.lead(features)
         return leads - leads.T
 
-    def _leads(self, figures: Sequence[ExpectedPerson], pairs: Pairs, view: FrameView) -> Features:
-        return self.lead(features_of(figures, pairs, view))
 
-
-def features_of(figures: Sequence[ExpectedPerson], pairs: Pairs, view: FrameView) -> Features:
+def features_of(
+    figures: Sequence[ExpectedPerson], pairs: Pairs, view: FrameView, *, remembers_feet: bool
+) -> Features:
     """Measure the features (P, 6) of pairs (P, 2) among people (M,)."""
     states = np.array([figure.state for figure in figures])
     models = [figure.person.looks for figure in figures]
-    return pair_features(states, models, pairs, view, [figure.person.foot for figure in figures])
+    feet = [figure.person.foot for figure in figures] if remembers_feet else None
+    return pair_features(states, models, pairs, view, feet)
 
 
 @cache
-def shipped_order(tracker: str = "peopleboy") -> LearnedOrder:
+def shipped_order(tracker: str, *, remembers_feet: bool) -> LearnedOrder:
     """Give the order that was learned for the tracker of that name, and comes with it.
 
     Trackers measure contours and colours in different units, so that each needs a table of its own.
     """
-    return LearnedOrder.build(LearnedTable.load(TABLES / f"{tracker}.yaml"))
+    return LearnedOrder.build(LearnedTable.load(TABLES / f"{tracker}.yaml"), remembers_feet=remembers_feet)
 
 
-def sorted_by_lead(lead: NDArray[np.floating]) -> tuple[int, ...]:
-    """Sort M people from front to back by their leads over each other.
-
-    Whoever nobody else is in front of comes first, and so on with the rest. Where leads go round in a circle,
-    whom the fewest are in front of comes first; then whose leads over the rest add up to more; then the
-    lower number. So the result never depends on the sequence of the comparisons.
-
-    Args:
-        lead: (M, M) of the row's person over the column's; 0 where they do not overlap, or nobody knows.
-
-    Source: thesis, section 7.1, which leaves circles open.
-    """
-    rest = list(range(len(lead)))
-    order: list[int] = []
-    while rest:
-        among = lead[np.ix_(rest, rest)]
-        behind = (among < 0).sum(axis=1)
-        first = min(range(len(rest)), key=lambda i: (behind[i], -among[i].sum(), rest[i]))
-        order.append(rest.pop(first))
-    return tuple(order)
+def make_order(config: DepthConfig) -> Order | None:
+    """Give the way in which a tracker compares people; None if it does not."""
+    if config.order == LEARNED:
+        return shipped_order(config.table, remembers_feet=config.remembers_feet)
+    return None if config.order is None else ORDERS[config.order]

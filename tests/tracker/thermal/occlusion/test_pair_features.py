@@ -111,7 +111,7 @@ def test_colours_that_nobody_knows_make_no_difference(models):
 
 
 def test_everybody_is_compared_at_once_as_they_are_two_by_two():
-    order = shipped_order()
+    order = shipped_order("peopleboy", remembers_feet=True)
     models = known_colours()
     states = [NEAR, FAR, (290.0, 120.0, 9.0, 25.0)]
     figures = [
@@ -119,9 +119,9 @@ def test_everybody_is_compared_at_once_as_they_are_two_by_two():
         for state, model, foot in zip(states, [*models, None], [216.0, 179.0, 171.0], strict=True)
     ]
     view = surroundings(1, 0)
-    leads = order.leads(figures, view)
+    leads = order(figures, view)
     assert np.array_equal(leads, -leads.T)
-    assert leads[0, 1] == order(figures[0], figures[1], view) > 0
+    assert leads[0, 1] == order(figures[:2], view)[0, 1] > 0
     assert np.all(leads[2] == 0)
 
 
