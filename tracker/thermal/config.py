@@ -38,6 +38,7 @@ class ContourConfig:
     inner_depth: float = 1.0  # distance of the inner points as a share of that of the outer ones
     far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 is none
     saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
+    is_cut_off: bool = False  # whether it is linear up to there, and flat from there on, instead
     # Clutters (`likelihood.clutter_of`) at which the response bends, if that is more: what differs no more
     # than the image does everywhere says little.
     clutter_share: float = 0.0
@@ -224,7 +225,6 @@ class DepthConfig:
     # By whose feet are lower ("foot"), by looks as well ("appearance"), by a boosted classifier ("learned");
     # None: nobody is in front of anybody.
     order: str | None = None
-    table: str = "thesis"  # tracker whose boosted classifier that is
     remembers_feet: bool = False  # the classifier takes feet as last seen whole, and not the contour's end
     removes_front: bool = False  # points of the contour on people in front are left out of the evidence
     growth: float = 1.0  # by which the people in front are enlarged for that

@@ -18,7 +18,7 @@ class Ellipse:
 
     Attributes:
         x, y: centre of the body ellipse [px].
-        w, h: its semi-axes [px]; the head's semi-height is h/4.4, and it stands on top of the body.
+        w, h: its semi-axes [px]; the head's semi-height is h/4.4, our reading, and it stands on top of it.
         d: how far the head's centre lies right of the body's [px].
         vx, vy, vw, vh: rates of change of x, y, w and h [px/s].
 

@@ -28,7 +28,8 @@ VY: Final = 6
 VW: Final = 7
 VH: Final = 8
 STATE_SIZE: Final = 9
-# A person in body semi-heights: the thesis's head (section 4.2), and feet as seen on people who stand.
+# A person in body semi-heights, as seen on people who stand. The thesis divides h "by a constant factor" for
+# the head, too, but does not print it (section 4.2): 4.4 is our reading.
 HEAD_DIVISOR: Final = 4.4  # body semi-height / head semi-height
 CROWN: Final = 1 + 2 / HEAD_DIVISOR  # top of the head above the body's centre
 FOOT: Final = 2.05  # feet below it

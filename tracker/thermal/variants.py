@@ -30,7 +30,7 @@ from peopleboy.tracker.thermal.config import (
     WalkOnConfig,
 )
 
-_BEND_GREY = 40.0  # unit of the fitness, in which kappa and theta are given below
+_CAP_GREY = 40.0  # unit of the fitness, in which kappa and theta are given below
 _ROOT_STEP = math.sqrt(1 / 15)  # of the thesis's time step [s]
 _THESIS_SAMPLES = FilterConfig(limits=LimitsConfig(h=(0.02, 0.25)), log_uniform_h=True)
 
@@ -40,14 +40,15 @@ THESIS = TrackerConfig(
         head_reach=(0.4,),
         inner_depth=0.6,
         side_end_deg=120.0,
-        saturation_grey=_BEND_GREY,
+        saturation_grey=_CAP_GREY,
+        is_cut_off=True,
         hottest_grey=250,
         hot_margin_px=1,
     ),
-    likelihood=LikelihoodConfig(slope=0.125 * _BEND_GREY, threshold=22.0 / _BEND_GREY),
+    likelihood=LikelihoodConfig(slope=0.125 * _CAP_GREY, threshold=22.0 / _CAP_GREY),
     motion=MotionConfig(
-        noise_x=30.0 * _ROOT_STEP,
-        noise_y=30.0 * _ROOT_STEP,
+        noise_x=30.0 / 2,
+        noise_y=30.0 / 2,
         noise_w=22.0 * _ROOT_STEP,
         noise_h=22.0 * _ROOT_STEP,
         fresh_speed=(60.0, 8.0, 2.0, 2.0),
@@ -57,16 +58,20 @@ THESIS = TrackerConfig(
 )
 """Chapters 4 and 5, thermal alone, with the thesis's constants and these readings of what it leaves open.
 
+What each is worth was measured on training seeds; the page of `peopleboy reproduce` lists it.
+
 Contrast: theta = 22 and kappa = 0.125 were fitted to the thesis's camera. Our people are 60 to 200 grey above
-what is behind them, and one side of a head would already exceed theta. Differences therefore bend at 40 grey,
-the largest contrast at which a head alone, 0.54 of the weights, does not reach theta. What is at the end of
-the scale is hotter than any person and counts as cold; the thesis has no such step, but its rooms had fewer
-lamps and radiators of the size of a person.
+what is behind them, and one side of a head would already exceed theta. Differences therefore count up to 40
+grey, the largest contrast at which a head alone, 0.54 of the weights, does not reach theta. What is at the
+end of the scale is hotter than any person and counts as cold; the thesis has no such step, but its rooms had
+fewer lamps and radiators of the size of a person.
 
 Contour: points lie at shares of the ellipses, further outside than inside, so that the width found is not
-biased, and the sides end above the legs. Motion: B is Brownian motion's amplitude after one second, so that
-the entries of the velocities grow with the root of the time step. Prior: uniform in the logarithm of h, up to
-the largest body that fits into the image, and with the speeds of people who walk past.
+biased, and the sides end above the legs. Motion: B names no unit of time. The velocities' entries for w and h
+are Brownian motion's amplitude after one second, and grow with the root of the time step; those for x and y
+are half of what is printed, in every step: with the root people are found later, with all of it they are
+lost. Prior: uniform in the logarithm of h, up to the largest body that fits into the image, and with the
+speeds of people who walk past.
 """
 
 THESIS_COLOUR = replace(
@@ -91,7 +96,7 @@ _PAPER_SAMPLES = replace(_THESIS_SAMPLES, fresh_share=0.1, estimate_share=0.3)
 PAPER = replace(
     THESIS,
     likelihood=replace(
-        THESIS.likelihood, model="paper", threshold=18.0 / _BEND_GREY, section_threshold=10.0 / _BEND_GREY
+        THESIS.likelihood, model="paper", threshold=18.0 / _CAP_GREY, section_threshold=10.0 / _CAP_GREY
     ),
     detector=_PAPER_SAMPLES,
     person=_PAPER_SAMPLES,
@@ -181,7 +186,7 @@ PEOPLEBOY = TrackerConfig(
 )
 """What works on the robot: the default."""
 
-PEOPLEBOY_LEARNED = replace(PEOPLEBOY, depth=replace(PEOPLEBOY.depth, order="learned", table="peopleboy"))
+PEOPLEBOY_LEARNED = replace(PEOPLEBOY, depth=replace(PEOPLEBOY.depth, order="learned"))
 """The default with a learned order in depth."""
 
 VARIANTS: Final[Mapping[str, TrackerConfig]] = {

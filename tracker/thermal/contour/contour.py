@@ -141,7 +141,9 @@ def _feet_points() -> tuple[Floats, Floats]:
 def build_response(config: ContourConfig) -> Floats:
     """Tabulate (8, 511) what a difference of grey -255..255, inner minus outer, counts in each section."""
     difference = np.arange(1 - GREYS, GREYS, dtype=np.float64)
-    response = np.tanh(difference / config.saturation_grey) if config.saturation_grey > 0 else difference
+    response = difference / (config.saturation_grey or 1.0)
+    if config.saturation_grey > 0:
+        response = np.clip(response, -1.0, 1.0) if config.is_cut_off else np.tanh(response)
     table = np.tile(response, (SECTIONS, 1))
     # A garment may be colder than what is behind it; a head hardly ever is.
     table[SHOULDER_LEFT:FEET] = np.where(difference < 0, config.cold_response * response, response)

@@ -70,8 +70,8 @@ class Order(Protocol):
         """Tell who of M people is in front of whom.
 
         Returns:
-            (M, M) how clearly the row's person is in front of the column's: positive if it is, negative if the
-            other is; 0 if they do not overlap, or nobody knows.
+            (M, M) how clearly the row's person is in front of the column's: positive if it is, negative if
+            the other is; 0 if they do not overlap, or nobody knows.
         """
         ...
 

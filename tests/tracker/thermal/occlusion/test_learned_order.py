@@ -123,4 +123,4 @@ def test_a_missing_file_is_refused(tmp_path):
 
 def test_the_shipped_table_says_that_the_larger_and_lower_of_two_is_in_front():
     nearer = np.array([[0.0, -0.1, 0.15, 0.0, 0.0, 0.0]])
-    assert shipped_order("peopleboy", remembers_feet=True).lead(nearer)[0] > 0.2
+    assert shipped_order().lead(nearer)[0] > 0.2
