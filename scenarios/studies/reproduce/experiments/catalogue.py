@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.reproduce.experiments.attention import ATTENTION
@@ -23,8 +23,11 @@ from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Cha
 from peopleboy.tracker.evaluation.uncounted import Rule
 from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
 
-LITERAL, STRICT, OURS = "literal", "literal, strict", "default"
-"""The source's tracker; the same, with candidates on uncounted people as false alarms; ours."""
+LITERAL, OURS = "literal", "default"
+"""The source's tracker, and ours."""
+
+RULES: dict[str, Rule] = {"": "ignore", ", strict": "absent"}
+"""Ways to count, by what they add to a tracker's name: strictly, boxes on uncounted people are false."""
 
 SINGLE = ("dataset1", "dataset2")
 SEVERAL = ("dataset3", "dataset4")
@@ -32,17 +35,14 @@ SEVERAL = ("dataset3", "dataset4")
 
 def _per_suite(number: str, suites: Sequence[str], literal: str) -> Tracking:
     """Give one figure per data set, by both rules."""
-    kinds: tuple[tuple[str, str, Rule], ...] = (
-        (LITERAL, literal, "ignore"),
-        (STRICT, literal, "absent"),
-        (OURS, "peopleboy", "ignore"),
-    )
-    trials = (
-        TrackerTrial(Line(suite, who), Setting(base), (suite,), rule)
-        for suite in suites
-        for who, base, rule in kinds
-    )
+    trials = (trial for suite in suites for trial in _by_both_rules(suite, (suite,), literal))
     return Tracking(number, THESIS, tuple(trials), "bars", THESIS)
+
+
+def _by_both_rules(group: str, suites: tuple[str, ...], literal: str) -> Iterator[TrackerTrial]:
+    for who, base in ((LITERAL, literal), (OURS, "peopleboy")):
+        for strictly, rule in RULES.items():
+            yield TrackerTrial(Line(group, who + strictly), Setting(base), suites, rule)
 
 
 def _sweep(
@@ -208,12 +208,8 @@ _SPACES: dict[str, Changes | None] = {
 
 
 def _paper_figure_5() -> Tracking:
-    trials = (
-        TrackerTrial(Line("several persons", LITERAL), Setting("paper-several"), SEVERAL),
-        TrackerTrial(Line("several persons", STRICT), Setting("paper-several"), SEVERAL, "absent"),
-        TrackerTrial(Line("several persons", OURS), Setting("peopleboy"), SEVERAL),
-    )
-    return Tracking("paper-figure-5", PAPER, trials, "bars", PAPER)
+    trials = _by_both_rules("several persons", SEVERAL, "paper-several")
+    return Tracking("paper-figure-5", PAPER, tuple(trials), "bars", PAPER)
 
 
 _TABLE_7_1 = (Way("thermal", THERMAL), Way("colour", COLOUR), Way("both"))

@@ -9,12 +9,15 @@ import numpy as np
 from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import TRAINING, UNSEEN
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.scenarios.studies.reproduce.measuring.learn_units import LearnUnit, PairUnit, examples
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
 
 SHARE = "right [%]"
 TESTS = ("held out", "unseen scenarios")
+TRACKERS = {"literal": Setting("thesis-occlusion"), "default": Setting("peopleboy")}
+"""Who measures the examples; the thesis says nothing of tests on other scenes than those it learned from."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,14 +34,18 @@ class Way:
     uses: tuple[str, ...] = FEATURES
     most: int = 2
 
-    def unit(self, plan: Plan, done: Done, split: int) -> LearnUnit:
+    def unit(self, plan: Plan, done: Done, split: int, whose: Setting) -> LearnUnit:
         """Give the work of one split; the examples must have been collected."""
         rounds = 1 if len(self.uses) == 1 else plan.rounds
         training, unseen = (
-            tuple(example for unit in pair_units(plan, names) for example in examples(unit, done[unit.key]))
+            tuple(
+                example
+                for unit in pair_units(plan, names, whose)
+                for example in examples(unit, done[unit.key])
+            )
             for names in (TRAINING, UNSEEN)
         )
-        return LearnUnit(self.uses, self.most, rounds, split, training, unseen)
+        return LearnUnit(self.uses, self.most, rounds, split, training, unseen, whose)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,16 +59,25 @@ class Learning:
 
     def wants(self, plan: Plan, done: Done) -> list[Unit]:
         """Examples first, then what is learned from them."""
-        pairs = missing(pair_units(plan, (*TRAINING, *UNSEEN)), done)
-        return pairs or missing([unit for way in self._ways(plan) for unit in _splits(way, plan, done)], done)
+        pairs = [
+            unit for whose in TRACKERS.values() for unit in pair_units(plan, (*TRAINING, *UNSEEN), whose)
+        ]
+        lessons = (
+            unit
+            for whose in TRACKERS.values()
+            for way in self._ways(plan)
+            for unit in _splits(way, plan, done, whose)
+        )
+        return missing(pairs, done) or missing(lessons, done)
 
     def samples(self, plan: Plan, done: Done) -> Samples:
         """Give the share of right answers, split by split."""
         return {
-            Line(way.name, test): {
-                SHARE: np.array([done[unit.key][test] for unit in _splits(way, plan, done)])
+            Line(way.name, f"{who}, {test}"): {
+                SHARE: np.array([done[unit.key][test] for unit in _splits(way, plan, done, whose)])
             }
             for way in self._ways(plan)
+            for who, whose in TRACKERS.items()
             for test in TESTS
         }
 
@@ -84,17 +100,18 @@ class BestClassifiers:
 
     def samples(self, plan: Plan, done: Done) -> Samples:
         """Give the weights of the first split; NaN for features that a classifier does not use."""
-        best = done[self.way.unit(plan, done, 0).key]["best"]
+        best = {who: done[self.way.unit(plan, done, 0, whose).key]["best"] for who, whose in TRACKERS.items()}
         return {
-            Line(str(place), "simulated"): {name: np.array([weights.get(name, np.nan)]) for name in FEATURES}
-            for place, weights in enumerate(best, 1)
+            Line(str(place), who): {name: np.array([weights.get(name, np.nan)]) for name in FEATURES}
+            for who, chosen in best.items()
+            for place, weights in enumerate(chosen, 1)
         }
 
 
-def pair_units(plan: Plan, names: tuple[str, ...]) -> list[PairUnit]:
-    """List where examples come from."""
-    return [PairUnit(name, seed) for name in names for seed in range(plan.pair_seeds)]
+def pair_units(plan: Plan, names: tuple[str, ...], whose: Setting) -> list[PairUnit]:
+    """List where a tracker's examples come from."""
+    return [PairUnit(name, seed, whose) for name in names for seed in range(plan.pair_seeds)]
 
 
-def _splits(way: Way, plan: Plan, done: Done) -> list[LearnUnit]:
-    return [way.unit(plan, done, split) for split in range(plan.splits)]
+def _splits(way: Way, plan: Plan, done: Done, whose: Setting) -> list[LearnUnit]:
+    return [way.unit(plan, done, split, whose) for split in range(plan.splits)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from peopleboy.scenarios.running.engine.store import Result
@@ -12,7 +13,8 @@ from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Set
 from peopleboy.sim.random_streams import stream
 
 TRAINING_SHARE = 0.6
-COLLECTS = Setting("peopleboy")
+LEAST = 20
+"""Pairs with fewer of which nothing is learned."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,16 +23,17 @@ class PairUnit:
 
     scenario: str
     seed: int
+    setting: Setting
     is_timing: bool = False
 
     @property
     def key(self) -> str:
-        """Scenario and seed."""
-        return f"pairs {self.scenario}-{self.seed}"
+        """Whose examples, from where."""
+        return f"pairs {self.scenario}-{self.seed} | {self.setting.key}"
 
     def run(self) -> Result:
         """Collect the examples."""
-        return {"pairs": plain_pairs(collect(self.scenario, self.seed, COLLECTS.config()))}
+        return {"pairs": plain_pairs(collect(self.scenario, self.seed, self.setting.config()))}
 
 
 def examples(unit: PairUnit, result: Result) -> list[PairExample]:
@@ -49,6 +52,7 @@ class LearnUnit:
         split: number of the random split, from 0.
         training: examples to split.
         unseen: examples of other scenarios.
+        whose: the tracker that measured them.
     """
 
     uses: tuple[str, ...]
@@ -57,6 +61,7 @@ class LearnUnit:
     split: int
     training: tuple[PairExample, ...]
     unseen: tuple[PairExample, ...]
+    whose: Setting
     is_timing: bool = False
 
     @property
@@ -64,7 +69,7 @@ class LearnUnit:
         """What is learned from how many examples, and the split."""
         count = f"{len(self.training)}+{len(self.unseen)}"
         uses = f"{','.join(self.uses)} by {self.most}"
-        return f"learn {uses} | {count} pairs, {self.rounds} rounds | {self.split}"
+        return f"learn {uses} | {count} pairs of {self.whose.key}, {self.rounds} rounds | {self.split}"
 
     def run(self) -> Result:
         """Learn and test.
@@ -74,6 +79,8 @@ class LearnUnit:
         # Only here: what needs scikit-learn is not needed for anything else.
         from peopleboy.tracker.thermal.occlusion.boosting import train
 
+        if len(self.training) < LEAST:
+            return {"held out": math.nan, "unseen scenarios": math.nan, "best": []}
         order = stream(self.split, "reproduce.split").permutation(len(self.training))[:PAIRS]
         cut = round(TRAINING_SHARE * len(order))
         chosen, rest = ([self.training[i] for i in rows] for rows in (order[:cut], order[cut:]))

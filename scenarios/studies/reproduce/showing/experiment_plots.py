@@ -15,7 +15,17 @@ from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experim
 from peopleboy.scenarios.studies.reproduce.showing.against_source import mean_and_spread
 from peopleboy.scenarios.studies.reproduce.showing.source import SOURCE, SourceTable
 
-COLOURS = {SOURCE: "#1a1a1a", "literal": "#d95f02", "literal, strict": "#f4a76a", "default": "#1f78b4"}
+COLOURS = {
+    SOURCE: "#1a1a1a",
+    "literal": "#d95f02",
+    "literal, strict": "#f4a76a",
+    "default": "#1f78b4",
+    "default, strict": "#8fbbd9",
+    "literal, held out": "#d95f02",
+    "literal, unseen scenarios": "#f4a76a",
+    "default, held out": "#1f78b4",
+    "default, unseen scenarios": "#8fbbd9",
+}
 Series = dict[str, dict[str, tuple[float, float | None]]]
 _OTHERS = ("#1f78b4", "#66a61e", "#7570b3")
 
