@@ -20,6 +20,8 @@ from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import (
     run_trials,
     share_right,
 )
+from peopleboy.scenarios.studies.reproduce.measuring.learn_units import LEAST, LearnUnit
+from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
 from tests.helpers.calls.refused import refused
 from tests.helpers.runs.synthetic_ticks import person
@@ -146,3 +148,15 @@ def test_a_file_that_is_no_table_of_examples_is_refused(tmp_path, text):
         read_pairs(path)
     with refused(tmp_path / "nothing.csv"):
         read_pairs(tmp_path / "nothing.csv")
+
+
+def test_too_few_pairs_of_a_tracker_teach_nothing_and_say_so():
+    def lesson(count: int) -> LearnUnit:
+        given = tuple(examples(count, 1))
+        return LearnUnit(("top", "bottom"), 2, 5, 0, given, given, Setting("thesis-occlusion"))
+
+    few, enough = lesson(LEAST - 1).run(), lesson(LEAST).run()
+    assert np.isnan([few["held out"], few["unseen scenarios"]]).all()
+    assert few["best"] == []
+    assert enough["held out"] > 60
+    assert "thesis-occlusion" in lesson(1).key

@@ -226,3 +226,11 @@ def test_what_is_too_hot_becomes_cold_with_a_margin_and_the_rest_stays():
 def test_a_contour_that_cannot_be_is_refused(bad):
     with pytest.raises(BadInput, match="ContourConfig"):
         ContourConfig(**bad)
+
+
+def test_a_response_that_is_cut_off_is_linear_up_to_there_and_flat_beyond():
+    response = build_response(ContourConfig(saturation_grey=40.0, is_cut_off=True))
+    difference = np.arange(-255, 256)
+    assert np.allclose(response[:, abs(difference) <= 40], difference[abs(difference) <= 40] / 40)
+    assert np.all(response[:, difference > 40] == 1)
+    assert np.all(response[:, difference < -40] == -1)
