@@ -143,11 +143,13 @@ class ByDetectionTracker:
         is_told = np.array([target.is_told for target in self._targets], bool)
         mutual = iou(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
         hidden_by = _hidden_by(expected, is_told, found)
+        theirs = [found[row] for row in found if is_told[row]]
+        shared = _shared(proposed.boxes, theirs)
         for row, target in enumerate(self._targets):
             if row in found:
                 seen = found[row]
                 target.see(
-                    float(proposed.scores[seen]), proposed.ratio(seen), now.time_s, now.dt_s, config.existence
+                    float(proposed.scores[seen]), proposed.ratio(seen), float(shared[seen]), now.time_s, now.dt_s, config.existence
                 )
                 if not (is_told & (mutual[row] > _CLEAR)).any():
                     target.learn(proposed.looks[seen], proposed.colours[seen])
@@ -184,6 +186,7 @@ class ByDetectionTracker:
         """Begin to follow some of those who are proposed."""
         if len(free) == 0:
             return
+        config = self._config.existence
         new = begun(proposed.boxes[free], now.view, self._config.path)
         self._paths = self._paths.joined(new)
         self._targets += [
@@ -194,6 +197,7 @@ class ByDetectionTracker:
                 colours=proposed.colours[row],
                 ratio=proposed.ratio(row),
                 origin_m=feet[:3],
+                log_odds=config.first * (min(float(proposed.scores[row]) + config.lean, config.highest_score) - config.still_doubt),
             )
             for row, feet in zip(free.tolist(), new.mean, strict=True)
         ]
@@ -255,6 +259,14 @@ def _hidden_by(expected: Floats, is_told: NDArray[np.bool_], found: dict[int, in
     return [
         int(np.argmax(covered[row] * hides[row])) if hides[row].any() else None for row in range(len(hides))
     ]
+
+
+def _shared(boxes: Floats, theirs: Sequence[int]) -> Floats:
+    """Tell what share of the smaller box each of (M, 4) has in common with one of some others, at most."""
+    common = intersection(boxes[:, None], boxes[None, theirs])
+    share = common / np.minimum(area(boxes)[:, None], area(boxes[theirs])[None])
+    share[theirs, np.arange(len(theirs))] = 0.0
+    return np.asarray(share.max(axis=1, initial=0.0))
 
 
 def _surely_apart_m(origin_m: Floats, mean: Floats, error: Floats) -> float:

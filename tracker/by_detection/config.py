@@ -64,6 +64,8 @@ class ExistenceConfig:
     Attributes:
         weakest: proposals of a lower score are not looked at.
         birth: score of a proposal that may be somebody new.
+        lean: what is added to scores: boxes that are left, and come again, are surer than windows were.
+        first: share of the first image's score that counts at once.
         independent_s: images so far apart speak for themselves.
         highest_score: what one image can say at most.
         highest: what all can say.
@@ -82,6 +84,9 @@ class ExistenceConfig:
 
     weakest: float = -2.0
     birth: float = 0.0
+    lean: float = 0.0
+    first: float = 0.0
+    shared_doubt: float = 0.0
     independent_s: float = 0.25
     highest_score: float = 3.0
     highest: float = 8.0

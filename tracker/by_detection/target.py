@@ -57,14 +57,16 @@ class Target:
         """Whether it is believed to be a person."""
         return self.id > 0
 
-    def see(self, score: float, ratio: float, time_s: float, dt_s: float, config: ExistenceConfig) -> None:
+    def see(self, score: float, ratio: float, shared: float, time_s: float, dt_s: float, config: ExistenceConfig) -> None:
         """Take in that it was found with a score, and a box so wide."""
         self.seen_s, self.occluder = time_s, None
         self.sightings += 1
         self.watched_s += dt_s
         self.ratio += _LEARNING * (ratio - self.ratio)
         doubt = 0.0 if self.moved_m > config.moved_m else config.still_doubt
-        evidence = (min(score, config.highest_score) - doubt) * dt_s / config.independent_s
+        if not self.is_told:
+            doubt += config.shared_doubt * shared
+        evidence = (min(score + config.lean, config.highest_score) - doubt) * dt_s / config.independent_s
         self.log_odds = min(self.log_odds + evidence, config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-score)) - self.confidence)
 
