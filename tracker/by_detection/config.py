@@ -17,16 +17,22 @@ class PathConfig:
         acceleration_m_s2: deviation of the acceleration to the right, down, and away.
         speed_m_s: deviation of the velocity of somebody just found, along the same.
         column: deviation of a box's middle column, in its heights.
-        foot: deviation of its lower end, in its heights.
-        log_height: deviation of the logarithm of its height, stature and posture included.
+        head: deviation of its upper end, in its heights.
+        foot: deviation of its lower end, likewise.
+        cut: deviation of an end that the image's border cuts off, likewise.
+        build: deviation of the logarithm of people's stature.
+        posture: by how much that changes in a second, as people sit down or bend.
         floor_m: deviation of feet from the floor, where it is known.
     """
 
     acceleration_m_s2: tuple[float, float, float] = (0.8, 0.2, 0.8)
     speed_m_s: tuple[float, float, float] = (1.0, 0.2, 1.0)
     column: float = 0.05
+    head: float = 0.06
     foot: float = 0.06
-    log_height: float = 0.1
+    cut: float = 0.2
+    build: float = 0.08
+    posture: float = 0.05
     floor_m: float = 0.15
 
 

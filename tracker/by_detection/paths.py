@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +16,18 @@ from peopleboy.tracker.frame import Odometry
 Floats = NDArray[np.float64]
 
 
+STATE: Final = 7
+_AT_BORDER: Final = 0.04  # heights from the border within which an end counts as cut off
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Paths:
     """What is believed of K people's feet.
 
     Attributes:
-        mean: (K, 6) place [m] and velocity [m/s] in the level frame of the camera.
-        covariance: (K, 6, 6) of the same.
+        mean: (K, 7) place [m] and velocity [m/s] in the level frame of the camera, and build, the logarithm of
+            the stature over the usual one.
+        covariance: (K, 7, 7) of the same.
     """
 
     mean: Floats
@@ -47,29 +53,40 @@ class Paths:
         return Paths(mean, covariance)
 
 
-NOBODY = Paths(np.empty((0, 6)), np.empty((0, 6, 6)))
+NOBODY = Paths(np.empty((0, STATE)), np.empty((0, STATE, STATE)))
 
 
 def begun(boxes: Floats, view: Viewpoint, config: PathConfig) -> Paths:
     """Begin paths where people are proposed (K, 4); nobody knows where they go."""
     feet = view.feet(boxes)
-    noise = _noise(boxes[:, 3], config)
-    back = np.linalg.inv(view.slopes(feet))
-    covariance = np.zeros((len(feet), 6, 6))
+    build = np.zeros(len(feet))
+    slope = view.slopes(feet, build)
+    back = np.linalg.inv(slope[:, :, :3])
+    grown = back @ slope[:, :, 3:]
+    covariance = np.zeros((len(feet), STATE, STATE))
+    noise = _noise(boxes, view, config) + slope[:, :, 3:] @ slope[:, :, 3:].transpose(0, 2, 1) * config.build**2
     covariance[:, :3, :3] = back @ noise @ back.transpose(0, 2, 1)
-    covariance[:, 3:, 3:] = np.diag(np.square(config.speed_m_s))
-    return Paths(np.concatenate([feet, np.zeros_like(feet)], axis=1), covariance)
+    covariance[:, 3:6, 3:6] = np.diag(np.square(config.speed_m_s))
+    covariance[:, 6, 6] = config.build**2
+    covariance[:, :3, 6] = -grown[:, :, 0] * config.build**2
+    covariance[:, 6, :3] = covariance[:, :3, 6]
+    begun_at = Paths(np.concatenate([feet, np.zeros((len(feet), 4))], axis=1), covariance)
+    return begun_at if view.floor_m is None else _on_floor(begun_at, view.floor_m, config.floor_m)
 
 
 def advanced(paths: Paths, dt_s: float, moved: Odometry, config: PathConfig) -> Paths:
     """Carry paths on to the next frame, by white acceleration, and into the frame of a robot that moved."""
-    step = np.eye(6)
-    step[:3, 3:] = dt_s * np.eye(3)
+    step = np.eye(STATE)
+    step[:3, 3:6] = dt_s * np.eye(3)
     grown = [[dt_s**3 / 3.0, dt_s**2 / 2.0], [dt_s**2 / 2.0, dt_s]]
-    spread = np.kron(grown, np.diag(np.square(config.acceleration_m_s2)))
-    whole = np.kron(np.eye(2), _turn(moved))
+    spread = np.zeros((STATE, STATE))
+    spread[:6, :6] = np.kron(grown, np.diag(np.square(config.acceleration_m_s2)))
+    spread[6, 6] = config.posture**2 * dt_s
+    whole = np.eye(STATE)
+    whole[:6, :6] = np.kron(np.eye(2), _turn(moved))
     walked = paths.mean @ step.T
-    mean = np.concatenate([carried(walked[:, :3], moved), walked[:, 3:] @ _turn(moved).T], axis=1)
+    mean = walked @ whole.T
+    mean[:, :3] = carried(walked[:, :3], moved)
     mean[:, 2] = np.maximum(mean[:, 2], NEAREST_M)
     covariance = step @ paths.covariance @ step.T + spread
     return Paths(mean, whole @ covariance @ whole.T)
@@ -82,7 +99,9 @@ def carried(points_m: Floats, moved: Odometry) -> Floats:
 
 def distances(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) -> Floats:
     """Give the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
-    gap, spread, _ = _innovation(paths, boxes, view, config)
+    expected, slope = _expected(paths, view)
+    spread = _spread(paths, slope, _noise(boxes_of(paths, view, np.zeros(len(paths))), view, config))
+    gap = _ends(boxes)[None] - expected[:, None]
     return np.asarray(np.sqrt(np.einsum("kmi,kij,kmj->km", gap, np.linalg.inv(spread), gap)))
 
 
@@ -90,20 +109,20 @@ def corrected(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) 
     """Take in a box (K, 4) for each, and that feet are on the floor, where it is known."""
     if len(paths) == 0:
         return paths
-    gap, spread, slope = _innovation(paths, boxes, view, config)
+    expected, slope = _expected(paths, view)
+    spread = _spread(paths, slope, _noise(boxes, view, config))
     gain = paths.covariance @ slope.transpose(0, 2, 1) @ np.linalg.inv(spread)
-    own = gap[np.arange(len(paths)), np.arange(len(paths))]
     later = Paths(
-        paths.mean + np.einsum("kij,kj->ki", gain, own),
-        (np.eye(6) - gain @ slope) @ paths.covariance,
+        paths.mean + np.einsum("kij,kj->ki", gain, _ends(boxes) - expected),
+        (np.eye(STATE) - gain @ slope) @ paths.covariance,
     )
     return later if view.floor_m is None else _on_floor(later, view.floor_m, config.floor_m)
 
 
 def boxes_of(paths: Paths, view: Viewpoint, ratio: Floats) -> Floats:
     """Give the boxes (K, 4) [px] of people who are so wide (K,), in heights."""
-    column, foot, log_height = view.seen(paths.mean[:, :3]).T
-    height = np.exp(log_height)
+    column, head, foot = view.seen(paths.mean[:, :3], paths.mean[:, 6]).T
+    height = np.maximum(foot - head, 1.0)
     width = ratio * height
     boxes = np.stack([column - width / 2.0, foot - height, width, height], axis=1)
     return np.asarray(boxes, np.float64)
@@ -115,26 +134,34 @@ def _turn(moved: Odometry) -> Floats:
     return np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
 
 
-def _innovation(
-    paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig
-) -> tuple[Floats, Floats, Floats]:
-    """Give what is seen less what is expected (K, M, 3), the covariance (K, 3, 3) and slopes (K, 3, 6)."""
-    feet = paths.mean[:, :3]
-    expected = view.seen(feet)
-    slope = np.zeros((len(paths), 3, 6))
-    slope[:, :, :3] = view.slopes(feet)
-    spread = slope @ paths.covariance @ slope.transpose(0, 2, 1) + _noise(np.exp(expected[:, 2]), config)
+def _expected(paths: Paths, view: Viewpoint) -> tuple[Floats, Floats]:
+    """Give what is expected to be seen (K, 3), and its slopes (K, 3, 7)."""
+    feet, build = paths.mean[:, :3], paths.mean[:, 6]
+    slope = np.zeros((len(paths), 3, STATE))
+    slope[:, :, (0, 1, 2, 6)] = view.slopes(feet, build)
+    return view.seen(feet, build), slope
+
+
+def _spread(paths: Paths, slope: Floats, noise: Floats) -> Floats:
+    """Give the covariances (K, 3, 3) of what is seen."""
+    return np.asarray(slope @ paths.covariance @ slope.transpose(0, 2, 1) + noise)
+
+
+def _ends(boxes: Floats) -> Floats:
+    """Give middle column, rows of head and feet (M, 3) of boxes (M, 4)."""
     left, top, width, height = boxes.T
-    seen = np.stack([left + width / 2.0, top + height, np.log(height)], axis=1)
-    return seen[None] - expected[:, None], spread, slope
+    return np.stack([left + width / 2.0, top, top + height], axis=1)
 
 
-def _noise(height: Floats, config: PathConfig) -> Floats:
-    """Give the covariances (K, 3, 3) of what is seen of people of these heights (K,) [px]."""
-    noise = np.zeros((len(height), 3, 3))
-    noise[:, 0, 0] = (config.column * height) ** 2
-    noise[:, 1, 1] = (config.foot * height) ** 2
-    noise[:, 2, 2] = config.log_height**2
+def _noise(boxes: Floats, view: Viewpoint, config: PathConfig) -> Floats:
+    """Give the covariances (K, 3, 3) of the ends of boxes (K, 4); of those cut off little is known."""
+    _, top, _, height = boxes.T
+    near = _AT_BORDER * height
+    head = np.where(top < near, config.cut, config.head)
+    foot = np.where(top + height > view.rows - 1 - near, config.cut, config.foot)
+    noise = np.zeros((len(boxes), 3, 3))
+    for row, deviation in enumerate((config.column, head, foot)):
+        noise[:, row, row] = (deviation * height) ** 2
     return noise
 
 

@@ -22,7 +22,6 @@ VIEW_ANGLE_DEG: Final = 44.0
 
 NEAREST_M: Final = 0.3
 _ROBOT_FROM_LEVEL: Final = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-_UP: Final = np.array([0.0, -STATURE_M, 0.0])
 _STEP_M: Final = 1e-3
 
 
@@ -35,12 +34,14 @@ class Viewpoint:
         centre_px: where the optical axis meets the image.
         camera_from_level: (3, 3) rotation.
         floor_m: how far below the camera the floor is; None if nobody knows.
+        rows: of the image.
     """
 
     focal_px: tuple[float, float]
     centre_px: tuple[float, float]
     camera_from_level: Floats
     floor_m: float | None
+    rows: int
 
     @classmethod
     def of(cls, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
@@ -57,21 +58,31 @@ class Viewpoint:
                 (float(matrix[0, 2]), float(matrix[1, 2])),
                 calibration.robot_from_camera[:3, :3].T @ _ROBOT_FROM_LEVEL,
                 calibration.position_m[2],
+                shape[0],
             )
         rows, columns = shape
         focal = rows / 2.0 / math.tan(math.radians(VIEW_ANGLE_DEG) / 2.0)
-        return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None)
+        return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None, rows)
 
-    def seen(self, feet_m: Floats) -> Floats:
-        """Tell how people with these feet (K, 3) are seen: (K, 3) middle column, foot row, log height."""
-        foot, head = self._pixels(feet_m), self._pixels(feet_m + _UP)
-        height = np.maximum(foot[:, 1] - head[:, 1], 1.0)
-        return np.stack([(foot[:, 0] + head[:, 0]) / 2.0, foot[:, 1], np.log(height)], axis=1)
+    def seen(self, feet_m: Floats, build: Floats) -> Floats:
+        """Tell how people are seen: (K, 3) middle column, rows of head and feet.
 
-    def slopes(self, feet_m: Floats) -> Floats:
-        """Give the derivatives (K, 3, 3) of `seen` by x, y, z of the feet."""
-        sides = [self.seen(feet_m + step) - self.seen(feet_m - step) for step in _STEP_M * np.eye(3)]
-        return np.stack(sides, axis=2) / (2.0 * _STEP_M)
+        Args:
+            feet_m: (K, 3) where they stand.
+            build: (K,) logarithm of their stature over the usual one.
+        """
+        heads = feet_m.copy()
+        heads[:, 1] -= STATURE_M * np.exp(build)
+        foot, head = self._pixels(feet_m), self._pixels(heads)
+        return np.stack([(foot[:, 0] + head[:, 0]) / 2.0, head[:, 1], foot[:, 1]], axis=1)
+
+    def slopes(self, feet_m: Floats, build: Floats) -> Floats:
+        """Give the derivatives (K, 3, 4) of `seen` by x, y, z of the feet, and the build."""
+        moved = [
+            self.seen(feet_m + step, build) - self.seen(feet_m - step, build) for step in _STEP_M * np.eye(3)
+        ]
+        grown = self.seen(feet_m, build + _STEP_M) - self.seen(feet_m, build - _STEP_M)
+        return np.stack([*moved, grown], axis=2) / (2.0 * _STEP_M)
 
     def feet(self, boxes: Floats) -> Floats:
         """Tell where people with these boxes (K, 4) stand, (K, 3), if they are of the usual stature."""
