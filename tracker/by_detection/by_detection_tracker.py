@@ -13,6 +13,7 @@ from peopleboy.tracker.boxes import area, cover, intersection, iou
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.by_detection.finder import Finder, ThermalFinder
+from peopleboy.tracker.by_detection.identities import known_again, resolve
 from peopleboy.tracker.by_detection.matching import matched
 from peopleboy.tracker.by_detection.paths import (
     NOBODY,
@@ -37,6 +38,7 @@ _COVERED: Final = 0.35  # share of a box that is hidden by who stands in front
 _LOWER: Final = 0.03  # who stands so much lower in the image, in heights, is in front
 _CLEAR: Final = 0.2  # overlap with others up to which looks are learned
 _TAKEN: Final = 0.45  # overlap with somebody from which a proposal is nobody new
+_NOBODY: Final = -1  # number of who turned out to be another one
 _ABOVE_GROUND: Final = 0.04  # of the distance: error of how far something moved
 
 
@@ -99,7 +101,7 @@ class ByDetectionTracker:
         if self._introduced is not None:
             self._meet(np.array([self._introduced]), frame, now)
             self._introduced = None
-        self._judge(now.time_s)
+        self._judge(now)
         self._explanation = DetectionExplanation(boxes=proposed.boxes, scores=proposed.scores)
         return self._tracks(frame, now)
 
@@ -121,6 +123,9 @@ class ByDetectionTracker:
         for target in self._targets:
             target.origin_m = carried(target.origin_m[None], moved)[0]
 
+    def _told(self) -> NDArray[np.bool_]:
+        return np.array([target.is_told for target in self._targets], np.bool_)
+
     def _boxes(self, view: Viewpoint) -> Floats:
         return boxes_of(self._paths, view, np.array([target.ratio for target in self._targets]))
 
@@ -129,7 +134,7 @@ class ByDetectionTracker:
             return {}
         return matched(
             self._targets,
-            distances(self._paths, proposed.boxes, now.view, self._config.path),
+            distances(self._paths, proposed.boxes, _footless(expected, self._told()), now.view, self._config.path),
             iou(expected[:, None], proposed.boxes[None]),
             *proposed.likeness(self._targets),
             proposed.scores,
@@ -140,9 +145,11 @@ class ByDetectionTracker:
     def _take_in(self, found: dict[int, int], expected: Floats, proposed: Proposed, now: _Instant) -> None:
         """Correct those who were found, and look for who hides the others."""
         config = self._config
-        is_told = np.array([target.is_told for target in self._targets], bool)
+        is_told = self._told()
         mutual = iou(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
         hidden_by = _hidden_by(expected, is_told, found)
+        since = now.time_s - config.matching.lost_s
+        was_lost = np.array([target.is_told and target.seen_s < since for target in self._targets], bool)
         theirs = [found[row] for row in found if is_told[row]]
         shared = _shared(proposed.boxes, theirs)
         for row, target in enumerate(self._targets):
@@ -151,15 +158,21 @@ class ByDetectionTracker:
                 target.see(
                     float(proposed.scores[seen]), proposed.ratio(seen), float(shared[seen]), now.time_s, now.dt_s, config.existence
                 )
-                if not (is_told & (mutual[row] > _CLEAR)).any():
-                    target.learn(proposed.looks[seen], proposed.colours[seen])
+                beside = np.flatnonzero(is_told & (mutual[row] > _CLEAR))
+                if len(beside):
+                    target.meet({self._targets[other].id for other in beside.tolist()})
+                else:
+                    target.learn(proposed.looks[seen], proposed.colours[seen], now.dt_s)
             else:
                 front = hidden_by[row]
                 target.miss(None if front is None else self._targets[front].id, now.dt_s, config.existence)
         if found:
             rows = np.array(sorted(found))
             boxes = proposed.boxes[[found[row] for row in rows]]
-            later = corrected(self._paths.take(rows), boxes, now.view, config.path)
+            is_footless = _footless(expected, is_told)[rows]
+            later = corrected(self._paths.take(rows), boxes, is_footless, now.view, config.path)
+            is_back = was_lost[rows]
+            later = later.replaced(np.flatnonzero(is_back), begun(boxes[is_back], now.view, config.path))
             self._paths = self._paths.replaced(rows, later)
 
     def _begin(self, taken: set[int], proposed: Proposed, now: _Instant) -> None:
@@ -180,7 +193,7 @@ class ByDetectionTracker:
         self._paths = self._paths.take(kept)
         self._targets = [self._targets[row] for row in kept]
         self._add(np.zeros(1, int), Proposed.of(frame, box, np.zeros(1), now.view), now)
-        self._tell(self._targets[-1])
+        self._tell(self._targets[-1], now.time_s)
 
     def _add(self, free: NDArray[np.intp], proposed: Proposed, now: _Instant) -> None:
         """Begin to follow some of those who are proposed."""
@@ -202,19 +215,43 @@ class ByDetectionTracker:
             for row, feet in zip(free.tolist(), new.mean, strict=True)
         ]
 
-    def _judge(self, time_s: float) -> None:
+    def _judge(self, now: _Instant) -> None:
         """Tell of those who are sure, and forget those who are gone."""
         config = self._config.existence
         deviation = np.sqrt(np.diagonal(self._paths.covariance, axis1=1, axis2=2))
         for target, mean, error in zip(self._targets, self._paths.mean, deviation, strict=True):
             target.moved_m = max(target.moved_m, _surely_apart_m(target.origin_m, mean, error))
-            if not target.is_told and target.is_confirmed(config):
-                self._tell(target)
-        kept = [row for row, target in enumerate(self._targets) if not target.is_forgotten(time_s, config)]
+            if target.seen_s == now.time_s and (target.is_confirmed(config) or target.is_told):
+                self._recognise(target, now)
+        resolve(self._targets, now.time_s, self._config.identity)
+        kept = [row for row, target in enumerate(self._targets) if target.id != _NOBODY and not target.is_forgotten(now.time_s, config)]
         self._paths = self._paths.take(np.array(kept, int))
         self._targets = [self._targets[row] for row in kept]
 
-    def _tell(self, target: Target) -> None:
+    def _recognise(self, target: Target, now: _Instant) -> None:
+        """Tell of somebody, who may be one of those who were lost."""
+        config = self._config.identity
+        if now.time_s - target.told_s > config.revised_s:
+            return
+        since = now.time_s - config.gone_s
+        lost = [other for other in self._targets if other.is_told and other.seen_s < since and other is not target]
+        before = known_again(target, lost, lambda other: self._is_near(other, target, now), config)
+        if before is not None:
+            target.take_over(before)
+            before.id = _NOBODY
+        elif not target.is_told:
+            self._tell(target, now.time_s)
+
+    def _is_near(self, other: Target, target: Target, now: _Instant) -> bool:
+        """Tell whether somebody who was lost may have come where another one is, and looks like him."""
+        rows = np.array([self._targets.index(other), self._targets.index(target)])
+        box = boxes_of(self._paths.take(rows[1:]), now.view, np.array([target.ratio]))
+        apart = float(distances(self._paths.take(rows[:1]), box, np.zeros(1, np.bool_), now.view, self._config.path)[0, 0])
+        config = self._config.matching
+        return apart < config.gate and float(other.looks @ target.looks) > config.looks_of_lost
+
+    def _tell(self, target: Target, time_s: float) -> None:
+        target.told_s = time_s
         self._born += 1
         target.id = self._born
         target.log_odds = max(target.log_odds, self._config.existence.confirmed)
@@ -259,6 +296,15 @@ def _hidden_by(expected: Floats, is_told: NDArray[np.bool_], found: dict[int, in
     return [
         int(np.argmax(covered[row] * hides[row])) if hides[row].any() else None for row in range(len(hides))
     ]
+
+
+def _footless(expected: Floats, is_told: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Tell of K people with boxes (K, 4) whose feet are behind somebody who is told."""
+    left, top, width, height = expected.T
+    middle, foot = left + width / 2.0, top + height
+    inside = (middle[:, None] > left[None]) & (middle[:, None] < (left + width)[None])
+    inside &= (foot[:, None] > top[None]) & (foot[:, None] < (foot - _LOWER * height)[None])
+    return np.asarray((inside & is_told[None]).any(axis=1))
 
 
 def _shared(boxes: Floats, theirs: Sequence[int]) -> Floats:

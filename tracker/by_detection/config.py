@@ -64,6 +64,25 @@ class MatchingConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class IdentityConfig:
+    """When people turn out to be others than they were taken for.
+
+    Attributes:
+        gone_s: who was not found for so long may be somebody new.
+        revised_s: for how long after somebody new is told he may still turn out to be another one.
+        parted_s: how long people who met are seen apart before it is decided who is who.
+        margin: by how much better they must look like each other, in sums of Bhattacharyya's coefficient.
+        same: coefficient from which on somebody new is one of those who were lost.
+    """
+
+    gone_s: float = 0.2
+    revised_s: float = 1.5
+    parted_s: float = 0.5
+    margin: float = 0.2
+    same: float = 0.65
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ExistenceConfig:
     """When somebody is believed to be there, by the log odds that add up.
 
@@ -116,3 +135,4 @@ class ByDetectionConfig:
     path: PathConfig = field(default_factory=PathConfig)
     matching: MatchingConfig = field(default_factory=MatchingConfig)
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
+    identity: IdentityConfig = field(default_factory=IdentityConfig)

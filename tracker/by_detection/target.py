@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.by_detection.colours import Colours
+from peopleboy.tracker.by_detection.colours import FEATURES, Colours
 from peopleboy.tracker.by_detection.config import ExistenceConfig
 from peopleboy.tracker.by_detection.looks import Pattern
 from peopleboy.tracker.by_detection.paths import Floats
@@ -18,7 +18,7 @@ _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
 _LEAST_SIGHTINGS: Final = 3
 
 
-@dataclass(slots=True, kw_only=True)
+@dataclass(slots=True, kw_only=True, eq=False)
 class Target:
     """What is known of somebody besides the path.
 
@@ -36,6 +36,10 @@ class Target:
         confidence: 0..1, of the last images in which it was seen.
         moved_m: how far from its origin it surely was at most.
         occluder: id of who hides it.
+        told_s: since when it is told.
+        met: ids of those whom it overlapped, so that it may be one of them.
+        recent: what it wears since then.
+        clear_s: for how long it was seen apart since then.
     """
 
     born_s: float
@@ -51,6 +55,10 @@ class Target:
     confidence: float = 0.5
     moved_m: float = 0.0
     occluder: int | None = None
+    told_s: float = math.inf
+    met: set[int] = field(default_factory=set)
+    recent: Colours = field(default_factory=lambda: np.zeros(FEATURES, np.float32))
+    clear_s: float = 0.0
 
     @property
     def is_told(self) -> bool:
@@ -67,15 +75,39 @@ class Target:
         if not self.is_told:
             doubt += config.shared_doubt * shared
         evidence = (min(score + config.lean, config.highest_score) - doubt) * dt_s / config.independent_s
-        self.log_odds = min(self.log_odds + evidence, config.highest)
+        before = max(self.log_odds, config.confirmed) if self.is_told else self.log_odds
+        self.log_odds = min(before + evidence, config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-score)) - self.confidence)
 
-    def learn(self, looks: Pattern, colours: Colours) -> None:
-        """Take in how it looks now."""
-        self.looks = self.looks + np.float32(_LEARNING) * (looks - self.looks)
-        if colours.any():
-            before = self.colours if self.colours.any() else colours
-            self.colours = before + np.float32(_LEARNING) * (colours - before)
+    def learn(self, looks: Pattern, colours: Colours, dt_s: float) -> None:
+        """Take in how it looks now, apart from others."""
+        share = np.float32(max(_LEARNING, 1.0 / self.sightings))
+        self.looks = self.looks + share * (looks - self.looks)
+        if not self.met:
+            self.colours = _blended(self.colours, colours, share)
+            return
+        self.clear_s += dt_s
+        self.recent = _blended(self.recent, colours, np.float32(_LEARNING))
+
+    def meet(self, others: set[int]) -> None:
+        """Take in whom it overlaps."""
+        self.met |= others
+        self.clear_s, self.recent = 0.0, np.zeros_like(self.recent)
+
+    def settle(self) -> None:
+        """Take in that it is who it is taken for."""
+        self.colours = _blended(self.colours, self.recent, np.float32(_LEARNING))
+        self.met, self.clear_s, self.recent = set(), 0.0, np.zeros_like(self.recent)
+
+    def take_over(self, before: Target) -> None:
+        """Go on as somebody who was lost."""
+        self.id, self.born_s = before.id, before.born_s
+        self.told_s = min(self.told_s, before.told_s)
+        self.colours = _blended(before.colours, self.colours, np.float32(_LEARNING))
+        self.looks = before.looks + np.float32(_LEARNING) * (self.looks - before.looks)
+        self.watched_s += before.watched_s
+        self.moved_m = max(self.moved_m, before.moved_m)
+        self.log_odds = max(self.log_odds, before.log_odds)
 
     def miss(self, occluder: int | None, dt_s: float, config: ExistenceConfig) -> None:
         """Take in that it was not found, and who may hide it."""
@@ -106,3 +138,10 @@ class Target:
     def is_confirmed(self, config: ExistenceConfig) -> bool:
         """Tell whether enough speaks for it to be told."""
         return self.sightings >= _LEAST_SIGHTINGS and self.log_odds > config.confirmed
+
+
+def _blended(before: Colours, now: Colours, share: np.float32) -> Colours:
+    """Give what is remembered after something else is seen, if anything is."""
+    if not now.any() or not before.any():
+        return now if now.any() else before
+    return np.asarray(before + share * (now - before), np.float32)
