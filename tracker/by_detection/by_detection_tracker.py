@@ -97,7 +97,7 @@ class ByDetectionTracker:
         expected = self._boxes(view)
         found = self._matched(expected, proposed, now)
         self._take_in(found, expected, proposed, now)
-        self._begin(set(found.values()), proposed, now)
+        self._begin(found, proposed, now)
         if self._introduced is not None:
             self._meet(np.array([self._introduced]), frame, now)
             self._introduced = None
@@ -158,9 +158,8 @@ class ByDetectionTracker:
                 target.see(
                     float(proposed.scores[seen]), proposed.ratio(seen), float(shared[seen]), now.time_s, now.dt_s, config.existence
                 )
-                beside = np.flatnonzero(is_told & (mutual[row] > _CLEAR))
-                if len(beside):
-                    target.meet({self._targets[other].id for other in beside.tolist()})
+                if (is_told & (mutual[row] > _CLEAR)).any():
+                    target.overlap()
                 else:
                     target.learn(proposed.looks[seen], proposed.colours[seen], now.dt_s)
             else:
@@ -175,15 +174,18 @@ class ByDetectionTracker:
             later = later.replaced(np.flatnonzero(is_back), begun(boxes[is_back], now.view, config.path))
             self._paths = self._paths.replaced(rows, later)
 
-    def _begin(self, taken: set[int], proposed: Proposed, now: _Instant) -> None:
+    def _begin(self, found: dict[int, int], proposed: Proposed, now: _Instant) -> None:
         """Begin to follow whoever is proposed where nobody is."""
         config = self._config
         is_free = proposed.scores >= config.existence.birth
-        is_free[list(taken)] = False
+        is_free[list(found.values())] = False
         recent = [target.seen_s > now.time_s - config.matching.lost_s for target in self._targets]
         if any(recent):
             known = self._boxes(now.view)[np.array(recent)]
             is_free &= (iou(proposed.boxes[:, None], known[None]) < _TAKEN).all(axis=1)
+        told = self._told()
+        theirs = [column for row, column in found.items() if told[row]]
+        proposed.colours[_shared(proposed.boxes, theirs) > _CLEAR] = 0.0  # they may be the other one's
         self._add(np.flatnonzero(is_free), proposed, now)
 
     def _meet(self, box: Floats, frame: Frame, now: _Instant) -> None:

@@ -41,6 +41,11 @@ def colours_of(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     return told
 
 
+def alike(one: Colours, other: Colours) -> float:
+    """Give Bhattacharyya's coefficient of two people's colours: mostly above 0.8 of the same, below 0.4 of others."""
+    return float(one @ other)
+
+
 def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, int]) -> Floats:
     """Carry boxes (M, 4) over to the colour image; one of unknown cameras shows what the thermal one does."""
     thermal, colour = frame.calibrations.get(THERMAL), frame.calibrations.get(COLOUR)

@@ -1,7 +1,7 @@
 """Who is who: decided late, when people who met have parted, and when somebody new is sure to be there.
 
-While people overlap, what is seen of one may be the other. What they look like afterwards is kept apart from
-what they looked like before, until it can be compared.
+While people overlap, what is seen of one may be the other. What they look like afterwards is compared with what
+they looked like before, which is learned no further while they look like somebody else.
 """
 
 from __future__ import annotations
@@ -10,28 +10,30 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from peopleboy.tracker.by_detection.colours import Colours
+from peopleboy.tracker.by_detection.colours import alike
 from peopleboy.tracker.by_detection.config import IdentityConfig
 from peopleboy.tracker.by_detection.target import Target
 
 
 def resolve(targets: Sequence[Target], time_s: float, config: IdentityConfig) -> None:
-    """Let those who met and parted exchange their numbers, if they look like each other did before.
+    """Let people exchange their numbers who look like each other did before.
 
-    Who is in sight again for a while is compared with each of those met: with those in sight once they are
-    seen as long, with others once they are gone for as long.
+    Who is seen apart from others for a while is compared with whoever is seen as long, too, or is gone as long.
     """
-    by_id = {target.id: target for target in targets if target.is_told}
-    for one in list(by_id.values()):
-        if one.clear_s < config.parted_s or not one.recent.any():
+    known = [target for target in targets if target.is_told and target.colours.any()]
+    for one in known:
+        if not _is_clear(one, config):
             continue
-        met = [by_id[number] for number in sorted(one.met) if number in by_id and number != one.id]
-        if any(_is_awaited(other, time_s, config) for other in met):
-            continue
-        gains = [_gain(one, other, config) for other in met]
+        others = [
+            other
+            for other in known
+            if other is not one
+            and (_is_clear(other, config) or time_s - other.seen_s > config.parted_s)
+            and alike(one.recent, other.colours) > config.same
+        ]
+        gains = [_gain(one, other, config) for other in others]
         if gains and max(gains) > config.margin:
-            _exchange(one, met[int(np.argmax(gains))])
-        one.settle()
+            _exchange(one, others[int(np.argmax(gains))])
 
 
 def known_again(
@@ -45,7 +47,7 @@ def known_again(
         is_near: whether somebody may have come here on the way on which he was lost.
         config: how alike they must be.
     """
-    likeness = [_alike(target.colours, other.colours) for other in lost]
+    likeness = [alike(target.colours, other.colours) for other in lost]
     best = int(np.argmax(likeness)) if likeness else -1
     if best >= 0 and likeness[best] > config.same:
         return lost[best]
@@ -55,26 +57,19 @@ def known_again(
     return near[0] if len(near) == 1 else None
 
 
-def _is_awaited(other: Target, time_s: float, config: IdentityConfig) -> bool:
-    """Tell whether it will soon be known how somebody looks now."""
-    return time_s - other.seen_s < config.parted_s and other.clear_s < config.parted_s
+def _is_clear(target: Target, config: IdentityConfig) -> bool:
+    return target.clear_s >= config.parted_s and bool(target.recent.any())
 
 
 def _gain(one: Target, other: Target, config: IdentityConfig) -> float:
     """Tell how much better people fit who they look like if both are the other one."""
-    gain = _alike(one.recent, other.colours) - _alike(one.recent, one.colours)
-    if other.clear_s >= config.parted_s and other.recent.any():
-        gain += _alike(other.recent, one.colours) - _alike(other.recent, other.colours)
+    gain = alike(one.recent, other.colours) - alike(one.recent, one.colours)
+    if _is_clear(other, config):
+        gain += alike(other.recent, one.colours) - alike(other.recent, other.colours)
     return gain
-
-
-def _alike(one: Colours, other: Colours) -> float:
-    """Give Bhattacharyya's coefficient."""
-    return float(one @ other)
 
 
 def _exchange(one: Target, other: Target) -> None:
     one.id, other.id = other.id, one.id
     one.colours, other.colours = other.colours, one.colours
     one.looks, other.looks = other.looks, one.looks
-    other.settle()

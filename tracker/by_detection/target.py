@@ -8,13 +8,15 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.by_detection.colours import FEATURES, Colours
+from peopleboy.tracker.by_detection.colours import FEATURES, Colours, alike
 from peopleboy.tracker.by_detection.config import ExistenceConfig
 from peopleboy.tracker.by_detection.looks import Pattern
 from peopleboy.tracker.by_detection.paths import Floats
 from peopleboy.tracker.track import Status
 
 _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
+_LEARNING_SOON: Final = 0.2  # the same of what is compared with it
+_OWN: Final = 0.6  # Bhattacharyya's coefficient above which it looks like itself
 _LEAST_SIGHTINGS: Final = 3
 
 
@@ -37,9 +39,8 @@ class Target:
         moved_m: how far from its origin it surely was at most.
         occluder: id of who hides it.
         told_s: since when it is told.
-        met: ids of those whom it overlapped, so that it may be one of them.
-        recent: what it wears since then.
-        clear_s: for how long it was seen apart since then.
+        recent: what it wears since it was last seen apart from others.
+        clear_s: for how long that is.
     """
 
     born_s: float
@@ -56,7 +57,6 @@ class Target:
     moved_m: float = 0.0
     occluder: int | None = None
     told_s: float = math.inf
-    met: set[int] = field(default_factory=set)
     recent: Colours = field(default_factory=lambda: np.zeros(FEATURES, np.float32))
     clear_s: float = 0.0
 
@@ -81,29 +81,21 @@ class Target:
 
     def learn(self, looks: Pattern, colours: Colours, dt_s: float) -> None:
         """Take in how it looks now, apart from others."""
-        share = np.float32(max(_LEARNING, 1.0 / self.sightings))
-        self.looks = self.looks + share * (looks - self.looks)
-        if not self.met:
-            self.colours = _blended(self.colours, colours, share)
-            return
+        self.looks = self.looks + np.float32(_LEARNING) * (looks - self.looks)
         self.clear_s += dt_s
-        self.recent = _blended(self.recent, colours, np.float32(_LEARNING))
+        self.recent = _blended(self.recent, colours, _LEARNING_SOON)
+        if not self.colours.any() or alike(self.recent, self.colours) > _OWN:
+            self.colours = _blended(self.colours, colours, max(_LEARNING, 1.0 / self.sightings))
 
-    def meet(self, others: set[int]) -> None:
-        """Take in whom it overlaps."""
-        self.met |= others
+    def overlap(self) -> None:
+        """Take in that it is not seen apart from others now."""
         self.clear_s, self.recent = 0.0, np.zeros_like(self.recent)
-
-    def settle(self) -> None:
-        """Take in that it is who it is taken for."""
-        self.colours = _blended(self.colours, self.recent, np.float32(_LEARNING))
-        self.met, self.clear_s, self.recent = set(), 0.0, np.zeros_like(self.recent)
 
     def take_over(self, before: Target) -> None:
         """Go on as somebody who was lost."""
         self.id, self.born_s = before.id, before.born_s
         self.told_s = min(self.told_s, before.told_s)
-        self.colours = _blended(before.colours, self.colours, np.float32(_LEARNING))
+        self.colours = _blended(before.colours, self.colours, _LEARNING)
         self.looks = before.looks + np.float32(_LEARNING) * (self.looks - before.looks)
         self.watched_s += before.watched_s
         self.moved_m = max(self.moved_m, before.moved_m)
@@ -140,8 +132,8 @@ class Target:
         return self.sightings >= _LEAST_SIGHTINGS and self.log_odds > config.confirmed
 
 
-def _blended(before: Colours, now: Colours, share: np.float32) -> Colours:
+def _blended(before: Colours, now: Colours, share: float) -> Colours:
     """Give what is remembered after something else is seen, if anything is."""
     if not now.any() or not before.any():
         return now if now.any() else before
-    return np.asarray(before + share * (now - before), np.float32)
+    return np.asarray(before + np.float32(share) * (now - before), np.float32)
