@@ -212,7 +212,7 @@ class ByDetectionTracker:
                 colours=proposed.colours[row],
                 ratio=proposed.ratio(row),
                 origin_m=feet[:3],
-                log_odds=config.first * (min(float(proposed.scores[row]) + config.lean, config.highest_score) - config.still_doubt),
+                log_odds=min(float(proposed.scores[row]), config.highest_score),
             )
             for row, feet in zip(free.tolist(), new.mean, strict=True)
         ]

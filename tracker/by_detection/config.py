@@ -76,7 +76,7 @@ class IdentityConfig:
     """
 
     gone_s: float = 0.2
-    revised_s: float = 1.5
+    revised_s: float = 3.0
     parted_s: float = 0.5
     margin: float = 0.2
     same: float = 0.65
@@ -89,13 +89,12 @@ class ExistenceConfig:
     Attributes:
         weakest: proposals of a lower score are not looked at.
         birth: score of a proposal that may be somebody new.
-        lean: what is added to scores: boxes that are left, and come again, are surer than windows were.
-        first: share of the first image's score that counts at once.
         independent_s: images so far apart speak for themselves.
         highest_score: what one image can say at most.
+        moving: what is added to the score of who moves: things that look like people stand.
+        shared_doubt: what is taken off the score of somebody new whose box is all within that of another.
         highest: what all can say.
         confirmed: log odds at which somebody is told.
-        still_doubt: what is taken off the score of who never moved: a thing that looks like a person stands.
         hopeless: log odds below which nobody is followed.
         moved_m: how far somebody went who moves.
         missed: what an image without somebody says who should be seen.
@@ -108,15 +107,13 @@ class ExistenceConfig:
     """
 
     weakest: float = -2.0
-    birth: float = 0.0
-    lean: float = 0.0
-    first: float = 0.0
-    shared_doubt: float = 0.0
+    birth: float = -1.5
     independent_s: float = 0.25
-    highest_score: float = 3.0
+    highest_score: float = 1.5
+    moving: float = 1.5
+    shared_doubt: float = 3.0
     highest: float = 8.0
     confirmed: float = 1.5
-    still_doubt: float = 0.5
     hopeless: float = -0.5
     moved_m: float = 0.25
     missed: float = 1.0

@@ -71,10 +71,11 @@ class Target:
         self.sightings += 1
         self.watched_s += dt_s
         self.ratio += _LEARNING * (ratio - self.ratio)
-        doubt = 0.0 if self.moved_m > config.moved_m else config.still_doubt
+        evidence = min(score, config.highest_score) * dt_s / config.independent_s
+        if self.moved_m > config.moved_m:
+            evidence += config.moving * dt_s / config.independent_s
         if not self.is_told:
-            doubt += config.shared_doubt * shared
-        evidence = (min(score + config.lean, config.highest_score) - doubt) * dt_s / config.independent_s
+            evidence -= config.shared_doubt * shared * dt_s / config.independent_s
         before = max(self.log_odds, config.confirmed) if self.is_told else self.log_odds
         self.log_odds = min(before + evidence, config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-score)) - self.confidence)

@@ -22,7 +22,7 @@ VIEW_ANGLE_DEG: Final = 44.0
 
 NEAREST_M: Final = 0.3
 _ROBOT_FROM_LEVEL: Final = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-_STEP_M: Final = 1e-3
+_LEAST_DEPTH_M: Final = 0.05
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,11 +78,16 @@ class Viewpoint:
 
     def slopes(self, feet_m: Floats, build: Floats) -> Floats:
         """Give the derivatives (K, 3, 4) of `seen` by x, y, z of the feet, and the build."""
-        moved = [
-            self.seen(feet_m + step, build) - self.seen(feet_m - step, build) for step in _STEP_M * np.eye(3)
-        ]
-        grown = self.seen(feet_m, build + _STEP_M) - self.seen(feet_m, build - _STEP_M)
-        return np.stack([*moved, grown], axis=2) / (2.0 * _STEP_M)
+        stature = STATURE_M * np.exp(build)
+        heads = feet_m.copy()
+        heads[:, 1] -= stature
+        foot, head = self._pixel_slopes(feet_m), self._pixel_slopes(heads)
+        slope = np.zeros((len(feet_m), 3, 4))
+        slope[:, 0, :3] = (foot[:, 0] + head[:, 0]) / 2.0
+        slope[:, 1, :3], slope[:, 2, :3] = head[:, 1], foot[:, 1]
+        slope[:, 0, 3] = -head[:, 0, 1] * stature / 2.0
+        slope[:, 1, 3] = -head[:, 1, 1] * stature
+        return slope
 
     def feet(self, boxes: Floats) -> Floats:
         """Tell where people with these boxes (K, 4) stand, (K, 3), if they are of the usual stature."""
@@ -95,8 +100,16 @@ class Viewpoint:
 
     def _pixels(self, points_m: Floats) -> Floats:
         turned = points_m @ self.camera_from_level.T
-        depth = np.maximum(turned[:, 2], 0.05)
+        depth = np.maximum(turned[:, 2], _LEAST_DEPTH_M)
         return turned[:, :2] / depth[:, None] * self.focal_px + self.centre_px
+
+    def _pixel_slopes(self, points_m: Floats) -> Floats:
+        """Give the derivatives (K, 2, 3) of columns and rows by x, y, z."""
+        turned = points_m @ self.camera_from_level.T
+        depth = np.maximum(turned[:, 2], _LEAST_DEPTH_M)[:, None, None]
+        across, ahead = self.camera_from_level[:2], self.camera_from_level[2]
+        slope = across[None] / depth - turned[:, :2, None] / depth**2 * ahead
+        return np.asarray(slope * np.array(self.focal_px)[:, None])
 
     def _rays(self, pixels: Floats) -> Floats:
         """Give directions (K, 3) in the level frame, of depth 1 along the floor."""
