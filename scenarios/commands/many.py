@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
 
 import click
 
@@ -15,6 +16,8 @@ from peopleboy.scenarios.commands.options import (
     tracker_option,
     workers_options,
 )
+
+_SEEN: Final = 0.3
 
 
 @click.command()
@@ -52,7 +55,8 @@ def sweep(
 ) -> None:
     """Run a scenario with many seeds, or many random worlds, without recordings, and score them together.
 
-    A killed call goes on where it was.
+    A killed call goes on where it was. Of random worlds, where many people stand behind things, figures are
+    told of everybody, and again of those of whom more than 30 % is seen.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.running.sweep import sweep as run_seeds
@@ -69,7 +73,16 @@ def sweep(
         count = range(10 if seeds is None else seeds)
         runs = run_seeds(scenario, count, out, tracker, who, behaviour, overwrite=overwrite)
     groups = score_by_tracker(runs)
-    output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))
+    if randomise is None:
+        output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))
+        return
+    seen = score_by_tracker(runs, _SEEN)
+
+    def show() -> None:
+        print_runs(groups)
+        print_runs(seen, f"people of whom more than {_SEEN:.0%} is seen")
+
+    output.figures(lambda: figures_of_all(groups) | {"seen": figures_of_all(seen)}, show)
 
 
 @click.command()

@@ -18,11 +18,11 @@ from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, sp
 from peopleboy.wording import counted
 
 
-def print_scores(scores: Scores) -> None:
+def print_scores(scores: Scores, who: str = "people") -> None:
     """Print every figure of one run, or of several taken together, that the truth can tell."""
     if scores.counts.partly_annotated:
         _console().print(f"{_single_person(scores)}\n", soft_wrap=True)
-    table = _table("people", "figure", "value", "meaning")
+    table = _table(who, "figure", "value", "meaning")
     for row in rows(scores):
         if row.figure.is_told_by(scores):
             table.add_row(row.figure.name, _number(row.value, row.figure.unit), row.figure.meaning)
@@ -47,21 +47,26 @@ def _print_rows(title: str, rows: Sequence[Row]) -> None:
     _print(table)
 
 
-def print_runs(groups: Groups) -> None:
-    """Print every figure of runs: those of one tracker together, those of several side by side."""
+def print_runs(groups: Groups, who: str = "people") -> None:
+    """Print every figure of runs: those of one tracker together, those of several side by side.
+
+    Args:
+        groups: the runs by their trackers.
+        who: is to be found, in the tables' titles.
+    """
     if len(groups) > 1:
-        _print_beside(groups)
+        _print_beside(groups, who)
         return
     ((tracker, runs),) = groups.items()
     if len(runs) == 1:
-        print_scores(runs[0].scores)
+        print_scores(runs[0].scores, who)
     else:
-        _print_spread(tracker, [run.scores for run in runs])
+        _print_spread(tracker, [run.scores for run in runs], who)
 
 
-def _print_spread(tracker: str, sequences: Sequence[Scores]) -> None:
+def _print_spread(tracker: str, sequences: Sequence[Scores], who: str) -> None:
     """Print figures over several runs: of all frames together, and mean and deviation over runs."""
-    title = f"people, {len(sequences)} runs of {tracker}"
+    title = f"{who}, {len(sequences)} runs of {tracker}"
     table = _table(title, "figure", "all frames", "mean of runs", "deviation", "meaning")
     whole = combine(sequences)
     for row, over in zip(rows(whole), spread(sequences), strict=True):
@@ -74,12 +79,12 @@ def _print_spread(tracker: str, sequences: Sequence[Scores]) -> None:
     _tell_unknown(whole)
 
 
-def _print_beside(groups: Groups) -> None:
+def _print_beside(groups: Groups, who: str) -> None:
     """Print figures of each tracker's runs, and how trackers differ over scenes that they share."""
     wholes = [combine([run.scores for run in runs]) for runs in groups.values()]
     compared = differences(groups)
     table = _table(
-        "people, all frames of each tracker's runs",
+        f"{who}, all frames of each tracker's runs",
         "figure",
         *[f"{tracker}, {counted(len(runs), 'run')}" for tracker, runs in groups.items()],
         *[f"{one.tracker} - {one.other}, {counted(one.pairs, 'pair')}" for one in compared],

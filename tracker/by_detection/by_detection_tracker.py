@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
@@ -9,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.boxes import area, cover, intersection, iou
+from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.by_detection.finder import Finder, ThermalFinder
 from peopleboy.tracker.by_detection.identities import known_again, resolve
 from peopleboy.tracker.by_detection.matching import matched
+from peopleboy.tracker.by_detection.overlaps import CLEAR, beside, footless, hidden_by, shared
 from peopleboy.tracker.by_detection.paths import (
     NOBODY,
     Floats,
@@ -34,11 +36,7 @@ from peopleboy.tracker.track import Box, FloorPlace, Track
 
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
-_COVERED: Final = 0.35  # share of a box that is hidden by who stands in front
-_LOWER: Final = 0.03  # who stands so much lower in the image, in heights, is in front
-_CLEAR: Final = 0.2  # overlap with others up to which looks are learned
 _TAKEN: Final = 0.45  # overlap with somebody from which a proposal is nobody new
-_NOBODY: Final = -1  # number of who turned out to be another one
 _ABOVE_GROUND: Final = 0.04  # of the distance: error of how far something moved
 
 
@@ -132,9 +130,10 @@ class ByDetectionTracker:
     def _matched(self, expected: Floats, proposed: Proposed, now: _Instant) -> dict[int, int]:
         if not self._targets or len(proposed) == 0:
             return {}
+        is_footless = footless(expected, self._told())
         return matched(
             self._targets,
-            distances(self._paths, proposed.boxes, _footless(expected, self._told()), now.view, self._config.path),
+            distances(self._paths, proposed.boxes, is_footless, now.view, self._config.path),
             iou(expected[:, None], proposed.boxes[None]),
             *proposed.likeness(self._targets),
             proposed.scores,
@@ -143,36 +142,48 @@ class ByDetectionTracker:
         )
 
     def _take_in(self, found: dict[int, int], expected: Floats, proposed: Proposed, now: _Instant) -> None:
-        """Correct those who were found, and look for who hides the others."""
-        config = self._config
-        is_told = self._told()
-        mutual = iou(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
-        hidden_by = _hidden_by(expected, is_told, found)
-        since = now.time_s - config.matching.lost_s
-        was_lost = np.array([target.is_told and target.seen_s < since for target in self._targets], bool)
-        theirs = [found[row] for row in found if is_told[row]]
-        shared = _shared(proposed.boxes, theirs)
+        """Take in what is seen of those who were found, and look for who hides the others."""
+        config, is_told = self._config.existence, self._told()
+        front = hidden_by(expected, is_told, found)
+        is_beside, common = beside(expected, is_told), shared(proposed.boxes, self._known(found))
+        was_lost = np.array([self._is_lost(target, now) for target in self._targets], bool)
         for row, target in enumerate(self._targets):
-            if row in found:
-                seen = found[row]
-                target.see(
-                    float(proposed.scores[seen]), proposed.ratio(seen), float(shared[seen]), now.time_s, now.dt_s, config.existence
-                )
-                if (is_told & (mutual[row] > _CLEAR)).any():
-                    target.overlap()
-                else:
-                    target.learn(proposed.looks[seen], proposed.colours[seen], now.dt_s)
+            if row not in found:
+                hider = front[row]
+                target.miss(None if hider is None else self._targets[hider].id, now.dt_s, config)
+                continue
+            seen = found[row]
+            target.see(float(proposed.scores[seen]), float(common[seen]), now.time_s, now.dt_s, config)
+            target.widen(proposed.ratio(seen))
+            if is_beside[row]:
+                target.overlap()
             else:
-                front = hidden_by[row]
-                target.miss(None if front is None else self._targets[front].id, now.dt_s, config.existence)
+                target.learn(proposed.looks[seen], proposed.colours[seen], now.dt_s)
         if found:
             rows = np.array(sorted(found))
             boxes = proposed.boxes[[found[row] for row in rows]]
-            is_footless = _footless(expected, is_told)[rows]
-            later = corrected(self._paths.take(rows), boxes, is_footless, now.view, config.path)
-            is_back = was_lost[rows]
-            later = later.replaced(np.flatnonzero(is_back), begun(boxes[is_back], now.view, config.path))
-            self._paths = self._paths.replaced(rows, later)
+            self._correct(rows, boxes, was_lost[rows], footless(expected, is_told)[rows], now.view)
+
+    def _correct(
+        self,
+        rows: NDArray[np.intp],
+        boxes: Floats,
+        was_lost: NDArray[np.bool_],
+        is_footless: NDArray[np.bool_],
+        view: Viewpoint,
+    ) -> None:
+        """Take in where people are; of who was lost the way was guessed, and begins anew."""
+        config = self._config.path
+        later = corrected(self._paths.take(rows), boxes, is_footless, view, config)
+        later = later.replaced(np.flatnonzero(was_lost), begun(boxes[was_lost], view, config))
+        self._paths = self._paths.replaced(rows, later)
+
+    def _is_lost(self, target: Target, now: _Instant) -> bool:
+        return target.is_told and target.seen_s < now.time_s - self._config.matching.lost_s
+
+    def _known(self, found: dict[int, int]) -> list[int]:
+        """Give the numbers of the proposals that are of those who are told."""
+        return [column for row, column in found.items() if self._targets[row].is_told]
 
     def _begin(self, found: dict[int, int], proposed: Proposed, now: _Instant) -> None:
         """Begin to follow whoever is proposed where nobody is."""
@@ -183,10 +194,8 @@ class ByDetectionTracker:
         if any(recent):
             known = self._boxes(now.view)[np.array(recent)]
             is_free &= (iou(proposed.boxes[:, None], known[None]) < _TAKEN).all(axis=1)
-        told = self._told()
-        theirs = [column for row, column in found.items() if told[row]]
-        proposed.colours[_shared(proposed.boxes, theirs) > _CLEAR] = 0.0  # they may be the other one's
-        self._add(np.flatnonzero(is_free), proposed, now)
+        is_mixed = shared(proposed.boxes, self._known(found)) > CLEAR
+        self._add(np.flatnonzero(is_free), proposed.without_colours(is_mixed), now)
 
     def _meet(self, box: Floats, frame: Frame, now: _Instant) -> None:
         """Follow somebody who is pointed out, instead of whoever was found there."""
@@ -195,7 +204,7 @@ class ByDetectionTracker:
         self._paths = self._paths.take(kept)
         self._targets = [self._targets[row] for row in kept]
         self._add(np.zeros(1, int), Proposed.of(frame, box, np.zeros(1), now.view), now)
-        self._tell(self._targets[-1], now.time_s)
+        self._tell(self._targets[-1], -math.inf)  # whoever points at somebody knows whom
 
     def _add(self, free: NDArray[np.intp], proposed: Proposed, now: _Instant) -> None:
         """Begin to follow some of those who are proposed."""
@@ -226,7 +235,7 @@ class ByDetectionTracker:
             if target.seen_s == now.time_s and (target.is_confirmed(config) or target.is_told):
                 self._recognise(target, now)
         resolve(self._targets, now.time_s, self._config.identity)
-        kept = [row for row, target in enumerate(self._targets) if target.id != _NOBODY and not target.is_forgotten(now.time_s, config)]
+        kept = [row for row, one in enumerate(self._targets) if not one.is_forgotten(now.time_s, config)]
         self._paths = self._paths.take(np.array(kept, int))
         self._targets = [self._targets[row] for row in kept]
 
@@ -236,11 +245,10 @@ class ByDetectionTracker:
         if now.time_s - target.told_s > config.revised_s:
             return
         since = now.time_s - config.gone_s
-        lost = [other for other in self._targets if other.is_told and other.seen_s < since and other is not target]
+        lost = [other for other in self._targets if other.is_told and other.seen_s < since]
         before = known_again(target, lost, lambda other: self._is_near(other, target, now), config)
         if before is not None:
             target.take_over(before)
-            before.id = _NOBODY
         elif not target.is_told:
             self._tell(target, now.time_s)
 
@@ -248,9 +256,10 @@ class ByDetectionTracker:
         """Tell whether somebody who was lost may have come where another one is, and looks like him."""
         rows = np.array([self._targets.index(other), self._targets.index(target)])
         box = boxes_of(self._paths.take(rows[1:]), now.view, np.array([target.ratio]))
-        apart = float(distances(self._paths.take(rows[:1]), box, np.zeros(1, np.bool_), now.view, self._config.path)[0, 0])
+        before, is_footless = self._paths.take(rows[:1]), np.zeros(1, np.bool_)
+        apart = distances(before, box, is_footless, now.view, self._config.path)[0, 0]
         config = self._config.matching
-        return apart < config.gate and float(other.looks @ target.looks) > config.looks_of_lost
+        return bool(apart < config.gate) and float(other.looks @ target.looks) > config.looks_of_lost
 
     def _tell(self, target: Target, time_s: float) -> None:
         target.told_s = time_s
@@ -287,34 +296,6 @@ class ByDetectionTracker:
 def _box(numbers: Sequence[float]) -> Box:
     left, top, width, height = numbers
     return left, top, width, height
-
-
-def _hidden_by(expected: Floats, is_told: NDArray[np.bool_], found: dict[int, int]) -> list[int | None]:
-    """Tell for each of K people with boxes (K, 4) who of those who were found may hide it."""
-    covered = cover(intersection(expected[:, None], expected[None]), area(expected)[:, None])
-    foot = expected[:, 1] + expected[:, 3]
-    hides = (covered > _COVERED) & (foot[None] > (foot - _LOWER * expected[:, 3])[:, None]) & is_told[None]
-    hides &= np.isin(np.arange(len(expected)), list(found))[None] & ~np.eye(len(expected), dtype=bool)
-    return [
-        int(np.argmax(covered[row] * hides[row])) if hides[row].any() else None for row in range(len(hides))
-    ]
-
-
-def _footless(expected: Floats, is_told: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Tell of K people with boxes (K, 4) whose feet are behind somebody who is told."""
-    left, top, width, height = expected.T
-    middle, foot = left + width / 2.0, top + height
-    inside = (middle[:, None] > left[None]) & (middle[:, None] < (left + width)[None])
-    inside &= (foot[:, None] > top[None]) & (foot[:, None] < (foot - _LOWER * height)[None])
-    return np.asarray((inside & is_told[None]).any(axis=1))
-
-
-def _shared(boxes: Floats, theirs: Sequence[int]) -> Floats:
-    """Tell what share of the smaller box each of (M, 4) has in common with one of some others, at most."""
-    common = intersection(boxes[:, None], boxes[None, theirs])
-    share = common / np.minimum(area(boxes)[:, None], area(boxes[theirs])[None])
-    share[theirs, np.arange(len(theirs))] = 0.0
-    return np.asarray(share.max(axis=1, initial=0.0))
 
 
 def _surely_apart_m(origin_m: Floats, mean: Floats, error: Floats) -> float:

@@ -42,7 +42,7 @@ def colours_of(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
 
 
 def alike(one: Colours, other: Colours) -> float:
-    """Give Bhattacharyya's coefficient of two people's colours: mostly above 0.8 of the same, below 0.4 of others."""
+    """Give Bhattacharyya's coefficient of colours: of the same clothes above 0.8, of others below 0.4."""
     return float(one @ other)
 
 

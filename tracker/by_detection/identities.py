@@ -1,7 +1,7 @@
 """Who is who: decided late, when people who met have parted, and when somebody new is sure to be there.
 
-While people overlap, what is seen of one may be the other. What they look like afterwards is compared with what
-they looked like before, which is learned no further while they look like somebody else.
+While people overlap, what is seen of one may be the other. What they look like afterwards is compared with
+what they looked like before, which is learned no further while they look like somebody else.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from peopleboy.tracker.by_detection.target import Target
 def resolve(targets: Sequence[Target], time_s: float, config: IdentityConfig) -> None:
     """Let people exchange their numbers who look like each other did before.
 
-    Who is seen apart from others for a while is compared with whoever is seen as long, too, or is gone as long.
+    Who is seen apart from others for a while is compared with whoever is so, too, or is gone as long.
     """
     known = [target for target in targets if target.is_told and target.colours.any()]
     for one in known:

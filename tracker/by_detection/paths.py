@@ -25,8 +25,8 @@ class Paths:
     """What is believed of K people's feet.
 
     Attributes:
-        mean: (K, 7) place [m] and velocity [m/s] in the level frame of the camera, and build, the logarithm of
-            the stature over the usual one.
+        mean: (K, 7) place [m] and velocity [m/s] in the level frame of the camera, and build, the
+            logarithm of the stature over the usual one.
         covariance: (K, 7, 7) of the same.
     """
 
@@ -120,7 +120,7 @@ def distances(
 def corrected(
     paths: Paths, boxes: Floats, is_footless: NDArray[np.bool_], view: Viewpoint, config: PathConfig
 ) -> Paths:
-    """Take in a box (K, 4) for each, and that feet are on the floor, where it is known; rest as above."""
+    """Take in a box (K, 4) for each, and that feet are on the floor, where it is known; the rest as above."""
     if len(paths) == 0:
         return paths
     expected, slope = _expected(paths, view)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,10 @@ class Proposed:
 
     def __len__(self) -> int:
         return len(self.boxes)
+
+    def without_colours(self, rows: NDArray[np.bool_]) -> Proposed:
+        """Give these, nothing told of the colours of some (M,), which may be another one's."""
+        return replace(self, colours=np.where(rows[:, None], np.float32(0.0), self.colours))
 
     def likeness(self, targets: list[Target]) -> tuple[Floats, NDArray[np.bool_]]:
         """Tell how alike K targets and these are.

@@ -65,20 +65,24 @@ class Target:
         """Whether it is believed to be a person."""
         return self.id > 0
 
-    def see(self, score: float, ratio: float, shared: float, time_s: float, dt_s: float, config: ExistenceConfig) -> None:
-        """Take in that it was found with a score, and a box so wide."""
+    def see(self, score: float, shared: float, time_s: float, dt_s: float, config: ExistenceConfig) -> None:
+        """Take in that it was found with a score, in a box of which so much is shared with somebody known."""
         self.seen_s, self.occluder = time_s, None
         self.sightings += 1
         self.watched_s += dt_s
-        self.ratio += _LEARNING * (ratio - self.ratio)
-        evidence = min(score, config.highest_score) * dt_s / config.independent_s
+        evidence = min(score, config.highest_score)
         if self.moved_m > config.moved_m:
-            evidence += config.moving * dt_s / config.independent_s
-        if not self.is_told:
-            evidence -= config.shared_doubt * shared * dt_s / config.independent_s
-        before = max(self.log_odds, config.confirmed) if self.is_told else self.log_odds
-        self.log_odds = min(before + evidence, config.highest)
+            evidence += config.moving
+        if self.is_told:
+            self.log_odds = max(self.log_odds, config.confirmed)
+        else:
+            evidence -= config.shared_doubt * shared
+        self.log_odds = min(self.log_odds + evidence * dt_s / config.independent_s, config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-score)) - self.confidence)
+
+    def widen(self, ratio: float) -> None:
+        """Take in how wide its box is, over the height."""
+        self.ratio += _LEARNING * (ratio - self.ratio)
 
     def learn(self, looks: Pattern, colours: Colours, dt_s: float) -> None:
         """Take in how it looks now, apart from others."""
@@ -93,7 +97,7 @@ class Target:
         self.clear_s, self.recent = 0.0, np.zeros_like(self.recent)
 
     def take_over(self, before: Target) -> None:
-        """Go on as somebody who was lost."""
+        """Go on as somebody who was lost, and is no more."""
         self.id, self.born_s = before.id, before.born_s
         self.told_s = min(self.told_s, before.told_s)
         self.colours = _blended(before.colours, self.colours, _LEARNING)
@@ -101,6 +105,7 @@ class Target:
         self.watched_s += before.watched_s
         self.moved_m = max(self.moved_m, before.moved_m)
         self.log_odds = max(self.log_odds, before.log_odds)
+        before.id, before.seen_s = 0, -math.inf
 
     def miss(self, occluder: int | None, dt_s: float, config: ExistenceConfig) -> None:
         """Take in that it was not found, and who may hide it."""

@@ -61,10 +61,24 @@ def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
     assert seen[-1][0].boxes[THERMAL] == pytest.approx(boxes[-1][0], abs=3.0)
 
 
-def test_what_looks_a_little_like_a_person_and_never_moves_is_not_told() -> None:
+def test_who_walks_is_told_sooner_than_what_stands_and_looks_the_same() -> None:
     still, walking = [[walker(100.0)]] * 60, [[walker(60.0 + 3.0 * i)] for i in range(60)]
-    assert not any(tracked(still, score=0.4))
-    assert tracked(walking, score=0.4)[-1]
+    assert not any(tracked(still, score=-0.1))
+    late, soon = (
+        [bool(tracks) for tracks in tracked(boxes, score=0.1)].index(True) for boxes in (still, walking)
+    )
+    assert soon < 0.7 * late
+
+
+def test_somebody_sure_is_told_by_the_third_image() -> None:
+    assert [len(tracks) for tracks in tracked([[walker(100.0)]] * 4)] == [0, 0, 1, 1]
+
+
+def test_a_second_box_on_somebody_known_is_nobody_new() -> None:
+    one, larger = walker(100.0), (80.0, 40.0, 40.0, 150.0)
+    seen = tracked([[one]] * 10 + [[one, larger]] * 20, score=0.5)
+    assert all(numbers(tracks) <= {1} for tracks in seen)
+    assert numbers(seen[-1]) == {1}
 
 
 def test_two_who_cross_keep_their_numbers() -> None:
