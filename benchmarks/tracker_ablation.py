@@ -14,6 +14,7 @@ import click
 import numpy as np
 
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.sim.random_streams import stream
@@ -167,8 +168,12 @@ def variants() -> Iterator[tuple[str, TrackerConfig]]:
 
 
 def record(scenario: str, seed: int) -> Recorded:
+    """Run a scenario of this name in the closed loop and keep what its tracker saw."""
+    return recorded(load_scenario(scenario), seed)
+
+
+def recorded(loaded: Scenario, seed: int) -> Recorded:
     """Run a scenario in the closed loop and keep what its tracker saw."""
-    loaded = load_scenario(scenario)
     config = loaded.world(seed)
     frames, rows, before = [], [], None
     with World(config) as world:
