@@ -46,8 +46,6 @@ _ALL: Final = ByDetectionConfig()
 VARIANTS: Final[Mapping[str, ByDetectionConfig]] = {
     "as it is": _ALL,
     "everybody is 1.72 m tall": replace(_ALL, path=replace(_ALL.path, build=1e-3, posture=0.0)),
-    "ends that are cut off are believed": replace(_ALL, path=replace(_ALL.path, cut=_ALL.path.foot)),
-    "who moves needs as much": replace(_ALL, existence=replace(_ALL.existence, moving=0.0)),
     "nested boxes are as good": replace(_ALL, existence=replace(_ALL.existence, shared_doubt=0.0)),
     "no late decisions": replace(_ALL, identity=replace(_ALL.identity, parted_s=math.inf, gone_s=math.inf)),
 }

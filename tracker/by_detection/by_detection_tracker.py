@@ -16,14 +16,13 @@ from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.by_detection.finder import Finder, ThermalFinder
 from peopleboy.tracker.by_detection.identities import known_again, resolve
 from peopleboy.tracker.by_detection.matching import matched
-from peopleboy.tracker.by_detection.overlaps import CLEAR, beside, footless, hidden_by, shared
+from peopleboy.tracker.by_detection.overlaps import CLEAR, beside, hidden_by, shared
 from peopleboy.tracker.by_detection.paths import (
     NOBODY,
     Floats,
     advanced,
     begun,
     boxes_of,
-    carried,
     corrected,
     distances,
 )
@@ -37,7 +36,6 @@ from peopleboy.tracker.track import Box, FloorPlace, Track
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
 _TAKEN: Final = 0.45  # overlap with somebody from which a proposal is nobody new
-_ABOVE_GROUND: Final = 0.04  # of the distance: error of how far something moved
 
 
 class _Instant(NamedTuple):
@@ -51,8 +49,7 @@ class _Instant(NamedTuple):
 class ByDetectionTracker:
     """Follows people in metres round the camera by what a detector proposes in each image.
 
-    A track is told once enough speaks for it. What never moved needs more: a thing that looks like a person
-    goes on to look so.
+    A track is told once enough speaks for it, and who is whom is decided late.
     """
 
     def __init__(self, config: ByDetectionConfig | None = None, find: Finder | None = None) -> None:
@@ -118,8 +115,6 @@ class ByDetectionTracker:
 
     def _carry_on(self, dt_s: float, moved: Odometry) -> None:
         self._paths = advanced(self._paths, dt_s, moved, self._config.path)
-        for target in self._targets:
-            target.origin_m = carried(target.origin_m[None], moved)[0]
 
     def _told(self) -> NDArray[np.bool_]:
         return np.array([target.is_told for target in self._targets], np.bool_)
@@ -130,10 +125,9 @@ class ByDetectionTracker:
     def _matched(self, expected: Floats, proposed: Proposed, now: _Instant) -> dict[int, int]:
         if not self._targets or len(proposed) == 0:
             return {}
-        is_footless = footless(expected, self._told())
         return matched(
             self._targets,
-            distances(self._paths, proposed.boxes, is_footless, now.view, self._config.path),
+            distances(self._paths, proposed.boxes, now.view, self._config.path),
             iou(expected[:, None], proposed.boxes[None]),
             *proposed.likeness(self._targets),
             proposed.scores,
@@ -162,19 +156,18 @@ class ByDetectionTracker:
         if found:
             rows = np.array(sorted(found))
             boxes = proposed.boxes[[found[row] for row in rows]]
-            self._correct(rows, boxes, was_lost[rows], footless(expected, is_told)[rows], now.view)
+            self._correct(rows, boxes, was_lost[rows], now.view)
 
     def _correct(
         self,
         rows: NDArray[np.intp],
         boxes: Floats,
         was_lost: NDArray[np.bool_],
-        is_footless: NDArray[np.bool_],
         view: Viewpoint,
     ) -> None:
         """Take in where people are; of who was lost the way was guessed, and begins anew."""
         config = self._config.path
-        later = corrected(self._paths.take(rows), boxes, is_footless, view, config)
+        later = corrected(self._paths.take(rows), boxes, view, config)
         later = later.replaced(np.flatnonzero(was_lost), begun(boxes[was_lost], view, config))
         self._paths = self._paths.replaced(rows, later)
 
@@ -220,18 +213,15 @@ class ByDetectionTracker:
                 looks=proposed.looks[row],
                 colours=proposed.colours[row],
                 ratio=proposed.ratio(row),
-                origin_m=feet[:3],
                 log_odds=min(float(proposed.scores[row]), config.highest_score),
             )
-            for row, feet in zip(free.tolist(), new.mean, strict=True)
+            for row in free.tolist()
         ]
 
     def _judge(self, now: _Instant) -> None:
         """Tell of those who are sure, and forget those who are gone."""
         config = self._config.existence
-        deviation = np.sqrt(np.diagonal(self._paths.covariance, axis1=1, axis2=2))
-        for target, mean, error in zip(self._targets, self._paths.mean, deviation, strict=True):
-            target.moved_m = max(target.moved_m, _surely_apart_m(target.origin_m, mean, error))
+        for target in self._targets:
             if target.seen_s == now.time_s and (target.is_confirmed(config) or target.is_told):
                 self._recognise(target, now)
         resolve(self._targets, now.time_s, self._config.identity)
@@ -256,8 +246,8 @@ class ByDetectionTracker:
         """Tell whether somebody who was lost may have come where another one is, and looks like him."""
         rows = np.array([self._targets.index(other), self._targets.index(target)])
         box = boxes_of(self._paths.take(rows[1:]), now.view, np.array([target.ratio]))
-        before, is_footless = self._paths.take(rows[:1]), np.zeros(1, np.bool_)
-        apart = distances(before, box, is_footless, now.view, self._config.path)[0, 0]
+        before = self._paths.take(rows[:1])
+        apart = distances(before, box, now.view, self._config.path)[0, 0]
         config = self._config.matching
         return bool(apart < config.gate) and float(other.looks @ target.looks) > config.looks_of_lost
 
@@ -296,10 +286,3 @@ class ByDetectionTracker:
 def _box(numbers: Sequence[float]) -> Box:
     left, top, width, height = numbers
     return left, top, width, height
-
-
-def _surely_apart_m(origin_m: Floats, mean: Floats, error: Floats) -> float:
-    """Tell how far along the floor somebody surely is from the origin, errors of distance taken off."""
-    aside = abs(mean[0] - origin_m[0]) - 2.0 * error[0]
-    ahead = abs(mean[2] - origin_m[2]) - 2.0 * error[2] - 2.0 * _ABOVE_GROUND * mean[2]
-    return float(np.hypot(max(aside, 0.0), max(ahead, 0.0)))

@@ -19,7 +19,6 @@ class PathConfig:
         column: deviation of a box's middle column, in its heights.
         head: deviation of its upper end, in its heights.
         foot: deviation of its lower end, likewise.
-        cut: deviation of an end that the image's border cuts off, likewise.
         build: deviation of the logarithm of people's stature.
         posture: by how much that changes in a second, as people sit down or bend.
         floor_m: deviation of feet from the floor, where it is known.
@@ -30,7 +29,6 @@ class PathConfig:
     column: float = 0.05
     head: float = 0.06
     foot: float = 0.06
-    cut: float = 0.2
     build: float = 0.08
     posture: float = 0.05
     floor_m: float = 0.15
@@ -91,12 +89,10 @@ class ExistenceConfig:
         birth: score of a proposal that may be somebody new.
         independent_s: images so far apart speak for themselves.
         highest_score: what one image can say at most.
-        moving: what is added to the score of who moves: things that look like people stand.
         shared_doubt: what is taken off the score of somebody new whose box is all within that of another.
         highest: what all can say.
         confirmed: log odds at which somebody is told.
         hopeless: log odds below which nobody is followed.
-        moved_m: how far somebody went who moves.
         missed: what an image without somebody says who should be seen.
         missed_hidden: the same of somebody behind others.
         doubt_s: who was not found for so long is told no more.
@@ -107,15 +103,13 @@ class ExistenceConfig:
     """
 
     weakest: float = -2.0
-    birth: float = -1.5
+    birth: float = -0.5
     independent_s: float = 0.25
     highest_score: float = 1.5
-    moving: float = 1.5
     shared_doubt: float = 3.0
     highest: float = 8.0
     confirmed: float = 1.5
     hopeless: float = -0.5
-    moved_m: float = 0.25
     missed: float = 1.0
     missed_hidden: float = 0.3
     doubt_s: float = 0.35

@@ -36,15 +36,6 @@ def hidden_by(expected: Floats, is_told: Flags, found: Iterable[int]) -> list[in
     ]
 
 
-def footless(expected: Floats, is_told: Flags) -> Flags:
-    """Tell of K people with boxes (K, 4) whose feet are behind somebody who is told."""
-    left, top, width, height = expected.T
-    middle, foot = left + width / 2.0, top + height
-    inside = (middle[:, None] > left[None]) & (middle[:, None] < (left + width)[None])
-    inside &= (foot[:, None] > top[None]) & (foot[:, None] < (foot - _LOWER * height)[None])
-    return np.asarray((inside & is_told[None]).any(axis=1))
-
-
 def shared(boxes: Floats, theirs: Sequence[int]) -> Floats:
     """Tell what share of the smaller box each of (M, 4) has in common with one of some others, at most."""
     common = intersection(boxes[:, None], boxes[None, theirs])

@@ -17,7 +17,6 @@ Floats = NDArray[np.float64]
 
 
 STATE: Final = 7
-_AT_BORDER: Final = 0.04  # heights from the border within which an end counts as cut off
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,7 +63,7 @@ def begun(boxes: Floats, view: Viewpoint, config: PathConfig) -> Paths:
     back = np.linalg.inv(slope[:, :, :3])
     grown = back @ slope[:, :, 3:]
     covariance = np.zeros((len(feet), STATE, STATE))
-    noise = _noise(boxes, np.zeros(len(boxes), np.bool_), view, config)
+    noise = _noise(boxes[:, 3], config)
     noise = noise + slope[:, :, 3:] @ slope[:, :, 3:].transpose(0, 2, 1) * config.build**2
     covariance[:, :3, :3] = back @ noise @ back.transpose(0, 2, 1)
     covariance[:, 3:6, 3:6] = np.diag(np.square(config.speed_m_s))
@@ -98,33 +97,21 @@ def carried(points_m: Floats, moved: Odometry) -> Floats:
     return np.asarray((points_m - (-moved.aside_m, 0.0, moved.advance_m)) @ _turn(moved).T)
 
 
-def distances(
-    paths: Paths, boxes: Floats, is_footless: NDArray[np.bool_], view: Viewpoint, config: PathConfig
-) -> Floats:
-    """Give the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected.
-
-    Args:
-        paths: of K people.
-        boxes: (M, 4) of proposals.
-        is_footless: (K,) whose feet are hidden behind somebody.
-        view: of the camera.
-        config: how well a box tells where people are.
-    """
+def distances(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) -> Floats:
+    """Give the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
     expected, slope = _expected(paths, view)
     there = boxes_of(paths, view, np.zeros(len(paths)))
-    spread = _spread(paths, slope, _noise(there, is_footless, view, config))
+    spread = _spread(paths, slope, _noise(there[:, 3], config))
     gap = _ends(boxes)[None] - expected[:, None]
     return np.asarray(np.sqrt(np.einsum("kmi,kij,kmj->km", gap, np.linalg.inv(spread), gap)))
 
 
-def corrected(
-    paths: Paths, boxes: Floats, is_footless: NDArray[np.bool_], view: Viewpoint, config: PathConfig
-) -> Paths:
-    """Take in a box (K, 4) for each, and that feet are on the floor, where it is known; the rest as above."""
+def corrected(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) -> Paths:
+    """Take in a box (K, 4) for each, and that feet are on the floor, where it is known."""
     if len(paths) == 0:
         return paths
     expected, slope = _expected(paths, view)
-    spread = _spread(paths, slope, _noise(boxes, is_footless, view, config))
+    spread = _spread(paths, slope, _noise(boxes[:, 3], config))
     gain = paths.covariance @ slope.transpose(0, 2, 1) @ np.linalg.inv(spread)
     later = Paths(
         paths.mean + np.einsum("kij,kj->ki", gain, _ends(boxes) - expected),
@@ -167,15 +154,10 @@ def _ends(boxes: Floats) -> Floats:
     return np.stack([left + width / 2.0, top, top + height], axis=1)
 
 
-def _noise(boxes: Floats, is_footless: NDArray[np.bool_], view: Viewpoint, config: PathConfig) -> Floats:
-    """Give the covariances (K, 3, 3) of the ends of boxes (K, 4); of those cut off little is known."""
-    _, top, _, height = boxes.T
-    near = _AT_BORDER * height
-    head = np.where(top < near, config.cut, config.head)
-    is_cut = is_footless | (top + height > view.rows - 1 - near)
-    foot = np.where(is_cut, config.cut, config.foot)
-    noise = np.zeros((len(boxes), 3, 3))
-    for row, deviation in enumerate((config.column, head, foot)):
+def _noise(height: Floats, config: PathConfig) -> Floats:
+    """Give the covariances (K, 3, 3) of the ends of boxes of these heights (K,) [px]."""
+    noise = np.zeros((len(height), 3, 3))
+    for row, deviation in enumerate((config.column, config.head, config.foot)):
         noise[:, row, row] = (deviation * height) ** 2
     return noise
 

@@ -11,7 +11,6 @@ import numpy as np
 from peopleboy.tracker.by_detection.colours import FEATURES, Colours, alike
 from peopleboy.tracker.by_detection.config import ExistenceConfig
 from peopleboy.tracker.by_detection.looks import Pattern
-from peopleboy.tracker.by_detection.paths import Floats
 from peopleboy.tracker.track import Status
 
 _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
@@ -30,13 +29,11 @@ class Target:
         looks: how it looks in the thermal image.
         colours: what it wears; 0 where nobody knows.
         ratio: width of its box over the height.
-        origin_m: (3,) where it stood first, in the level frame of now.
         watched_s: for how long it was seen in all.
         log_odds: that it is a person.
         id: 0 as long as it is not told.
         sightings: images in which it was found.
         confidence: 0..1, of the last images in which it was seen.
-        moved_m: how far from its origin it surely was at most.
         occluder: id of who hides it.
         told_s: since when it is told.
         recent: what it wears since it was last seen apart from others.
@@ -48,13 +45,11 @@ class Target:
     looks: Pattern
     colours: Colours
     ratio: float
-    origin_m: Floats
     watched_s: float = 0.0
     log_odds: float = 0.0
     id: int = 0
     sightings: int = 1
     confidence: float = 0.5
-    moved_m: float = 0.0
     occluder: int | None = None
     told_s: float = math.inf
     recent: Colours = field(default_factory=lambda: np.zeros(FEATURES, np.float32))
@@ -71,8 +66,6 @@ class Target:
         self.sightings += 1
         self.watched_s += dt_s
         evidence = min(score, config.highest_score)
-        if self.moved_m > config.moved_m:
-            evidence += config.moving
         if self.is_told:
             self.log_odds = max(self.log_odds, config.confirmed)
         else:
@@ -103,7 +96,6 @@ class Target:
         self.colours = _blended(before.colours, self.colours, _LEARNING)
         self.looks = before.looks + np.float32(_LEARNING) * (self.looks - before.looks)
         self.watched_s += before.watched_s
-        self.moved_m = max(self.moved_m, before.moved_m)
         self.log_odds = max(self.log_odds, before.log_odds)
         before.id, before.seen_s = 0, -math.inf
 

@@ -34,14 +34,12 @@ class Viewpoint:
         centre_px: where the optical axis meets the image.
         camera_from_level: (3, 3) rotation.
         floor_m: how far below the camera the floor is; None if nobody knows.
-        rows: of the image.
     """
 
     focal_px: tuple[float, float]
     centre_px: tuple[float, float]
     camera_from_level: Floats
     floor_m: float | None
-    rows: int
 
     @classmethod
     def of(cls, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
@@ -58,11 +56,10 @@ class Viewpoint:
                 (float(matrix[0, 2]), float(matrix[1, 2])),
                 calibration.robot_from_camera[:3, :3].T @ _ROBOT_FROM_LEVEL,
                 calibration.position_m[2],
-                shape[0],
             )
         rows, columns = shape
         focal = rows / 2.0 / math.tan(math.radians(VIEW_ANGLE_DEG) / 2.0)
-        return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None, rows)
+        return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None)
 
     def seen(self, feet_m: Floats, build: Floats) -> Floats:
         """Tell how people are seen: (K, 3) middle column, rows of head and feet.

@@ -61,13 +61,9 @@ def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
     assert seen[-1][0].boxes[THERMAL] == pytest.approx(boxes[-1][0], abs=3.0)
 
 
-def test_who_walks_is_told_sooner_than_what_stands_and_looks_the_same() -> None:
-    still, walking = [[walker(100.0)]] * 60, [[walker(60.0 + 3.0 * i)] for i in range(60)]
-    assert not any(tracked(still, score=-0.1))
-    late, soon = (
-        [bool(tracks) for tracks in tracked(boxes, score=0.1)].index(True) for boxes in (still, walking)
-    )
-    assert soon < 0.7 * late
+def test_what_looks_rather_unlike_a_person_is_not_told() -> None:
+    assert not any(tracked([[walker(100.0)]] * 60, score=-0.1))
+    assert tracked([[walker(100.0)]] * 60, score=0.2)[-1]
 
 
 def test_somebody_sure_is_told_by_the_third_image() -> None:

@@ -28,7 +28,6 @@ def person(number: int, was: float, now: float | None, seen_s: float = NOW_S) ->
         looks=np.zeros(72, np.float32),
         colours=wearing(was),
         ratio=0.27,
-        origin_m=np.zeros(3),
         id=number,
     )
     if now is not None:

@@ -5,16 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from peopleboy.tracker.by_detection.overlaps import beside, footless, hidden_by, shared
+from peopleboy.tracker.by_detection.overlaps import beside, hidden_by, shared
 
 FRONT, BEHIND, APART = (100.0, 60.0, 30.0, 120.0), (110.0, 60.0, 20.0, 90.0), (250.0, 60.0, 25.0, 100.0)
 BOXES = np.array([FRONT, BEHIND, APART])
 ALL = np.ones(3, np.bool_)
-
-
-def test_feet_are_hidden_by_who_stands_lower_and_is_told() -> None:
-    assert footless(BOXES, ALL).tolist() == [False, True, False]
-    assert not footless(BOXES, np.array([False, True, True])).any()
 
 
 def test_who_is_not_found_is_hidden_by_who_is() -> None:

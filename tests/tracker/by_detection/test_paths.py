@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -20,9 +18,6 @@ CONFIG = PathConfig()
 RATIO = np.array([0.27])
 
 
-WHOLE = np.zeros(1, np.bool_)
-
-
 def box_at(feet: np.ndarray, build: float = 0.0) -> np.ndarray:
     """Give the box (1, 4) of somebody with these feet."""
     column, head, foot = VIEW.seen(feet[None], np.array([build]))[0]
@@ -35,7 +30,7 @@ def test_who_walks_evenly_is_expected_where_he_is() -> None:
     paths = begun(box_at(feet), VIEW, CONFIG)
     for number in range(1, 60):
         paths = advanced(paths, 1 / 15, Odometry(), CONFIG)
-        paths = corrected(paths, box_at(feet + walk * number / 15), WHOLE, VIEW, CONFIG)
+        paths = corrected(paths, box_at(feet + walk * number / 15), VIEW, CONFIG)
     later = advanced(paths, 1.0, Odometry(), CONFIG)
     assert later.mean[0, :3] == pytest.approx(feet + walk * (59 / 15 + 1.0), abs=0.05)
     assert paths.mean[0, 3:6] == pytest.approx(walk, abs=0.02)
@@ -58,7 +53,7 @@ def test_covariances_stay_symmetric_and_positive() -> None:
     paths = begun(box_at(feet), VIEW, CONFIG)
     for _ in range(30):
         paths = advanced(paths, 1 / 15, Odometry(turn_rad=0.02), CONFIG)
-        paths = corrected(paths, box_at(feet), WHOLE, VIEW, CONFIG)
+        paths = corrected(paths, box_at(feet), VIEW, CONFIG)
     covariance = paths.covariance[0]
     assert covariance == pytest.approx(covariance.T, abs=1e-9)
     assert np.linalg.eigvalsh(covariance).min() > 0.0
@@ -73,7 +68,7 @@ def test_the_farther_a_proposal_lies_the_greater_is_its_distance() -> None:
     box = box_at(np.array([0.5, 1.2, 4.0]))
     paths = begun(box, VIEW, CONFIG)
     there = np.concatenate([box, box + np.array([10.0, 0, 0, 0]), box + np.array([30.0, 0, 0, 0])])
-    own, near, far = distances(paths, there, WHOLE, VIEW, CONFIG)[0]
+    own, near, far = distances(paths, there, VIEW, CONFIG)[0]
     assert own == pytest.approx(0.0, abs=1e-6)
     assert 0.5 < near < far
 
@@ -83,24 +78,6 @@ def test_who_is_short_is_told_from_who_is_far_where_the_floor_is_known() -> None
     paths = begun(box_at(feet, build), VIEW, CONFIG)
     for _ in range(60):
         paths = advanced(paths, 1 / 15, Odometry(), CONFIG)
-        paths = corrected(paths, box_at(feet, build), WHOLE, VIEW, CONFIG)
+        paths = corrected(paths, box_at(feet, build), VIEW, CONFIG)
     assert paths.mean[0, :3] == pytest.approx(feet, abs=0.1)
     assert paths.mean[0, 6] == pytest.approx(build, abs=0.02)
-
-
-@pytest.mark.parametrize("how", ["behind somebody", "below the image"])
-def test_feet_that_are_not_seen_move_nobody_far(how: str) -> None:
-    feet = np.array([0.5, 1.2, 4.0]) if how == "behind somebody" else np.array([0.1, 1.2, 2.3])
-    paths = begun(box_at(feet), VIEW, CONFIG)
-    for _ in range(15):
-        paths = advanced(paths, 1 / 15, Odometry(), CONFIG)
-        paths = corrected(paths, box_at(feet), WHOLE, VIEW, CONFIG)
-    shorter = box_at(feet)
-    shorter[0, 3] *= 0.85
-    at_border = np.array([how == "behind somebody"])
-    trusted = replace(CONFIG, cut=CONFIG.foot)
-    kept = corrected(paths, shorter, at_border, VIEW, CONFIG)
-    lost = corrected(paths, shorter, at_border, VIEW, trusted)
-    whole = boxes_of(paths, VIEW, RATIO)[0, 3]
-    by_kept, by_lost = (whole - boxes_of(one, VIEW, RATIO)[0, 3] for one in (kept, lost))
-    assert 0.0 < by_kept < 0.4 * by_lost
