@@ -111,7 +111,11 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
 
 @click.command("train-detector")
 @click.option(
-    "--worlds", type=click.IntRange(min=2), default=300, show_default=True, help="How many to learn from."
+    "--worlds",
+    type=click.IntRange(min=4, max=2000),
+    default=600,
+    show_default=True,
+    help="How many to learn from.",
 )
 @click.option(
     "--out",
@@ -125,8 +129,9 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
 def train_detector(worlds: int, out: Path, ship: bool, workers: int | None, scheduler: str | None) -> None:
     """Learn what people look like to a thermal camera, from random worlds.
 
-    They have the seeds from 1000 on; the last tenth is held back, to make scores log odds, and those of 0 to
-    29 tell how good it is. Needs scikit-learn: .[train]. Films that are there are not made again.
+    Half of them are as drawn, others full of people, plain, or warm. A tenth is held back, to make scores log
+    odds; random worlds of seeds 0 to 29 tell how good it is. Needs scikit-learn: .[train]. Films that are
+    there are not made again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.people_learning.people_lesson import give_people_lesson

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -118,15 +118,26 @@ ODDS: Final[Mapping[str, tuple[float, str]]] = {
 """How often something is so."""
 
 
-class Draws:
-    """Draws from the distribution above, and from nothing else."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Distribution:
+    """What is drawn, and how often; `ranges`, `shares` and `odds` as above, each with all names."""
 
-    def __init__(self, rng: np.random.Generator) -> None:
+    ranges: Mapping[str, Range] = field(default_factory=lambda: RANGES)
+    shares: Mapping[str, Mapping[str, float]] = field(default_factory=lambda: SHARES)
+    odds: Mapping[str, tuple[float, str]] = field(default_factory=lambda: ODDS)
+
+
+class Draws:
+    """Draws from a distribution, and from nothing else."""
+
+    def __init__(self, rng: np.random.Generator, distribution: Distribution | None = None) -> None:
+        """Draw from a distribution, the one above if None."""
         self.rng = rng
+        self._of = Distribution() if distribution is None else distribution
 
     def number(self, name: str) -> float:
         """Draw from a range, to a hundredth; dead pixels and emissivities finer."""
-        spread = RANGES[name]
+        spread = self._of.ranges[name]
         if spread.is_whole:
             return int(self.rng.integers(int(spread.low), int(spread.high), endpoint=True))
         return round(float(self.rng.uniform(spread.low, spread.high)), 2 if spread.high > 0.7 else 6)
@@ -137,9 +148,9 @@ class Draws:
 
     def one_of(self, name: str) -> str:
         """Draw from a few by their shares."""
-        shares = SHARES[name]
+        shares = self._of.shares[name]
         return str(self.rng.choice(list(shares), p=list(shares.values())))
 
     def happens(self, name: str) -> bool:
         """Draw whether something is so."""
-        return bool(self.rng.random() < ODDS[name][0])
+        return bool(self.rng.random() < self._of.odds[name][0])

@@ -9,7 +9,7 @@ from typing import Final
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.random_worlds.attempts import Data, is_valid, with_one_more
-from peopleboy.scenarios.random_worlds.distribution import Draws
+from peopleboy.scenarios.random_worlds.distribution import Distribution, Draws
 from peopleboy.scenarios.random_worlds.draw_people import draw_person
 from peopleboy.scenarios.random_worlds.draw_place import draw_door, draw_place
 from peopleboy.scenarios.random_worlds.draw_robot import draw_robot
@@ -22,7 +22,7 @@ LASTS_S: Final = 8.0
 _TRIES: Final = 3
 
 
-def random_world(seed: int, duration_s: float = LASTS_S) -> Data:
+def random_world(seed: int, duration_s: float = LASTS_S, distribution: Distribution | None = None) -> Data:
     """Draw a world from `peopleboy.scenarios.random_worlds.distribution`; the same seed gives the same data.
 
     What people look like is left to be drawn by the run's seed, which should be the same.
@@ -30,8 +30,9 @@ def random_world(seed: int, duration_s: float = LASTS_S) -> Data:
     Args:
         seed: 0 or more; draws all.
         duration_s: [s] how long a run lasts.
+        distribution: what else to draw from.
     """
-    draws = Draws(stream(seed, "random_world"))
+    draws = Draws(stream(seed, "random_world"), distribution)
     scene: Data = {
         "name": f"world_{seed}",
         "description": "A world drawn at random.",

@@ -25,8 +25,10 @@ FIRST_DIRECTION: Final = 2
 DIRECTIONS: Final = 6
 MOTION: Final = FIRST_DIRECTION + DIRECTIONS
 CHANNELS: Final = MOTION + 1
-PAD: Final = 2
-"""Cells that go on beyond each border as it ends."""
+OVER: Final = 8
+"""Rows of cells that go on above and below an image as it ends: who is cut off there fills a window, too."""
+BESIDE: Final = 4
+"""Columns on either side likewise."""
 
 _SQUARES: Final = MOTION  # where sums of squares stand until motion does
 _NEAR: Final = 5  # [cells] gradients are told by those around
@@ -73,13 +75,13 @@ def channels(grey: Image, change: Image, noise: float, memory: Memory | None = N
         memory: where to put them; None for a place of their own.
 
     Returns:
-        (9, h + 4, w + 4): grey, gradient, 6 directions, motion; what is beyond the border is as at it.
+        (9, h + 16, w + 8): grey, gradient, 6 directions, motion; what is beyond the border is as at it.
     """
     # 1 2 1, both ways.
     smooth = np.asarray(cv2.GaussianBlur(grey, (3, 3), 0.0, borderType=cv2.BORDER_REFLECT_101), np.float32)
     rows, columns = change.shape
-    cells = (memory or Memory()).take((CHANNELS, rows + 2 * PAD, columns + 2 * PAD))
-    inner = cells[:, PAD:-PAD, PAD:-PAD]
+    cells = (memory or Memory()).take((CHANNELS, rows + 2 * OVER, columns + 2 * BESIDE))
+    inner = cells[:, OVER:-OVER, BESIDE:-BESIDE]
     _sum_up(smooth, _COS, _SIN, cells)
     mean = cv2.blur(inner[GREY], (_AROUND, _AROUND))
     squares = cv2.blur(inner[_SQUARES], (_AROUND, _AROUND))
@@ -92,7 +94,7 @@ def channels(grey: Image, change: Image, noise: float, memory: Memory | None = N
 @njit(cache=True, nogil=True, fastmath=True)
 def _sum_up(smooth: Image, cos: Cells, sin: Cells, cells: Cells) -> None:  # pragma: no cover
     """Take the means of cells: grey, gradient, its directions, squared grey."""
-    rows, columns = cells.shape[1] - 2 * PAD, cells.shape[2] - 2 * PAD
+    rows, columns = cells.shape[1] - 2 * OVER, cells.shape[2] - 2 * BESIDE
     wide, last = CELL_PX * columns, CELL_PX * rows - 1
     quarter = np.float32(1.0 / CELL_PX**2)
     half, one, tiny = np.float32(0.5), np.float32(1.0), np.float32(1e-12)
@@ -100,9 +102,9 @@ def _sum_up(smooth: Image, cos: Cells, sin: Cells, cells: Cells) -> None:  # pra
     line = np.empty(wide, np.float32)
     for row in range(rows):
         for channel in range(CHANNELS):
-            cells[channel, row + PAD] = 0.0
-        grey, gradient = cells[GREY, row + PAD], cells[GRADIENT, row + PAD]
-        squares = cells[_SQUARES, row + PAD]
+            cells[channel, row + OVER] = 0.0
+        grey, gradient = cells[GREY, row + OVER], cells[GRADIENT, row + OVER]
+        squares = cells[_SQUARES, row + OVER]
         for y in range(CELL_PX * row, CELL_PX * row + CELL_PX):
             here, above, below = smooth[y], smooth[max(y - 1, 0)], smooth[min(y + 1, last)]
             for x in range(1, wide - 1):
@@ -116,16 +118,16 @@ def _sum_up(smooth: Image, cos: Cells, sin: Cells, cells: Cells) -> None:  # pra
                 odd[x] = right * down * (twice + twice)
             for k in range(DIRECTIONS):
                 c, s = cos[k], sin[k]
-                direction = cells[FIRST_DIRECTION + k, row + PAD]
+                direction = cells[FIRST_DIRECTION + k, row + OVER]
                 for x in range(wide):
                     line[x] = max(c * even[x] + s * odd[x] - size[x], np.float32(0.0)) * quarter
                 for j in range(columns):
-                    direction[j + PAD] += line[2 * j] + line[2 * j + 1]
+                    direction[j + BESIDE] += line[2 * j] + line[2 * j + 1]
             for j in range(columns):
                 p, q = here[2 * j], here[2 * j + 1]
-                grey[j + PAD] += (p + q) * quarter
-                squares[j + PAD] += (p * p + q * q) * quarter
-                gradient[j + PAD] += (size[2 * j] + size[2 * j + 1]) * quarter
+                grey[j + BESIDE] += (p + q) * quarter
+                squares[j + BESIDE] += (p * p + q * q) * quarter
+                gradient[j + BESIDE] += (size[2 * j] + size[2 * j + 1]) * quarter
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -137,37 +139,37 @@ def _relate(
     zero, one, two = np.float32(0.0), np.float32(1.0), np.float32(2.0)
     share = np.empty(columns, np.float32)
     for i in range(rows):
-        grey, motion = cells[GREY, i + PAD], cells[MOTION, i + PAD]
+        grey, motion = cells[GREY, i + OVER], cells[MOTION, i + OVER]
         for j in range(columns):
             spread = math.sqrt(max(squares[i, j] - mean[i, j] * mean[i, j], zero)) + two * least
             inverse = one / spread
-            grey[j + PAD] = (grey[j + PAD] - mean[i, j]) * inverse
-            motion[j + PAD] = min(change[i, j] * inverse, _MOST_MOTION)
+            grey[j + BESIDE] = (grey[j + BESIDE] - mean[i, j]) * inverse
+            motion[j + BESIDE] = min(change[i, j] * inverse, _MOST_MOTION)
             share[j] = one / (strength[i, j] + least)
         for channel in range(GRADIENT, MOTION):
-            line = cells[channel, i + PAD]
+            line = cells[channel, i + OVER]
             for j in range(columns):
-                line[j + PAD] *= share[j]
+                line[j + BESIDE] *= share[j]
 
 
 @njit(cache=True, nogil=True, fastmath=True)
 def _spread(cells: Cells) -> None:  # pragma: no cover
     """Smooth by 1 2 1 both ways, and go on beyond the borders."""
-    count, rows, columns = cells.shape[0], cells.shape[1] - 2 * PAD, cells.shape[2] - 2 * PAD
+    count, rows, columns = cells.shape[0], cells.shape[1] - 2 * OVER, cells.shape[2] - 2 * BESIDE
     quarter, half = np.float32(0.25), np.float32(0.5)
     line, above = np.empty(columns + 2, np.float32), np.empty(columns, np.float32)
     for channel in range(count):
-        above[:] = cells[channel, PAD, PAD : PAD + columns]
-        for i in range(PAD, rows + PAD):
-            here, below = cells[channel, i], cells[channel, min(i + 1, rows + PAD - 1)]
+        above[:] = cells[channel, OVER, BESIDE : BESIDE + columns]
+        for i in range(OVER, rows + OVER):
+            here, below = cells[channel, i], cells[channel, min(i + 1, rows + OVER - 1)]
             for j in range(columns):
-                line[j + 1] = quarter * (above[j] + below[j + PAD]) + half * here[j + PAD]
-                above[j] = here[j + PAD]
+                line[j + 1] = quarter * (above[j] + below[j + BESIDE]) + half * here[j + BESIDE]
+                above[j] = here[j + BESIDE]
             line[0], line[columns + 1] = line[1], line[columns]
             for j in range(columns):
-                here[j + PAD] = quarter * (line[j] + line[j + 2]) + half * line[j + 1]
-            for j in range(PAD):
-                here[j], here[columns + PAD + j] = here[PAD], here[columns + PAD - 1]
-        for i in range(PAD):
-            cells[channel, i] = cells[channel, PAD]
-            cells[channel, rows + PAD + i] = cells[channel, rows + PAD - 1]
+                here[j + BESIDE] = quarter * (line[j] + line[j + 2]) + half * line[j + 1]
+            for j in range(BESIDE):
+                here[j], here[columns + BESIDE + j] = here[BESIDE], here[columns + BESIDE - 1]
+        for i in range(OVER):
+            cells[channel, i] = cells[channel, OVER]
+            cells[channel, rows + OVER + i] = cells[channel, rows + OVER - 1]

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.channels import PAD, Cells, Image, Memory, channels, noise_of
+from peopleboy.tracker.proposals.channels import BESIDE, OVER, Cells, Image, Memory, channels, noise_of
 from peopleboy.tracker.proposals.window import CELL_PX, COLUMNS, PERSON_PX, ROWS, Floats, boxes_of, cells_of
 from peopleboy.tracker.thermal.mount import Mount
 
@@ -20,6 +20,7 @@ STEP: Final = 2.0 ** (1.0 / 3.0)
 
 _STATURES_M: Final = (1.4, 2.0)  # of who is looked for
 _SLACK: Final = 0.15  # of a person's height: the pitch of the camera, the gait, and cells are none of a ray's
+_LEAST_ROWS: Final = 12  # of cells in an image; it shows the larger part of whom it cuts off
 _CONTEXT: Final = 12
 """Cells above and below a window that its channels depend on."""
 
@@ -42,12 +43,12 @@ class Level:
 
     def boxes(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> Floats:
         """Give the boxes (N, 4) [px] of the people who fill windows, by their first cell in `cells`."""
-        corner = np.stack([row + self.first - PAD, column - PAD]).astype(np.float64)
+        corner = np.stack([row + self.first - OVER, column - BESIDE]).astype(np.float64)
         return boxes_of(corner[0], corner[1], self.scale)
 
     def windows(self, box: Floats) -> Floats:
         """Give row and column (N, 2) in `cells` of the windows that people of boxes (N, 4) fill."""
-        return np.asarray(cells_of(box, self.scale) + np.array([PAD - self.first, PAD]), np.float64)
+        return np.asarray(cells_of(box, self.scale) + np.array([OVER - self.first, BESIDE]), np.float64)
 
 
 def levels(
@@ -73,7 +74,7 @@ def levels(
     while True:
         scale = PERSON_PX / person_px
         high, wide = round(rows * scale / CELL_PX), round(columns * scale / CELL_PX)
-        if high < ROWS or wide < COLUMNS:
+        if high < _LEAST_ROWS or wide < COLUMNS:
             return
         down, right = CELL_PX * high / rows, CELL_PX * wide / columns
         start, end = _beginnings(mount, high, down)
@@ -87,7 +88,7 @@ def levels(
                 noise * min(1.0, scale),
                 memory,
             )
-            yield Level(cells, first, (start + PAD - first, end + PAD - first), (down, right))
+            yield Level(cells, first, (start + OVER - first, end + OVER - first), (down, right))
         person_px *= STEP
 
 
@@ -114,7 +115,7 @@ class _Halves:
 
 def _beginnings(mount: Mount | None, high: int, down: float) -> tuple[int, int]:
     """Tell in which rows of cells windows may begin; the border's are below 0 and beyond."""
-    everywhere = (-PAD, high + PAD - ROWS + 1)
+    everywhere = (-OVER, high + OVER - ROWS + 1)
     if mount is None:
         return everywhere
     # Whoever stands has the feet as far below the horizon as the camera is high.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -26,10 +25,8 @@ from peopleboy.scenarios.studies.people_learning.window_mining import (
     windows_anywhere,
     windows_with_people,
 )
+from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
 from peopleboy.tracker.proposals.model import WEIGHTS, PeopleModel
-
-FIRST_SEED: Final = 1000
-"""Of worlds to learn from."""
 
 TESTS: Final = 30
 """Worlds to judge by: those of the first seeds."""
@@ -37,7 +34,7 @@ TESTS: Final = 30
 ROUNDS: Final = (Boosting(48, 0.3), Boosting(128, 0.2), Boosting(256, 0.15), Boosting(640, 0.1))
 """After each but the last, mistakes are collected, and learned from in the next."""
 
-_HELD_BACK: Final = 10  # of so many worlds, or of fewer, one is not learned from
+_HELD_BACK: Final = 10  # of so many worlds one is not learned from
 _MISTAKES: Final = 9000  # a round
 _OTHERS: Final = 24000  # windows without people that are in memory: 3.6 kB each
 _FIRST_OTHERS: Final = 12000
@@ -51,7 +48,8 @@ def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) 
     Args:
         out: the folder.
         workers: who films.
-        worlds: how many to learn from, at least 2: the last tenth is held back, to make scores log odds.
+        worlds: how many to learn from, one of each kind at least; a tenth is held back, to make scores log
+            odds.
         ship: whether to put the trees in the place of the tracker's own.
 
     Returns:
@@ -65,16 +63,16 @@ def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) 
     with writing_to(out):
         films.mkdir(parents=True, exist_ok=True)
     tests = [PeopleFilmTask(str(films), seed) for seed in range(TESTS)]
-    tasks = [PeopleFilmTask(str(films), seed) for seed in range(FIRST_SEED, FIRST_SEED + worlds)]
+    seeds = [seed for kind in KINDS for seed in kind.seeds(worlds)]
+    tasks = [PeopleFilmTask(str(films), seed) for seed in seeds]
     work_through([task for task in (*tests, *tasks) if not task.film.is_file()], workers, "films")
-    held = math.ceil(worlds / _HELD_BACK)
-    lessons, others = ([task.film for task in part] for part in (tasks[:-held], tasks[-held:]))
-    model = teach(list(shots_of(lessons)), list(shots_of(others)), np.random.default_rng(0))
-    own = sum(task.is_own for task in tasks)
-    about = {
-        "trained on": f"{worlds} random worlds, seeds from {FIRST_SEED}, {own} of them in the robot's own "
-        f"span; {held} held back"
-    }
+    held = tasks[_HELD_BACK - 1 :: _HELD_BACK] or tasks[-1:]
+    lessons = [task.film for task in tasks if task not in held]
+    model = teach(
+        list(shots_of(lessons)), list(shots_of(task.film for task in held)), np.random.default_rng(0)
+    )
+    kinds = ", ".join(f"{len(kind.seeds(worlds))} {kind.words} from seed {kind.first_seed}" for kind in KINDS)
+    about = {"trained on": f"{kinds}; {len(held)} of them held back"}
     path = WEIGHTS if ship else out / WEIGHTS.name
     with writing_to(path.parent), whole(path) as part:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -96,7 +94,7 @@ def teach(
         BadInput: scikit-learn is missing, or too few people.
     """
     people, places = windows_with_people(shots, rng)
-    others = _some(windows_anywhere(shots, rng), _FIRST_OTHERS, rng)
+    others = windows_anywhere(shots, rng, _FIRST_OTHERS)
     _say(f"{len(shots)} images, {len(people)} windows with people")
     for number, boosting in enumerate(ROUNDS, 1):
         cascade = teach_cascade(people, others, boosting)

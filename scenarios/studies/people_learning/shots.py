@@ -24,6 +24,14 @@ _SPANNED: Final = 0.5  # share of images that are learned from in another span
 _MOST_BLACK: Final = 0.97
 _LEAST_SPAN: Final = 60.0  # [grey]
 _GAINS: Final = (0.6, 1.6)
+_NEGATED: Final = 0.15  # of images: a camera that shows what is hot black, or people colder than all else
+_FAINT: Final = 0.15  # of images, in which something hotter and something colder take most of the greys
+_FAINTER: Final = (0.15, 0.6)  # gains
+_CUT_OFF: Final = 0.3  # of images
+_MOST_CUT: Final = 0.4  # of the height
+_AT_THE_FEET: Final = 0.7  # of those; others at the head
+_FEWEST_ROWS: Final = 60
+_TALL_PX: Final = 36.0  # who is cut off, so that it is worth while
 _LEAST_SHOWN_PX: Final = 8.0  # of whom less is seen, nobody need find
 
 
@@ -46,9 +54,59 @@ class PeopleShot:
     is_good: NDArray[np.bool_]
 
     def varied(self, rng: np.random.Generator) -> PeopleShot:
-        """Give it as it is or mirrored, in half of all cases as a camera with another span would."""
+        """Give it as it is or otherwise: mirrored, cut off, negated, in another span, faint."""
         shot = self.mirrored() if rng.random() < 0.5 else self
-        return shot.spanned(rng) if rng.random() < _SPANNED else shot
+        if rng.random() < _CUT_OFF:
+            shot = shot.cut_off(rng)
+        if rng.random() < _NEGATED:
+            shot = shot.negated()
+        if rng.random() < _SPANNED:
+            return shot.spanned(rng)
+        return shot.faint(rng) if rng.random() < _FAINT else shot
+
+    def negated(self) -> PeopleShot:
+        """Give it with hot black."""
+        return replace(self, grey=255 - self.grey)
+
+    def faint(self, rng: np.random.Generator) -> PeopleShot:
+        """Give it with less contrast, as where something is much hotter or colder than all the rest."""
+        gain = rng.uniform(*_FAINTER)
+        grey = 255.0 * rng.uniform(0.0, 1.0 - gain) + gain * self.grey
+        return replace(
+            self, grey=np.rint(grey).astype(np.uint8), change=np.rint(gain * self.change).astype(np.uint8)
+        )
+
+    def cut_off(self, rng: np.random.Generator) -> PeopleShot:
+        """Give a part of it that ends at somebody's feet or head, so that some of them is outside."""
+        top, bottom = self.box[:, 1], self.box[:, 1] + self.box[:, 3]
+        tall = np.flatnonzero(self.is_good & (self.box[:, 3] > _TALL_PX))
+        if not len(tall):
+            return self
+        one = int(rng.choice(tall))
+        if rng.random() < _AT_THE_FEET:
+            return self._part(0, bottom[one] - rng.uniform(0.0, _MOST_CUT) * self.box[one, 3])
+        return self._part(top[one] + rng.uniform(0.0, _HIGHEST) * self.box[one, 3], len(self.grey))
+
+    def _part(self, first: float, end: float) -> PeopleShot:
+        """Give some of the rows; whole, if those are few."""
+        begin, stop = max(round(first), 0), min(round(end), len(self.grey))
+        if stop - begin < _FEWEST_ROWS:
+            return self
+        top, bottom = self.box[:, 1], self.box[:, 1] + self.box[:, 3]
+        shown = np.minimum(bottom, stop) - np.maximum(top, begin)
+        is_left = shown > 0.0
+        is_good = (
+            self.is_good
+            & (shown >= (1.0 - _MOST_CUT) * self.box[:, 3])
+            & (begin - top <= _HIGHEST * self.box[:, 3])
+        )
+        return PeopleShot(
+            grey=self.grey[begin:stop],
+            change=self.change[begin:stop],
+            mount=replace(self.mount, horizon_px=self.mount.horizon_px - begin),
+            box=(self.box - np.array([0.0, begin, 0.0, 0.0]))[is_left],
+            is_good=is_good[is_left],
+        )
 
     def spanned(self, rng: np.random.Generator) -> PeopleShot:
         """Give it as a camera of another span would: what is colder than that is black, hotter white."""

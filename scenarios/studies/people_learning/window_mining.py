@@ -59,17 +59,25 @@ def _filled(shot: PeopleShot, rng: np.random.Generator) -> Iterator[tuple[Window
                 yield _cut(level.cells, *place), offsets(window, own[None])[0]
 
 
-def windows_anywhere(shots: Sequence[PeopleShot], rng: np.random.Generator) -> Windows:
-    """Collect windows (N, 1800) without people."""
+def windows_anywhere(shots: Sequence[PeopleShot], rng: np.random.Generator, most: int) -> Windows:
+    """Collect windows (N, 1800) without people.
+
+    Args:
+        shots: images, of which each is looked at varied.
+        rng: draws which images, and where.
+        most: how many are enough.
+    """
     found: list[Windows] = []
-    for original in shots:
-        shot, here = original.varied(rng), []
+    for k in rng.permutation(len(shots)).tolist():
+        shot, here = shots[k].varied(rng), []
         for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
             _, high, wide = level.cells.shape
             rows = rng.integers(0, high - ROWS + 1, _A_LEVEL)
             columns = rng.integers(0, wide - COLUMNS + 1, _A_LEVEL)
             here += _without(shot, level, rows, columns)
         found += [here[k] for k in rng.permutation(len(here))[:_AN_IMAGE]]
+        if len(found) >= most:
+            break
     return np.array(found, np.float16).reshape(-1, FEATURES)
 
 
@@ -77,7 +85,7 @@ def mistakes(shots: Sequence[PeopleShot], cascade: Cascade, rng: np.random.Gener
     """Collect windows (N, 1800) without people that are taken for some, the worst of each image.
 
     Args:
-        shots: images, of which each is looked at as it is or mirrored.
+        shots: images, of which each is looked at varied.
         cascade: what errs.
         rng: draws which images.
         most: how many are enough.

@@ -5,13 +5,14 @@ import pytest
 from numpy.typing import NDArray
 
 from peopleboy.tracker.proposals.channels import (
+    BESIDE,
     CHANNELS,
     DIRECTIONS,
     FIRST_DIRECTION,
     GRADIENT,
     GREY,
     MOTION,
-    PAD,
+    OVER,
     channels,
     noise_of,
 )
@@ -72,7 +73,9 @@ def computed_otherwise(grey: Floats, change: Floats, noise: float) -> Floats:
         apart = angle - math.pi * (k + 0.5) / DIRECTIONS
         out.append(pooled(size * np.maximum(2.0 * np.cos(2.0 * apart) - 1.0, 0.0)) / around)
     out.append(np.minimum(change / spread, 3.0))
-    return np.stack([np.pad(smoothed(one, "edge"), PAD, mode="edge") for one in out])
+    return np.stack(
+        [np.pad(smoothed(one, "edge"), ((OVER, OVER), (BESIDE, BESIDE)), mode="edge") for one in out]
+    )
 
 
 def test_the_kernel_agrees_with_a_second_computation() -> None:
@@ -83,7 +86,7 @@ def test_the_kernel_agrees_with_a_second_computation() -> None:
 
 @pytest.mark.parametrize("k", range(DIRECTIONS))
 def test_a_ramp_has_its_gradient_in_its_own_direction_alone(k: int) -> None:
-    cells = channels(ramp(math.pi * (k + 0.5) / DIRECTIONS), still(), 0.0)[:, 15, 20]
+    cells = channels(ramp(math.pi * (k + 0.5) / DIRECTIONS), still(), 0.0)[:, 21, 22]
     expected = np.zeros(CHANNELS)
     expected[[GRADIENT, FIRST_DIRECTION + k]] = 4.0 / (4.0 + 1.0)  # over the mean around, and one grey
     np.testing.assert_allclose(np.delete(cells, GREY), np.delete(expected, GREY), atol=1e-4)
@@ -112,15 +115,15 @@ def test_gain_and_offset_of_the_image_change_little(gain: float, offset: float) 
 
 def test_the_border_goes_on_as_it_ends() -> None:
     cells = channels(speckled(), still(), 1.0)
-    assert cells.shape == (CHANNELS, ROWS // 2 + 2 * PAD, COLUMNS // 2 + 2 * PAD)
-    np.testing.assert_array_equal(cells[:, :, 0], cells[:, :, PAD])
-    np.testing.assert_array_equal(cells[:, -1], cells[:, -1 - PAD])
+    assert cells.shape == (CHANNELS, ROWS // 2 + 2 * OVER, COLUMNS // 2 + 2 * BESIDE)
+    np.testing.assert_array_equal(cells[:, :, 0], cells[:, :, BESIDE])
+    np.testing.assert_array_equal(cells[:, -1], cells[:, -1 - OVER])
 
 
 def test_rows_far_enough_from_a_cut_are_those_of_the_whole_image() -> None:
     image = speckled(rows=120)
     whole, part = channels(image, still(120), 1.0), channels(image[20:], still(100), 1.0)
-    np.testing.assert_allclose(part[:, PAD + 12 : -PAD], whole[:, PAD + 22 : -PAD], atol=1e-4)
+    np.testing.assert_allclose(part[:, OVER + 12 : -OVER], whole[:, OVER + 22 : -OVER], atol=1e-4)
 
 
 def test_noise_is_told_whatever_slopes_the_image_has() -> None:

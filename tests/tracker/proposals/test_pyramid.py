@@ -65,4 +65,4 @@ def test_people_who_cannot_stand_in_view_cost_nothing() -> None:
 
 
 def test_an_image_too_small_for_a_window_has_no_level() -> None:
-    assert not list(levels(GREY[:20, :20], STILL[:20, :20], None, 24.0))
+    assert not list(levels(GREY[:16, :20], STILL[:16, :20], None, 24.0))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, film_upright
-from peopleboy.tracker.proposals.channels import FIRST_DIRECTION, GRADIENT, MOTION, PAD
+from peopleboy.tracker.proposals.channels import BESIDE, FIRST_DIRECTION, GRADIENT, MOTION, OVER
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.pyramid import levels
@@ -54,6 +54,6 @@ def _found(panel: Axes, film: PeopleFilm, k: int) -> None:
 
 
 def _channel(panel: Axes, cells: NDArray[np.float32], channel: int) -> None:
-    image = cells[channel, PAD:-PAD, PAD:-PAD]
+    image = cells[channel, OVER:-OVER, BESIDE:-BESIDE]
     bright = 255.0 * np.clip(image / np.quantile(image, 0.995), 0.0, 1.0)
     show(panel, bright.astype(np.uint8) // _STEP * _STEP)

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -81,13 +82,65 @@ def test_spans_go_from_all_of_the_image_to_hardly_any(shots: list[PeopleShot]) -
     assert 0.85 < max(black) < 1.0
 
 
-def test_half_of_all_examples_are_mirrored_and_half_are_in_another_span(shots: list[PeopleShot]) -> None:
+def test_negated_twice_is_itself(shots: list[PeopleShot]) -> None:
+    before, once = shots[0], shots[0].negated()
+    assert (once.grey.astype(int) + before.grey == 255).all()
+    np.testing.assert_array_equal(once.negated().grey, before.grey)
+    assert once.change is before.change
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_faint_shot_has_less_contrast_and_nothing_is_clipped(seed: int, shots: list[PeopleShot]) -> None:
+    before, after = shots[seed], shots[seed].faint(np.random.default_rng(seed))
+    gain, offset = np.polyfit(before.grey.ravel().astype(float), after.grey.ravel().astype(float), 1)
+    assert 0.14 < gain < 0.61
+    assert np.abs(gain * before.grey + offset - after.grey).max() < 1.0
+    assert np.abs(gain * before.change - after.change).max() < 1.5
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_who_is_cut_off_keeps_most_of_their_height_and_their_place(
+    seed: int, shots: list[PeopleShot]
+) -> None:
+    before, after = shots[seed], shots[seed].cut_off(np.random.default_rng(seed))
+    rows = len(after.grey)
+    first = next(
+        k for k in range(len(before.grey) - rows + 1) if np.array_equal(before.grey[k : k + rows], after.grey)
+    )
+    np.testing.assert_array_equal(after.change, before.change[first : first + rows])
+    np.testing.assert_allclose(after.box, before.box - np.array([0.0, first, 0.0, 0.0]))
+    assert after.mount.horizon_px == before.mount.horizon_px - first
+    top, tall = after.box[0, 1], after.box[0, 3]
+    shown = min(top + tall, rows) - max(top, 0.0)
+    assert after.is_good[0] == (shown >= 0.6 * tall and top >= -0.25 * tall)
+    assert shown > 0.55 * tall
+
+
+def test_people_are_cut_off_at_feet_and_head(shots: list[PeopleShot]) -> None:
     rng = np.random.default_rng(0)
-    sides = {True: shots[0].mirrored(), False: shots[0]}
+    cut = [shots[k % 8].cut_off(rng) for k in range(80)]
+    assert sum(bool(one.box[0, 1] < -1.0) for one in cut) > 8
+    assert sum(bool(one.box[0, 1] + one.box[0, 3] > len(one.grey) + 1.0) for one in cut) > 10
+
+
+def test_who_is_cut_away_is_not_there(shots: list[PeopleShot]) -> None:
+    low = np.array([[10.0, 105.0, 6.0, 14.0]])
+    two = replace(shots[0], box=np.concatenate([shots[0].box, low]), is_good=np.array([True, False]))
+    part = two._part(0.0, 100.0)
+    np.testing.assert_array_equal(part.box, shots[0].box)
+    assert len(part.is_good) == 1
+    assert two._part(0.0, 30.0) is two  # of too few rows nothing can be learned
+
+
+def test_examples_vary(shots: list[PeopleShot]) -> None:
+    rng = np.random.default_rng(0)
     varied = [shots[0].varied(rng) for _ in range(200)]
-    is_mirrored = [bool(np.allclose(one.box, sides[True].box)) for one in varied]
-    is_spanned = [
-        not np.array_equal(one.grey, sides[side].grey) for one, side in zip(varied, is_mirrored, strict=True)
+    sides = {True: shots[0].mirrored(), False: shots[0]}
+    is_mirrored = [bool(one.box[0, 0] == sides[True].box[0, 0]) for one in varied]
+    is_as_it_was = [
+        np.array_equal(one.grey, sides[side].grey) for one, side in zip(varied, is_mirrored, strict=True)
     ]
+    is_cut = [len(one.grey) < len(shots[0].grey) for one in varied]
     assert 70 < sum(is_mirrored) < 130
-    assert 70 < sum(is_spanned) < 130
+    assert 30 < sum(is_as_it_was) < 90
+    assert 30 < sum(is_cut) < 80

@@ -46,7 +46,7 @@ def test_windows_without_people_show_nobody(
     if is_taught:
         found = window_mining.mistakes(shots[:8], drawn_cascade(), rng, 50)
     else:
-        found = window_mining.windows_anywhere(shots[:12], rng)
+        found = window_mining.windows_anywhere(shots[:12], rng, 10000)
     assert found.shape == (len(found), FEATURES)
     assert len(found) >= 50
     assert max(one.max(initial=0.0) for one in seen) < 0.3
