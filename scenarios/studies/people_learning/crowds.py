@@ -3,33 +3,39 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 
 from peopleboy.scenarios.random_worlds.attempts import is_valid, rounded
-from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES, Distribution, Range
+from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES, Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_world
 from peopleboy.sim.random_streams import stream
 
 LASTS_S: Final = 12.0
 
+_RANGES: Final[Mapping[str, tuple[float, float]]] = {
+    "room_length": (9.0, 20.0),
+    "room_width": (6.0, 14.0),
+    "street_length": (18.0, 40.0),
+    "ceiling": (3.6, 5.0),
+    "things": (0, 10),
+    "people": (5, 10),
+    "camera_height": (0.8, 3.4),
+    "pitch": (-4.0, 20.0),
+    "vertical_fov": (20.0, 50.0),
+}
+_SHARES: Final[Mapping[str, Mapping[str, float]]] = {
+    "place": {"room": 0.35, "street": 0.65},
+    "robot": {"stands": 0.9, "drives": 0.1},
+}
+_ODDS: Final[Mapping[str, float]] = {"begins_in_view": 0.9, "enters_later": 0.1}
 _CROWDS: Final = Distribution(
-    ranges=RANGES
-    | {
-        "room_length": Range(low=9.0, high=20.0, unit="m", what=RANGES["room_length"].what),
-        "room_width": Range(low=6.0, high=14.0, unit="m", what=RANGES["room_width"].what),
-        "street_length": Range(low=18.0, high=40.0, unit="m", what=RANGES["street_length"].what),
-        "ceiling": Range(low=3.6, high=5.0, unit="m", what=RANGES["ceiling"].what),
-        "things": Range(low=0, high=10, unit="", what=RANGES["things"].what, is_whole=True),
-        "people": Range(low=5, high=10, unit="", what=RANGES["people"].what, is_whole=True),
-        "camera_height": Range(low=0.8, high=3.4, unit="m", what=RANGES["camera_height"].what),
-        "pitch": Range(low=-4.0, high=20.0, unit="deg", what=RANGES["pitch"].what),
-        "vertical_fov": Range(low=20.0, high=50.0, unit="deg", what=RANGES["vertical_fov"].what),
-    },
-    shares=SHARES | {"place": {"room": 0.35, "street": 0.65}, "robot": {"stands": 0.9, "drives": 0.1}},
-    odds=ODDS
-    | {name: (odds, ODDS[name][1]) for name, odds in (("begins_in_view", 0.9), ("enters_later", 0.1))},
+    ranges={**RANGES, **{key: replace(RANGES[key], low=a, high=b) for key, (a, b) in _RANGES.items()}},
+    shares={**SHARES, **_SHARES},
+    odds={**ODDS, **{key: (odds, ODDS[key][1]) for key, odds in _ODDS.items()}},
 )
 _TOGETHER: Final = 0.5  # of all people have somebody beside them
 _APART_M: Final = (0.45, 0.9)
