@@ -71,9 +71,9 @@ def _warm_world(seed: int) -> World:
 
 
 KINDS: Final = (
-    Kind("random worlds", 1000, 0.5, random_world),
-    Kind("crowds", 2000, 0.15, crowded_world),
-    Kind("worlds in the robot's own span", 3000, 0.28, _library_world),
+    Kind("random worlds", 1000, 0.49, random_world),
+    Kind("crowds", 2000, 0.12, crowded_world),
+    Kind("worlds in the robot's own span", 3000, 0.32, _library_world),
     Kind("plain worlds as warm as people", 4000, 0.07, _warm_world),
 )
 

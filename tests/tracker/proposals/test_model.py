@@ -85,4 +85,4 @@ def test_other_trees_are_refused(tmp_path: Path, part: str, name: str, wrong: An
 
 
 def test_the_trees_that_are_shipped_say_what_they_were_trained_on() -> None:
-    assert "seeds from 1000" in shipped_model().about["trained on"]
+    assert "from seed 1000" in shipped_model().about["trained on"]

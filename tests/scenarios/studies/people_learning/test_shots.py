@@ -93,7 +93,7 @@ def test_negated_twice_is_itself(shots: list[PeopleShot]) -> None:
 def test_a_faint_shot_has_less_contrast_and_nothing_is_clipped(seed: int, shots: list[PeopleShot]) -> None:
     before, after = shots[seed], shots[seed].faint(np.random.default_rng(seed))
     gain, offset = np.polyfit(before.grey.ravel().astype(float), after.grey.ravel().astype(float), 1)
-    assert 0.14 < gain < 0.61
+    assert 0.09 < gain < 0.61
     assert np.abs(gain * before.grey + offset - after.grey).max() < 1.0
     assert np.abs(gain * before.change - after.change).max() < 1.5
 
