@@ -11,7 +11,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.proposals.cascade import DEPTH, LEAVES, NODES, Cascade
 
 _FEATURES_A_NODE: Final = 40  # drawn at random; of all it would take 45 times as long
-_SHARE_A_TREE: Final = 0.4  # of the windows
+_SHARE_A_TREE: Final = 0.5  # of the windows
 _SMALLEST_LEAF: Final = 20  # windows
 _WEAKEST: Final = 0.03  # of people, whom no tree needs to keep
 _LET_GO: Final = 0.005  # of all others may be let go

@@ -15,7 +15,7 @@ from peopleboy.tracker.proposals.placing import Placing
 _TREES: Final = 80
 _RATE: Final = 0.15
 _FEATURES_A_NODE: Final = 80
-_SHARE_A_TREE: Final = 0.4
+_SHARE_A_TREE: Final = 0.6
 _SMALLEST_LEAF: Final = 15
 
 
