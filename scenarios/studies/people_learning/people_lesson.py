@@ -36,7 +36,7 @@ ROUNDS: Final = (Boosting(48, 0.3), Boosting(128, 0.2), Boosting(256, 0.15), Boo
 
 _HELD_BACK: Final = 10  # of so many worlds one is not learned from
 _MISTAKES: Final = 9000  # a round
-_OTHERS: Final = 36000  # windows without people that are in memory: 3.6 kB each
+_OTHERS: Final = 24000  # windows without people that are in memory: 3.6 kB each
 _FIRST_OTHERS: Final = 12000
 
 

@@ -16,7 +16,7 @@ World = dict[str, Any]
 _WARMEST_C: Final = 25.0
 _SURFACES: Final = ("walls_c", "floor_c", "ceiling_c", "surroundings_c", "air_c")
 _OF_CAMERA: Final = ("kind", "mount_m", "pitch_deg", "vertical_fov_deg")
-_WARM_AIR_C: Final = (27.0, 33.0)
+_WARM_AIR_C: Final = (27.0, 31.0)
 
 
 def as_the_library(world: World) -> World:
@@ -25,20 +25,25 @@ def as_the_library(world: World) -> World:
     warmth = place.get("temperatures", {})
     if max((warmth.get(surface, 0.0) for surface in _SURFACES), default=0.0) > _WARMEST_C:
         del place["temperatures"]
-    cameras = world["robot"]["cameras"]
+    return world | {"detail": "plain", "place": place, "robot": _with_own_camera(world["robot"])}
+
+
+def _with_own_camera(robot: World) -> World:
+    """Give a robot whose thermal camera has the span of the robot's own."""
+    cameras = robot["cameras"]
     own = {key: value for key, value in cameras["thermal"].items() if key in _OF_CAMERA}
-    robot = world["robot"] | {"cameras": cameras | {"thermal": own}}
-    return world | {"detail": "plain", "place": place, "robot": robot}
+    return robot | {"cameras": cameras | {"thermal": own}}
 
 
 def as_warm_as_people(world: World, air_c: float) -> World:
-    """Give a world without the details, whose air, and all else by as much, is that warm."""
+    """Give a world without the details, in the same span, whose air is that warm, and all else by as much."""
     place = {key: value for key, value in world["place"].items() if key != "sun"}
     warmth = place["temperatures"]
     warmer = air_c - warmth["air_c"]
     walls = {name: rounded(value + warmer) for name, value in warmth["single_walls_c"].items()}
     warm = {key: rounded(value + warmer) for key, value in warmth.items() if key != "single_walls_c"}
-    return world | {"detail": "plain", "place": place | {"temperatures": warm | {"single_walls_c": walls}}}
+    place |= {"temperatures": warm | {"single_walls_c": walls}}
+    return world | {"detail": "plain", "place": place, "robot": _with_own_camera(world["robot"])}
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +76,10 @@ def _warm_world(seed: int) -> World:
 
 
 KINDS: Final = (
-    Kind("random worlds", 1000, 0.49, random_world),
-    Kind("crowds", 2000, 0.12, crowded_world),
-    Kind("worlds in the robot's own span", 3000, 0.32, _library_world),
-    Kind("plain worlds as warm as people", 4000, 0.07, _warm_world),
+    Kind("random worlds", 1000, 0.5, random_world),
+    Kind("crowds", 2000, 0.1, crowded_world),
+    Kind("worlds in the robot's own span", 3000, 0.34, _library_world),
+    Kind("plain worlds as warm as people", 4000, 0.06, _warm_world),
 )
 
 

@@ -11,6 +11,7 @@ from peopleboy.tracker.proposals.placing import OFFSETS
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_trees import PLACING_TREES, TREES, drawn_cascade, drawn_placing
 
+PAGE = Path(__file__).parents[3] / "docs" / "how" / "proposals.md"
 PLACING = (OFFSETS, PLACING_TREES)
 
 
@@ -86,3 +87,11 @@ def test_other_trees_are_refused(tmp_path: Path, part: str, name: str, wrong: An
 
 def test_the_trees_that_are_shipped_say_what_they_were_trained_on() -> None:
     assert "from seed 1000" in shipped_model().about["trained on"]
+
+
+def test_the_page_says_of_the_shipped_trees_what_their_file_does() -> None:
+    page = " ".join(PAGE.read_text(encoding="utf-8").split())
+    about = shipped_model().about
+    for mount in ("known", "unknown"):
+        assert about[f"on worlds 0 to 29, mount {mount}"] in page
+    assert about["trained on"] in page

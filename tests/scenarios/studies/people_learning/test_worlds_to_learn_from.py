@@ -43,7 +43,8 @@ def test_a_world_as_warm_as_people_is_warmer_by_the_same_all_over(seed: int) -> 
     assert warm["air_c"] == 30.0
     for key in ("walls_c", "floor_c", "ceiling_c", "surroundings_c"):
         assert warm[key] - was[key] == pytest.approx(30.0 - was["air_c"], abs=0.02)
-    assert world["robot"] == before["robot"]
+    thermal = parse_scenario(world, source="world", folder=Path()).world(seed).robot.cameras[THERMAL]
+    assert (thermal.gain, thermal.lowest_c, thermal.highest_c) == ("fixed", 24.0, 36.0)
     assert "sun" not in world["place"]
     assert before == random_world(seed)  # left alone
 
