@@ -50,7 +50,7 @@ def _found(panel: Axes, film: PeopleFilm, k: int) -> None:
     found = look(shipped_model(), film.grey[k], film.change[k], film.seen_by(), SMALLEST_PX, 0.0)
     for (left, top, width, height), score in zip(found.box.tolist(), found.score.tolist(), strict=True):
         panel.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor="tab:orange", lw=1.5))
-        panel.text(left, top - 2.0, f"{score:.1f}", color="tab:orange", fontsize=8)
+        panel.text(left, max(top - 2.0, 12.0), f"{score:.1f}", color="tab:orange", fontsize=8)
 
 
 def _channel(panel: Axes, cells: NDArray[np.float32], channel: int) -> None:
