@@ -35,8 +35,9 @@ EMPTY = "empty_room"
 # Every setting in which the two differ belongs to one step; a name stands for all that begin with it. The
 # order is that of `variants`: a step may need those before it.
 STEPS: dict[str, tuple[str, ...]] = {
-    "differences bend at 18 grey, not 40": (
+    "differences bend at 18 grey, and are not cut off at 40": (
         "contour.saturation_grey",
+        "contour.is_cut_off",
         "likelihood.slope",
         "likelihood.threshold",
     ),
@@ -67,6 +68,7 @@ STEPS: dict[str, tuple[str, ...]] = {
         "detector.estimate",
         "person.sharpness",
         "person.estimate",
+        "person.resamples_core",
     ),
     "half of the detector's samples anew, none of the person's": (
         "detector.fresh_share",

@@ -236,20 +236,11 @@ class ByDetectionTracker:
             return
         since = now.time_s - config.gone_s
         lost = [other for other in self._targets if other.is_told and other.seen_s < since]
-        before = known_again(target, lost, lambda other: self._is_near(other, target, now), config)
+        before = known_again(target, lost, config)
         if before is not None:
             target.take_over(before)
         elif not target.is_told:
             self._tell(target, now.time_s)
-
-    def _is_near(self, other: Target, target: Target, now: _Instant) -> bool:
-        """Tell whether somebody who was lost may have come where another one is, and looks like him."""
-        rows = np.array([self._targets.index(other), self._targets.index(target)])
-        box = boxes_of(self._paths.take(rows[1:]), now.view, np.array([target.ratio]))
-        before = self._paths.take(rows[:1])
-        apart = distances(before, box, now.view, self._config.path)[0, 0]
-        config = self._config.matching
-        return bool(apart < config.gate) and float(other.looks @ target.looks) > config.looks_of_lost
 
     def _tell(self, target: Target, time_s: float) -> None:
         target.told_s = time_s

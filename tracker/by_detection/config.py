@@ -62,7 +62,7 @@ class MatchingConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class IdentityConfig:
+class RecognitionConfig:
     """When people turn out to be others than they were taken for.
 
     Attributes:
@@ -126,4 +126,4 @@ class ByDetectionConfig:
     path: PathConfig = field(default_factory=PathConfig)
     matching: MatchingConfig = field(default_factory=MatchingConfig)
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
-    identity: IdentityConfig = field(default_factory=IdentityConfig)
+    identity: RecognitionConfig = field(default_factory=RecognitionConfig)

@@ -6,16 +6,16 @@ what they looked like before, which is learned no further while they look like s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from peopleboy.tracker.by_detection.colours import alike
-from peopleboy.tracker.by_detection.config import IdentityConfig
+from peopleboy.tracker.by_detection.config import RecognitionConfig
 from peopleboy.tracker.by_detection.target import Target
 
 
-def resolve(targets: Sequence[Target], time_s: float, config: IdentityConfig) -> None:
+def resolve(targets: Sequence[Target], time_s: float, config: RecognitionConfig) -> None:
     """Let people exchange their numbers who look like each other did before.
 
     Who is seen apart from others for a while is compared with whoever is so, too, or is gone as long.
@@ -36,32 +36,24 @@ def resolve(targets: Sequence[Target], time_s: float, config: IdentityConfig) ->
             _exchange(one, others[int(np.argmax(gains))])
 
 
-def known_again(
-    target: Target, lost: Sequence[Target], is_near: Callable[[Target], bool], config: IdentityConfig
-) -> Target | None:
-    """Tell which of those who were lost somebody new is, if any.
+def known_again(target: Target, lost: Sequence[Target], config: RecognitionConfig) -> Target | None:
+    """Tell by colours which of those who were lost somebody new is, if any.
 
     Args:
         target: who is new.
         lost: who may be meant.
-        is_near: whether somebody may have come here on the way on which he was lost.
         config: how alike they must be.
     """
     likeness = [alike(target.colours, other.colours) for other in lost]
     best = int(np.argmax(likeness)) if likeness else -1
-    if best >= 0 and likeness[best] > config.same:
-        return lost[best]
-    if target.colours.any():
-        return None
-    near = [other for other in lost if is_near(other)]
-    return near[0] if len(near) == 1 else None
+    return lost[best] if best >= 0 and likeness[best] > config.same else None
 
 
-def _is_clear(target: Target, config: IdentityConfig) -> bool:
+def _is_clear(target: Target, config: RecognitionConfig) -> bool:
     return target.clear_s >= config.parted_s and bool(target.recent.any())
 
 
-def _gain(one: Target, other: Target, config: IdentityConfig) -> float:
+def _gain(one: Target, other: Target, config: RecognitionConfig) -> float:
     """Tell how much better people fit who they look like if both are the other one."""
     gain = alike(one.recent, other.colours) - alike(one.recent, one.colours)
     if _is_clear(other, config):

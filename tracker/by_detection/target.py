@@ -66,11 +66,10 @@ class Target:
         self.sightings += 1
         self.watched_s += dt_s
         evidence = min(score, config.highest_score)
-        if self.is_told:
-            self.log_odds = max(self.log_odds, config.confirmed)
-        else:
+        if not self.is_told:
             evidence -= config.shared_doubt * shared
-        self.log_odds = min(self.log_odds + evidence * dt_s / config.independent_s, config.highest)
+        sum_of_both = self.log_odds + evidence * dt_s / config.independent_s
+        self.log_odds = min(max(sum_of_both, -config.highest), config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-score)) - self.confidence)
 
     def widen(self, ratio: float) -> None:
@@ -100,10 +99,14 @@ class Target:
         before.id, before.seen_s = 0, -math.inf
 
     def miss(self, occluder: int | None, dt_s: float, config: ExistenceConfig) -> None:
-        """Take in that it was not found, and who may hide it."""
+        """Take in that it was not found, and who may hide it.
+
+        However long somebody known is not found, the first image that says so brings him back.
+        """
         self.occluder = occluder
         loss = config.missed if occluder is None else config.missed_hidden
-        self.log_odds -= loss * dt_s / config.independent_s
+        least = min(self.log_odds, config.hopeless) if self.is_told else -math.inf
+        self.log_odds = max(self.log_odds - loss * dt_s / config.independent_s, least)
 
     def status(self, time_s: float) -> Status:
         """Tell how well it is seen now."""

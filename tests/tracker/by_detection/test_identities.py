@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.by_detection.colours import FEATURES, Colours
-from peopleboy.tracker.by_detection.config import IdentityConfig
+from peopleboy.tracker.by_detection.config import RecognitionConfig
 from peopleboy.tracker.by_detection.identities import known_again, resolve
 from peopleboy.tracker.by_detection.target import Target
 
-CONFIG = IdentityConfig()
+CONFIG = RecognitionConfig()
 NOW_S = 20.0
 
 
@@ -61,17 +61,15 @@ def test_nothing_is_decided_as_long_as_one_of_them_is_in_sight_but_not_apart() -
 def test_somebody_new_is_who_wore_the_same() -> None:
     new = person(0, was=0.9, now=None)
     lost = [person(1, was=0.0, now=None, seen_s=5.0), person(2, was=1.0, now=None, seen_s=5.0)]
-    assert known_again(new, lost, lambda _: True, CONFIG) is lost[1]
-    assert known_again(new, lost[:1], lambda _: True, CONFIG) is None
+    assert known_again(new, lost, CONFIG) is lost[1]
+    assert known_again(new, lost[:1], CONFIG) is None
 
 
-def test_without_colours_somebody_new_is_the_only_one_who_may_have_come_here() -> None:
+def test_without_colours_somebody_new_is_nobody_who_was_lost() -> None:
     new = person(0, was=0.9, now=None)
     new.colours = np.zeros(FEATURES, np.float32)
     lost = [person(number, was=0.0, now=None, seen_s=5.0) for number in (1, 2)]
-    assert known_again(new, lost, lambda one: one.id == 2, CONFIG) is lost[1]
-    assert known_again(new, lost, lambda _: True, CONFIG) is None
-    assert known_again(new, lost, lambda _: False, CONFIG) is None
+    assert known_again(new, lost, CONFIG) is None
 
 
 def test_who_was_lost_is_no_more_once_somebody_goes_on_as_him() -> None:

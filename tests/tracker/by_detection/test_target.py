@@ -1,0 +1,59 @@
+"""Whether somebody is told, as evidence adds up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from peopleboy.tracker.by_detection.colours import FEATURES
+from peopleboy.tracker.by_detection.config import ExistenceConfig
+from peopleboy.tracker.by_detection.target import Target
+
+CONFIG = ExistenceConfig()
+DT_S = 1.0 / 15.0
+
+
+def known() -> Target:
+    return Target(
+        born_s=0.0,
+        seen_s=0.0,
+        looks=np.zeros(4, np.float32),
+        colours=np.zeros(FEATURES, np.float32),
+        ratio=0.3,
+        log_odds=CONFIG.confirmed,
+        id=1,
+        told_s=0.0,
+    )
+
+
+def seen(target: Target, score: float, images: int, since_s: float) -> float:
+    for image in range(1, images + 1):
+        time_s = since_s + image * DT_S
+        target.see(score, 0.0, time_s, DT_S, CONFIG)
+    return time_s
+
+
+def test_who_goes_on_to_look_like_nobody_is_told_no_more() -> None:
+    target = known()
+    images = round((CONFIG.confirmed - CONFIG.hopeless) * CONFIG.independent_s / DT_S)
+    time_s = seen(target, -1.0, images - 1, 0.0)
+    assert target.is_shown(time_s, CONFIG)
+    time_s = seen(target, -1.0, 2, time_s)
+    assert not target.is_shown(time_s, CONFIG)
+
+
+@pytest.mark.parametrize("hider", [None, 2])
+def test_who_was_away_is_told_with_the_first_image_that_shows_him(hider: int | None) -> None:
+    target = known()
+    for _ in range(200):
+        target.miss(hider, DT_S, CONFIG)
+    assert target.log_odds == CONFIG.hopeless
+    time_s = seen(target, 0.5, 1, 200 * DT_S)
+    assert target.is_shown(time_s, CONFIG)
+
+
+def test_who_was_never_told_fades_when_not_found() -> None:
+    target = known()
+    target.id, target.log_odds = 0, CONFIG.hopeless
+    target.miss(None, DT_S, CONFIG)
+    assert target.is_forgotten(DT_S, CONFIG)
