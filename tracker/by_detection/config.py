@@ -29,8 +29,8 @@ class PathConfig:
     column: float = 0.05
     head: float = 0.06
     foot: float = 0.06
-    build: float = 0.08
-    posture: float = 0.05
+    build: float = 0.04
+    posture: float = 0.02
     floor_m: float = 0.15
 
 
