@@ -54,7 +54,7 @@ FLOOR = (ShapeKind.PLANE, (0.0, 0.0, 0.0), np.eye(4))
 
 
 @settings(max_examples=25, deadline=None)
-@given(x=st.floats(2.0, 6.0), y=st.floats(-0.5, 0.5), radius=st.floats(0.1, 0.6))
+@given(x=st.floats(2.0, 6.0), y=st.floats(-0.5, 0.5), radius=st.floats(0.2, 0.6))
 def test_a_ball_fills_its_edge_pixels_by_the_share_of_their_area(x: float, y: float, radius: float) -> None:
     seen, table = draw((ShapeKind.SPHERE, (radius, 0.0, 0.0), at(x, y, 1.2)))
     found = smoothed(seen, table, (1.0,))

@@ -101,7 +101,7 @@ def test_feet_and_head_are_mixed_as_least_squares_would():
     assert share == pytest.approx(best, abs=0.03)
 
 
-@pytest.mark.parametrize("status", list(Status))
+@pytest.mark.parametrize("status", list(ERRORS))
 def test_who_is_seen_less_is_placed_less_surely(status: Status):
     assert all(error >= usual for error, usual in zip(ERRORS[status], ERRORS[Status.TRACKED], strict=True))
 
