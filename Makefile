@@ -3,13 +3,17 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-heavy test-install lint format bench peers rl pages docs clean
+.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs clean
 
 demo: $(READY)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
 
 test: $(READY)
 	$(BIN)/python -m pytest -n 2
+
+# All that the tutorials and the pages on tasks tell their readers to type.
+test-pages: $(READY)
+	$(BIN)/python -m pytest -n 2 -m pages
 
 test-heavy: $(READY)
 	$(BIN)/python -m pytest -m heavy

@@ -14,6 +14,7 @@ from tests.helpers.pages import DOCS, Block, blocks
 PAGES = sorted([*DOCS.glob("tutorial/*.md"), *DOCS.glob("tasks/*.md")])
 
 
+@pytest.mark.pages
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_what_a_reader_pastes_works(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
