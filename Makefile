@@ -11,7 +11,7 @@ demo: $(READY)
 test: $(READY)
 	$(BIN)/python -m pytest -n 2
 
-# All that the tutorials and the pages on tasks tell their readers to type.
+# All that the README, the tutorials and the pages on tasks tell their readers to type.
 test-pages: $(READY)
 	$(BIN)/python -m pytest -n 2 -m pages
 

@@ -200,7 +200,7 @@ def test_whatever_is_seen_commands_are_finite_and_within_the_limits(percepts):
         assert abs(command.angular_rad_s) <= limits.max_angular_rad_s
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(
     distance=st.floats(1.0, 8.0),
     angle=st.floats(-math.pi, math.pi),
@@ -220,7 +220,7 @@ def test_a_standing_person_is_found_anywhere_faced_and_kept_at_the_same_height(d
     assert not log.is_contact.any()
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(
     speed=st.floats(0.2, 0.7),
     course=st.floats(-1.2, 1.2),

@@ -267,6 +267,7 @@ def test_the_picture_shows_both_images_and_the_plan(scene: Path) -> None:
     env.close()
 
 
+@pytest.mark.pages
 def test_the_code_in_the_readme_is_short_and_works_as_pasted(tmp_path: Path) -> None:
     section = README.read_text(encoding="utf-8").split("## Try your own controller")[1].split("\n## ")[0]
     code = re.search(r"```python\n(.*?)```", section, re.DOTALL)[1]
