@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 import yaml
 
-from peopleboy.scenarios.files.load import load_scenario, parse_scenario
+from peopleboy.scenarios.files.load import library, load_scenario, parse_scenario
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
 from peopleboy.tracker.trackers import TRACKERS
@@ -263,14 +263,12 @@ def test_an_earlier_run_is_replaced_only_when_asked_and_other_folders_never(
     assert json.loads((out / "run.json").read_text())["seed"] == 1
 
 
-def test_every_library_scenario_runs_a_little(tmp_path: Path) -> None:
-    from peopleboy.scenarios.files.load import library
-
-    for name in library():
-        loaded = load_scenario(name)
-        short = replace(loaded, spec=loaded.spec.model_copy(update={"duration_s": 0.3}))
-        run(short, RunOptions(seed=1, out=tmp_path / name, record=False), lambda _tick, _frames: None)
-        assert (tmp_path / name / "contact_sheet.png").stat().st_size > 10_000
+@pytest.mark.parametrize("name", sorted(library()))
+def test_every_library_scenario_runs_a_little(name: str, tmp_path: Path) -> None:
+    loaded = load_scenario(name)
+    short = replace(loaded, spec=loaded.spec.model_copy(update={"duration_s": 0.2}))
+    run(short, RunOptions(seed=1, out=tmp_path / name, record=False), lambda _tick, _frames: None)
+    assert (tmp_path / name / "contact_sheet.png").stat().st_size > 10_000
 
 
 def test_a_sweep_goes_on_where_it_was_and_takes_no_other_run_for_its_own(
