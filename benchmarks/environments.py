@@ -108,7 +108,7 @@ def bullet_rate(image_size: tuple[int, int], steps: int = 20) -> float:
         for camera in (one.camera for one in config.robot.cameras.values())
     ]
     with World(config) as world:
-        client, robot = world._bullet._client, world._robot
+        client, robot = world._physics._client, world._robot
         start = time.process_time()
         for _ in range(steps):
             world.step(0.0, 0.3)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.sim.cameras.kinds import check_rate
 from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.physics.physics import PHYSICS, PhysicsName
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Detail
@@ -26,11 +27,12 @@ class WorldConfig:
         physics_hz: [Hz] steps of the physics engine.
         control_hz: [Hz] commands and images.
         renderer: "raycast" or "bullet"; "none" for a world without images, which is several times faster.
+        physics: "bullet", PyBullet's dynamics; or "kinematic", rolling without slip, which needs no PyBullet.
         detail: "plain", or "full" for what makes images harder: how finely people and surfaces are drawn.
 
     Raises:
         BadInput: a control step is not a whole number of physics steps, or an image not one of control
-            steps; or the seed is negative.
+            steps; or the seed is negative; or there is no such physics, or it has not that renderer.
     """
 
     place: Place
@@ -40,6 +42,7 @@ class WorldConfig:
     physics_hz: int = 240
     control_hz: int = CONTROL_HZ
     renderer: str = "raycast"
+    physics: PhysicsName = "bullet"
     detail: Detail = "plain"
 
     def __post_init__(self) -> None:
@@ -52,5 +55,9 @@ class WorldConfig:
         for name, camera in self.robot.cameras.items():
             with found_in("cameras", name):
                 check_rate(camera.rate_hz, self.control_hz)
+        if self.physics not in PHYSICS:
+            raise BadInput(f"physics {self.physics!r}: there is no such; choose from {', '.join(PHYSICS)}")
+        if self.renderer == "bullet" and self.physics != "bullet":
+            raise BadInput(f"renderer 'bullet': draws with PyBullet, not with {self.physics}; choose raycast")
         if self.seed < 0:
             raise BadInput(f"seed {self.seed} must be 0 or more")

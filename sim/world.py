@@ -22,7 +22,7 @@ from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.handling import Handling
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.physics.physics import Physics, open_physics
 from peopleboy.sim.places.painting.paint_place import paint_place
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.random_streams import stream
@@ -46,7 +46,7 @@ _MOST_PEOPLE = 64  # a view's cover has a bit for each
 
 
 class World:
-    """A PyBullet world with a robot, people and cameras; use it as a context manager.
+    """A world with a robot, people and cameras; use it as a context manager.
 
     `observe` tells what the robot senses now; `truth` what is true at the same instant; `step` moves the
     world on by one control step. The same configuration gives the same bytes in every process.
@@ -60,11 +60,11 @@ class World:
         self._tick = 0
         self._touching: set[str] = set()
         _check_names(config)
-        self._bullet = Bullet(physics_hz=config.physics_hz)
+        self._physics = open_physics(config.physics, config.physics_hz)
         try:
             self._build()
         except BaseException:
-            self._bullet.close()
+            self._physics.close()
             raise
 
     def __enter__(self) -> World:
@@ -79,7 +79,7 @@ class World:
         """Free the physics world; what was not read until now cannot be read any more."""
         if self.config.renderer != BLIND:
             self._rig.forget()
-        self._bullet.close()
+        self._physics.close()
 
     @property
     def cameras(self) -> Mapping[str, CameraConfig]:
@@ -128,7 +128,7 @@ class World:
             contacts=tuple(sorted(self._touching)),
             people=bystanders(
                 self._crowd.people,
-                self._bullet,
+                self._physics,
                 self._robot.world_from_robot(),
                 flat_geometry(self.config.robot.cameras, "thermal"),
             ),
@@ -193,7 +193,7 @@ class World:
         for k in range(steps):
             self._robot.drive(1.0 / self.config.physics_hz)
             self._crowd.move_bodies((k + 1) / steps)
-            self._bullet.step()
+            self._physics.step()
             touched |= self._robot.touching()
         self._touching = {name.split("/")[0] for name in touched} - {"floor"}
         self._robot.update_odometry()
@@ -207,30 +207,30 @@ class World:
         return PlanarState(position=place, velocity=speed * heading, radius_m=RADIUS_M)
 
     def _build(self) -> None:
-        config, bullet = self.config, self._bullet
-        materials = _add_fixtures(bullet, config.place)
+        config, physics = self.config, self._physics
+        materials = _add_fixtures(physics, config.place)
         self._crowd = Crowd(
-            bullet,
+            physics,
             config.people,
             config.place,
             config.seed,
             is_visible=config.renderer != BLIND,
             detail=config.detail,
         )
-        self._handling = Handling(bullet, config.place, self._crowd.people)
-        self._robot = PeopleBot(bullet, config.robot, config.seed)
+        self._handling = Handling(physics, config.place, self._crowd.people)
+        self._robot = PeopleBot(physics, config.robot, config.seed)
         if config.renderer != BLIND:
             self._open_eyes(materials | self._crowd.materials)
         self._settle()
 
     def _open_eyes(self, materials: dict[str, Material]) -> None:
         """Prepare for images: what is to be seen, and how each part looks, by body name."""
-        config, bullet = self.config, self._bullet
-        keys = bullet.parts()
+        config, physics = self.config, self._physics
+        keys = physics.parts()
         part_materials = [
             robot_material(key.link_name) if key.name == ROBOT else materials[key.name] for key in keys
         ]
-        self._table = make_shape_table(bullet.visual_shapes())
+        self._table = make_shape_table(physics.visual_shapes())
         paintings = paint_place(config.place, config.seed) if config.detail == "full" else {}
         self._materials = make_material_table(
             part_materials,
@@ -252,11 +252,11 @@ class World:
             return
         self._scene = Scene(
             renderer=self.config.renderer,
-            bullet=self._bullet,
+            physics=self._physics,
             table=self._table,
-            world_from_part=self._bullet.part_poses(),
+            world_from_part=self._physics.part_poses(),
             person_of_part=self._truth_maker.person_of_part,
-            hidden=self._bullet.hidden_parts(),
+            hidden=self._physics.hidden_parts(),
         )
         self._seen: dict[tuple[Sight, CameraGeometry], Seen] = {}
         self._rig.forget()
@@ -325,13 +325,13 @@ def _check_names(config: WorldConfig) -> None:
         raise BadInput(f"{len(names)} people are too many: a world holds {_MOST_PEOPLE}")
 
 
-def _add_fixtures(bullet: Bullet, place: Place) -> dict[str, Material]:
+def _add_fixtures(physics: Physics, place: Place) -> dict[str, Material]:
     """Put everything that stands still into the physics world; returns the looks by body name."""
     materials = {}
     for fixture in place.fixtures:
         position, orientation = fixture.position, fixture.orientation
         if fixture.part is not None:
-            bullet.add_part(
+            physics.add_part(
                 fixture.name,
                 fixture.part.shapes,
                 position=position,
@@ -340,7 +340,7 @@ def _add_fixtures(bullet: Bullet, place: Place) -> dict[str, Material]:
             )
             materials[fixture.name] = fixture.part.material
         elif fixture.urdf is not None and fixture.material is not None:
-            bullet.add_urdf(
+            physics.add_urdf(
                 fixture.name, fixture.urdf, position=position, orientation=orientation, scale=fixture.scale
             )
             materials[fixture.name] = fixture.material

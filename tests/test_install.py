@@ -147,6 +147,8 @@ def test_the_environment_is_made_by_its_name(whole: Path, home: Path) -> None:
         ["track", "run/thermal", "--out", "tracked"],
         ["export", "run", "--format", "viper", "--out", "viper"],
         ["export", "run", "--format", "mot", "--out", "mot"],
+        ["run", "crossing_2", "--physics", "kinematic", "--no-rrd", "--out", "kinematic"],
+        ["sweep", "crossing_2", "--seeds", "2", "--physics", "kinematic", "--out", "swept"],
     ],
     ids=" ".join,
 )

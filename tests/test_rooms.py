@@ -36,12 +36,15 @@ WITHOUT_PHYSICS = (
     "sim.people.body",
     "sim.people.person",
     "sim.config",
+    "sim.world",
+    "sim.physics.kinematic",
     "sim.observation",
     "sim.truth.truth",
     "sim.truth.events",
     "scenarios.cli",
     "scenarios.commands",
     "scenarios.drawing",
+    "scenarios.environments",
     "scenarios.export",
     "scenarios.files",
     "scenarios.footage",
@@ -51,6 +54,7 @@ WITHOUT_PHYSICS = (
     "scenarios.recording",
     "scenarios.report",
     "scenarios.run_folder",
+    "scenarios.running",
     "scenarios.scores",
 )
 NEEDS_PHYSICS = "scenarios.export.dataset"

@@ -13,6 +13,7 @@ from peopleboy.scenarios.commands.options import (
     Output,
     behaviour_option,
     output_options,
+    physics_option,
     tracker_option,
     workers_options,
 )
@@ -38,6 +39,7 @@ _SEEN: Final = 0.3
 )
 @tracker_option
 @behaviour_option
+@physics_option
 @workers_options
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
 @output_options
@@ -48,6 +50,7 @@ def sweep(
     out: Path,
     tracker: str | None,
     behaviour: str | None,
+    physics: str | None,
     workers: int | None,
     scheduler: str | None,
     overwrite: bool,
@@ -68,10 +71,10 @@ def sweep(
     if (scenario is None) == (randomise is None) or (randomise is not None and seeds is not None):
         raise BadInput("sweep: give a scenario, with --seeds or without, or --randomise N")
     if scenario is None:
-        runs = sweep_worlds(range(randomise or 0), out, tracker, who, behaviour, overwrite=overwrite)
+        runs = sweep_worlds(range(randomise or 0), out, tracker, who, behaviour, physics, overwrite=overwrite)
     else:
         count = range(10 if seeds is None else seeds)
-        runs = run_seeds(scenario, count, out, tracker, who, behaviour, overwrite=overwrite)
+        runs = run_seeds(scenario, count, out, tracker, who, behaviour, physics, overwrite=overwrite)
     groups = score_by_tracker(runs)
     if randomise is None:
         output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))
@@ -111,6 +114,7 @@ def sweep(
     show_default=True,
     help="Where runs, tables and plots go.",
 )
+@physics_option
 @workers_options
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
 @output_options
@@ -119,6 +123,7 @@ def compare(
     scenarios: Sequence[str],
     seeds: int,
     out: Path,
+    physics: str | None,
     workers: int | None,
     scheduler: str | None,
     overwrite: bool,
@@ -138,7 +143,7 @@ def compare(
     names = [load_scenario(scenario).name for scenario in scenarios]
     found = []
     for scenario, name in zip(scenarios, names, strict=True):
-        runs = compare(scenario, chosen, range(seeds), out / name, who, overwrite=overwrite)
+        runs = compare(scenario, chosen, range(seeds), out / name, who, physics, overwrite=overwrite)
         found.append(keep_comparison(name, runs, out / name))
         if output.is_wordy:
             show_comparison(name, runs)

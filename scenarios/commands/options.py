@@ -26,6 +26,12 @@ behaviour_option = click.option(
     help="What drives the robot: stand, follow_person, follow_corridor or patrol; or module:Class, your "
     "own.  [default: the scenario's]",
 )
+physics_option = click.option(
+    "--physics",
+    type=click.Choice(["bullet", "kinematic"]),
+    help="What moves the robot: PyBullet, or rolling without slip, which needs no PyBullet.  "
+    "[default: the scenario's]",
+)
 
 _COUNT = "Processes at the same time; 1 for none but this one.  [default: one a core]"
 _ADDRESS = "Work on the cluster of this Dask scheduler instead."

@@ -15,6 +15,7 @@ from peopleboy.scenarios.commands.options import (
     Output,
     behaviour_option,
     output_options,
+    physics_option,
     tracker_option,
     workers_options,
 )
@@ -33,11 +34,12 @@ if TYPE_CHECKING:
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
-    help="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER, -BEHAVIOUR for others]",
+    help="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER, -BEHAVIOUR, -PHYSICS for others]",
 )
 @click.option("--frames", is_flag=True, help="Write every image of every camera as PNG too.")
 @tracker_option
 @behaviour_option
+@physics_option
 @click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
 @click.option(
@@ -53,6 +55,7 @@ def run(
     frames: bool,
     tracker: str | None,
     behaviour: str | None,
+    physics: str | None,
     renderer: str,
     no_rrd: bool,
     live: bool,
@@ -81,9 +84,11 @@ def run(
     loaded = None if is_suite else load_scenario(scenario)
     number = seed if seed is not None else 0 if loaded is None else loaded.seed
     name = scenario if loaded is None else f"{loaded.name}-{number}"
-    name += _others(loaded, tracker, behaviour)
+    name += _others(loaded, tracker, behaviour, physics)
     if loaded is not None and behaviour is not None:
         loaded = loaded.steered_by(behaviour)
+    if loaded is not None and physics is not None:
+        loaded = loaded.moved_by(physics)
     options = RunOptions(
         seed=number,
         out=out if out is not None else Path("runs") / name,
@@ -99,7 +104,7 @@ def run(
             "--json and --quiet"
         )
     if loaded is None:
-        _run_suite(scenario, options, chosen_workers(workers, scheduler), output)
+        _run_suite(scenario, options, physics, chosen_workers(workers, scheduler), output)
         return
     if workers is not None or scheduler is not None:
         raise BadInput(f"{scenario}: is one run, which has no use for --workers or --scheduler; leave it out")
@@ -110,10 +115,12 @@ def run(
         _run_one(loaded, options, output)
 
 
-def _others(scenario: Scenario | None, tracker: str | None, behaviour: str | None) -> str:
-    """Name tracker and behaviour, as far as they are not those of the scenario, as a folder's name ends."""
-    usual = () if scenario is None else (scenario.tracker, scenario.robot.behaviour)
-    others = [each for each in (tracker, behaviour) if each is not None and each not in usual]
+def _others(
+    scenario: Scenario | None, tracker: str | None, behaviour: str | None, physics: str | None
+) -> str:
+    """Name what is not as in the scenario, as a folder's name ends."""
+    usual = () if scenario is None else (scenario.tracker, scenario.robot.behaviour, scenario.spec.physics)
+    others = [each for each in (tracker, behaviour, physics) if each is not None and each not in usual]
     return "".join(f"-{each.replace(':', '.')}" for each in others)
 
 
@@ -156,12 +163,12 @@ def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
         return run_scenario(scenario, options, report)
 
 
-def _run_suite(name: str, options: RunOptions, workers: Workers, output: Output) -> None:
+def _run_suite(name: str, options: RunOptions, physics: str | None, workers: Workers, output: Output) -> None:
     from peopleboy.scenarios.running.run_suite import run_suite
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
     from peopleboy.scenarios.scores.show_scores import print_runs
 
-    folders = run_suite(name, options, workers)
+    folders = run_suite(name, options, workers, physics)
     groups = score_by_tracker(folders)
     output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))
     if output.is_wordy:

@@ -49,7 +49,7 @@ from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
 
-SMALLEST_PX: Final = (80, 60)
+SMALLEST_PX: Final = (64, 48)
 LARGEST_PX: Final = (1280, 960)
 DEFAULT_PX: Final = (320, 240)
 _SEEDS: Final = 2**31
@@ -80,6 +80,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         tracker: name of the tracker behind "tracks", "truth" for exact boxes, or None for the scenario's.
         randomise: options of every episode for which `reset` is given none.
         render_mode: "rgb_array" or None.
+        physics: "bullet" or "kinematic", which is quicker and needs no PyBullet; None for the scenario's.
         physics_hz: steps of physics a second, a multiple of 15; None is that of a run, 240. 60 is quicker by
             what `python -m benchmarks.environments` prints, beside how far the robot's way is off then.
 
@@ -99,6 +100,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         tracker: str | None = None,
         randomise: Mapping[str, Any] | None = None,
         render_mode: str | None = None,
+        physics: str | None = None,
         physics_hz: int | None = None,
     ) -> None:
         self._world: World | None = None
@@ -108,8 +110,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         _check_size(image_size)
         self._randomise = {} if randomise is None else dict(randomise)
         check_options(self._randomise)
-        self._draws_worlds = scenario is None
-        first = _random_episode(0) if scenario is None else load_scenario(scenario)
+        self._draws_worlds, self._physics = scenario is None, physics
+        first = self._moved(_random_episode(0) if scenario is None else load_scenario(scenario))
         self._tracker_name = first.tracker if tracker is None else tracker
         self._wanted = camera_names(self._tracker_name)  # refuses an unknown name now
         self._task, self._kind, self._size = task, observation, image_size
@@ -135,7 +137,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self.close()
         self._seed = int(self.np_random.integers(_SEEDS)) if seed is None else seed
         if self._draws_worlds:
-            self._take(_random_episode(self._seed))
+            self._take(self._moved(_random_episode(self._seed)))
         config = self._config(chosen)
         self._world = World(config)
         self._calibrations = calibrations_of(config.robot.cameras)
@@ -253,6 +255,9 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         if self._world is not None:
             self._world.close()
             self._world = None
+
+    def _moved(self, scenario: Scenario) -> Scenario:
+        return scenario if self._physics is None else scenario.moved_by(self._physics)
 
     def _take(self, scenario: Scenario) -> None:
         """Play this scenario from the next episode on."""

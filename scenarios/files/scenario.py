@@ -27,6 +27,7 @@ from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import DrawnSpec, ScenarioSpec
 from peopleboy.sim.cameras.kinds import KINDS, flat_geometry
 from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.physics.physics import PHYSICS, PhysicsName
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place, air_of
 from peopleboy.sim.random_streams import stream
@@ -118,6 +119,7 @@ class Scenario:
             robot=equip_robot(self.spec.robot),
             seed=seed,
             renderer=renderer,
+            physics=self.spec.physics,
             detail=self.spec.detail,
         )
 
@@ -167,6 +169,16 @@ class Scenario:
         return replace(
             self, spec=self.spec.model_copy(update={"robot": robot}), drive=None, own_behaviour=None
         )
+
+    def moved_by(self, physics: PhysicsName | str) -> Scenario:
+        """The same scenario, but other physics move the robot.
+
+        Raises:
+            BadInput: there are no such physics.
+        """
+        if physics not in PHYSICS:
+            raise BadInput(f"physics {physics!r}: there is no such; choose from {', '.join(PHYSICS)}")
+        return replace(self, spec=self.spec.model_copy(update={"physics": physics}))
 
     def make_behaviour(self) -> Behaviour:
         """What drives the robot, fresh from the start."""

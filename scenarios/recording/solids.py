@@ -10,9 +10,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from peopleboy.scenarios.drawing.palette import Rgb
+from peopleboy.sim.physics.urdf import read_urdf
 from peopleboy.sim.places.extent import fixture_extent, shape_extent
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.places.urdf import read_urdf
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 

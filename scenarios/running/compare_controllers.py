@@ -57,6 +57,7 @@ def compare(
     seeds: Iterable[int],
     out: Path,
     workers: Workers,
+    physics: str | None = None,
     *,
     overwrite: bool,
 ) -> dict[Controller, list[Figures]]:
@@ -70,6 +71,7 @@ def compare(
         seeds: the same for all of them.
         out: where the runs' folders go, each CONTROLLER-SEED.
         workers: who does the runs.
+        physics: what moves the robot; None for what the scenario says.
         overwrite: whether earlier runs are replaced.
 
     Returns:
@@ -83,6 +85,8 @@ def compare(
     if len(set(controllers)) < len(controllers):
         raise BadInput(f"--controllers {','.join(map(str, controllers))}: each may be there once only")
     loaded = load_scenario(scenario)
+    if physics is not None:
+        loaded = loaded.moved_by(physics)
     tasks = {
         (controller, seed): RunTask(
             loaded.steered_by(controller.behaviour),

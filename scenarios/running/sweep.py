@@ -20,6 +20,7 @@ def sweep(
     tracker: str | None,
     workers: Workers,
     behaviour: str | None = None,
+    physics: str | None = None,
     *,
     overwrite: bool,
 ) -> list[Path]:
@@ -32,7 +33,7 @@ def sweep(
         BadInput: as for a single run, or a complete run in its place is another one.
         TasksFailed: some runs failed.
     """
-    loaded = _steered(load_scenario(scenario), behaviour)
+    loaded = _changed(load_scenario(scenario), behaviour, physics)
     options = [
         RunOptions(
             seed=seed, out=out / f"{loaded.name}-{seed}", tracker=tracker, record=False, overwrite=overwrite
@@ -49,6 +50,7 @@ def sweep_worlds(
     tracker: str | None,
     workers: Workers,
     behaviour: str | None = None,
+    physics: str | None = None,
     *,
     overwrite: bool,
 ) -> list[Path]:
@@ -63,7 +65,7 @@ def sweep_worlds(
     """
     tasks = []
     for seed in seeds:
-        world = _steered(random_scenario(seed), behaviour)
+        world = _changed(random_scenario(seed), behaviour, physics)
         options = RunOptions(
             seed=seed, out=out / world.name, tracker=tracker, record=False, overwrite=overwrite
         )
@@ -72,5 +74,6 @@ def sweep_worlds(
     return [task.options.out for task in tasks]
 
 
-def _steered(scenario: Scenario, behaviour: str | None) -> Scenario:
-    return scenario if behaviour is None else scenario.steered_by(behaviour)
+def _changed(scenario: Scenario, behaviour: str | None, physics: str | None) -> Scenario:
+    steered = scenario if behaviour is None else scenario.steered_by(behaviour)
+    return steered if physics is None else steered.moved_by(physics)

@@ -12,7 +12,7 @@ from peopleboy.sim.people.looks.finish_person import Finisher, looks_stream
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.places.place import Place, air_of, is_outdoors
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Detail, Material
@@ -33,7 +33,7 @@ class Crowd:
 
     def __init__(
         self,
-        bullet: Bullet,
+        physics: Physics,
         configs: Sequence[PersonConfig],
         place: Place,
         seed: int,
@@ -41,7 +41,7 @@ class Crowd:
         is_visible: bool,
         detail: Detail = "plain",
     ) -> None:
-        self._bullet = bullet
+        self._physics = physics
         self._is_visible = is_visible
         self._place = place
         self._is_fine = is_visible and detail == "full"
@@ -94,27 +94,27 @@ class Crowd:
     def _add(self, person: Person) -> None:
         for part in self._visible_parts(person):
             name = f"{person.name}/{part.name}"
-            self._bullet.add_part(name, part.shapes, solid=False)
+            self._physics.add_part(name, part.shapes, solid=False)
             self.materials[name] = part.material
         radius, height = person.radius_m, person.config.height_m
         capsule = Shape(kind=ShapeKind.CAPSULE, size=(height - 2.0 * radius, radius, 0.0))
-        self._bullet.add_part(f"{person.name}/{_SOLID}", [capsule], visible=False)
-        self._bullet.set_hidden(f"{person.name}/{_SOLID}", True)
+        self._physics.add_part(f"{person.name}/{_SOLID}", [capsule], visible=False)
+        self._physics.set_hidden(f"{person.name}/{_SOLID}", True)
         self.materials[f"{person.name}/{_SOLID}"] = person.parts[0].material
 
     def _set_shown(self, person: Person, is_shown: bool) -> None:
         self._is_shown[person.name] = is_shown
         for part in self._visible_parts(person):
-            self._bullet.set_hidden(f"{person.name}/{part.name}", not is_shown)
+            self._physics.set_hidden(f"{person.name}/{part.name}", not is_shown)
         if not is_shown:
             self._solid.discard(person.name)
-            self._bullet.set_hidden(f"{person.name}/{_SOLID}", True)
+            self._physics.set_hidden(f"{person.name}/{_SOLID}", True)
 
     def _make_solid(self, person: Person, gap_to_robot: Callable[[float, float], float]) -> None:
         """Give a person who has just appeared its solid capsule, as soon as the robot is not in it."""
         if person.name not in self._solid and gap_to_robot(*person.position.tolist()) > person.radius_m:
             self._solid.add(person.name)
-            self._bullet.set_hidden(f"{person.name}/{_SOLID}", False)
+            self._physics.set_hidden(f"{person.name}/{_SOLID}", False)
 
     def _visible_parts(self, person: Person) -> tuple[Part, ...]:
         return person.parts if self._is_visible else ()
@@ -127,11 +127,11 @@ class Crowd:
         orientations = quaternions(poses).tolist()
         positions = poses[:, :3, 3].tolist()
         for part, position, orientation in zip(person.parts, positions, orientations, strict=True):
-            self._bullet.set_pose(f"{person.name}/{part.name}", tuple(position), tuple(orientation))
+            self._physics.set_pose(f"{person.name}/{part.name}", tuple(position), tuple(orientation))
 
     def _place_solid(self, person: Person, position: NDArray[np.float64]) -> None:
         at = (float(position[0]), float(position[1]), person.config.height_m / 2.0)
-        self._bullet.set_pose(f"{person.name}/{_SOLID}", at, UPRIGHT)
+        self._physics.set_pose(f"{person.name}/{_SOLID}", at, UPRIGHT)
 
 
 def _state(person: Person) -> PlanarState:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from peopleboy.sim.people.person import Person
-from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.places.moving import Action, Mover, ThingState, ease
 from peopleboy.sim.places.place import Place
 
@@ -16,13 +16,13 @@ class Handling:
     """Puts every thing that is moved where it is at an instant, and people's hands to it.
 
     Args:
-        bullet: the physics world, with all fixtures of the place.
+        physics: the physics world, with all fixtures of the place.
         place: whose movers they are.
         people: who may move them.
     """
 
-    def __init__(self, bullet: Bullet, place: Place, people: Sequence[Person]) -> None:
-        self._bullet = bullet
+    def __init__(self, physics: Physics, place: Place, people: Sequence[Person]) -> None:
+        self._physics = physics
         self._movers = place.movers
         self._people = {person.name: person for person in people}
         self._bodies = {
@@ -43,9 +43,9 @@ class Handling:
         before = self._shown.get(mover.name)
         for body in self._bodies[mover.name]:
             if before is None or before.stance != state.stance:
-                self._bullet.set_pose(body, state.stance.position_m, state.stance.orientation)
+                self._physics.set_pose(body, state.stance.position_m, state.stance.orientation)
             if before is None or before.is_there != state.is_there:
-                self._bullet.set_hidden(body, not state.is_there)
+                self._physics.set_hidden(body, not state.is_there)
         self._shown[mover.name] = state
 
     def _reach(self, person: Person, time_s: float) -> None:

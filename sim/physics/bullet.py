@@ -29,7 +29,7 @@ try:
     with quiet():
         import pybullet
 except ImportError as error:
-    raise BadInput(MISSING) from error
+    raise BadInput(f"{MISSING}, or physics kinematic, which needs none") from error
 
 GRAVITY_M_S2 = 9.81
 _SHAPES_A_BODY = 16  # PyBullet silently drops the rest

@@ -40,7 +40,9 @@ def find_model(path: Path | str) -> Path:
     Raises:
         BadInput: there is no such file, or PyBullet is not installed.
     """
-    for candidate in (Path(path), data_folder() / path):
-        if candidate.is_file():
-            return candidate.resolve()
+    if Path(path).is_file():
+        return Path(path).resolve()
+    candidate = data_folder() / path
+    if candidate.is_file():
+        return candidate.resolve()
     raise BadInput(f"model file {path}: there is no such file, neither as it stands nor in pybullet_data")

@@ -65,14 +65,14 @@ def _reach(starts: Array, ends: Array, boxes: Array, passed: tuple[int, int]) ->
     found = np.zeros(len(starts), np.bool_)
     for ray in range(len(starts)):
         for row in range(len(boxes)):
-            if not passed[0] <= row < passed[1] and _meets(starts[ray], ends[ray], boxes[row]):
+            if not passed[0] <= row < passed[1] and meets(starts[ray], ends[ray], boxes[row]):
                 found[ray] = True
                 break
     return found
 
 
 @njit(cache=True)
-def _meets(start: Array, end: Array, box: Array) -> bool:
+def meets(start: Array, end: Array, box: Array) -> bool:
     """Whether a line from start to end meets a box: it is within all three pairs of faces at once."""
     enters, leaves = 0.0, 1.0
     for axis in range(3):

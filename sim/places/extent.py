@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.model_files import data_folder, is_in_data
+from peopleboy.sim.physics.urdf import find_urdf, mesh_files, read_urdf
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.places.urdf import find_urdf, mesh_files, read_urdf
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 Extent = NDArray[np.float64]  # (2, 3) [m]: lowest and highest x, y, z

@@ -19,10 +19,10 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import Point, compose, dot, map_point, minus, plus, scaled
 from peopleboy.sim.rendering.canvas import Canvas, Lens, Rectangle, pixels, set_shading, shade
 from peopleboy.sim.rendering.raycast import draw_shape, quick_bounds
-from peopleboy.sim.rendering.rays import hit_shape
 from peopleboy.sim.rendering.sight import Seen
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.bounds import EMPTY, EVERYTHING, FAR_M, NEAR_M, Bounds, unite
+from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
-from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.physics.physics import Physics, Rasteriser
 from peopleboy.sim.rendering.canvas import Lens, make_canvas, shade
 from peopleboy.sim.rendering.depth_normals import normals_from_depth
 from peopleboy.sim.rendering.raycast import draw
@@ -19,7 +19,7 @@ _MOST_PEOPLE = 64
 
 def render(
     name: str,
-    bullet: Bullet,
+    physics: Physics,
     table: ShapeTable,
     camera: Pinhole,
     world_from_camera: Matrix,
@@ -31,7 +31,7 @@ def render(
 
     Args:
         name: "raycast", exact and quick, or "bullet", PyBullet's TinyRenderer, an independent reference.
-        bullet: the world.
+        physics: the world.
         table: its visible shapes.
         camera: the pinhole camera.
         world_from_camera: (4, 4) optical frame to world.
@@ -40,7 +40,7 @@ def render(
         hidden: (P,) parts that are not there.
 
     Raises:
-        BadInput: no renderer has that name, or a person's number is above 63.
+        BadInput: no renderer has that name, or it cannot draw this world; or a person's number is above 63.
     """
     if person_of_part.max(initial=0) >= _MOST_PEOPLE:
         raise BadInput(
@@ -49,7 +49,9 @@ def render(
     if name == "raycast":
         return cast(table, camera, world_from_camera, world_from_part, person_of_part, hidden)
     if name == "bullet":
-        return rasterise(bullet, camera, world_from_camera, np.where(hidden, NOBODY, person_of_part))
+        if not isinstance(physics, Rasteriser):
+            raise BadInput("renderer 'bullet': draws worlds of PyBullet only; choose raycast")
+        return rasterise(physics, camera, world_from_camera, np.where(hidden, NOBODY, person_of_part))
     raise BadInput(f"renderer {name!r}: there is none of that name; choose raycast or bullet")
 
 
@@ -91,18 +93,18 @@ def cast_window(
 
 
 def rasterise(
-    bullet: Bullet, camera: Pinhole, world_from_camera: Matrix, person_of_part: NDArray[np.int64]
+    physics: Rasteriser, camera: Pinhole, world_from_camera: Matrix, person_of_part: NDArray[np.int64]
 ) -> View:
     """Draw by TinyRenderer: everything at once, then each person alone for the cover.
 
     Normals come from differences of depth, and are rough on small parts.
     """
-    part, depth = bullet.camera_image(camera, world_from_camera)
+    part, depth = physics.camera_image(camera, world_from_camera)
     cover = np.zeros(part.shape, np.uint64)
-    names = np.array([key.name for key in bullet.parts()])
+    names = np.array([key.name for key in physics.parts()])
     for person in np.unique(person_of_part[person_of_part != NOBODY]):
         alone = set(names[person_of_part == person].tolist())
-        silhouette, _ = bullet.camera_image(camera, world_from_camera, only=alone)
+        silhouette, _ = physics.camera_image(camera, world_from_camera, only=alone)
         cover |= np.where(silhouette >= 0, np.uint64(1) << np.uint64(person), np.uint64(0))
     rotation = np.ascontiguousarray(world_from_camera[:3, :3])
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)

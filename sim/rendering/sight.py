@@ -18,7 +18,7 @@ from peopleboy.sim.rendering.view import NOBODY, View
 from peopleboy.sim.shapes.shape_table import ShapeTable
 
 if TYPE_CHECKING:
-    from peopleboy.sim.physics.bullet import Bullet
+    from peopleboy.sim.physics.physics import Physics
 
 Edges = tuple[float, float, float, float]
 Mask = NDArray[np.bool_]
@@ -30,7 +30,7 @@ class Scene:
 
     Attributes:
         renderer: name of what draws it for pinhole cameras.
-        bullet: the world.
+        physics: the world.
         table: its visible shapes.
         world_from_part: (P, 4, 4).
         person_of_part: (P,) number of the person that a part belongs to, -1 for none.
@@ -38,7 +38,7 @@ class Scene:
     """
 
     renderer: str
-    bullet: Bullet
+    physics: Physics
     table: ShapeTable
     world_from_part: Matrix
     person_of_part: NDArray[np.int64]
@@ -88,7 +88,7 @@ class Flat(Sight):
         from peopleboy.sim.rendering.render import render  # here, as kinds are told without PyBullet
 
         return render(
-            scene.renderer, scene.bullet, scene.table, camera, world_from_camera, scene.world_from_part,
+            scene.renderer, scene.physics, scene.table, camera, world_from_camera, scene.world_from_part,
             scene.person_of_part, scene.hidden,
         )  # fmt: skip
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.robot.robot_body import (
     NAME,
@@ -36,14 +36,14 @@ def limit_command(linear: float, angular: float, limits: DriveConfig) -> tuple[f
 
 
 class PeopleBot:
-    """A differential-drive robot in a PyBullet world, moved by its wheels alone.
+    """A differential-drive robot moved by its wheels alone.
 
     Its wheels turn at controlled speeds and its acceleration is limited; grip, bumps and walls are left to
     the physics engine. Odometry integrates what the encoders count, noise included, from the start pose.
     """
 
-    def __init__(self, bullet: Bullet, config: RobotConfig, seed: int) -> None:
-        self._bullet = bullet
+    def __init__(self, physics: Physics, config: RobotConfig, seed: int) -> None:
+        self._physics = physics
         self._limits = config.drive
         self._encoder_noise = stream(seed, "odometry.noise")
         self._command = (0.0, 0.0)
@@ -51,7 +51,7 @@ class PeopleBot:
         self._is_emergency = False
         x, y = config.at_m
         half = config.heading_rad / 2.0
-        bullet.add_urdf(
+        physics.add_urdf(
             NAME,
             URDF,
             position=(x, y, 0.0),
@@ -59,7 +59,7 @@ class PeopleBot:
             fixed=False,
         )
         self._turn_wheels()
-        self._sonar = SonarRing(bullet, config.sonar, stream(seed, "sonar.noise"), NAME)
+        self._sonar = SonarRing(physics, config.sonar, stream(seed, "sonar.noise"), NAME)
         self._turned = self._wheel_angles()
         self.odometry = Planar(x, y, config.heading_rad)
 
@@ -114,12 +114,12 @@ class PeopleBot:
 
     def wheel_speeds(self) -> tuple[float, float]:
         """Rim speeds [m/s] of the left and the right wheel, as they turn."""
-        _, speeds = self._bullet.joint_states(NAME, _JOINTS)
+        _, speeds = self._physics.joint_states(NAME, _JOINTS)
         return float(speeds[0] * WHEEL_RADIUS_M), float(speeds[1] * WHEEL_RADIUS_M)
 
     def world_from_robot(self) -> Matrix:
         """(4, 4) true pose of the robot's frame."""
-        return self._bullet.pose(NAME)
+        return self._physics.pose(NAME)
 
     def pose(self) -> Planar:
         """Return the true pose on the floor."""
@@ -132,20 +132,20 @@ class PeopleBot:
 
     def velocity(self) -> tuple[float, float]:
         """Return the true forward speed [m/s] and turn rate [rad/s]."""
-        linear, angular = self._bullet.velocity(NAME)
+        linear, angular = self._physics.velocity(NAME)
         return float(linear @ self.world_from_robot()[:3, 0]), float(angular[2])
 
     def touching(self) -> set[str]:
         """Names of the bodies that the robot touched during the last physics step, the floor included."""
-        return self._bullet.touching(NAME)
+        return self._physics.touching(NAME)
 
     def _turn_wheels(self) -> None:
         """Set the motors to the speeds that give the present command."""
         speeds = [speed / WHEEL_RADIUS_M for speed in wheel_speeds(*self._command)]
-        self._bullet.set_joint_speeds(NAME, dict(zip(_JOINTS, speeds, strict=True)), _MOTOR_TORQUE_NM)
+        self._physics.set_joint_speeds(NAME, dict(zip(_JOINTS, speeds, strict=True)), _MOTOR_TORQUE_NM)
 
     def _wheel_angles(self) -> NDArray[np.float64]:
-        angles, _ = self._bullet.joint_states(NAME, _JOINTS)
+        angles, _ = self._physics.joint_states(NAME, _JOINTS)
         return angles
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, transform
-from peopleboy.sim.physics.bullet import Bullet
+from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.robot.robot_config import SonarConfig
 from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD, SONAR_POSITION_M
 
@@ -36,8 +36,8 @@ class SonarRing:
     echoes.
     """
 
-    def __init__(self, bullet: Bullet, config: SonarConfig, rng: np.random.Generator, owner: str) -> None:
-        self._bullet = bullet
+    def __init__(self, physics: Physics, config: SonarConfig, rng: np.random.Generator, owner: str) -> None:
+        self._physics = physics
         self._config = config
         self._rng = rng
         self._owner = owner
@@ -61,7 +61,7 @@ class SonarRing:
         """
         starts = transform(world_from_robot, self._starts).reshape(-1, 3)
         ends = transform(world_from_robot, self._ends).reshape(-1, 3)
-        fraction = self._bullet.cast_rays(starts, ends, ignore=self._owner)[0].reshape(self._reach.shape)
+        fraction = self._physics.cast_rays(starts, ends, ignore=self._owner)[0].reshape(self._reach.shape)
         nearest = np.where(fraction < 1.0, fraction * self._reach, np.inf).min(axis=1)
         noise = self._rng.normal(0.0, self._config.noise_m, _SONARS)
         is_lost = self._rng.random(_SONARS) < self._config.drop_out

@@ -15,10 +15,13 @@ ENVIRONMENTS: Final[Mapping[str, Mapping[str, str]]] = {
 """Each environment's scenario and task by its name."""
 
 _ENTRY: Final = "peopleboy.scenarios.environments.environment:PeopleBoyEnv"
+_VECTOR_ENTRY: Final = "peopleboy.scenarios.environments.vector_environment:PeopleBoyVectorEnv"
 
 
 def register_environments() -> None:
     """Tell gymnasium the environments that it does not know yet; making one imports what it needs."""
     for name, settings in ENVIRONMENTS.items():
         if name not in registry:
-            register(name, entry_point=_ENTRY, kwargs=dict(settings))
+            register(
+                name, entry_point=_ENTRY, vector_entry_point=_VECTOR_ENTRY, kwargs=dict(settings)
+            )

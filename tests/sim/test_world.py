@@ -245,7 +245,7 @@ def test_a_command_that_is_no_number_is_refused_and_moves_nothing() -> None:
 
 def test_its_own_body_is_not_in_the_robot_s_default_cameras() -> None:
     with World(WorldConfig(place=hall(), robot=RobotConfig(at_m=(3.0, 0.0)))) as world:
-        keys = world._bullet.parts()
+        keys = world._physics.parts()
         own = [k for k, key in enumerate(keys) if key.name == "robot"]
         for command in [(0.0, 0.0), (0.8, 2.6), (-0.8, -2.6)]:
             for _ in range(8):

@@ -11,6 +11,7 @@ from peopleboy.scenarios.files.schema.place import PlaceSpec
 from peopleboy.scenarios.files.schema.robot import FaultSpec, RobotSpec
 from peopleboy.scenarios.files.schema.things import ThingSpec
 from peopleboy.scenarios.files.schema.values import Key, Seconds, Strict
+from peopleboy.sim.physics.physics import PhysicsName
 from peopleboy.sim.shapes.materials import Detail
 
 
@@ -64,6 +65,11 @@ class ScenarioSpec(Strict):
         default="plain",
         description="how finely people and surfaces are drawn: `full` is nearer to real images, "
         "`plain` is quicker and keeps the bytes of older files",
+    )
+    physics: PhysicsName = Field(
+        default="bullet",
+        description="what moves the robot: `bullet` has the dynamics of PyBullet, which must be installed; "
+        "`kinematic` lets it roll without slip, needs no PyBullet and is quicker",
     )
     lights: tuple[LightSpec, ...] = Field(
         default=(),

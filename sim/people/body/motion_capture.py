@@ -1,4 +1,4 @@
-"""The walking clip of pybullet_data, in our frames and as smooth functions of the gait's phase."""
+"""One cycle of walking, motion-captured, in our frames and as smooth functions of the gait's phase."""
 
 from __future__ import annotations
 
@@ -10,31 +10,13 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
-
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES
-from peopleboy.sim.physics.model_files import data_folder
 
 Array = NDArray[np.float64]
 
-_CLIP = Path("data", "motions", "humanoid3d_walk.txt")
+_CLIP = Path(__file__).with_name("walking_clip.json")
 _HARMONICS = 5
 # Thigh and shin of the clip's figure [m]: DeepMimic's humanoid.
 CLIP_LEG_M = 0.421546 + 0.409870
-
-# Where each joint's numbers start in a frame: frame time, root position, root rotation, chest, neck, ...
-_BALL_JOINTS = {
-    "pelvis": 4,
-    "right_foot": 21,
-    "right_upper_arm": 25,
-    "left_foot": 35,
-    "left_upper_arm": 39,
-    "right_thigh": 16,
-    "left_thigh": 30,
-}
-_HINGES = {"right_shin": 20, "right_forearm": 29, "left_shin": 34, "left_forearm": 43}
-# The clip has one joint where we have two: each takes half.
-_SHARED_JOINTS = {("abdomen", "chest"): 8, ("neck", "head"): 12}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,53 +43,12 @@ def fourier_basis(phase: Array) -> Array:
 
 @functools.cache
 def load_walking_clip() -> WalkingClip:
-    """Read the clip and close its loop.
+    """Read what five harmonics make of the clip, which tests fit anew.
 
-    The last frame repeats the first, one cycle later. Five harmonics fit the rest, which takes away the jump
-    where the clip was mirrored.
-
-    Raises:
-        FileNotFoundError: pybullet_data is not installed.
+    Source: humanoid3d_walk.txt of pybullet_data, which is DeepMimic's (Peng et al., 2018; MIT licence).
     """
-    frames = _read_frames()[:-1]
-    count = len(frames)
-    basis = fourier_basis(np.arange(count) / count)
-    stride = (frames[-1, 1] - frames[0, 1]) * count / (count - 1)
-    steady = stride * np.arange(count) / count
-    sway = np.stack([frames[:, 1] - steady, -frames[:, 3], frames[:, 2]], axis=-1)
-    rotations = _rotation_vectors(frames)
-    fit = np.linalg.lstsq(basis, np.concatenate([rotations.reshape(count, -1), sway], axis=1), rcond=None)[0]
-    coefficients = fit[:, :-3].reshape(-1, len(BONES), 3)
-    coefficients.setflags(write=False)
-    return WalkingClip(rotations=coefficients, sway=_without_mean(fit[:, -3:]), stride_m=float(stride))
-
-
-def _without_mean(coefficients: Array) -> Array:
-    swinging = coefficients.copy()
-    swinging[0] = 0.0
-    swinging.setflags(write=False)
-    return swinging
-
-
-def _read_frames() -> Array:
-    """(F, 44) frames of the clip, as DeepMimic's format orders them."""
-    return np.array(json.loads((data_folder() / _CLIP).read_text("utf-8"))["Frames"])
-
-
-def _rotation_vectors(frames: Array) -> Array:
-    """(F, 17, 3) [rad] rotation vectors in our frames: the clip's x, y, z are our x, z, -y."""
-    rotations = np.zeros((len(frames), len(BONES), 3))
-    for bone, start in _BALL_JOINTS.items():
-        rotations[:, BONE_INDEX[bone]] = _from_clip_quaternion(frames[:, start : start + 4])
-    for bone, column in _HINGES.items():
-        rotations[:, BONE_INDEX[bone], 1] = -frames[:, column]
-    for bones, start in _SHARED_JOINTS.items():
-        for bone in bones:
-            rotations[:, BONE_INDEX[bone]] = _from_clip_quaternion(frames[:, start : start + 4]) / len(bones)
-    return rotations
-
-
-def _from_clip_quaternion(wxyz: Array) -> Array:
-    w, x, y, z = wxyz.T
-    vectors: Array = Rotation.from_quat(np.stack([x, -z, y, w], axis=-1)).as_rotvec()
-    return vectors
+    data = json.loads(_CLIP.read_text("utf-8"))
+    rotations, sway = np.array(data["rotations"]), np.array(data["sway"])
+    for array in (rotations, sway):
+        array.setflags(write=False)
+    return WalkingClip(rotations=rotations, sway=sway, stride_m=data["stride_m"])

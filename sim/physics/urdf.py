@@ -22,7 +22,7 @@ MESH_PLACES = (".", "..", "../..")
 _GREY = (0.5, 0.5, 0.5)
 
 Numbers = NDArray[np.float64]
-_Joints = dict[str, ElementTree.Element]  # by the link that hangs on it
+Joints = dict[str, ElementTree.Element]  # by the link that hangs on it
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +54,12 @@ def read_urdf(path: Path) -> tuple[UrdfShape, ...]:
     Raises:
         BadInput: the file is no URDF, or has a shape or a number that cannot be read.
     """
-    root = _parse(path)
-    joints = {_link_named(joint, "child"): joint for joint in root.iterfind("./joint")}
+    root = parse_urdf(path)
+    joints = {link_named(joint, "child"): joint for joint in root.iterfind("./joint")}
     colours = {m.get("name", ""): _rgb(m) for m in root.iterfind("./material") if m.find("color") is not None}
     try:
         return tuple(
-            _read_visual(visual, _link_pose(link.get("name", ""), joints), colours, path)
+            _read_visual(visual, link_pose(link.get("name", ""), joints), colours, path)
             for link in root.iterfind("./link")
             for visual in link.findall("./visual") or link.findall("./collision")  # as PyBullet shows it
         )
@@ -73,11 +73,16 @@ def mesh_files(path: Path) -> Iterator[str]:
     Raises:
         BadInput: the file is no XML.
     """
-    for mesh in _parse(path).iter("mesh"):
+    for mesh in parse_urdf(path).iter("mesh"):
         yield mesh.get("filename", "")
 
 
-def _parse(path: Path) -> ElementTree.Element:
+def parse_urdf(path: Path) -> ElementTree.Element:
+    """Read a file as XML.
+
+    Raises:
+        BadInput: it cannot be read, or is none.
+    """
     try:
         # A declaration may claim an encoding that is not the file's.
         return ElementTree.fromstring(re.sub(r"<\?xml.*?\?>", "", path.read_text("utf-8"), count=1))
@@ -85,11 +90,11 @@ def _parse(path: Path) -> ElementTree.Element:
         raise BadInput(f"{path} cannot be read as a URDF: {error}") from error
 
 
-def _link_pose(link: str, joints: _Joints) -> tuple[Numbers, Rotation]:
+def link_pose(link: str, joints: Joints) -> tuple[Numbers, Rotation]:
     """Where a link is in the root link's frame: position and rotation."""
     if link not in joints:
         return np.zeros(3), Rotation.identity()
-    position, turn = _link_pose(_link_named(joints[link], "parent"), joints)
+    position, turn = link_pose(link_named(joints[link], "parent"), joints)
     offset, rotation = _origin(joints[link])
     return position + turn.apply(offset), turn * rotation
 
@@ -100,20 +105,25 @@ def _read_visual(
     colours: dict[str, tuple[float, float, float]],
     path: Path,
 ) -> UrdfShape:
-    offset, rotation = _origin(visual)
     material = visual.find("material")
-    kind, size, mesh = _read_geometry(visual, path)
-    shape = Shape(
+    shape = read_shape(visual, link, path)
+    if material is None:
+        return UrdfShape(shape, _GREY)
+    named = colours.get(material.get("name", ""), _GREY)
+    return UrdfShape(shape, _rgb(material) if material.find("color") is not None else named)
+
+
+def read_shape(element: ElementTree.Element, link: tuple[Numbers, Rotation], path: Path) -> Shape:
+    """Read a visual or a collision of a link, whose position and rotation are given."""
+    offset, rotation = _origin(element)
+    kind, size, mesh = _read_geometry(element, path)
+    return Shape(
         kind=kind,
         size=size,
         position=_vector(link[0] + link[1].apply(offset)),
         orientation=_quaternion(link[1] * rotation),
         mesh=mesh,
     )
-    if material is None:
-        return UrdfShape(shape, _GREY)
-    named = colours.get(material.get("name", ""), _GREY)
-    return UrdfShape(shape, _rgb(material) if material.find("color") is not None else named)
 
 
 def _read_geometry(visual: ElementTree.Element, path: Path) -> tuple[ShapeKind, Vector, Path | None]:
@@ -124,7 +134,7 @@ def _read_geometry(visual: ElementTree.Element, path: Path) -> tuple[ShapeKind, 
     if tag == "mesh":
         return ShapeKind.MESH, _scale(geometry), _find_mesh(path, geometry.get("filename", ""))
     if tag == "box":
-        return ShapeKind.BOX, _vector(_numbers(geometry.attrib["size"])), None
+        return ShapeKind.BOX, _vector(read_numbers(geometry.attrib["size"])), None
     if tag == "sphere":
         return ShapeKind.SPHERE, (float(geometry.attrib["radius"]), 0.0, 0.0), None
     if tag == "plane":
@@ -134,7 +144,7 @@ def _read_geometry(visual: ElementTree.Element, path: Path) -> tuple[ShapeKind, 
 
 
 def _scale(mesh: ElementTree.Element) -> Vector:
-    factors = _numbers(mesh.get("scale", "1 1 1"))
+    factors = read_numbers(mesh.get("scale", "1 1 1"))
     return _vector(np.broadcast_to(factors, 3) if len(factors) == 1 else factors)
 
 
@@ -150,21 +160,22 @@ def _origin(element: ElementTree.Element) -> tuple[Numbers, Rotation]:
     origin = element.find("origin")
     if origin is None:
         return np.zeros(3), Rotation.identity()
-    turn = Rotation.from_euler("xyz", _numbers(origin.get("rpy", "0 0 0"))[:3])
-    return _numbers(origin.get("xyz", "0 0 0"))[:3], turn
+    turn = Rotation.from_euler("xyz", read_numbers(origin.get("rpy", "0 0 0"))[:3])
+    return read_numbers(origin.get("xyz", "0 0 0"))[:3], turn
 
 
-def _link_named(joint: ElementTree.Element, tag: str) -> str:
+def link_named(joint: ElementTree.Element, tag: str) -> str:
+    """Name the parent or the child of a joint."""
     element = joint.find(tag)
     return "" if element is None else element.get("link", "")
 
 
 def _rgb(material: ElementTree.Element) -> tuple[float, float, float]:
     colour = material.find("color")
-    return _vector(_numbers("0.5 0.5 0.5" if colour is None else colour.get("rgba", "")))
+    return _vector(read_numbers("0.5 0.5 0.5" if colour is None else colour.get("rgba", "")))
 
 
-def _numbers(text: str) -> Numbers:
+def read_numbers(text: str) -> Numbers:
     """Read numbers as PyBullet does, which takes commas for spaces."""
     return np.array([float(word) for word in text.replace(",", " ").split()])
 

@@ -1,0 +1,120 @@
+"""Many environments in one process, as one of gymnasium's vector environments."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.observations import Arrays
+
+Flags = NDArray[np.bool_]
+Infos = dict[str, Any]
+
+
+class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
+    """B worlds, each with a robot of its own, stepped together.
+
+    Actions are (B, 2); an observation has the arrays of `PeopleBoyEnv` with B before their shape, such as
+    `thermal` (B, H, W, 1), each of its own and never written to again. World i gives to the byte what a single
+    environment with its seed and actions gives. The step after an episode's end begins the next episode in
+    that world, whatever its action, with reward 0 (`AutoresetMode.NEXT_STEP`); `infos` has the arrays that
+    gymnasium makes of B infos.
+
+    Args:
+        num_envs: B.
+        settings: as for `PeopleBoyEnv`, but `render_mode`.
+
+    Raises:
+        BadInput: an argument cannot be used.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012
+        "render_modes": [], "render_fps": 15, "autoreset_mode": AutoresetMode.NEXT_STEP
+    }  # fmt: skip
+
+    def __init__(self, num_envs: int = 1, **settings: Any) -> None:
+        if num_envs < 1:
+            raise BadInput(f"num_envs {num_envs}: must be 1 or more")
+        if settings.get("render_mode") is not None:
+            raise BadInput("render_mode: many worlds draw no pictures; leave it out, or take one environment")
+        self.num_envs = num_envs
+        self._envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))
+        self.single_action_space = self._envs[0].action_space
+        self.single_observation_space = self._envs[0].observation_space
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self._is_over = np.zeros(num_envs, np.bool_)
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[Arrays, Infos]:
+        """Begin an episode in every world.
+
+        Args:
+            seed: of world 0, the next ones having the next; or one for each; None goes on, as for a single
+                environment.
+            options: as for a single environment, for all of them.
+
+        Raises:
+            BadInput: options that there are not, or not a seed for each.
+        """
+        seeds = [seed] * self.num_envs if seed is None else seed
+        if isinstance(seeds, int | np.integer):
+            seeds = [int(seeds) + number for number in range(self.num_envs)]
+        if len(seeds) != self.num_envs:
+            raise BadInput(f"seed: {len(seeds)} seeds for {self.num_envs} worlds; give one each")
+        found, infos = self._empty(), {}
+        for number, (env, own) in enumerate(zip(self._envs, seeds, strict=True)):
+            observation, info = env.reset(seed=own, options=options)
+            _put(found, number, observation)
+            infos = self._add_info(infos, info, number)
+        self._is_over[:] = False
+        return found, infos
+
+    def step(
+        self, actions: NDArray[np.float32]
+    ) -> tuple[Arrays, NDArray[np.float64], Flags, Flags, Infos]:
+        """Drive every robot for one control step, and begin anew where an episode was over.
+
+        Raises:
+            BadInput: the actions are not (B, 2) finite numbers, or there are no episodes under way.
+        """
+        if np.shape(actions) != (self.num_envs, 2):
+            raise BadInput(f"actions of shape {np.shape(actions)}: must be ({self.num_envs}, 2)")
+        found, infos = self._empty(), {}
+        rewards = np.zeros(self.num_envs)
+        terminations, truncations = np.zeros((2, self.num_envs), np.bool_)
+        for number, (env, action) in enumerate(zip(self._envs, actions, strict=True)):
+            if self._is_over[number]:
+                observation, info = env.reset()
+            else:
+                observation, reward, ended, cut, info = env.step(action)
+                rewards[number], terminations[number], truncations[number] = float(reward), ended, cut
+            _put(found, number, observation)
+            infos = self._add_info(infos, info, number)
+        self._is_over = terminations | truncations
+        return found, rewards, terminations, truncations, infos
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Free all worlds."""
+        for env in self._envs:
+            env.close()
+
+    def _empty(self) -> Arrays:
+        spaces = self.observation_space.spaces.items()  # type: ignore[attr-defined]  # it is a Dict
+        return {name: np.empty(space.shape, space.dtype) for name, space in spaces}
+
+
+def _put(found: Arrays, number: int, observation: Arrays) -> None:
+    for name, array in observation.items():
+        found[name][number] = array

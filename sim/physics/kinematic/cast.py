@@ -1,0 +1,103 @@
+"""The nearest solid along rays, by the shapes' own geometry (numba kernels)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.geometry.vectors import Point, cross, dot, minus
+from peopleboy.sim.physics.kinematic.solids import Array, Bodies, Solids
+from peopleboy.sim.physics.solid_boxes import meets
+from peopleboy.sim.shapes.rays import hit_shape
+from peopleboy.sim.shapes.shapes import ShapeKind
+
+_MESH = int(ShapeKind.MESH)
+
+
+@njit(cache=True, nogil=True)
+def cast(
+    starts: Array, ends: Array, bodies: Bodies, solids: Solids, passed: int
+) -> tuple[Array, NDArray[np.int64]]:
+    """Find what rays hit first; shapes are met from outside only, triangles from both sides.
+
+    Args:
+        starts: (R, 3) [m] world frame.
+        ends: (R, 3) [m].
+        bodies: up to date.
+        solids: likewise.
+        passed: number of a body that rays pass through, -1 for none.
+
+    Returns:
+        fraction: (R,) of the way, 1 where nothing is hit.
+        part: (R,) what is hit, -1 for nothing.
+    """
+    fraction, part = np.ones(len(starts)), np.full(len(starts), -1, np.int64)
+    low, high = np.empty(3), np.empty(3)
+    for axis in range(3):
+        low[axis] = min(starts[:, axis].min(), ends[:, axis].min()) if len(starts) else 0.0
+        high[axis] = max(starts[:, axis].max(), ends[:, axis].max()) if len(starts) else 0.0
+    for k in range(len(solids.boxes)):
+        body, box = bodies.of_part[solids.table.part[k]], solids.boxes[k]
+        if body == passed or bodies.hidden[body] or not _share(low, high, box):
+            continue
+        for ray in range(len(starts)):
+            if meets(starts[ray], ends[ray], box):
+                t = _hit(starts[ray], ends[ray], solids, k)
+                if t < fraction[ray]:
+                    fraction[ray], part[ray] = t, solids.table.part[k]
+    return fraction, part
+
+
+@njit(cache=True)
+def _share(low: Array, high: Array, box: Array) -> bool:
+    """Whether two upright boxes share a point."""
+    shares = True
+    for axis in range(3):
+        shares = shares and low[axis] <= box[1, axis] and high[axis] >= box[0, axis]
+    return shares
+
+
+@njit(cache=True)
+def _hit(start: Array, end: Array, solids: Solids, k: int) -> float:
+    """Where, as a fraction of its way, a ray enters a solid; infinite where it misses."""
+    pose, table = solids.poses[k], solids.table
+    o = _to_shape(pose, start[0] - pose[0, 3], start[1] - pose[1, 3], start[2] - pose[2, 3])
+    d = _to_shape(pose, end[0] - start[0], end[1] - start[1], end[2] - start[2])
+    if table.kind[k] != _MESH:
+        return hit_shape(table.kind[k], (table.size[k, 0], table.size[k, 1], table.size[k, 2]), o, d)[0]
+    nearest = math.inf
+    for number in range(table.triangle_range[k, 0], table.triangle_range[k, 1]):
+        nearest = min(nearest, _hit_triangle(table.triangles[number], o, d))
+    return nearest
+
+
+@njit(cache=True)
+def _to_shape(pose: Array, x: float, y: float, z: float) -> Point:
+    """Turn a vector of the world into the frame of a pose."""
+    return (
+        pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z,
+        pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z,
+        pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z,
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _hit_triangle(corners: Array, o: Point, d: Point) -> float:
+    """Where a ray meets a triangle (3, 3), from either side.
+
+    Source: Moeller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
+    """
+    first = (corners[0, 0], corners[0, 1], corners[0, 2])
+    ab = minus((corners[1, 0], corners[1, 1], corners[1, 2]), first)
+    ac = minus((corners[2, 0], corners[2, 1], corners[2, 2]), first)
+    p = cross(d, ac)
+    volume = dot(ab, p)
+    if volume == 0.0:
+        return math.inf
+    s = minus(o, first)
+    u, q = dot(s, p) / volume, cross(s, ab)
+    v, t = dot(d, q) / volume, dot(ac, q) / volume
+    return t if u >= 0.0 and v >= 0.0 and u + v <= 1.0 and t >= 0.0 else math.inf

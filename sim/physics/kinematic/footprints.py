@@ -1,0 +1,179 @@
+"""What lies of a shape between two heights, seen from above: a convex outline, made wider by a radius."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.geometry.vectors import map_point
+from peopleboy.sim.physics.kinematic.solids import Array
+from peopleboy.sim.shapes.shapes import ShapeKind
+
+_SPHERE = int(ShapeKind.SPHERE)
+_CAPSULE = int(ShapeKind.CAPSULE)
+_CYLINDER = int(ShapeKind.CYLINDER)
+_BOX = int(ShapeKind.BOX)
+_SIDES = 16  # of the prism that stands for a cylinder which does not stand upright
+MOST_POINTS = 8 * _SIDES
+_UPRIGHT = 1.0 - 1e-9
+_BOX_EDGES = np.array(
+    [(a, b) for a in range(8) for b in range(8) if a < b and (a ^ b) in (1, 2, 4)], dtype=np.int64
+)
+_TRIANGLE_EDGES = np.array([(0, 1), (1, 2), (0, 2)])
+_PRISM_EDGES = np.array(
+    [
+        edge
+        for k in range(_SIDES)
+        for edge in (
+            (k, k + _SIDES),
+            (k, (k + 1) % _SIDES),
+            (k + _SIDES, (k + 1) % _SIDES + _SIDES),
+        )
+    ]
+)
+
+
+@njit(cache=True)
+def footprint(
+    kind: int, size: Array, pose: Array, low_m: float, high_m: float, outline: Array
+) -> tuple[int, float]:
+    """Write the outline of a primitive; exact but for capsules and cylinders that lean.
+
+    Those that lean are taken as a capsule wherever its axis is within a radius of the heights, and as a prism
+    of 16 sides. A plane has none.
+
+    Args:
+        kind: ShapeKind, not a mesh.
+        size: (3,) [m] as in `Shape`.
+        pose: (4, 4) world from shape.
+        low_m: [m] the lower height.
+        high_m: [m] the upper one.
+        outline: (MOST_POINTS, 2) [m] gets the corners, counter-clockwise.
+
+    Returns:
+        How many corners there are, 0 if nothing lies between the heights, and the radius [m].
+    """
+    is_upright = abs(pose[2, 2]) > _UPRIGHT
+    if kind == _SPHERE or (kind == _CAPSULE and is_upright):
+        half, radius = (0.0, size[0]) if kind == _SPHERE else (size[0] / 2.0, size[1])
+        off = max(pose[2, 3] - half - high_m, low_m - pose[2, 3] - half, 0.0)
+        outline[0, 0], outline[0, 1] = pose[0, 3], pose[1, 3]
+        return (1, math.sqrt(radius * radius - off * off)) if off < radius else (0, 0.0)
+    if kind == _CAPSULE:
+        return _clip_segment(size[0] / 2.0, size[1], pose, low_m, high_m, outline), size[1]
+    if kind == _CYLINDER and is_upright:
+        outline[0, 0], outline[0, 1] = pose[0, 3], pose[1, 3]
+        half = size[0] / 2.0
+        return int(pose[2, 3] - half < high_m and pose[2, 3] + half > low_m), size[1]
+    if kind == _CYLINDER:
+        return _clip(_prism(size, pose), _PRISM_EDGES, low_m, high_m, outline), 0.0
+    if kind == _BOX:
+        return _clip(_box_corners(size, pose), _BOX_EDGES, low_m, high_m, outline), 0.0
+    return 0, 0.0
+
+
+@njit(cache=True)
+def triangle_footprint(corners: Array, pose: Array, low_m: float, high_m: float, outline: Array) -> int:
+    """Write the outline of a triangle (3, 3), told in a frame with this pose; see `footprint`."""
+    moved = np.empty((3, 3))
+    for k in range(3):
+        moved[k, 0], moved[k, 1], moved[k, 2] = map_point(pose, corners[k, 0], corners[k, 1], corners[k, 2])
+    return _clip(moved, _TRIANGLE_EDGES, low_m, high_m, outline)
+
+
+@njit(cache=True)
+def _clip_segment(
+    half: float, radius: float, pose: Array, low_m: float, high_m: float, outline: Array
+) -> int:
+    """Keep what of a leaning capsule's axis is within a radius of the heights."""
+    rise = pose[2, 2] * half
+    start, end = -1.0, 1.0
+    if abs(rise) > 1e-12:
+        a = (low_m - radius - pose[2, 3]) / rise
+        b = (high_m + radius - pose[2, 3]) / rise
+        start, end = max(start, min(a, b)), min(end, max(a, b))
+    elif pose[2, 3] + radius < low_m or pose[2, 3] - radius > high_m:
+        return 0
+    if start >= end:
+        return 0
+    for k in range(2):
+        x, y, _ = map_point(pose, 0.0, 0.0, half * (start if k == 0 else end))
+        outline[k, 0], outline[k, 1] = x, y
+    return 2
+
+
+@njit(cache=True)
+def _prism(size: Array, pose: Array) -> Array:
+    corners = np.empty((2 * _SIDES, 3))
+    for k in range(2 * _SIDES):
+        angle = 2.0 * math.pi * (k % _SIDES) / _SIDES
+        z = size[0] / 2.0 if k < _SIDES else -size[0] / 2.0
+        corners[k, 0], corners[k, 1], corners[k, 2] = map_point(
+            pose, size[1] * math.cos(angle), size[1] * math.sin(angle), z
+        )
+    return corners
+
+
+@njit(cache=True)
+def _box_corners(size: Array, pose: Array) -> Array:
+    corners = np.empty((8, 3))
+    for k in range(8):
+        x = 0.5 * size[0] if k & 1 else -0.5 * size[0]
+        y = 0.5 * size[1] if k & 2 else -0.5 * size[1]
+        z = 0.5 * size[2] if k & 4 else -0.5 * size[2]
+        corners[k, 0], corners[k, 1], corners[k, 2] = map_point(pose, x, y, z)
+    return corners
+
+
+@njit(cache=True)
+def _clip(corners: Array, edges: NDArray[np.int64], low_m: float, high_m: float, outline: Array) -> int:
+    """Write the hull of what lies of a convex solid between two heights."""
+    points = np.empty((MOST_POINTS, 2))
+    count = 0
+    if corners[:, 2].max() <= low_m or corners[:, 2].min() >= high_m:
+        return 0
+    for k in range(len(corners)):
+        if low_m <= corners[k, 2] <= high_m:
+            points[count] = corners[k, :2]
+            count += 1
+    for e in range(len(edges)):
+        a, b = corners[edges[e, 0]], corners[edges[e, 1]]
+        for level in (low_m, high_m):
+            if (a[2] - level) * (b[2] - level) < 0.0:
+                points[count] = a[:2] + (level - a[2]) / (b[2] - a[2]) * (b[:2] - a[:2])
+                count += 1
+    return _hull(points[:count], outline)
+
+
+@njit(cache=True)
+def _hull(points: Array, outline: Array) -> int:
+    """Write the corners of the convex hull, counter-clockwise.
+
+    Source: Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979.
+    """
+    for k in range(1, len(points)):  # sorted by x, then y
+        x, y, at = points[k, 0], points[k, 1], k
+        while at > 0 and (points[at - 1, 0], points[at - 1, 1]) > (x, y):
+            points[at] = points[at - 1]
+            at -= 1
+        points[at, 0], points[at, 1] = x, y
+    count = 0
+    for chain in range(2):
+        least = count + 1
+        for k in range(len(points)):
+            p = points[k] if chain == 0 else points[len(points) - 1 - k]
+            while count > least and _turns(outline[count - 2], outline[count - 1], p) <= 1e-12:
+                count -= 1
+            outline[count] = p
+            count += 1
+        count -= 1  # it begins the other chain
+    return max(count, 1)
+
+
+@njit(cache=True)
+def _turns(a: Array, b: Array, c: Array) -> float:
+    """Positive if the way from a by b to c turns to the left."""
+    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))

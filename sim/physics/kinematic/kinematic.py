@@ -1,0 +1,310 @@
+"""A world without PyBullet: what stands stays, what rolls on two wheels rolls as they turn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.physics.bodies import PartKey
+from peopleboy.sim.physics.kinematic.cast import cast
+from peopleboy.sim.physics.kinematic.drive import push_out, roll
+from peopleboy.sim.physics.kinematic.solids import Bodies, Solids, refresh
+from peopleboy.sim.physics.kinematic.vehicle import Vehicle, make_vehicle, wheels_of
+from peopleboy.sim.physics.model_files import find_model
+from peopleboy.sim.physics.urdf_links import read_links
+from peopleboy.sim.shapes.shape_table import VisualShape, make_shape_table
+from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
+
+_LINK = "link0"  # as PyBullet calls it
+
+
+@dataclass(slots=True, eq=False)
+class _Rolling:
+    """The one body that moves by itself.
+
+    Attributes:
+        body: its number.
+        vehicle: its outline and its wheels.
+        joints: names of the left and the right wheel's.
+        wheels: numbers of their parts.
+        pose: (3,) x, y [m], heading [rad].
+        angles, speeds: (2,) [rad], [rad/s] of the wheels.
+        velocity: (3,) [m/s], [m/s], [rad/s] in the last step, world frame.
+    """
+
+    body: int
+    vehicle: Vehicle
+    joints: tuple[str, str]
+    wheels: tuple[int, int]
+    pose: Matrix
+    angles: Matrix
+    speeds: Matrix
+    velocity: Matrix
+
+
+class Kinematic:
+    """A world in which bodies go by name, after the seam `Physics`.
+
+    The vehicle, of which there may be one, stays upright on z = 0 and moves at once as its wheels turn,
+    without slip, whatever torque they have. At the end of a step it is pushed out of whatever it is in;
+    then its wheels slip. It pushes nothing, and passes over planes and all that is lower than its boxes.
+    """
+
+    def __init__(self, *, physics_hz: int = 240) -> None:
+        self._dt_s = 1.0 / physics_hz
+        self._numbers: dict[str, int] = {}
+        self._parts: list[PartKey] = []
+        self._of_part: list[int] = []
+        self._base_from_part: list[Matrix] = []
+        self._visible: list[VisualShape] = []
+        self._solid: list[VisualShape] = []
+        self._places = np.zeros((0, 7))
+        self._hidden = np.zeros(0, np.bool_)
+        self._stale = np.zeros(0, np.bool_)
+        self._touched = np.zeros(0, np.bool_)
+        self._packed: tuple[Bodies, Solids] | None = None
+        self._is_stale = False
+        self._rolling: _Rolling | None = None
+
+    def close(self) -> None:
+        """Nothing is held that would have to be freed."""
+
+    def add_part(
+        self,
+        name: str,
+        shapes: Sequence[Shape],
+        *,
+        position: Vector = (0.0, 0.0, 0.0),
+        orientation: Quaternion = UPRIGHT,
+        visible: bool = True,
+        solid: bool = True,
+    ) -> None:
+        """See `Physics.add_part`."""
+        self._check_new(name)
+        if not shapes:
+            raise BadInput(f"body {name!r}: it has no shapes; give at least one")
+        for shape in shapes:
+            if shape.kind == ShapeKind.MESH and not (shape.mesh and shape.mesh.is_file()):
+                raise BadInput(f"body {name!r}: there is no mesh {shape.mesh}; give an OBJ, STL or DAE file")
+        self._add_body(name, position, orientation)
+        self._add_link(name, _LINK, np.eye(4), shapes if visible else (), shapes if solid else ())
+
+    def add_urdf(
+        self,
+        name: str,
+        path: Path | str,
+        *,
+        position: Vector = (0.0, 0.0, 0.0),
+        orientation: Quaternion = UPRIGHT,
+        fixed: bool = True,
+        scale: float = 1.0,
+    ) -> None:
+        """See `Physics.add_urdf`; what is not held in place must be a vehicle, and the only one."""
+        self._check_new(name)
+        links = read_links(find_model(path), scale)
+        first = len(self._parts)
+        if not fixed:
+            if self._rolling is not None:
+                raise BadInput(f"body {name!r}: kinematic physics moves one body, and there is one already")
+            left, right = wheels_of(name, links)
+            self._rolling = _Rolling(
+                body=len(self._numbers),
+                vehicle=make_vehicle(name, links),
+                joints=(links[left].joint, links[right].joint),
+                wheels=(first + left, first + right),
+                pose=np.zeros(3),
+                angles=np.zeros(2),
+                speeds=np.zeros(2),
+                velocity=np.zeros(3),
+            )
+        self._add_body(name, position, orientation)
+        for link in links:
+            self._add_link(name, link.name, link.base_from_link, link.visible, link.solid)
+        self.set_pose(name, position, orientation)
+
+    def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
+        """See `Physics.set_pose`; of the vehicle only place and heading on the floor count."""
+        number = self._number_of(name)
+        rolling = self._rolling
+        if rolling is not None and rolling.body == number:
+            x, y, z, w = orientation
+            heading = math.atan2(2.0 * (x * y + z * w), 1.0 - 2.0 * (y * y + z * z))
+            rolling.pose[:] = position[0], position[1], heading
+            rolling.velocity[:] = 0.0
+            self._place_vehicle(rolling)
+            return
+        self._places[number] = (*position, *orientation)
+        self._mark(number)
+
+    def set_hidden(self, name: str, hidden: bool) -> None:
+        """See `Physics.set_hidden`."""
+        number = self._number_of(name)
+        if self._rolling is not None and self._rolling.body == number:
+            raise BadInput(f"body {name!r} is not fixed: it cannot be hidden")
+        if self._hidden[number] != hidden:
+            self._hidden[number] = hidden
+            self._mark(number)
+
+    def hidden_parts(self) -> NDArray[np.bool_]:
+        """(P,) which parts are hidden now."""
+        return self._hidden[self._of_part]
+
+    def step(self) -> None:
+        """Let the vehicle roll for one physics step, and push it out of what it is in."""
+        bodies, solids = self._up_to_date()
+        self._touched[:] = False
+        rolling = self._rolling
+        if rolling is None:
+            return
+        before = rolling.pose.copy()
+        left, right = rolling.speeds.tolist()
+        roll(rolling.vehicle, rolling.pose, left, right, self._dt_s)
+        push_out(rolling.vehicle, rolling.pose, bodies, solids, rolling.body, self._touched)
+        rolling.angles += rolling.speeds * self._dt_s
+        moved = rolling.pose - before
+        rolling.velocity[:] = moved[0], moved[1], math.remainder(moved[2], math.tau)
+        rolling.velocity /= self._dt_s
+        if moved.any():
+            self._place_vehicle(rolling)
+
+    def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
+        """Let wheels turn at speeds [rad/s] from the next step on, at any positive torque."""
+        rolling = self._vehicle_called(name, speeds)
+        for joint, speed in speeds.items():
+            rolling.speeds[rolling.joints.index(joint)] = speed if max_torque_nm > 0.0 else 0.0
+
+    def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
+        """See `Physics.joint_states`."""
+        rolling = self._vehicle_called(name, joints)
+        chosen = [rolling.joints.index(joint) for joint in joints]
+        return rolling.angles[chosen], rolling.speeds[chosen]
+
+    def velocity(self, name: str) -> tuple[Matrix, Matrix]:
+        """See `Physics.velocity`; that of the base frame's origin."""
+        x, y, turn = self._vehicle_called(name, ()).velocity.tolist()
+        return np.array([x, y, 0.0]), np.array([0.0, 0.0, turn])
+
+    def parts(self) -> tuple[PartKey, ...]:
+        """All parts, in the order of their numbers."""
+        return tuple(self._parts)
+
+    def pose(self, name: str) -> Matrix:
+        """See `Physics.pose`."""
+        place = self._places[self._number_of(name)]
+        return pose_matrices(place[:3], place[3:])
+
+    def part_poses(self) -> Matrix:
+        """See `Physics.part_poses`."""
+        bodies, _ = self._up_to_date()
+        poses = bodies.poses.copy()
+        if self._rolling is not None:
+            for wheel, angle in zip(self._rolling.wheels, self._rolling.angles.tolist(), strict=True):
+                cos, sin = math.cos(angle), math.sin(angle)
+                poses[wheel, :3, :3] @= np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+        return poses
+
+    def visual_shapes(self) -> list[VisualShape]:
+        """Every shape that a renderer should draw, in the order of the parts."""
+        return list(self._visible)
+
+    def cast_rays(
+        self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
+    ) -> tuple[Matrix, NDArray[np.int64]]:
+        """See `Physics.cast_rays`; exact, and to the outside of shapes only."""
+        bodies, solids = self._up_to_date()
+        starts, ends = np.asarray(from_m, np.float64), np.asarray(to_m, np.float64)
+        found: tuple[Matrix, NDArray[np.int64]] = cast(
+            starts, ends, bodies, solids, -1 if ignore is None else self._number_of(ignore)
+        )
+        return found
+
+    def touching(self, name: str) -> set[str]:
+        """See `Physics.touching`; of the vehicle alone, the floor aside."""
+        self._vehicle_called(name, ())
+        if not self._touched.any():
+            return set()
+        return {other for other, number in self._numbers.items() if self._touched[number]}
+
+    def _check_new(self, name: str) -> None:
+        if name in self._numbers:
+            raise BadInput(f"body {name!r}: there is one already; choose another name")
+
+    def _add_body(self, name: str, position: Vector, orientation: Quaternion) -> None:
+        self._numbers[name] = len(self._numbers)
+        self._places = np.concatenate([self._places, [(*position, *orientation)]])
+        self._hidden, self._stale, self._touched = (
+            np.append(flags, False) for flags in (self._hidden, self._stale, self._touched)
+        )
+        self._packed = None
+
+    def _add_link(
+        self, name: str, link: str, pose: Matrix, visible: Sequence[Shape], solid: Sequence[Shape]
+    ) -> None:
+        number, part = self._numbers[name], len(self._parts)
+        before = self._of_part.count(number)
+        self._parts.append(PartKey(name, before - 1, link))
+        self._of_part.append(number)
+        self._base_from_part.append(pose)
+        self._visible += [_as_given(shape, part) for shape in visible]
+        self._solid += [_as_given(shape, part) for shape in solid]
+
+    def _up_to_date(self) -> tuple[Bodies, Solids]:
+        """All bodies and solids as they are now."""
+        if self._packed is None:
+            self._packed = self._pack()
+            self._stale[:] = self._is_stale = True
+        if self._is_stale:
+            refresh(*self._packed)
+            self._is_stale = False
+        return self._packed
+
+    def _pack(self) -> tuple[Bodies, Solids]:
+        bodies = Bodies(
+            places=self._places,
+            hidden=self._hidden,
+            stale=self._stale,
+            of_part=np.array(self._of_part, np.int64),
+            base_from_part=np.array(self._base_from_part).reshape(-1, 4, 4),
+            poses=np.zeros((len(self._parts), 4, 4)),
+        )
+        table = make_shape_table(self._solid)
+        return bodies, Solids(table, np.zeros((len(table.kind), 4, 4)), np.zeros((len(table.kind), 2, 3)))
+
+    def _place_vehicle(self, rolling: _Rolling) -> None:
+        x, y, heading = rolling.pose.tolist()
+        self._places[rolling.body] = x, y, 0.0, 0.0, 0.0, math.sin(heading / 2.0), math.cos(heading / 2.0)
+        self._mark(rolling.body)
+
+    def _mark(self, number: int) -> None:
+        self._stale[number] = self._is_stale = True
+
+    def _number_of(self, name: str) -> int:
+        try:
+            return self._numbers[name]
+        except KeyError:
+            known = ", ".join(self._numbers) or "none"
+            raise BadInput(f"no body is called {name!r}; there are: {known}") from None
+
+    def _vehicle_called(self, name: str, joints: Sequence[str] | Mapping[str, float]) -> _Rolling:
+        """The vehicle, if it goes by that name and has these joints."""
+        number, rolling = self._number_of(name), self._rolling
+        if rolling is None or rolling.body != number:
+            raise BadInput(f"body {name!r} stands still: kinematic physics moves vehicles only")
+        for joint in joints:
+            if joint not in rolling.joints:
+                known = ", ".join(rolling.joints)
+                raise BadInput(f"body {name!r} has no wheel on a joint {joint!r}; it has: {known}")
+        return rolling
+
+
+def _as_given(shape: Shape, part: int) -> VisualShape:
+    pose = pose_matrices(shape.position, shape.orientation)
+    return VisualShape(part, shape.kind, shape.size, pose, shape.mesh)

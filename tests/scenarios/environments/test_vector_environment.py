@@ -1,0 +1,93 @@
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+
+import peopleboy  # noqa: F401  # tells gymnasium the environments
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
+
+SHORT = "name: short\ndescription: So short that it ends.\nlike: single_follow\nduration_s: 0.4\n"
+
+
+@pytest.fixture
+def short(tmp_path: Path) -> Path:
+    path = tmp_path / "short.yaml"
+    path.write_text(SHORT)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("observation", "physics"), [("pixels", "kinematic"), ("truth", "bullet"), ("truth", "kinematic")]
+)
+def test_each_world_is_to_the_byte_a_single_environment_over_its_end_and_a_new_beginning(
+    observation: str, physics: str, short: Path
+) -> None:
+    settings = {"observation": observation, "physics": physics, "image_size": (64, 48)}
+    many = PeopleBoyVectorEnv(2, scenario=short, **settings)
+    single = [PeopleBoyEnv(short, **settings) for _ in range(2)]
+    actions = np.random.default_rng(0).uniform(-1.0, 1.0, (9, 2, 2)).astype(np.float32)
+    found, infos = many.reset(seed=3)
+    last = [env.reset(seed=3 + number) for number, env in enumerate(single)]
+    over = [False, False]
+    ends = 0
+    for action in [None, *actions]:
+        if action is not None:
+            found, rewards, ended, cut, infos = many.step(action)
+            for number, env in enumerate(single):
+                if over[number]:
+                    last[number], reward, over[number] = env.reset(), 0.0, False
+                    assert not (ended[number] or cut[number])
+                else:
+                    seen, reward, terminated, truncated, info = env.step(action[number])
+                    last[number], over[number] = (seen, info), terminated or truncated
+                    assert (ended[number], cut[number]) == (terminated, truncated)
+                    ends += over[number]
+                assert rewards[number] == reward
+        for number, (seen, info) in enumerate(last):
+            assert infos["seed"][number] == info["seed"]
+            assert infos["truth"][number].robot == info["truth"].robot
+            for name, array in seen.items():
+                assert found[name][number].tobytes() == array.tobytes()
+    assert ends == 2
+    assert many.observation_space.contains(found)
+    many.close()
+    for env in single:
+        env.close()
+
+
+def test_gymnasium_makes_it_by_name_and_samples_fit() -> None:
+    many = gymnasium.make_vec(
+        "peopleboy/PersonFollowing-v0",
+        num_envs=3,
+        vectorization_mode="vector_entry_point",
+        observation="truth",
+        physics="kinematic",
+    )
+    assert isinstance(many.unwrapped, PeopleBoyVectorEnv)
+    assert many.metadata["autoreset_mode"] == gymnasium.vector.AutoresetMode.NEXT_STEP
+    found, _ = many.reset(seed=[5, 5, 8])
+    assert np.array_equal(found["sonar"][0], found["sonar"][1])
+    assert not np.array_equal(found["sonar"][0], found["sonar"][2])
+    kept = found["sonar"].copy()
+    after, rewards, *_ = many.step(many.action_space.sample())
+    assert rewards.shape == (3,)
+    assert many.observation_space.contains(after)
+    assert np.array_equal(found["sonar"], kept)
+    many.close()
+
+
+def test_what_does_not_fit_many_worlds_is_refused() -> None:
+    with pytest.raises(BadInput, match="num_envs"):
+        PeopleBoyVectorEnv(0)
+    with pytest.raises(BadInput, match="render_mode"):
+        PeopleBoyVectorEnv(2, render_mode="rgb_array")
+    many = PeopleBoyVectorEnv(2, observation="truth", physics="kinematic")
+    with pytest.raises(BadInput, match="no episode"):
+        many.step(np.zeros((2, 2), np.float32))
+    with pytest.raises(BadInput, match="one each"):
+        many.reset(seed=[1])
+    with pytest.raises(BadInput, match=r"\(2, 2\)"):
+        many.step(np.zeros(2, np.float32))
