@@ -14,14 +14,17 @@ from numpy.typing import NDArray
 
 from benchmarks.memory import resident_mb
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.physics.opengl import projection_matrix, view_matrix
+from peopleboy.sim.physics.physics import PHYSICS
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
 from peopleboy.sim.world import World
 
 SCENARIO = "single_follow"
 ACTION = (0.0, 0.13)
 WARM_UP = 10
+MANY = 16  # worlds in one process
 RUN_HZ, QUICK_HZ = 240, 60  # physics as in a run, and at a quarter of that rate
 
 
@@ -44,6 +47,7 @@ class Case:
 CASES = (
     Case(observation="pixels", image_size=(320, 240), goal=60, steps=200),
     Case(observation="pixels", image_size=(80, 60), goal=600, steps=600),
+    Case(observation="pixels", image_size=(64, 48), goal=600, steps=600),
     Case(observation="tracks", image_size=(320, 240), goal=100, steps=300),
     Case(observation="truth", image_size=(320, 240), goal=1500, steps=1000),
 )
@@ -65,6 +69,28 @@ def step_rate(case: Case, physics_hz: int = RUN_HZ) -> float:
     spent = time.process_time() - start
     env.close()
     return case.steps / spent
+
+
+def vector_rate(case: Case, physics: str, worlds: int = MANY, physics_hz: int = QUICK_HZ) -> float:
+    """Return environment steps per second of CPU time, of many worlds in one process."""
+    many = PeopleBoyVectorEnv(
+        worlds,
+        scenario=SCENARIO,
+        observation=case.observation,
+        image_size=case.image_size,
+        physics=physics,
+        physics_hz=physics_hz,
+    )
+    many.reset(seed=0)
+    actions = np.tile(np.array(ACTION, np.float32), (worlds, 1))
+    many.step(actions)
+    rounds = max(case.steps // worlds, 1)
+    start = time.process_time()
+    for _ in range(rounds):
+        many.step(actions)
+    spent = time.process_time() - start
+    many.close()
+    return rounds * worlds / spent
 
 
 def step_rates(case: Case, processes: int, physics_hz: int = RUN_HZ) -> float:
@@ -151,6 +177,10 @@ def main() -> None:
             one, two = step_rate(case, rate), step_rates(case, 2, rate)
             name, goal = f"{case.name}, physics at {rate} Hz", f"goal {case.goal}"
             print(f"{name:34s} {one:7.0f} steps/s, {goal}; 2 processes {two:7.0f}", flush=True)
+    for case in CASES:
+        for physics in PHYSICS:
+            rate = vector_rate(case, physics)
+            print(f"{case.name}, {MANY} worlds, {physics}, {QUICK_HZ} Hz: {rate:.0f} steps/s", flush=True)
     print(f"the robot's way at {QUICK_HZ} Hz is off by at most {way_off_mm():.1f} mm in 30 s", flush=True)
     for size in ((320, 240), (80, 60)):
         print(f"getCameraImage twice, {size[0]} x {size[1]}: {bullet_rate(size):.0f} steps/s", flush=True)

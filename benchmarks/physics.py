@@ -1,7 +1,8 @@
 """`python -m benchmarks.physics`: how far kinematic physics are from PyBullet's, over the library.
 
 In every scenario whose robot drives without images, and is not to stand, the scenario's own behaviour drives
-by the truth, or by the tracker with `--observation tracks`, until it touches something: with PyBullet; again
+by the truth, or by the tracker with `--observation tracks`, for 20 s or until it touches something: with
+PyBullet; again
 by the same actions, without it, which tells how far the way is off; and once more without it by itself, which
 tells how far the figures are.
 """
@@ -10,6 +11,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass
@@ -23,9 +25,8 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.scenarios.files.load import library, load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.progress_bar import progress_bar
 
-COMPARED_S = 20.0  # of ways: beyond, one that chance turned would be compared with another
+COMPARED_S = 20.0
 FIGURES = ("in_band", "facing", "in_band_and_facing", "followed")
 FOLLOWERS = ("follow_person", "patrol")
 OUT = Path("runs") / "physics.json"
@@ -55,7 +56,7 @@ class PhysicsCase:
     Attributes:
         scenario: its name.
         seed: of the episodes.
-        way_m: [m] how long PyBullet's way was in the time compared.
+        way_m: [m] how long PyBullet's way was.
         off_mm: [mm] how far the other way was from it at most, by the same actions.
         touched: what PyBullet's robot touched.
         also_touched: what the other one touched by the same actions.
@@ -85,7 +86,7 @@ def measure(scenario: Scenario, seed: int, observation: str) -> PhysicsCase:
     """Drive three times."""
     theirs = drive(scenario, seed, observation, "bullet")
     again = drive(scenario, seed, observation, "kinematic", theirs.actions)
-    steps = min(len(theirs.way_m), len(again.way_m), round(COMPARED_S * 15))
+    steps = min(len(theirs.way_m), len(again.way_m))
     off = np.linalg.norm(theirs.way_m[:steps] - again.way_m[:steps], axis=1)
     both = theirs.touched and again.touched
     following = {}
@@ -117,8 +118,9 @@ def drive(
     way, done, touched, following = [], [], (), {}
     with closing(env):
         seen, _ = env.reset(seed=seed)
+        most = round(COMPARED_S * 15) if actions is None else len(actions)
         is_over = False
-        while not is_over and (actions is None or len(done) < len(actions)):
+        while not is_over and len(done) < most:
             action = controller(seen) if actions is None else actions[len(done)]
             seen, _, terminated, truncated, info = env.step(action)
             done.append(action)
@@ -159,17 +161,16 @@ def main(observation: str, seeds: int) -> None:
     chosen = [one for one in drivers() if observation == "truth" or one.robot.behaviour in FOLLOWERS]
     episodes = [(scenario, seed) for scenario in chosen for seed in range(seeds)]
     cases = []
-    with progress_bar("physics", unit="episodes") as show:
-        for number, (scenario, seed) in enumerate(episodes):
-            show(number, len(episodes), scenario.name)
-            cases.append(measure(scenario, seed, observation))
-    for case in cases:
+    for scenario, seed in episodes:
+        case = measure(scenario, seed, observation)
+        cases.append(case)
         shares = ", ".join(f"{name} {a:.3f} {b:.3f}" for name, (a, b) in case.following.items())
         touched = "/".join(",".join(names) or "nothing" for names in (case.touched, case.also_touched))
         click.echo(
             f"{case.scenario:22s} seed {case.seed}: {case.off_mm:6.1f} mm off in {case.way_m:5.1f} m; "
             f"touched {touched}; {shares}"
         )
+        sys.stdout.flush()
     found = summary(cases)
     click.echo(json.dumps(found, indent=2))
     OUT.parent.mkdir(exist_ok=True)

@@ -81,9 +81,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self._is_over[:] = False
         return found, infos
 
-    def step(
-        self, actions: NDArray[np.float32]
-    ) -> tuple[Arrays, NDArray[np.float64], Flags, Flags, Infos]:
+    def step(self, actions: NDArray[np.float32]) -> tuple[Arrays, NDArray[np.float64], Flags, Flags, Infos]:
         """Drive every robot for one control step, and begin anew where an episode was over.
 
         Raises:

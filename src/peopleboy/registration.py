@@ -22,6 +22,4 @@ def register_environments() -> None:
     """Tell gymnasium the environments that it does not know yet; making one imports what it needs."""
     for name, settings in ENVIRONMENTS.items():
         if name not in registry:
-            register(
-                name, entry_point=_ENTRY, vector_entry_point=_VECTOR_ENTRY, kwargs=dict(settings)
-            )
+            register(name, entry_point=_ENTRY, vector_entry_point=_VECTOR_ENTRY, kwargs=dict(settings))

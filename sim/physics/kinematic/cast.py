@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import Point, cross, dot, minus
-from peopleboy.sim.physics.kinematic.solids import Array, Bodies, Solids
+from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids
 from peopleboy.sim.physics.solid_boxes import meets
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shapes import ShapeKind
@@ -19,7 +19,7 @@ _MESH = int(ShapeKind.MESH)
 
 @njit(cache=True, nogil=True)
 def cast(
-    starts: Array, ends: Array, bodies: Bodies, solids: Solids, passed: int
+    starts: Array, ends: Array, bodies: Placements, solids: Solids, passed: int
 ) -> tuple[Array, NDArray[np.int64]]:
     """Find what rays hit first; shapes are met from outside only, triangles from both sides.
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.physics.kinematic.footprints import MOST_POINTS, footprint, triangle_footprint
 from peopleboy.sim.physics.kinematic.overlap import APART, overlap
-from peopleboy.sim.physics.kinematic.solids import Array, Bodies, Solids
+from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle
 from peopleboy.sim.shapes.shapes import ShapeKind
 
@@ -38,7 +38,7 @@ def roll(vehicle: Vehicle, pose: Array, left_rad_s: float, right_rad_s: float, d
 
 @njit(cache=True, nogil=True)
 def push_out(
-    vehicle: Vehicle, pose: Array, bodies: Bodies, solids: Solids, own: int, touched: NDArray[np.bool_]
+    vehicle: Vehicle, pose: Array, bodies: Placements, solids: Solids, own: int, touched: NDArray[np.bool_]
 ) -> None:
     """Push a vehicle out of all solids, the deepest contact first, until it is in none or 16 pushes are done.
 
@@ -77,7 +77,7 @@ def _wrapped(angle: float) -> float:
 
 
 @njit(cache=True)
-def _near(vehicle: Vehicle, pose: Array, bodies: Bodies, solids: Solids, own: int) -> NDArray[np.int64]:
+def _near(vehicle: Vehicle, pose: Array, bodies: Placements, solids: Solids, own: int) -> NDArray[np.int64]:
     """Numbers of the solids whose boxes come near the vehicle."""
     near = np.empty(len(solids.boxes), np.int64)
     count = 0
@@ -101,7 +101,7 @@ def _near(vehicle: Vehicle, pose: Array, bodies: Bodies, solids: Solids, own: in
 def _deepest(
     vehicle: Vehicle,
     pose: Array,
-    bodies: Bodies,
+    bodies: Placements,
     solids: Solids,
     near: NDArray[np.int64],
     touched: NDArray[np.bool_],

@@ -16,7 +16,7 @@ from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bodies import PartKey
 from peopleboy.sim.physics.kinematic.cast import cast
 from peopleboy.sim.physics.kinematic.drive import push_out, roll
-from peopleboy.sim.physics.kinematic.solids import Bodies, Solids, refresh
+from peopleboy.sim.physics.kinematic.solids import Placements, Solids, refresh
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle, make_vehicle, wheels_of
 from peopleboy.sim.physics.model_files import find_model
 from peopleboy.sim.physics.urdf_links import read_links
@@ -70,7 +70,7 @@ class Kinematic:
         self._hidden = np.zeros(0, np.bool_)
         self._stale = np.zeros(0, np.bool_)
         self._touched = np.zeros(0, np.bool_)
-        self._packed: tuple[Bodies, Solids] | None = None
+        self._packed: tuple[Placements, Solids] | None = None
         self._is_stale = False
         self._rolling: _Rolling | None = None
 
@@ -256,7 +256,7 @@ class Kinematic:
         self._visible += [_as_given(shape, part) for shape in visible]
         self._solid += [_as_given(shape, part) for shape in solid]
 
-    def _up_to_date(self) -> tuple[Bodies, Solids]:
+    def _up_to_date(self) -> tuple[Placements, Solids]:
         """All bodies and solids as they are now."""
         if self._packed is None:
             self._packed = self._pack()
@@ -266,8 +266,8 @@ class Kinematic:
             self._is_stale = False
         return self._packed
 
-    def _pack(self) -> tuple[Bodies, Solids]:
-        bodies = Bodies(
+    def _pack(self) -> tuple[Placements, Solids]:
+        bodies = Placements(
             places=self._places,
             hidden=self._hidden,
             stale=self._stale,

