@@ -14,12 +14,14 @@ from rich.table import Table
 
 from benchmarks.environments import (
     CASES,
+    MANY,
     QUICK_HZ,
     RUN_HZ,
     bullet_rate,
     reset_growth,
     step_rate,
     step_rates,
+    vector_rate,
     way_off_mm,
 )
 from benchmarks.memory import long_run
@@ -27,6 +29,7 @@ from benchmarks.speed.closed_loop import loop_speed, peak_memory_mb, run_speed
 from benchmarks.speed.filter_step import step_time_ms
 from benchmarks.speed.render import render_times
 from benchmarks.speed.whole_tracker import whole_tracker
+from peopleboy.sim.physics.physics import PHYSICS
 
 COUNTS = (300, 1000)
 SCENARIOS = ("single_follow", "crossing_pair")
@@ -114,6 +117,9 @@ def _environments() -> Iterator[BenchFigure]:
         name, goal, form = f"{case.name}, physics at {rate} Hz", f"at least {case.goal}", "{:.0f} steps/s"
         yield BenchFigure((of, name, "one process"), step_rate(case, rate), form, goal)
         yield BenchFigure((of, name, "two processes"), step_rates(case, 2, rate), form)
+    for case, physics in product(CASES, PHYSICS):
+        name = f"{case.name}, {MANY} worlds, {physics} at {QUICK_HZ} Hz"
+        yield BenchFigure((of, name, "one process"), vector_rate(case, physics), "{:.0f} steps/s")
     yield BenchFigure((of, f"way off at {QUICK_HZ} Hz"), way_off_mm(), "{:.1f} mm at most, 30 s")
     for size in ((320, 240), (80, 60)):
         name = f"getCameraImage, {size[0]} x {size[1]}"

@@ -61,7 +61,8 @@ class PhysicsCase:
         touched: what PyBullet's robot touched.
         also_touched: what the other one touched by the same actions.
         later_s: [s] by how much later it did; NaN if one of them touched nothing.
-        following: by name, PyBullet's share and the other's, each driving by itself; empty if nobody is followed.
+        following: by name, PyBullet's share and the other's, each driving by itself; empty where nobody is
+            followed.
     """
 
     scenario: str
@@ -154,11 +155,15 @@ def summary(cases: Sequence[PhysicsCase]) -> dict[str, float]:
 
 
 @click.command()
+@click.argument("scenarios", metavar="[SCENARIO]...", nargs=-1)
 @click.option("--observation", type=click.Choice(["truth", "tracks"]), default="truth", show_default=True)
 @click.option("--seeds", type=click.IntRange(min=1), default=1, show_default=True)
-def main(observation: str, seeds: int) -> None:
-    """Measure, print a line each, and keep the figures in runs/physics.json."""
-    chosen = [one for one in drivers() if observation == "truth" or one.robot.behaviour in FOLLOWERS]
+def main(scenarios: Sequence[str], observation: str, seeds: int) -> None:
+    """Measure, print a line each, and keep the figures in runs/physics.json.
+
+    Without a scenario, those of the library are taken whose robots drive without images.
+    """
+    chosen = [load_scenario(name) for name in scenarios] or list(drivers())
     episodes = [(scenario, seed) for scenario in chosen for seed in range(seeds)]
     cases = []
     for scenario, seed in episodes:

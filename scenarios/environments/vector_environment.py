@@ -22,7 +22,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
     """B worlds, each with a robot of its own, stepped together.
 
     Actions are (B, 2); an observation has the arrays of `PeopleBoyEnv` with B before their shape, such as
-    `thermal` (B, H, W, 1), each of its own and never written to again. World i gives to the byte what a single
+    `thermal` (B, H, W, 1), each of its own and never written again. World i gives to the byte what a single
     environment with its seed and actions gives. The step after an episode's end begins the next episode in
     that world, whatever its action, with reward 0 (`AutoresetMode.NEXT_STEP`); `infos` has the arrays that
     gymnasium makes of B infos.
@@ -73,7 +73,8 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             seeds = [int(seeds) + number for number in range(self.num_envs)]
         if len(seeds) != self.num_envs:
             raise BadInput(f"seed: {len(seeds)} seeds for {self.num_envs} worlds; give one each")
-        found, infos = self._empty(), {}
+        found = self._empty()
+        infos: Infos = {}
         for number, (env, own) in enumerate(zip(self._envs, seeds, strict=True)):
             observation, info = env.reset(seed=own, options=options)
             _put(found, number, observation)
@@ -89,7 +90,8 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         """
         if np.shape(actions) != (self.num_envs, 2):
             raise BadInput(f"actions of shape {np.shape(actions)}: must be ({self.num_envs}, 2)")
-        found, infos = self._empty(), {}
+        found = self._empty()
+        infos: Infos = {}
         rewards = np.zeros(self.num_envs)
         terminations, truncations = np.zeros((2, self.num_envs), np.bool_)
         for number, (env, action) in enumerate(zip(self._envs, actions, strict=True)):
@@ -103,7 +105,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self._is_over = terminations | truncations
         return found, rewards, terminations, truncations, infos
 
-    def close_extras(self, **kwargs: Any) -> None:
+    def close_extras(self, **_: Any) -> None:
         """Free all worlds."""
         for env in self._envs:
             env.close()

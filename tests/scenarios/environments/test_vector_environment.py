@@ -39,7 +39,7 @@ def test_each_world_is_to_the_byte_a_single_environment_over_its_end_and_a_new_b
             for number, env in enumerate(single):
                 if over[number]:
                     last[number], reward, over[number] = env.reset(), 0.0, False
-                    assert not (ended[number] or cut[number])
+                    assert (ended[number], cut[number]) == (False, False)
                 else:
                     seen, reward, terminated, truncated, info = env.step(action[number])
                     last[number], over[number] = (seen, info), terminated or truncated
