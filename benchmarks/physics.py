@@ -25,6 +25,7 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.scenarios.files.load import library, load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.files.schema.robot import ORACLE
 
 COMPARED_S = 20.0
 FIGURES = ("in_band", "facing", "in_band_and_facing", "followed")
@@ -114,7 +115,8 @@ def drive(
     actions: NDArray[np.float32] | None = None,
 ) -> Drive:
     """Play an episode by a scenario's own behaviour, or by given actions."""
-    env = PeopleBoyEnv(scenario.name, observation=observation, physics=physics)
+    eyes = ORACLE if observation == "truth" else None
+    env = PeopleBoyEnv(scenario.name, observation=observation, tracker=eyes, physics=physics)
     controller = WrittenController(scenario.make_behaviour())
     way, done, touched, following = [], [], (), {}
     with closing(env):
