@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-FORMATS = ("mot", "coco", "viper", "mcap", "mp4")
+FORMATS = ("mot", "coco", "images", "yolo", "yolo-pose", "viper", "mcap", "mp4")
 
 
 @click.command()
@@ -16,7 +16,7 @@ FORMATS = ("mot", "coco", "viper", "mcap", "mp4")
 @click.option(
     "--camera",
     metavar="NAME",
-    help="Whose images and boxes mot, viper or mp4 tell.  [default: thermal; in films thermal and colour]",
+    help="Whose images and boxes mot, yolo, viper or mp4 tell.  [default: thermal; mp4: thermal and colour]",
 )
 @click.option(
     "--out",
@@ -27,12 +27,13 @@ FORMATS = ("mot", "coco", "viper", "mcap", "mp4")
 def export(runs: Sequence[Path], form: str, camera: str | None, out: Path | None, overwrite: bool) -> None:
     """Hand runs over to other tools; a folder that holds folders of runs stands for all of them.
 
-    Runs of a rendered set go to coco and mot split by split, as its folder `splits` says; export.json names
-    the runs of each.
+    Runs of a rendered set go to coco, yolo and mot split by split, as its folder `splits` says; export.json
+    names the runs of each.
 
-    mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. viper: ViPER XML. mcap: ROS 2 bags. mp4:
-    films. coco and mcap have every camera's images. Images and masks are rendered again, and are those of the
-    run. mcap and mp4 need the extra `export`.
+    mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. images: beside every image, who is at
+    each pixel, which part of the body, and true depth. yolo, yolo-pose: boxes, and keypoints, for
+    Ultralytics. viper: ViPER XML. mcap: ROS 2 bags. mp4: films. coco, images and mcap tell of every camera.
+    Images and masks are rendered again, and are those of the run. mcap and mp4 need the extra `export`.
     """
     from peopleboy.scenarios.export.dataset.splits import refuse_unfinished
     from peopleboy.scenarios.export.formats import export as write

@@ -20,13 +20,19 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 from pycocotools.mask import encode
 
 from peopleboy.scenarios.export.by_split import by_split
+from peopleboy.scenarios.export.from_corner import (
+    CORNER_PX,
+    OUTSIDE,
+    from_corner,
+    keypoints_from_corner,
+)
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
@@ -37,12 +43,10 @@ from peopleboy.sim.cameras.kinds import image_folders, with_boxes
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.people.body.joints import JOINT_NAMES
-from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.truth import PersonTruth
 
-CORNER_PX = 0.5
-
 _PERSON = 1
+_LICENCE: Final = {"id": 1, "name": "MIT", "url": "https://opensource.org/license/mit"}  # the project's
 # Pairs of keypoints, counted from 1, as in COCO.
 _SKELETON = (
     (16, 14), (14, 12), (17, 15), (15, 13), (12, 13), (6, 12), (7, 13), (6, 7), (6, 8), (7, 9), (8, 10),
@@ -91,7 +95,8 @@ class _Annotations:
     def add(self, video: int, run: FinishedRun, camera: str, tick: Tick) -> None:
         truth = tick.truths[camera]
         number = len(self.images) + 1
-        self.images.append({"id": number, "video_id": video} | _image(run, camera, tick))
+        about = {"id": number, "video_id": video, "license": _LICENCE["id"]}
+        self.images.append(about | _image(run, camera, tick))
         for person in truth.people:
             if person.visible_px > 0:
                 own = {"id": len(self.annotations) + 1, "image_id": number}
@@ -102,7 +107,7 @@ def _content(runs: Sequence[FinishedRun], camera: str, own: _Annotations) -> dic
     videos = [_video(k, run) for k, run in enumerate(runs, start=1) if camera in run.robot.cameras]
     return {
         "info": {"description": "people seen by a simulated robot, with exact truth", "version": "1"},
-        "licenses": [],
+        "licenses": [_LICENCE],
         "categories": [_category()],
         "videos": videos,
         "images": own.images,
@@ -118,7 +123,9 @@ def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, An
         instance: (H, W) id of the person seen at each pixel.
     """
     mask = instance == person.id
-    keypoints = _keypoints(person, mask.shape)
+    height, width = mask.shape
+    seen = person.joint_is_visible.tolist()
+    keypoints = keypoints_from_corner(person.joints_px.tolist(), seen, (width, height))
     return {
         "category_id": _PERSON,
         "iscrowd": 0,
@@ -126,7 +133,7 @@ def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, An
         "area": person.visible_px,
         "segmentation": _encoded(mask),
         "keypoints": [number for point in keypoints for number in point],
-        "num_keypoints": sum(point[2] > 0 for point in keypoints),
+        "num_keypoints": sum(flag != OUTSIDE for _, _, flag in keypoints),
         "whole_bbox": from_corner(person.whole_box),
         "body_bbox": from_corner(person.box),
         **_truth(person),
@@ -136,14 +143,6 @@ def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, An
 def _encoded(mask: NDArray[np.bool_]) -> dict[str, Any]:
     """Encode a mask (H, W) by the lengths of its runs, column by column, as text."""
     return {"size": list(mask.shape), "counts": encode(np.asfortranarray(mask, np.uint8))["counts"].decode()}
-
-
-def from_corner(box: Box | None) -> list[float] | None:
-    """Count a box's pixels from the image's corner, to a thousandth."""
-    if box is None:
-        return None
-    left, top, width, height = box
-    return [round(edge, 3) for edge in (left + CORNER_PX, top + CORNER_PX, width, height)]
 
 
 def _truth(person: PersonTruth) -> dict[str, Any]:
@@ -161,17 +160,6 @@ def _truth(person: PersonTruth) -> dict[str, Any]:
         "hidden_by": dict(person.hidden_by),
         "joints_m": np.round(person.joints_m, 4).tolist(),
     }
-
-
-def _keypoints(person: PersonTruth, shape: tuple[int, ...]) -> list[tuple[float, float, int]]:
-    """Give u, v and 2 for a joint that is seen, 1 for a hidden one, and zeros for one outside the image."""
-    height, width = shape
-    found = []
-    for (u, v), is_seen in zip(person.joints_px.tolist(), person.joint_is_visible.tolist(), strict=True):
-        is_inside = -CORNER_PX < u < width - CORNER_PX and -CORNER_PX < v < height - CORNER_PX
-        point = (round(u + CORNER_PX, 3), round(v + CORNER_PX, 3), 2 if is_seen else 1)
-        found.append(point if is_inside else (0.0, 0.0, 0))
-    return found
 
 
 def _image(run: FinishedRun, camera: str, tick: Tick) -> dict[str, Any]:

@@ -9,11 +9,13 @@ from typing import Any
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.by_split import by_split
 from peopleboy.scenarios.export.coco import write_coco
+from peopleboy.scenarios.export.label_images import write_label_images
 from peopleboy.scenarios.export.mot import write_mot
 from peopleboy.scenarios.export.replay import Play
-from peopleboy.scenarios.export.ros_bag import write_mcap
+from peopleboy.scenarios.export.ros.bag import write_mcap
 from peopleboy.scenarios.export.video import write_mp4
 from peopleboy.scenarios.export.viper import write_viper
+from peopleboy.scenarios.export.yolo import write_yolo, write_yolo_pose
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
@@ -21,11 +23,14 @@ from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 WRITERS: dict[str, Callable[..., None]] = {
     "mot": write_mot,
     "coco": write_coco,
+    "images": write_label_images,
+    "yolo": write_yolo,
+    "yolo-pose": write_yolo_pose,
     "viper": write_viper,
     "mcap": write_mcap,
     "mp4": write_mp4,
 }
-OF_ONE_CAMERA = ("mot", "viper", "mp4")  # the others tell of all
+OF_ONE_CAMERA = ("mot", "yolo", "yolo-pose", "viper", "mp4")  # the others tell of all
 
 
 def export(

@@ -22,10 +22,11 @@ from pathlib import Path
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.by_split import by_split
+from peopleboy.scenarios.export.camera_images import write_camera_images
 from peopleboy.scenarios.export.one_camera import OneCamera, with_people
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.image_files import image_file, write_png
+from peopleboy.scenarios.run_folder.image_files import image_file
 
 BENCHMARK, EVERYTHING = "peopleboy", "all"
 
@@ -126,20 +127,7 @@ def _write_sequence(name: str, shots: OneCamera, folder: Path, play: Play) -> No
     lines = "".join(f"{key}={value}\n" for key, value in settings.items())
     (folder / "seqinfo.ini").write_text(f"[Sequence]\n{lines}", encoding="utf-8")
     (folder / "gt" / "gt.txt").write_text(gt_text(shots), encoding="utf-8")
-    _write_images(shots, folder / "img1", play)
-
-
-def _write_images(shots: OneCamera, folder: Path, play: Play) -> None:
-    """Copy the camera's images if the run has written them, else render them again."""
-    written = [shots.run.folder / shots.name / image_file(frame) for frame in shots.frames]
-    if all(path.is_file() for path in written):
-        for number, path in enumerate(written, start=1):
-            (folder / image_file(number)).write_bytes(path.read_bytes())
-        return
-    for tick in play(shots.run):
-        if tick.frame in shots.frames:
-            image = tick.observation.images[shots.name]
-            write_png(folder / image_file(shots.number(tick.frame)), image)
+    write_camera_images(shots, play, lambda number: folder / "img1" / image_file(number))
 
 
 def _judged(cells: list[str]) -> list[str]:

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import cv2
+import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
@@ -44,3 +46,9 @@ def write_png(path: Path, image: Stored) -> None:
     stored = image[..., ::-1] if image.ndim == 3 else image
     if not cv2.imwrite(str(path), stored, [cv2.IMWRITE_PNG_COMPRESSION, 2]):
         raise BadInput(f"{path}: cannot write this image; is the disk full?")
+
+
+def millimetres(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:
+    """Give depth (H, W) [m] in whole millimetres; 0 where nothing is, and beyond 65 m."""
+    whole = np.rint(1000.0 * np.where(np.isfinite(depth_m), depth_m, 0.0))
+    return np.where(whole < 65536.0, whole, 0.0).astype(np.uint16)

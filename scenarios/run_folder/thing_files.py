@@ -6,14 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
-import numpy as np
 import pyarrow as pa
 
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.scenarios.run_folder.image_files import write_png
+from peopleboy.scenarios.run_folder.image_files import millimetres, write_png
 from peopleboy.scenarios.run_folder.tables import Row, write_table
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
-from peopleboy.sim.cameras.depth_image import Metres
 from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.things import ThingTruth
 
@@ -76,7 +74,7 @@ class ThingFiles:
         for name, backgrounds in self._backgrounds.items():
             for kind, depth in (("clean", backgrounds.clean), ("ever", backgrounds.ever)):
                 if depth is not None:
-                    write_png(self._folder / f"{name}_{kind}.png", _millimetres(depth))
+                    write_png(self._folder / f"{name}_{kind}.png", millimetres(depth))
 
 
 def _row(tick: Tick, thing: ThingTruth) -> Row:
@@ -96,9 +94,3 @@ def _row(tick: Tick, thing: ThingTruth) -> Row:
         "visible_px": thing.visible_px,
         **dict(zip(_EDGES, box, strict=True)),
     }
-
-
-def _millimetres(depth: Metres) -> np.ndarray[tuple[int, int], np.dtype[np.uint16]]:
-    """(H, W) whole millimetres; 0 where nothing is, and beyond 65 m."""
-    millimetres = np.rint(1000.0 * np.where(np.isfinite(depth), depth, 0.0))
-    return np.where(millimetres < 65536.0, millimetres, 0.0).astype(np.uint16)

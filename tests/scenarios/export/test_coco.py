@@ -86,6 +86,31 @@ def test_keypoints_are_the_joints_of_the_table(coco: COCO, people: dict[Any, Any
     assert all(seen.values())
 
 
+def test_labels_of_the_colour_image_are_those_of_its_own_table(
+    coco_folder: Path, crossing: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    colour = COCO(str(coco_folder / annotations_file(camera="colour")))
+    capsys.readouterr()
+    rows = pq.read_table(crossing / "truth" / "colour.parquet").to_pylist()
+    people = {(row["frame"], row["id"]): row for row in rows}
+    assert len(colour.anns) == sum(row["visible_px"] > 0 for row in rows) > 60
+    for one in colour.anns.values():
+        row = row_of(colour, one, people)
+        for name, prefix in (("bbox", "visible_"), ("whole_bbox", "whole_"), ("body_bbox", "")):
+            assert one[name] == pytest.approx(box(row, prefix), abs=0.01)
+        points = np.reshape(one["keypoints"], (17, 3))
+        is_told = points[:, 2] > 0
+        joints = np.reshape(row["joints_px"], (17, 2))
+        assert points[is_told, :2] == pytest.approx(joints[is_told] + 0.5, abs=0.01)
+        assert colour.annToMask(one).sum() == row["visible_px"]
+
+
+def test_every_image_is_under_a_licence_that_is_told(coco: COCO) -> None:
+    (licence,) = coco.dataset["licenses"]
+    assert {image["license"] for image in coco.imgs.values()} == {licence["id"]}
+    assert licence["url"].startswith("https://")
+
+
 def test_the_cameras_project_the_joints_in_space_onto_the_keypoints(coco: COCO) -> None:
     camera = coco.dataset["videos"][0]["cameras"]["thermal"]
     for one in coco.anns.values():

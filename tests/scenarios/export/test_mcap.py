@@ -19,14 +19,15 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from scipy.spatial.transform import Rotation
 
-from peopleboy.scenarios.export.ros_messages import drift
+from peopleboy.scenarios.export.ros.messages import drift
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.sim.geometry.planar import Planar
 from tests.helpers.runs.exported import export
 
 TOPICS = {
     "/thermal/image/compressed", "/colour/image/compressed", "/thermal/camera_info", "/colour/camera_info",
-    "/truth/people", "/truth/colour/people", "/tracks", "/tracks/places", "/odom", "/tf",
+    "/thermal/image16", "/truth/people", "/truth/colour/people", "/tracks", "/tracks/places", "/sonar",
+    "/odom", "/tf",
 }  # fmt: skip
 
 # SHA-256 of a type and all that it is made of, as ROS 2's own builds have them (REP 2011); that of
@@ -35,6 +36,8 @@ HASHES = {
     "nav_msgs/msg/Odometry": "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0",
     "sensor_msgs/msg/CameraInfo": "b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275",
     "sensor_msgs/msg/CompressedImage": "15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a",
+    "sensor_msgs/msg/Image": "d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47",
+    "sensor_msgs/msg/PointCloud2": "9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5",
     "tf2_msgs/msg/TFMessage": "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
     "vision_msgs/msg/Detection2DArray": "214274120007f4a683866481336b70310268cfa107aebe9d594a6acf75bda968",
     "vision_msgs/msg/Detection3DArray": "793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018",
@@ -92,6 +95,36 @@ def test_the_images_are_those_of_the_run(messages: dict[str, list[Any]], crossin
             cv2.imdecode(colour, cv2.IMREAD_COLOR), cv2.imread(str(crossing / "colour" / name))
         )
         assert lost.mean() < 5.0
+
+
+def test_raw_thermal_images_are_those_of_the_run_without_loss(
+    messages: dict[str, list[Any]], crossing: Path
+) -> None:
+    for frame in (1, 40):
+        message = messages["/thermal/image16"][frame - 1]
+        stored = cv2.imread(str(crossing / "thermal16" / f"{frame:06d}.png"), cv2.IMREAD_UNCHANGED)
+        found = np.frombuffer(message.data, "<u2").reshape(message.height, message.width)
+        assert (message.encoding, message.step) == ("16UC1", 2 * message.width)
+        assert np.array_equal(found, stored)
+
+
+def test_points_of_sonars_lie_where_the_ring_heard_something(
+    messages: dict[str, list[Any]], crossing: Path
+) -> None:
+    run = open_run(crossing)
+    for message, row in zip(messages["/sonar"], run.files().robot.to_pylist(), strict=True):
+        assert [field.name for field in message.fields] == ["x", "y", "z", "range"]
+        assert (message.header.frame_id, message.width) == ("base_link", 16)
+        points = np.frombuffer(message.data, "<f4").reshape(16, 4)
+        assert points[:, 3] == pytest.approx(row["sonar_m"], abs=1e-6)
+        assert points[:, 2] == pytest.approx(run.robot.sonar.height_m)
+        # By ARIA's file, 3 looks ahead by the left, and 7 and 8 square to the right.
+        third, seventh = points[3], points[7]
+        turn = math.radians(10.0)
+        assert third[:2] == pytest.approx(
+            [0.166 + third[3] * math.cos(turn), 0.027 + third[3] * math.sin(turn)], abs=1e-5
+        )
+        assert seventh[:2] == pytest.approx([0.069, -0.136 - seventh[3]], abs=1e-5)
 
 
 def test_boxes_are_those_of_truth_and_tracks(messages: dict[str, list[Any]], crossing: Path) -> None:

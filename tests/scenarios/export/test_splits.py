@@ -76,6 +76,16 @@ def mot(people: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return export(people, "mot", tmp_path_factory.mktemp("split_mot") / "mot")
 
 
+def test_yolo_names_the_folders_of_each_split(people: Path, tmp_path: Path) -> None:
+    out = export(people, "yolo", tmp_path / "yolo")
+    settings = yaml.safe_load((out / "data.yaml").read_text())
+    assert {split: settings[split] for split in SPLITS} == {split: f"images/{split}" for split in SPLITS}
+    for split in SPLITS:
+        stems = {f"{run}_{number:06d}" for run in NAMES[split] for number in range(1, FRAMES + 1)}
+        for kind in ("images", "labels"):
+            assert {path.stem for path in (out / kind / split).iterdir()} == stems
+
+
 def test_other_formats_keep_runs_apart_and_say_which_split_they_are_of(people: Path, tmp_path: Path) -> None:
     out = export(people, "viper", tmp_path / "viper")
     assert json.loads((out / "export.json").read_text())["splits"] == NAMES

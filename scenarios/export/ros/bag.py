@@ -28,7 +28,7 @@ def write_mcap(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
 def _write_bag(run: FinishedRun, folder: Path, play: Play) -> None:
     from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
-    from peopleboy.scenarios.export.ros_messages import Messenger, message_types, nanoseconds
+    from peopleboy.scenarios.export.ros.messages import Messenger, message_types, nanoseconds
 
     types = message_types()
     messenger = Messenger(run.robot, types)

@@ -1,4 +1,4 @@
-"""ROS 2 messages of one tick: images, cameras, truth, tracks, odometry and frames.
+"""ROS 2 messages of one tick: images, cameras, truth, tracks, sonars, odometry and frames.
 
 Frames as in REP 105: map -> odom -> base_link -> thermal_optical, colour_optical and one for each further
 camera; a frame per person, too.
@@ -20,13 +20,15 @@ from scipy.spatial.transform import Rotation
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.camera_truth import further_cameras
-from peopleboy.sim.cameras.camera_config import DepthConfig
+from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
 from peopleboy.sim.cameras.depth_image import points_of
+from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD, SONAR_POSITION_M
 from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import THERMAL
@@ -81,6 +83,7 @@ class Messenger:
     def __init__(self, robot: RobotConfig, types: Typestore) -> None:
         self._types = types.types
         self._cameras = robot.cameras
+        self._sonar_height_m = robot.sonar.height_m
         self._further = further_cameras(robot.cameras)
 
     def fixed(self, time_s: float) -> Iterator[Message]:
@@ -97,6 +100,8 @@ class Messenger:
                 yield from self._depth_images(name, config, images, time_s)
             else:
                 yield self._image(name, images[name], time_s)
+            if isinstance(config, ThermalConfig):
+                yield self._raw_thermal(name, images[f"{name}_c"], time_s)
         for name, config in due.items():
             if isinstance(config.camera, Pinhole):  # the message knows no other geometry
                 content = self._camera_info(name, config.camera, time_s)
@@ -111,6 +116,7 @@ class Messenger:
             elif tracks:
                 yield self._detections(f"/tracks/{name}", tracks, time_s, name)
         yield self._places(tick.tracks, time_s)
+        yield self._echoes(tick.observation.sonar_m, time_s)
         yield "/odom", "nav_msgs/msg/Odometry", self._odometry(tick)
         yield "/tf", "tf2_msgs/msg/TFMessage", self._make("tf2_msgs/TFMessage", transforms=self._frames(tick))
 
@@ -140,16 +146,21 @@ class Messenger:
     ) -> Iterator[Message]:
         """Say what a depth camera saw: depth without loss, its colours, and points with both."""
         depth, header = images[camera], self._header(_optical(camera), time_s)
-        yield f"/{camera}/image", "sensor_msgs/msg/Image", self._depth_image(header, depth)
+        yield f"/{camera}/image", "sensor_msgs/msg/Image", self._image_of_16_bits(header, depth)
         colour = images[f"{camera}_colour"] if config.colour else None
         if colour is not None:
             _, kind, content = self._image(camera, colour, time_s)
             yield f"/{camera}/colour/image/compressed", kind, content
         yield f"/{camera}/points", "sensor_msgs/msg/PointCloud2", self._cloud(header, depth, colour, config)
 
-    def _depth_image(self, header: Any, depth: NDArray[np.uint16]) -> Any:
-        height, width = depth.shape
-        data = np.ascontiguousarray(depth, "<u2").view(np.uint8).ravel()
+    def _raw_thermal(self, camera: str, image_c: NDArray[np.float32], time_s: float) -> Message:
+        """Say without loss what a thermal camera measured [K / 100]."""
+        raw = self._image_of_16_bits(self._header(_optical(camera), time_s), encode_16bit(image_c))
+        return f"/{camera}/image16", "sensor_msgs/msg/Image", raw
+
+    def _image_of_16_bits(self, header: Any, image: NDArray[np.uint16]) -> Any:
+        height, width = image.shape
+        data = np.ascontiguousarray(image, "<u2").view(np.uint8).ravel()
         return self._make(
             "sensor_msgs/Image", header=header, height=height, width=width, encoding="16UC1", is_bigendian=0,
             step=2 * width, data=data,
@@ -168,6 +179,10 @@ class Messenger:
         if colour is not None:
             red, green, blue = colour[pixels[:, 0], pixels[:, 1]].T.astype(np.uint32)
             columns["rgb"] = (red << 16 | green << 8 | blue).view(np.float32)
+        return self._points(header, columns)
+
+    def _points(self, header: Any, columns: Mapping[str, NDArray[Any]]) -> Any:
+        """Give points by the values (N,) of each of their fields, in 32 bits."""
         rows = np.stack([*columns.values()], axis=1).astype("<f4")
         fields = [
             self._make("sensor_msgs/PointField", name=name, offset=4 * k, datatype=_FLOAT32, count=1)
@@ -244,6 +259,17 @@ class Messenger:
             bbox=self._make("vision_msgs/BoundingBox3D", center=pose.pose, size=self._vector(0.0, 0.0, 0.0)),
             id=name,
         )
+
+    def _echoes(self, sonar_m: NDArray[np.float64], time_s: float) -> Message:
+        """Say what each sonar heard, as points on their axes.
+
+        ROS's message for one sonar, Range, has other fields in Humble than from Iron on.
+        """
+        ahead = np.stack([np.cos(SONAR_ANGLE_RAD), np.sin(SONAR_ANGLE_RAD)], axis=1)
+        places = SONAR_POSITION_M + sonar_m[:, None] * ahead
+        columns = {"x": places[:, 0], "y": places[:, 1], "z": np.full(len(places), self._sonar_height_m)}
+        cloud = self._points(self._header(_BASE, time_s), columns | {"range": sonar_m})
+        return "/sonar", "sensor_msgs/msg/PointCloud2", cloud
 
     def _odometry(self, tick: Tick) -> Any:
         left, right = tick.observation.wheel_speeds_m_s

@@ -1,0 +1,153 @@
+"""YOLO: a folder as Ultralytics and everybody's loaders read it, of boxes or of poses.
+
+data.yaml                      which folders are for what; classes; keypoints and their mirror images
+images/train/RUN_000001.png    images of the camera
+labels/train/RUN_000001.txt    class, and middle, width and height of the visible box, as shares of the image;
+                               of poses also u, v and visibility of each keypoint
+
+Runs that lie in no rendered set have no splits: they are in images/all, which data.yaml names for training
+and for validation, as YOLO wants both. Somebody across a panorama's seam has two boxes; each keypoint goes
+with the nearer one.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import yaml
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.overlay import box_parts
+from peopleboy.scenarios.export.by_split import by_split
+from peopleboy.scenarios.export.camera_images import write_camera_images
+from peopleboy.scenarios.export.from_corner import CORNER_PX, OUTSIDE, Keypoint, keypoints_from_corner
+from peopleboy.scenarios.export.one_camera import OneCamera, with_people
+from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.run_files import read_table
+from peopleboy.scenarios.run_folder.tables import TRUTH, Row
+from peopleboy.sim.cameras.kinds import kind_of
+from peopleboy.sim.people.body.joints import JOINT_NAMES
+from peopleboy.sim.truth.boxes import Box
+
+EVERYTHING: Final = "all"
+
+_PERSON: Final = 0  # YOLO counts classes from 0
+_EDGES: Final = tuple(f"visible_{edge}_px" for edge in ("left", "top", "width", "height"))
+_COLUMNS: Final = ("frame", "id", *_EDGES, "joints_px", "joint_is_visible")
+
+
+def write_yolo(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str = "thermal") -> None:
+    """Write boxes round what is visible of people.
+
+    Raises:
+        BadInput: the runs cannot be sorted by split, or one has no such camera of 8 bits.
+    """
+    _write(runs, folder, play, camera, has_poses=False)
+
+
+def write_yolo_pose(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str = "thermal") -> None:
+    """Write the same boxes with the 17 keypoints of COCO.
+
+    Raises:
+        BadInput: as for `write_yolo`.
+    """
+    _write(runs, folder, play, camera, has_poses=True)
+
+
+def _write(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str, *, has_poses: bool) -> None:
+    sorted_runs = {
+        split or EVERYTHING: [_eight_bits(run, camera) for run in own]
+        for split, own in by_split(runs).items()
+    }
+    settings = yaml.safe_dump(_settings(sorted_runs, has_poses), sort_keys=False, default_flow_style=None)
+    (folder / "data.yaml").write_text(settings, encoding="utf-8")
+    for split, every in sorted_runs.items():
+        images, labels = (folder / kind / split for kind in ("images", "labels"))
+        for place in (images, labels):
+            place.mkdir(parents=True)
+        for shots in every:
+            for number, text in _labels(shots, has_poses=has_poses):
+                (labels / f"{_stem(shots, number)}.txt").write_text(text, encoding="utf-8")
+            _write_images(shots, images, play)
+
+
+def _write_images(shots: OneCamera, folder: Path, play: Play) -> None:
+    write_camera_images(shots, play, lambda number: folder / f"{_stem(shots, number)}.png")
+
+
+def _stem(shots: OneCamera, number: int) -> str:
+    """Name an image, and its labels."""
+    return f"{shots.run.name}_{number:06d}"
+
+
+def _eight_bits(run: FinishedRun, camera: str) -> OneCamera:
+    found = with_people(run, camera)
+    if kind_of(run.robot.cameras[camera]).dtype is not np.uint8:
+        raise BadInput(
+            f"{run.folder}: camera {camera!r} has images of 16 bits, which YOLO cuts; give another"
+        )
+    return found
+
+
+def _settings(splits: Collection[str], has_poses: bool) -> Mapping[str, Any]:
+    """Say what data.yaml says; its folders are looked for where it lies."""
+    named = {split: f"images/{split}" for split in splits}
+    if EVERYTHING in named:
+        named = dict.fromkeys(("train", "val"), named[EVERYTHING])
+    poses = {"kpt_shape": [len(JOINT_NAMES), 3], "flip_idx": _mirrored()} if has_poses else {}
+    return {**named, **poses, "names": {_PERSON: "person"}}
+
+
+def _mirrored() -> list[int]:
+    """Say which keypoint each one is in a mirror."""
+    swapped = str.maketrans({"<": "right_", ">": "left_"})
+    marked = [name.replace("left_", "<").replace("right_", ">") for name in JOINT_NAMES]
+    return [JOINT_NAMES.index(name.translate(swapped)) for name in marked]
+
+
+def _labels(shots: OneCamera, *, has_poses: bool) -> Iterator[tuple[int, str]]:
+    """Yield the labels of each image, a line a box; of an image without people, none."""
+    name = "truth.parquet" if shots.name == "thermal" else f"truth/{shots.name}.parquet"
+    people: dict[int, list[Row]] = defaultdict(list)
+    for row in read_table(shots.run.folder / name, TRUTH, _COLUMNS).to_pylist():
+        if row[_EDGES[0]] is not None:
+            people[row["frame"]].append(row)
+    for frame in shots.frames:
+        lines = [line for row in people[frame] for line in _lines(row, shots, has_poses=has_poses)]
+        yield shots.number(frame), "".join(f"{line}\n" for line in lines)
+
+
+def _lines(row: Row, shots: OneCamera, *, has_poses: bool) -> Iterator[str]:
+    left, top, width, height = (row[edge] for edge in _EDGES)
+    parts = box_parts((left, top, width, height), shots.camera)
+    joints = np.reshape(row["joints_px"], (-1, 2)).tolist()
+    points = keypoints_from_corner(joints, row["joint_is_visible"], shots.size) if has_poses else []
+    for part in parts:
+        yield " ".join([str(_PERSON), *_middle(part, shots), *_poses(points, part, parts, shots)])
+
+
+def _middle(box: Box, shots: OneCamera) -> Iterator[str]:
+    """Give middle, width and height as shares of the image."""
+    left, top, width, height = box
+    columns, rows = shots.size
+    middle = ((left + CORNER_PX + width / 2) / columns, (top + CORNER_PX + height / 2) / rows)
+    shares = (*middle, width / columns, height / rows)
+    return (f"{share:.7f}" for share in shares)
+
+
+def _poses(points: Sequence[Keypoint], part: Box, parts: Sequence[Box], shots: OneCamera) -> Iterator[str]:
+    """Give keypoints as shares of the image; of a box in two parts, those that are nearer to this one."""
+    columns, rows = shots.size
+    for u, v, flag in points:
+        is_here = flag != OUTSIDE and min(parts, key=lambda other: _aside(u, other)) == part
+        yield f"{u / columns:.7f} {v / rows:.7f} {flag}" if is_here else f"0.0000000 0.0000000 {OUTSIDE}"
+
+
+def _aside(u: float, box: Box) -> float:
+    """How far a column lies from the middle of a box [px]."""
+    return abs(u - CORNER_PX - box[0] - box[2] / 2)
