@@ -43,6 +43,11 @@ if TYPE_CHECKING:
 @click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
 @click.option(
+    "--lossless",
+    is_flag=True,
+    help="Keep the recording's images as they are, in 12 times the space; else they are JPEG of quality 45.",
+)
+@click.option(
     "--live", is_flag=True, help="Show it in the rerun viewer as it goes, or on a page of this machine."
 )
 @workers_options
@@ -58,6 +63,7 @@ def run(
     physics: str | None,
     renderer: str,
     no_rrd: bool,
+    lossless: bool,
     live: bool,
     workers: int | None,
     scheduler: str | None,
@@ -96,6 +102,7 @@ def run(
         tracker=tracker,
         renderer=renderer,
         record=not no_rrd,
+        lossless=lossless,
         overwrite=overwrite,
     )
     if live and (loaded is None or no_rrd or not output.is_wordy):
@@ -103,6 +110,8 @@ def run(
             "--live: shows the recording of one run, and tells where; give one scenario, without --no-rrd, "
             "--json and --quiet"
         )
+    if lossless and (loaded is None or no_rrd):
+        raise BadInput(f"{scenario}: --lossless is for the recording, which a suite and --no-rrd leave out")
     if loaded is None:
         _run_suite(scenario, options, physics, chosen_workers(workers, scheduler), output)
         return

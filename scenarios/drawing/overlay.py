@@ -100,6 +100,12 @@ def encode_jpeg(image: NDArray[np.uint8], quality: int, *, has_own_codes: bool =
     return cv2.imencode(".jpg", stored, options)[1].tobytes()
 
 
+def encode_png(image: NDArray[np.uint8] | NDArray[np.uint16]) -> bytes:
+    """Encode an (H, W) grey image of 8 or 16 bits, or an (H, W, 3) RGB one, quickly and without loss."""
+    stored = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
+    return cv2.imencode(".png", stored, [cv2.IMWRITE_PNG_COMPRESSION, 1])[1].tobytes()
+
+
 def draw_tracks(
     picture: Picture,
     tracks: Iterable[Track],

@@ -24,13 +24,16 @@ from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 
 
-def lay_out(config: WorldConfig, watched: Collection[str] = (), *, attends: bool = False) -> rrb.Blueprint:
+def lay_out(
+    config: WorldConfig, watched: Collection[str] = (), *, attends: bool = False, follows: bool = False
+) -> rrb.Blueprint:
     """Lay out: thermal on the left, colour, events, further cameras and the world beside it, curves below.
 
     Args:
         config: of the world.
         watched: cameras that the tracker asks for.
         attends: whether it explains where in colour images it looks for somebody.
+        follows: whether the newest frame is shown as it comes; else it stands at the first one when opened.
     """
     cameras = {name: camera.camera for name, camera in config.robot.cameras.items()}
     thermal = _image_view(THERMAL, "Thermal: tracks with evidence, particles, truth", cameras.pop("thermal"))
@@ -54,7 +57,7 @@ def lay_out(config: WorldConfig, watched: Collection[str] = (), *, attends: bool
         rrb.Vertical(above, rrb.Horizontal(*plots), row_shares=[3.0, 1.0]),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
-        rrb.TimePanel(state="collapsed", timeline="time"),
+        rrb.TimePanel(state="collapsed", timeline="time", play_state="following" if follows else "paused"),
     )
 
 

@@ -8,13 +8,12 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import cv2
 import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.drawing.event_wording import describe_fully
-from peopleboy.scenarios.drawing.overlay import encode_jpeg, people_parts, track_parts
+from peopleboy.scenarios.drawing.overlay import encode_jpeg, encode_png, people_parts, track_parts
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.recording import marks
@@ -42,7 +41,7 @@ from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
 from peopleboy.scenarios.recording.rows import RowBuffer
 from peopleboy.scenarios.recording.sketches import explained_sketches
-from peopleboy.scenarios.recording.still import Still
+from peopleboy.scenarios.recording.still import JPEG, Still
 from peopleboy.sim.cameras.camera_config import DepthConfig
 from peopleboy.sim.cameras.depth_image import points_of
 from peopleboy.sim.cameras.kinds import shown_to_people, with_boxes
@@ -81,6 +80,7 @@ class Recorder:
         viewer: address of a viewer that is to show it at once; None for none.
         watched: cameras that the tracker asks for.
         attends: whether it explains where in colour images it looks for somebody.
+        is_lossless: whether images are kept as they are, not as JPEG.
     """
 
     def __init__(
@@ -92,7 +92,9 @@ class Recorder:
         viewer: str | None = None,
         watched: Collection[str] = (),
         attends: bool = False,
+        is_lossless: bool = False,
     ) -> None:
+        self._is_lossless = is_lossless
         self._cameras = config.robot.cameras
         self._boxed = with_boxes(self._cameras)
         self._tells_cameras = bool({*self._boxed} - {"thermal", "colour"})
@@ -111,9 +113,11 @@ class Recorder:
         self._rows = RowBuffer()
         self._stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(title))
         sinks = [rr.FileSink(path)] if viewer is None else [rr.FileSink(path), rr.GrpcSink(viewer)]
-        self._stream.set_sinks(*sinks, default_blueprint=lay_out(config, watched, attends=attends))
+        self._stream.set_sinks(
+            *sinks, default_blueprint=lay_out(config, watched, attends=attends, follows=viewer is not None)
+        )
         self._stream.send_recording_name(title)
-        self._still = Still(self._stream)
+        self._still = Still(self._stream, "image/png" if is_lossless else JPEG)
         self._still.log_world(config)
 
     def __enter__(self) -> Recorder:
@@ -160,14 +164,18 @@ class Recorder:
             if isinstance(config, DepthConfig):
                 self._log_depth(name, config, tick)
                 continue
-            blob = encode_jpeg(shown_to_people(images, name, config), _JPEG_QUALITY, has_own_codes=False)
+            blob = self._encoded(shown_to_people(images, name, config))
             self._rows.add(f"{camera_path(name)}/image", rr.EncodedImage, blob=[blob])
+
+    def _encoded(self, image: NDArray[np.uint8]) -> bytes:
+        if self._is_lossless:
+            return encode_png(image)
+        return encode_jpeg(image, _JPEG_QUALITY, has_own_codes=False)
 
     def _log_depth(self, name: str, config: DepthConfig, tick: Tick) -> None:
         """Log a depth image without loss, and the points that it stands for where they are in the world."""
         images = tick.observation.images
-        blob = cv2.imencode(".png", images[name], [cv2.IMWRITE_PNG_COMPRESSION, 1])[1].tobytes()
-        self._rows.add(f"{camera_path(name)}/image", rr.EncodedDepthImage, blob=[blob])
+        self._rows.add(f"{camera_path(name)}/image", rr.EncodedDepthImage, blob=[encode_png(images[name])])
         colour = images[f"{name}_colour"] if config.colour else shown_to_people(images, name, config)
         every = max(round(math.sqrt(images[name].size / _POINTS)), 1)
         places, pixels = points_of(images[name], config.camera, every)
@@ -222,9 +230,7 @@ class Recorder:
             if empty is not None and not np.array_equal(self._backgrounds.get(camera, ()), empty):
                 self._backgrounds[camera] = empty
                 blob = encode_jpeg(empty, _JPEG_QUALITY, has_own_codes=False)
-                self._rows.add(
-                    f"{path}/{BACKGROUND}", rr.EncodedImage, blob=[blob], media_type=["image/jpeg"]
-                )
+                self._rows.add(f"{path}/{BACKGROUND}", rr.EncodedImage, blob=[blob], media_type=[JPEG])
             strips = [_from_corner(line) for line in sketch.lines]
             self._rows.add(f"{path}/explained/lines", rr.LineStrips2D, strips=strips, colors=sketch.colour)
 

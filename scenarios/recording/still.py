@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import rerun as rr
@@ -31,6 +31,8 @@ from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import UPRIGHT, ShapeKind
 
+JPEG: Final = "image/jpeg"
+
 _ROBOT_CURVES = {
     "curves/motion/speed": (("speed [m/s]", "speed asked for"), ((86, 180, 233), (52, 108, 140))),
     "curves/motion/turn_rate": (("turn rate [rad/s]", "turn rate asked for"), ((230, 159, 0), (138, 95, 0))),
@@ -39,10 +41,16 @@ _POINT_M = 0.02
 
 
 class Still:
-    """Logs to a stream what holds for the whole recording."""
+    """Logs to a stream what holds for the whole recording.
 
-    def __init__(self, stream: rr.RecordingStream) -> None:
+    Args:
+        stream: to which.
+        packing: media type of the images of cameras, those of depth aside.
+    """
+
+    def __init__(self, stream: rr.RecordingStream, packing: str = JPEG) -> None:
         self._stream = stream
+        self._packing = packing
 
     def log_world(self, config: WorldConfig) -> None:
         """Log the place, the robot and who will be there."""
@@ -105,17 +113,17 @@ class Still:
         pose = camera.robot_from_camera
         frame = rr.Transform3D(translation=pose[:3, 3], mat3x3=pose[:3, :3])
         self._log(path, frame, *([_pinhole(camera, reach_m)] if isinstance(camera, Pinhole) else []))
-        self._log(f"{path}/image", _picture(config))
+        self._log(f"{path}/image", _picture(config, self._packing))
         for layer in layers:
             archetype, radius = LAYERS[layer]
             more = {"show_labels": False} if archetype is rr.Arrows2D else {}
             self._log(f"{path}/{layer}", archetype.from_fields(radii=rr.Radius.ui_points([radius]), **more))
 
 
-def _picture(config: CameraConfig) -> rr.AsComponents:
+def _picture(config: CameraConfig, packing: str) -> rr.AsComponents:
     """Say how images of a camera are packed, and coloured if they are of depth [mm]."""
     if not isinstance(config, DepthConfig):
-        return rr.EncodedImage.from_fields(media_type="image/jpeg")
+        return rr.EncodedImage.from_fields(media_type=packing)
     reach_mm = 1000.0 * np.array([config.nearest_m, config.farthest_m])
     return rr.EncodedDepthImage.from_fields(
         media_type="image/png", meter=1000.0, colormap=Colormap.Turbo, depth_range=reach_mm

@@ -38,6 +38,7 @@ class RunOptions:
         tracker: name of the tracker, "truth", or "module:Class"; None for the scenario's.
         renderer: "raycast" or "bullet".
         record: whether to write recording.rrd.
+        lossless: whether its images are kept without loss.
         viewer: address of a viewer to show the recording at once; None for none.
         overwrite: whether an earlier run in that folder may be replaced.
     """
@@ -48,6 +49,7 @@ class RunOptions:
     tracker: str | None = None
     renderer: str = "raycast"
     record: bool = True
+    lossless: bool = False
     viewer: str | None = None
     overwrite: bool = False
 
@@ -115,6 +117,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
                     viewer=options.viewer,
                     watched=tracker.cameras,
                     attends=knows_again(tracker),
+                    is_lossless=options.lossless,
                 )
             )
         watchers = Watchers(config, title, recorder)

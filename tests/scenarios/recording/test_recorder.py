@@ -16,6 +16,7 @@ from rerun.chunk import RrdReader
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
+from peopleboy.scenarios.recording.layout import lay_out
 from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.recording.rounding import PIXEL_STEP
@@ -115,6 +116,29 @@ def test_the_logged_images_are_those_of_the_cameras(recording: Recording) -> Non
         shown = image if image.ndim == 2 else image[..., ::-1]
         assert shown.shape == expected.shape
         assert np.abs(shown.astype(float) - expected).mean() < 6.0
+
+
+def test_a_lossless_recording_has_every_grey_and_colour_as_it_was(tmp_path: Path) -> None:
+    path = tmp_path / "recording.rrd"
+    with Recorder(path, made.config(), title="made", is_lossless=True) as recorder:
+        for tick, events in made.make_run(3):
+            recorder.log(tick, events)
+    found = Recording(path)
+    for place, name in ((THERMAL, "thermal_scene"), (COLOUR, "colour")):
+        (packing,) = (
+            batch.column("EncodedImage:media_type").to_pylist()[0] for batch in found.static[f"{place}/image"]
+        )
+        assert packing == ["image/png"]
+        (blob,) = found.column(f"{place}/image", "EncodedImage:blob")[2]  # type: ignore[misc]
+        image = cv2.imdecode(np.array(blob, np.uint8), cv2.IMREAD_UNCHANGED)
+        shown = image if image.ndim == 2 else image[..., ::-1]
+        assert np.array_equal(shown, tick.observation.images[name])
+
+
+def test_a_recording_stands_at_its_first_frame_and_a_live_one_follows() -> None:
+    for follows, state in ((False, "paused"), (True, "following")):
+        panel = lay_out(made.config(), follows=follows).time_panel
+        assert (panel.play_state, panel.timeline) == (state, "time")
 
 
 def test_a_closed_recording_holds_each_layer_in_one_piece(recording: Recording) -> None:
