@@ -20,7 +20,7 @@ from peopleboy.bad_input import BadInput
 )
 def view(folder: Path, web: bool, port: int | None) -> None:
     """Open the recording of a run in the rerun viewer."""
-    from peopleboy.scenarios.recording.recording_file import is_whole, layers_in, recording_in
+    from peopleboy.scenarios.recording.files.recording_file import is_whole, layers_in, recording_in
     from peopleboy.scenarios.recording.viewer import open_viewer, serve
 
     if port is not None and not web:

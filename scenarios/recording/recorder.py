@@ -36,8 +36,8 @@ from peopleboy.scenarios.recording.explanations import (
     explained_lines,
     explained_points,
 )
+from peopleboy.scenarios.recording.files.packing import pack
 from peopleboy.scenarios.recording.layout import lay_out
-from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
 from peopleboy.scenarios.recording.rows import RowBuffer
 from peopleboy.scenarios.recording.sketches import explained_sketches

@@ -99,7 +99,7 @@ def runs_of(column: Column) -> PageTable:
 def occlusions(column: Column) -> PageTable:
     """Each time that somebody was wholly hidden and came back in the first run."""
     names = {person.id: spoken(person.name) for person in column.found.people}
-    heads = ("from", "hidden for", "number before", "after", "found again after")
+    heads = ("from", "wholly hidden for", "number before", "after", "found again after")
     rows = []
     for one in column.occlusions[0]:
         before, after = ("none" if n is None else str(n) for n in (one.id_before, one.id_after))
@@ -121,7 +121,7 @@ def identities_kept(columns: Sequence[Column]) -> PageTable:
         name = f"{low:g} to {high:g} s" if high < LENGTHS_S[-1] else f"over {low:g} s"
         if any(cell != "-" for cell in cells):
             rows.append((name, *cells))
-    return PageTable((Head("hidden for", "row"), *_heads(columns)), rows)
+    return PageTable((Head("wholly hidden for", "row"), *_heads(columns)), rows)
 
 
 def modes(found: RunFindings) -> PageTable:

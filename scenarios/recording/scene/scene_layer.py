@@ -11,8 +11,8 @@ import numpy as np
 import rerun as rr
 
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
+from peopleboy.scenarios.recording.files.packing import pack
 from peopleboy.scenarios.recording.marks import Colours
-from peopleboy.scenarios.recording.packing import pack
 from peopleboy.scenarios.recording.recorder import APPLICATION, recording_id
 from peopleboy.scenarios.recording.rows import RowBuffer
 from peopleboy.sim.geometry.planar import Planar

@@ -1,8 +1,8 @@
 """What the thermal camera saw at some frames of a run, for people, with truth and tracks drawn in.
 
-The images are those of the run's folder if it was run with frames. Else the scene is played again with the
-commands that the robot was given, which gives the same images; where that is not possible, as with another
-version or without a physics engine, boxes alone are drawn.
+The images are those of the run's folder if it was run with frames, or else those of its recording. Without
+both, the scene is played again with the commands that the robot was given, which takes as long as the run;
+where that is not possible, as with another version or without a physics engine, boxes alone are drawn.
 """
 
 from __future__ import annotations
@@ -24,9 +24,11 @@ from peopleboy.scenarios.run_folder.explained import read_explanation
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.run_folder.tables import Row, track_of
+from peopleboy.sim.cameras.kinds import SCENE
+from peopleboy.tracker.frame import THERMAL
 
 SCALE = 2
-_SCENE = "thermal_scene"
+CROWD, CROWD_SCALE = 5, 4  # so many people need more room for what is written at them
 _EMPTY = np.full((240, 320), 40, np.uint8)
 
 Thermal = NDArray[np.uint8]
@@ -36,6 +38,7 @@ class Origin(StrEnum):
     """Where an image is from."""
 
     FRAMES = "the run's own image"
+    RECORDING = "from the run's recording"
     REPLAY = "rendered again from scenario.yaml"
     CHANGED = "boxes only, as this scene cannot be rendered again as it was"
     NO_PHYSICS = "boxes only, as PyBullet is not installed"
@@ -59,11 +62,24 @@ class _Truth(NamedTuple):
 
 def show_frames(found: RunFindings, frames: Sequence[int]) -> dict[int, DrawnFrame]:
     """Draw some frames (from 1) of a run."""
-    images, origins = images_of(found.run, frames, _SCENE)
+    recorded = _recorded(found.run, frames)
+    others = [frame for frame in frames if frame not in recorded]
+    images, origins = images_of(found.run, others, f"{THERMAL}{SCENE}")
+    images, origins = recorded | images, dict.fromkeys(recorded, Origin.RECORDING) | origins
     return {
         frame: DrawnFrame(_draw(found, frame, images.get(frame, _EMPTY)), found.run.time_s(frame), origin)
-        for frame, origin in origins.items()
+        for frame, origin in sorted(origins.items())
     }
+
+
+def _recorded(run: FinishedRun, frames: Sequence[int]) -> dict[int, Thermal]:
+    """Read what the recording has, if the run was not written image by image."""
+    recording = run.folder / "recording.rrd"
+    if run.about.images or not recording.is_file():
+        return {}
+    from peopleboy.scenarios.recording.files.recorded_images import recorded_images
+
+    return recorded_images(recording, THERMAL, frames)
 
 
 def images_of(
@@ -87,8 +103,9 @@ def _draw(found: RunFindings, frame: int, image: Thermal) -> Picture:
         read_explanation(found.run.about.tracker, believed),
     )
     plates: list[Plate] = []
-    canvas = draw_tracks(enlarge(show_thermal(image), SCALE), tracks, SCALE, explanation, plates=plates)
-    return draw_truth(canvas, people, SCALE, plates=plates)
+    scale = CROWD_SCALE if len(found.people) >= CROWD else SCALE
+    canvas = draw_tracks(enlarge(show_thermal(image), scale), tracks, scale, explanation, plates=plates)
+    return draw_truth(canvas, people, scale, plates=plates)
 
 
 def _stored(run: FinishedRun, frames: Sequence[int], image: str) -> dict[int, NDArray[np.uint8]]:

@@ -24,6 +24,7 @@ from peopleboy.scenarios.report.findings.sentences import listed, seconds, spoke
 from peopleboy.scenarios.report.findings.spans import Floats, settle, spans
 from peopleboy.scenarios.report.findings.story import Hold, PersonView, Story
 from peopleboy.scenarios.report.findings.summary import RunFindings
+from peopleboy.tracker.evaluation.occlusion_scores import TOTAL_ENDS, TOTAL_STARTS
 
 ASIDE: Final = ", not counted (nearer than 3 m or farther than 10 m)"
 _LOOKS: Final[dict[str, dict[str, Any]]] = {
@@ -149,17 +150,27 @@ def mode_row(found: RunFindings) -> TimelineRow:
 
 
 def hidden_words(found: RunFindings, person: Story) -> str:
-    """Say when the person was hidden, by whom, and how much."""
+    """Say when the person was hidden, by whom, how much, and for how long wholly."""
     rate, told = found.run.rate_hz, []
     for span in spans(np.isin(person.view, tuple(_HIDDEN))):
         if span.value:
             here = slice(span.start, span.end)
             by = listed([spoken(name) for name in dict.fromkeys(person.hider[here]) if name])
-            is_whole = (person.view[here] == PersonView.WHOLLY).any()
-            how = "wholly" if is_whole else f"to {np.nanmax(person.occluded[here]):.0%}"
-            when = f"{span.start / rate:.1f} to {seconds(span.end / rate)}"
+            wholly_s = _wholly_hidden(person.occluded[here]) / rate
+            how = (
+                f"wholly for {seconds(wholly_s)}"
+                if wholly_s
+                else f"to {np.nanmax(person.occluded[here]):.0%}"
+            )
+            when = f"{'in all ' if wholly_s else ''}{span.start / rate:.1f} to {seconds(span.end / rate)}"
             told.append(f"{how}{' by ' if by else ''}{by} ({when})")
     return f"Hidden {', '.join(told)}." if told else ""
+
+
+def _wholly_hidden(occluded: Floats) -> int:
+    """Count frames as the scores of occlusions do: from the first that is wholly hidden on."""
+    starts = np.flatnonzero(occluded > TOTAL_STARTS)
+    return int((occluded[starts[0] :] >= TOTAL_ENDS).sum()) if len(starts) else 0
 
 
 @lettered

@@ -19,7 +19,14 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.report.charts.error_curves import DISTANCES_M, curve, samples
 from peopleboy.scenarios.report.charts.thermal_stills import Origin, show_frames
-from peopleboy.scenarios.report.charts.timelines import ASIDE, rgb, track_edges, track_row, truth_row
+from peopleboy.scenarios.report.charts.timelines import (
+    ASIDE,
+    hidden_words,
+    rgb,
+    track_edges,
+    track_row,
+    truth_row,
+)
 from peopleboy.scenarios.report.columns import are_same_scene, lacking, read_columns
 from peopleboy.scenarios.report.findings.losses_and_swaps import Ending
 from peopleboy.scenarios.report.findings.spans import between, settle, spans
@@ -30,6 +37,7 @@ from peopleboy.scenarios.report.page import write_report
 from peopleboy.scenarios.report.tables import drive_figures, plain_figures
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.tracker.evaluation.occlusion_scores import TOTAL_ENDS, find_occlusions
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from tests.helpers.runs import toy_runs as toy
 
@@ -309,6 +317,38 @@ def test_images_are_the_run_s_own_else_rendered_again_else_boxes_where_pybullet_
     without = show_frames(found, [2, 9])
     assert [without[frame].origin for frame in (2, 9)] == [Origin.FRAMES, Origin.NO_PHYSICS]
     assert np.array_equal(own[2].picture, without[2].picture)
+
+
+def test_a_run_with_a_recording_is_not_played_again_for_its_pictures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scenario = load_scenario("crossing_2").lasting(0.6)
+    run(scenario, RunOptions(seed=3, out=tmp_path / "run", lossless=True), lambda *_: None)
+    found = found_in(tmp_path / "run")
+    monkeypatch.setitem(sys.modules, "pybullet", None)
+    quick = show_frames(found, [2, 9])
+    assert [quick[frame].origin for frame in (2, 9)] == [Origin.RECORDING] * 2
+    monkeypatch.undo()
+    (tmp_path / "run" / "recording.rrd").write_bytes(b"RRF2 spoilt")
+    again = show_frames(found, [2, 9])
+    assert [again[frame].origin for frame in (2, 9)] == [Origin.REPLAY] * 2
+    assert all(np.array_equal(quick[frame].picture, again[frame].picture) for frame in (2, 9))
+
+
+def test_times_hidden_are_told_as_they_are_scored(folders: dict[str, Path]) -> None:
+    found = found_in(folders["steady"])
+    rate = found.run.rate_hz
+    occluded = np.array([0.0, 0.2, 0.6, 0.99, 0.95, 0.91, 0.3, 0.0, 0.0, 0.4, 0.0])
+    view = np.array([1, 2, 2, 3, 3, 3, 2, 1, 1, 2, 1])
+    hider = ("", *("ben",) * 6, "", "", "eve", "")
+    person = replace(found.people[0], occluded=occluded, view=view, hider=hider)
+    times = [f"{frame / rate:.1f}" for frame in (1, 7, 9, 10)]
+    assert hidden_words(found, person).replace("\N{NO-BREAK SPACE}", " ") == (
+        f"Hidden wholly for {3 / rate:.1f} s by Ben (in all {times[0]} to {times[1]} s), "
+        f"to 40% by Eve ({times[2]} to {times[3]} s)."
+    )
+    ((start, end),) = find_occlusions(np.arange(11), occluded)
+    assert (occluded[start:end] >= TOTAL_ENDS).sum() == 3
 
 
 @pytest.mark.parametrize(

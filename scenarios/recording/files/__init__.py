@@ -1,0 +1,1 @@
+"""The file of a recording: packed, found, and read back."""
