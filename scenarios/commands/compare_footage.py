@@ -35,7 +35,7 @@ def compare_footage(
 
     RENDERED are folders of runs with pictures, or sets of them. A real clip is a folder with pictures in it
     or in thermal/, 8-bit grey, and gt.txt of the MOTChallenge format, or VOT's or OTB's. Both sides need two
-    scenes at least. Needs scikit-learn: .[train].
+    scenes at least. Needs scikit-learn.
     """
     from peopleboy.scenarios.likeness.compare import compare_footage as compare
     from peopleboy.scenarios.likeness.page import HEADS, headline, table_rows, write_comparison

@@ -33,7 +33,7 @@ def export(runs: Sequence[Path], form: str, camera: str | None, out: Path | None
     mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. images: beside every image, who is at
     each pixel, which part of the body, and true depth. yolo, yolo-pose: boxes, and keypoints, for
     Ultralytics. viper: ViPER XML. mcap: ROS 2 bags. mp4: films. coco, images and mcap tell of every camera.
-    Images and masks are rendered again, and are those of the run. mcap and mp4 need the extra `export`.
+    Images and masks are rendered again, and are those of the run. mcap needs the package rosbags, mp4 av.
     """
     from peopleboy.scenarios.export.dataset.splits import refuse_unfinished
     from peopleboy.scenarios.export.formats import export as write

@@ -75,7 +75,7 @@ def train_places(
     """Learn from scenes drawn at random how people look in the panorama from where they stand.
 
     It is for the tracker `panoramic`, after `train-foreground`, whose network must be there. Needs
-    scikit-learn: .[train]. A killed call goes on where it was.
+    scikit-learn. A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.place_learning.place_lesson import give_place_lesson
@@ -100,7 +100,7 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
     """Learn what people look like to a depth camera, from scenes drawn at random.
 
     It is for the trackers `rgbd` and `rgbd-printed`: support vector machines for who is near and who is
-    farther, by colour alone and with depth. Needs scikit-learn: .[train]. A killed call goes on where it was.
+    farther, by colour alone and with depth. Needs scikit-learn. A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.window_learning.window_lesson import give_window_lesson
@@ -130,7 +130,7 @@ def train_detector(worlds: int, out: Path, ship: bool, workers: int | None, sche
     """Learn what people look like to a thermal camera, from random worlds.
 
     Half of them are as drawn, others full of people, plain, or warm. A tenth is held back, to make scores log
-    odds; random worlds of seeds 0 to 29 tell how good it is. Needs scikit-learn: .[train]. Films that are
+    odds; random worlds of seeds 0 to 29 tell how good it is. Needs scikit-learn. Films that are
     there are not made again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers

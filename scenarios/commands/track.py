@@ -70,7 +70,7 @@ _TRACKERS = (
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all that is random."
 )
-@click.option("--film", is_flag=True, help="Write overlay.mp4 too; needs .[export].")
+@click.option("--film", is_flag=True, help="Write overlay.mp4 too; needs the package av.")
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
 def track(
     footage: Path,

@@ -17,6 +17,5 @@ def need(package: str, form: str) -> Any:
     try:
         return import_module(package)
     except ImportError as error:
-        raise BadInput(
-            f"--format {form} needs the package {package.split('.')[0]}: pip install '.[export]'"
-        ) from error
+        name = package.split(".")[0]
+        raise BadInput(f"--format {form} needs the package {name}: pip install {name}") from error

@@ -115,7 +115,7 @@ class OverlayFilm:
         try:
             import av
         except ImportError as error:
-            raise BadInput("--film needs the package av: pip install '.[export]'") from error
+            raise BadInput("--film needs the package av: pip install av") from error
         self._file: Any = av.open(str(path), "w", options={"movflags": "+faststart"})
         rate = round(max(rate_hz, 1.0))
         self._stream: Any = self._file.add_stream(

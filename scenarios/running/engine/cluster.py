@@ -14,7 +14,7 @@ from peopleboy.scenarios.running.engine.task import Failure, Task, attempt
 try:
     from distributed import Client, KilledWorker, as_completed
 except ImportError:
-    raise BadInput("--scheduler: needs Dask; pip install '.[cluster]'") from None
+    raise BadInput("--scheduler: needs Dask: pip install dask distributed") from None
 
 ADDRESS = r"(tcp|tls|ucx|ws|wss|inproc)://\S+"  # those that Dask knows
 CONNECT_S = 10.0  # [s] to wait for the scheduler

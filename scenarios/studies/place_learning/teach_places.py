@@ -83,7 +83,7 @@ def _neural_network() -> Any:
     try:
         from sklearn import neural_network
     except ImportError:
-        raise BadInput("train-places needs scikit-learn: pip install 'peopleboy[train]'") from None
+        raise BadInput("train-places needs scikit-learn: pip install scikit-learn") from None
     return neural_network
 
 

@@ -14,7 +14,7 @@ try:
     from sklearn.base import BaseEstimator, ClassifierMixin
     from sklearn.ensemble import AdaBoostClassifier
 except ImportError:
-    raise BadInput("learning the order needs scikit-learn: pip install '.[train]'") from None
+    raise BadInput("learning the order needs scikit-learn: pip install scikit-learn") from None
 
 
 class WeakLearner(ClassifierMixin, BaseEstimator):  # type: ignore[misc]

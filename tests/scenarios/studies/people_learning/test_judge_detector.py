@@ -64,5 +64,5 @@ def test_scores_that_say_the_contrary_are_refused(
 
 def test_without_what_teaches_it_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sklearn.linear_model", None)
-    with refused("scikit-learn", "peopleboy[train]"):
+    with refused("scikit-learn", "pip install scikit-learn"):
         log_odds_line(shipped_model(), [])

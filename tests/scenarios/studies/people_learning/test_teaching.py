@@ -77,5 +77,5 @@ def test_without_what_teaches_it_is_refused(
     teach: Callable[[], object], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "sklearn.ensemble", None)
-    with refused("scikit-learn", "peopleboy[train]"):
+    with refused("scikit-learn", "pip install scikit-learn"):
         teach()

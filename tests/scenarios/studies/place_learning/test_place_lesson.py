@@ -57,7 +57,7 @@ def test_the_same_examples_give_the_same_networks() -> None:
 
 def test_without_what_teaches_it_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sklearn", None)
-    with refused("train-places", "scikit-learn", "peopleboy[train]"):
+    with refused("train-places", "scikit-learn", "pip install scikit-learn"):
         teach_places(plain(0))
 
 
