@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import SEED
 
 
@@ -22,7 +23,7 @@ def list_command() -> None:
 
 
 @click.command()
-@click.argument("scenario")
+@click.argument("scenario", shell_complete=complete_scenario)
 @click.option("--seed", type=click.IntRange(min=0), help=f"What is drawn follows from it.  {SEED}")
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Picture to write.  [default: SCENARIO-plan.png]"

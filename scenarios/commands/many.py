@@ -9,6 +9,7 @@ from typing import Final
 import click
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import (
     Output,
     behaviour_option,
@@ -22,7 +23,7 @@ _SEEN: Final = 0.3
 
 
 @click.command()
-@click.argument("scenario", required=False)
+@click.argument("scenario", required=False, shell_complete=complete_scenario)
 @click.option("--seeds", type=click.IntRange(min=1), help="How many, from 0 on.  [default: 10]")
 @click.option(
     "--randomise",

@@ -10,19 +10,23 @@ from typing import Any
 
 import click
 
+from peopleboy.scenarios.commands.completion import BEHAVIOUR_NAMES, TRACKER_NAMES, complete_names
+
 SEED = "[default: 0, or that of a run's own scenario.yaml]"
 
-# Spelled out, since the trackers themselves take a second to load, which --help should not.
+# The names are spelled out, since the trackers themselves take a second to load, which --help should not.
 TRACKERS = (
-    "peopleboy, learned, anywhere, thesis, colour, thermal, paper, panoramic-paper, panoramic, handover, "
-    "rgbd, rgbd-printed, fused, attentive, attentive-printed or attentive-fused; truth, which is told; or "
-    "module:Class, your own"
+    f"{', '.join(TRACKER_NAMES[:-1])} or {TRACKER_NAMES[-1]}; truth, which is told; or module:Class, your own"
 )
+complete_trackers = complete_names((*TRACKER_NAMES, "truth"))
 tracker_option = click.option(
-    "--tracker", help=f"One of {TRACKERS}.  [default: the scenario's, or peopleboy]"
+    "--tracker",
+    shell_complete=complete_trackers,
+    help=f"One of {TRACKERS}.  [default: the scenario's, or peopleboy]",
 )
 behaviour_option = click.option(
     "--behaviour",
+    shell_complete=complete_names(BEHAVIOUR_NAMES),
     help="What drives the robot: stand, follow_person, follow_corridor or patrol; or module:Class, your "
     "own.  [default: the scenario's]",
 )

@@ -9,13 +9,14 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import TRACKERS, workers_options
+from peopleboy.scenarios.commands.completion import complete_scenario
+from peopleboy.scenarios.commands.options import TRACKERS, complete_trackers, workers_options
 
 FAILED = 1
 
 
 @click.command()
-@click.argument("scenarios", metavar="[SCENARIO...]", nargs=-1)
+@click.argument("scenarios", metavar="[SCENARIO...]", nargs=-1, shell_complete=complete_scenario)
 @click.option("--frames", is_flag=True, help="Write every image too, as for `run`; else truth alone.")
 @click.option(
     "--seeds",
@@ -40,6 +41,7 @@ FAILED = 1
 )
 @click.option(
     "--tracker",
+    shell_complete=complete_trackers,
     default="truth",
     show_default=True,
     help=f"Whose eyes steer robots that follow people: {TRACKERS}.",

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import (
     SEED,
     Output,
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("scenario")
+@click.argument("scenario", shell_complete=complete_scenario)
 @click.option("--seed", type=click.IntRange(min=0), help=f"All that is random follows from it.  {SEED}")
 @click.option(
     "--out",

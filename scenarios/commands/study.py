@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import workers_options
 
 
@@ -64,7 +65,7 @@ def train_occlusion(
 ) -> None:
     """Learn from scenarios which of two overlapping people is in front, and compare with the thesis.
 
-    One set of scenarios is learned from, another one is for testing. Needs scikit-learn: .[train].
+    One set of scenarios is learned from, another one is for testing. Needs scikit-learn.
     A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
@@ -76,7 +77,7 @@ def train_occlusion(
 
 
 @click.command("train-distance")
-@click.argument("scenario", default="room_long")
+@click.argument("scenario", default="room_long", shell_complete=complete_scenario)
 @click.option("--seeds", type=click.IntRange(min=1), default=10, show_default=True, help="Runs of it.")
 @click.option(
     "--out",
