@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs clean
+.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
 
 demo: $(READY)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -52,10 +52,21 @@ docs: $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 
+# Leaves dist/: an sdist and the wheel that is made from it, both looked at as PyPI would.
+dist: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt build twine
+	rm -rf dist
+	$(BIN)/python -m build
+	$(BIN)/python -m twine check --strict dist/*
+
+# An image in which `peopleboy` is the command.
+docker:
+	docker build --tag peopleboy .
+
 # numba looks only at a kernel's own file: after editing one that others inline, throw its cache away.
 clean:
 	find . -name '*.nb[ic]' -delete
-	rm -rf $(VENV) runs build/docs
+	rm -rf $(VENV) runs build/docs dist
 
 $(READY): pyproject.toml constraints.txt
 	@set -e; \
