@@ -173,6 +173,18 @@ def test_exports_say_the_truth_of_who_stands_across_the_seam(tracked: Path, tmp_
     for theirs, ours in ((told, "truth/panorama.gt.txt"), (given, "tracks/panorama.txt")):
         assert boxes_in(theirs) == {(k - 1) // 5 + 1: box for k, box in boxes_in(tracked / ours).items()}
 
+    assert run_cli("export", tracked, "--format", "yolo-pose", *out, tmp_path / "yolo") == 0
+    for frame, row in across:
+        file = tmp_path / "yolo" / "labels" / "all" / f"{tracked.name}_{(frame - 1) // 5 + 1:06d}.txt"
+        labels = np.loadtxt(file, ndmin=2)
+        middle, width = 480.0 * labels[:, 1], 480.0 * labels[:, 3]
+        assert (middle + width / 2).max() == pytest.approx(480.0)
+        assert (middle - width / 2).min() == pytest.approx(0.0, abs=1e-4)
+        assert width.sum() == pytest.approx(row["visible_width_px"], abs=1e-4)
+        flags = labels[:, 7::3] > 0
+        assert flags.any(axis=1).all()
+        assert flags.sum(axis=0).max() == 1  # each keypoint once
+
     for name, ours in (("truth", "truth/panorama.gt.txt"), ("tracks", "tracks/panorama.txt")):
         places = locations(tmp_path / "viper" / "run" / f"{name}.xgtf")
         for frame, (left, _, width, _) in boxes_in(tracked / ours).items():
