@@ -38,7 +38,8 @@ class Probes:
     Attributes:
         inner: (P, 2, 4) float32 coefficients of the inner points, rows for u and v.
         outer: (P, 2, 4) float32 the same for the outer points.
-        section: (P,) int64 the section of each pair.
+        section: (P,) int64 the section of each pair, in their order.
+        first: (9,) int64 the first pair of each section, and one after the last.
         mix: (7, 2 P) float32 the coefficients once more, all inner points before all outer ones: those of
             u for d, w, h, 1, and those of v for w, h, 1. So many points at a time are quick to place.
     """
@@ -46,6 +47,7 @@ class Probes:
     inner: Floats
     outer: Floats
     section: NDArray[np.int64]
+    first: NDArray[np.int64]
     mix: Floats
 
 
@@ -98,7 +100,8 @@ def build_probes(config: ContourConfig, size: float) -> Probes:
     sections = np.concatenate([np.full(len(inner), section) for inner, _, section in parts])
     points = np.concatenate([inner, outer])
     mix = np.concatenate([points[:, 0], points[:, 1, 1:]], axis=1)
-    return Probes(inner, outer, sections, np.ascontiguousarray(mix.T))
+    first = np.searchsorted(sections, np.arange(SECTIONS + 1))
+    return Probes(inner, outer, sections, first, np.ascontiguousarray(mix.T))
 
 
 def body_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: float) -> Floats:

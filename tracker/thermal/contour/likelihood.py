@@ -13,7 +13,6 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, ContourConfig, LikelihoodConfig
@@ -28,6 +27,7 @@ from peopleboy.tracker.thermal.contour.contour import (
     build_response,
     section_weights,
 )
+from peopleboy.tracker.thermal.contour.measure_sections import fill_unknown, measure_sections, pixels_under
 from peopleboy.tracker.thermal.particles import FOOT, HEAD_DIVISOR, D, Floats, H, W, X, Y
 
 FEET_GAIN = 3.0  # factor on the response of the feet, up to 1: they fill only a third of their line
@@ -35,8 +35,6 @@ COVERED = 0
 """Grey of the pixels of people in front, in an image where no other pixel has it."""
 NO_GREY = -2
 BLACK_GREY = 4  # at most, with noise
-ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
-UNKNOWN = 1e-4  # share of a section's weight that is none
 LEGS_WIDTH = 0.75  # half width of the legs, in body semi-widths
 _SUBPIXEL_BITS = 4
 _SCALE = 1 << _SUBPIXEL_BITS
@@ -124,7 +122,7 @@ class ContourModel:
         if config.feet_weight > 0:
             result[:, FEET] = np.minimum(1.0, FEET_GAIN * result[:, FEET])
         if min(config.unseen_share, covered_share) < 1:
-            _fill(result, known, self.weights.astype(np.float32))
+            fill_unknown(result, known, self.weights.astype(np.float32))
         return result
 
 
@@ -246,31 +244,11 @@ def _measured(
         covered: the same with a point on a person in front; None in an image without such marks.
     """
     grey = NO_GREY if covered[0] is None else COVERED
-    return _differences(
-        image,
-        state,
-        probes.mix,
-        probes.section,
-        response,
-        grey,
-        np.array([*unseen, covered[0] or 0.0, covered[1]], dtype=np.float32),
+    missing = np.array([*unseen, covered[0] or 0.0, covered[1]], dtype=np.float32)
+    measured: tuple[Floats, Floats] = measure_sections(
+        image, state, probes.mix, probes.first, response, grey, missing
     )
-
-
-def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArray[np.int32]:
-    """Find the pixels nearest to a contour's points (2 P,), all inner ones before all outer ones.
-
-    Args:
-        state: (9,) of a person.
-        probes: the points.
-        shape: (H, W) of the image.
-
-    Returns:
-        Number of each pixel, counted row by row; negative outside the image.
-    """
-    at = np.empty(probes.mix.shape[1], dtype=np.int32)
-    _locate(at, state, probes.mix, shape[1], shape[0])
-    return at
+    return measured
 
 
 def covered_by(
@@ -341,73 +319,3 @@ def body_share(shares: NDArray[np.float64]) -> float:
 def _fill_ellipse(image: NDArray[np.uint8], x: float, y: float, a: float, b: float) -> None:
     centre, axes = (round(x * _SCALE), round(y * _SCALE)), (round(a * _SCALE), round(b * _SCALE))
     cv2.ellipse(image, centre, axes, 0, 0, 360, COVERED, cv2.FILLED, cv2.LINE_8, _SUBPIXEL_BITS)
-
-
-@njit(cache=True, fastmath={"contract"}, nogil=True)
-def _locate(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, height: int) -> None:
-    """Write the pixels of `pixels_under` into (2 P,): without branches, many points at a time."""
-    half, columns, right, bottom = np.float32(0.5), np.int32(width), np.float32(width), np.float32(height)
-    x, y, d, w, h = sample[X] + half, sample[Y] + half, sample[D], sample[W], sample[H]
-    du, wu, hu, u0, wv, hv, v0 = mix[0], mix[1], mix[2], mix[3], mix[4], mix[5], mix[6]
-    for q in range(len(at)):
-        u = x + du[q] * d + wu[q] * w + hu[q] * h + u0[q]
-        v = y + wv[q] * w + hv[q] * h + v0[q]
-        is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
-        outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
-        at[q] = np.int32(v) * columns + np.int32(u) if is_inside else outside
-
-
-@njit(cache=True, fastmath={"contract"}, nogil=True)
-def _differences(
-    image: NDArray[np.uint8],
-    state: Floats,
-    mix: Floats,
-    section: NDArray[np.int64],
-    response: Floats,
-    covered_grey: int,
-    missing: Floats,
-) -> tuple[Floats, Floats]:
-    count = np.zeros(SECTIONS, dtype=np.float32)
-    for j in section:
-        count[j] += np.float32(1)
-    grey, at = image.reshape(-1), np.empty(mix.shape[1], dtype=np.int32)
-    inner, outer = at[: len(section)], at[len(section) :]
-    result = np.zeros((len(state), SECTIONS), dtype=np.float32)
-    known = np.ones((len(state), SECTIONS), dtype=np.float32)
-    elsewhere, unseen, covered = missing[0], missing[1] * missing[0], missing[3] * missing[2]
-    unseen_lacks, covered_lacks = np.float32(1) - missing[1], np.float32(1) - missing[3]
-    for i in range(len(state)):
-        _locate(at, state[i], mix, image.shape[1], image.shape[0])
-        for p in range(len(section)):
-            j = section[p]
-            if inner[p] == ELSEWHERE or outer[p] == ELSEWHERE:
-                result[i, j] += elsewhere
-                continue
-            if inner[p] < 0 or outer[p] < 0:
-                result[i, j] += unseen
-                known[i, j] -= unseen_lacks / count[j]
-                continue
-            inside, outside = int(grey[inner[p]]), int(grey[outer[p]])
-            if inside == covered_grey or outside == covered_grey:
-                result[i, j] += covered
-                known[i, j] -= covered_lacks / count[j]
-            else:
-                result[i, j] += response[j, GREYS - 1 + inside - outside]
-        for j in range(SECTIONS):
-            if count[j] > 0 and known[i, j] > UNKNOWN:
-                result[i, j] /= count[j] * known[i, j]
-    return result, known
-
-
-@njit(cache=True, nogil=True)
-def _fill(differences: Floats, known: Floats, weights: Floats) -> None:
-    """Let sections (N, 8) count, in place, as far as they are not known, what the others say on average."""
-    for i in range(len(differences)):
-        total, whole = np.float32(0), np.float32(0)
-        for j in range(SECTIONS):
-            total += weights[j] * known[i, j] * differences[i, j]
-            whole += weights[j] * known[i, j]
-        if whole <= UNKNOWN:
-            continue
-        for j in range(SECTIONS):
-            differences[i, j] += (1 - known[i, j]) * (total / whole - differences[i, j])
