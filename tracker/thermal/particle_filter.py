@@ -84,13 +84,16 @@ class FrameView:
         """Tell where columns x [px] of the last frame lie in this one but for people's own motion."""
         return turned(x, self.turn_rad, self.mount.focal_px, (self.image.shape[1] - 1) / 2)
 
-    def describe(self, state: Floats, hiding: Regions) -> Floats | None:
+    def describe(self, state: Floats, hiding: Regions | None = None) -> Floats | None:
         """Describe people (N, 9) as their models do, (N, F), if that can be told.
 
         NaN for parts that lie behind people with regions (M, 4).
         """
         source = self.colour if self.appearance is None else self.appearance
-        return None if source is None else visible(source.describe(state), state, hiding)
+        if source is None:
+            return None
+        features = source.describe(state)
+        return features if hiding is None else visible(features, state, hiding)
 
 
 def view_frame(

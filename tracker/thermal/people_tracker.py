@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, PinholeCalibration
-from peopleboy.tracker.thermal.appearance.appearance_model import likelihood
+from peopleboy.tracker.thermal.appearance.appearance_model import are_unseen, likelihood
 from peopleboy.tracker.thermal.config import FilterConfig, TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel, clutter_of, settled_clutter
 from peopleboy.tracker.thermal.ellipse import ellipse_of
@@ -50,7 +50,6 @@ from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 FIRST_STEP_S = 1 / 15
 COVERED_RESPONSE = 0.4  # what a point of the contour on people in front counts: neither for nor against
-NOBODY = np.empty((0, 4), dtype=np.float32)
 
 
 class PeopleTracker:
@@ -225,8 +224,7 @@ class PeopleTracker:
                 found,
                 id=known.id,
                 born_s=known.born_s,
-                appearance=known.appearance or found.appearance,
-                colour=known.colour or found.colour,
+                looks=known.looks or found.looks,
             )
         self._persons = tuple(sorted((*self._persons, found), key=lambda person: person.id))
         return ()
@@ -349,12 +347,11 @@ def _likeness(
     if person.looks is None or config.colour is None:
         return None
     removes = config.depth.removes_front
-    features = view.describe(state, surroundings.hiding if removes else NOBODY)
+    features = view.describe(state, surroundings.hiding if removes else None)
     if features is None:
         return None
     likeness = likelihood(features, person.looks, config.colour)
     if removes:
         # Who is not seen at all looks as a person usually does: one spread off in every feature.
-        unseen = np.isnan(features).all(axis=1)
-        likeness[unseen] = np.exp(-config.colour.sharpness * features.shape[1])
+        likeness[are_unseen(features)] = np.exp(-config.colour.sharpness * features.shape[1])
     return likeness

@@ -45,9 +45,9 @@ def most_alike_and_nearest(found: TrackedPerson, lost: Sequence[TrackedPerson]) 
 
 def colour_distance(one: TrackedPerson, other: TrackedPerson) -> float:
     """Measure the squared distance of colours; infinite where there are none."""
-    if one.colour is None or other.colour is None:
+    if one.looks is None or other.looks is None:
         return float("inf")
-    distance = float(squared_distances(one.colour.mean[None], other.colour)[0])
+    distance = float(squared_distances(one.looks.mean[None], other.looks)[0])
     return float("inf") if np.isnan(distance) else distance
 
 
@@ -66,7 +66,7 @@ def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, confi
 
 def appearance_distance(found: TrackedPerson, person: TrackedPerson, config: TrackerConfig) -> float:
     """Measure the squared distance of looks; that of the same person where looks cannot tell."""
-    if config.appearance is None or found.appearance is None or person.appearance is None:
+    if config.appearance is None or found.looks is None or person.looks is None:
         return LOOKS2
-    distance = float(squared_distances(found.appearance.mean[None], person.appearance)[0])
+    distance = float(squared_distances(found.looks.mean[None], person.looks)[0])
     return LOOKS2 if np.isnan(distance) else distance

@@ -9,12 +9,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.appearance.appearance_model import AppearanceView, ColourModel
-from peopleboy.tracker.thermal.appearance.colour_view import ColourView
-from peopleboy.tracker.thermal.colour_config import ColourConfig
+from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel
 from peopleboy.tracker.thermal.config import LifeConfig, SmoothingConfig, TrackerConfig
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
-from peopleboy.tracker.thermal.particles import FOOT, STATE_SIZE, VX, D, Floats, H, W, X, Y
+from peopleboy.tracker.thermal.particles import FOOT, STATE_SIZE, VX, D, H, W, X, Y
 from peopleboy.tracker.thermal.whereabouts import PERSON_M
 from peopleboy.tracker.track import Status
 
@@ -46,8 +44,7 @@ class TrackedPerson:
         is_behind: whether those in front explain why it is not seen.
         hidden_frames: for how many frames it has been hidden.
         hidden_s: for how long it has been hidden [s].
-        colour: its colours of late; None until they were seen.
-        appearance: colours and thermal pattern of late; None until they were seen.
+        looks: what it looked like of late, by which its samples are compared; None until that was seen.
     """
 
     id: int
@@ -64,8 +61,7 @@ class TrackedPerson:
     is_behind: bool = False
     hidden_frames: int = 0
     hidden_s: float = 0.0
-    colour: ColourModel | None = None
-    appearance: ColourModel | None = None
+    looks: ColourModel | None = None
 
     @property
     def is_settled(self) -> bool:
@@ -76,11 +72,6 @@ class TrackedPerson:
     def is_hidden(self) -> bool:
         """Whether nothing of it is seen."""
         return self.status is Status.TOTALLY_OCCLUDED
-
-    @property
-    def looks(self) -> ColourModel | None:
-        """What its samples are compared with."""
-        return self.colour if self.appearance is None else self.appearance
 
 
 def is_born(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
@@ -205,21 +196,12 @@ def _learned(person: TrackedPerson, view: FrameView, config: TrackerConfig) -> T
     """
     if config.colour is None:
         return person
-    rows = person.belief.estimate.astype(np.float32)[None]
-    return replace(
-        person,
-        colour=_updated(person.colour, view.colour, rows, config.colour),
-        appearance=_updated(person.appearance, view.appearance, rows, config.colour),
-    )
-
-
-def _updated(
-    model: ColourModel | None, source: ColourView | AppearanceView | None, rows: Floats, config: ColourConfig
-) -> ColourModel | None:
-    if source is None:
-        return model
-    features = source.describe(rows)[0]
-    return ColourModel.begin(features, config) if model is None else model.updated(features)
+    features = view.describe(person.belief.estimate.astype(np.float32)[None])
+    if features is None:
+        return person
+    known = person.looks
+    looks = ColourModel.begin(features[0], config.colour) if known is None else known.updated(features[0])
+    return replace(person, looks=looks)
 
 
 def _foot_of(state: NDArray[np.float64]) -> float:

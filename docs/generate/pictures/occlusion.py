@@ -12,8 +12,7 @@ from docs.generate.pictures.paper import panels, plot, show, zoom
 from docs.generate.pictures.tracker import place_probes
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.tracker.thermal.contour.likelihood import COVERED, ContourModel, covered_by
-from peopleboy.tracker.thermal.contour.measure_sections import pixels_under
+from peopleboy.tracker.thermal.contour.likelihood import COVERED, ContourModel, covered_by, pixels_under
 from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status, Track

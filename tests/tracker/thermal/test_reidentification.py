@@ -36,8 +36,7 @@ def person(number, x=160.0, h=30.0, colour=0.0, hidden_s=1.0, **more):
         size=state[SIZE],
         status=Status.TOTALLY_OCCLUDED,
         hidden_s=hidden_s,
-        colour=model,
-        appearance=model,
+        looks=model,
         **more,
     )
 
@@ -62,6 +61,5 @@ def test_the_thesis_asks_that_the_nearest_is_also_the_most_alike():
     assert most_alike_and_nearest(person(9), (near_but_other, far_but_alike)) is None
     near = person(3, x=155.0, colour=0.1)
     assert (
-        most_alike_and_nearest(person(9), (near, replace(far_but_alike, colour=near_but_other.colour)))
-        is near
+        most_alike_and_nearest(person(9), (near, replace(far_but_alike, looks=near_but_other.looks))) is near
     )

@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
+from peopleboy.tracker.thermal.appearance.regions import Rectangle
 from peopleboy.tracker.thermal.colour_config import Affine
 from peopleboy.tracker.thermal.particles import Floats
 
@@ -34,27 +35,32 @@ def alignment(
 
 
 @njit(cache=True, nogil=True)
-def aligned(matrix: Floats, rectangles: Floats, height: Floats) -> Floats:
-    """Map rectangles of the thermal image to upright ones of the colour image.
+def align(matrix: Floats, rectangle: Rectangle, height: np.float32) -> Rectangle:
+    """Map a rectangle of the thermal image to an upright one of the colour image.
 
     A sheared map makes parallelograms; their place is that of their centre, and their size that of their
     middle lines.
 
     Args:
         matrix: of `alignment`.
-        rectangles: (N, P, 4) left, top, right, bottom [px].
-        height: (N,) semi-height h [px] of the people they belong to.
+        rectangle: left, top, right, bottom [px].
+        height: semi-height h [px] of the person it belongs to.
     """
     half = np.float32(0.5)
+    left, top, right, bottom = rectangle
+    u, v = half * (left + right), half * (top + bottom)
+    x = matrix[0, 0] * u + matrix[0, 1] * v + (matrix[0, 2] * height + matrix[0, 3])
+    y = matrix[1, 0] * u + matrix[1, 1] * v + (matrix[1, 2] * height + matrix[1, 3])
+    wide, tall = half * matrix[0, 0] * (right - left), half * matrix[1, 1] * (bottom - top)
+    return x - wide, y - tall, x + wide, y + tall
+
+
+@njit(cache=True, nogil=True)
+def aligned(matrix: Floats, rectangles: Floats, height: Floats) -> Floats:
+    """Map rectangles (N, P, 4) of people with semi-heights (N,), as `align` does for one."""
     result = np.empty_like(rectangles)
     for i in range(rectangles.shape[0]):
-        shift_x = matrix[0, 2] * height[i] + matrix[0, 3]
-        shift_y = matrix[1, 2] * height[i] + matrix[1, 3]
         for p in range(rectangles.shape[1]):
             left, top, right, bottom = rectangles[i, p]
-            u, v = half * (left + right), half * (top + bottom)
-            x = matrix[0, 0] * u + matrix[0, 1] * v + shift_x
-            y = matrix[1, 0] * u + matrix[1, 1] * v + shift_y
-            wide, tall = half * matrix[0, 0] * (right - left), half * matrix[1, 1] * (bottom - top)
-            result[i, p] = x - wide, y - tall, x + wide, y + tall
+            result[i, p] = align(matrix, (left, top, right, bottom), height[i])
     return result

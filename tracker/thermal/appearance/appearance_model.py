@@ -9,8 +9,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.appearance.alignment import alignment
-from peopleboy.tracker.thermal.appearance.colour_view import ColourView, PowerSums
-from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangles
+from peopleboy.tracker.thermal.appearance.colour_view import LEAST_SEEN, ColourView, PowerSums
+from peopleboy.tracker.thermal.appearance.part_means import write_part_means
+from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangle
 from peopleboy.tracker.thermal.colour_config import SAME_VIEW, ColourConfig
 from peopleboy.tracker.thermal.config import AppearanceConfig
 from peopleboy.tracker.thermal.particles import Floats
@@ -52,31 +53,36 @@ class AppearanceView:
 
     def describe(self, state: Floats) -> Floats:
         """Describe people (N, 9) by the colours and the grey of each part, (N, 12); NaN outside."""
-        each = np.full((len(state), PARTS, 4), np.nan, dtype=np.float32)
+        means = np.full((len(state), PARTS, 4), np.nan, dtype=np.float32)
         if self.colour is not None:
-            moments = self.colour.describe(state).reshape(len(state), PARTS, 3, -1)
-            each[:, :, :3] = moments[..., 0]
-        each[:, :, 3] = self.thermal.describe(state)
-        return (each * self.scale).reshape(len(state), -1)
+            self._write(means, 0, state, self.colour)
+        self._write(means, 3, state, self.thermal)
+        return means.reshape(len(state), -1)
+
+    def _write(self, means: Floats, column: int, state: Floats, view: ColourView) -> None:
+        sums = view.sums or PowerSums.build(view.picture, 1)
+        write_part_means(means, column, state, view.alignment, sums.integral, self.scale, LEAST_SEEN)
 
 
 def visible(features: Floats, state: Floats, hiding: Regions) -> Floats:
     """Blank out, in place, the features (N, F) of parts that lie behind people with regions (M, 4)."""
     if len(hiding):
-        features.reshape(len(state), PARTS, -1)[are_hidden(state, hiding)] = np.nan
+        _blank_hidden(features.reshape(len(state), PARTS, -1), state, hiding)
     return features
 
 
-def are_hidden(state: Floats, hiding: Regions) -> NDArray[np.bool_]:
-    """Tell which parts (N, 3) of people lie behind regions (M, 4) of others."""
-    parts = part_rectangles(state)
-    left, top, right, bottom = (parts[:, :, k, None] for k in range(4))
-    across = np.minimum(right, hiding[:, 0] + hiding[:, 2]) - np.maximum(left, hiding[:, 0])
-    down = np.minimum(bottom, hiding[:, 1] + hiding[:, 3]) - np.maximum(top, hiding[:, 1])
-    shared = np.maximum(across, 0) * np.maximum(down, 0)
-    area = np.maximum((right - left) * (bottom - top), 1e-6)
-    hidden: NDArray[np.bool_] = (shared > HIDDEN_PART * area).any(axis=2)
-    return hidden
+@njit(cache=True, nogil=True)
+def _blank_hidden(features: Floats, state: Floats, hiding: Regions) -> None:
+    least, share = np.float32(1e-6), np.float32(HIDDEN_PART)
+    for i in range(len(state)):
+        for part in range(PARTS):
+            left, top, right, bottom = part_rectangle(state[i], part)
+            hidden = share * max((right - left) * (bottom - top), least)
+            for j in range(len(hiding)):
+                across = min(right, hiding[j, 0] + hiding[j, 2]) - max(left, hiding[j, 0])
+                down = min(bottom, hiding[j, 1] + hiding[j, 3]) - max(top, hiding[j, 1])
+                if across > 0 and down > 0 and across * down > hidden:
+                    features[i, part] = np.nan
 
 
 def _scale(light: float, config: AppearanceConfig) -> Floats:
@@ -114,10 +120,7 @@ class ColourModel:
     def mean(self) -> Floats:
         """Return c* of equation 6.2, (F,); NaN for parts that were never seen."""
         # Later descriptions hold no NaN where an earlier one had a value, so the newest tells what is known.
-        is_known = ~np.isnan(self.recent)
-        total = np.where(is_known, self.recent, np.float32(0)).sum(axis=0)
-        known = is_known.sum(axis=0).astype(np.float32)
-        mean: Floats = np.where(known > 0, total / np.maximum(known, np.float32(1)), np.float32(np.nan))
+        mean: Floats = _mean_of_known(self.recent)
         return mean
 
     def updated(self, features: Floats) -> ColourModel:
@@ -125,10 +128,12 @@ class ColourModel:
 
         What is unseen in it keeps its present mean; where nothing is seen, the model stays as it is.
         """
-        if np.isnan(features).all():
+        is_unseen = np.isnan(features)
+        if is_unseen.all():
             return self
-        newest = np.where(np.isnan(features), self.mean, features).astype(np.float32)
-        return ColourModel(np.concatenate([self.recent, newest[None]])[-self.frames :], self.frames)
+        newest = np.where(is_unseen, self.mean, features) if is_unseen.any() else features
+        kept = self.recent[max(len(self.recent) + 1 - self.frames, 0) :]
+        return ColourModel(np.concatenate([kept, newest[None]], dtype=np.float32), self.frames)
 
 
 def squared_distances(features: Floats, model: ColourModel) -> Floats:
@@ -155,6 +160,31 @@ def likelihood(features: Floats, model: ColourModel, config: ColourConfig) -> Fl
     if is_unseen.any():
         chance[is_unseen] = 1.0 if is_unseen.all() else chance[~is_unseen].mean()
     return chance
+
+
+@njit(cache=True, nogil=True)
+def are_unseen(features: Floats) -> NDArray[np.bool_]:
+    """Tell of whom (N,) not one feature (N, F) is seen."""
+    unseen = np.ones(len(features), dtype=np.bool_)
+    for i in range(len(features)):
+        for j in range(features.shape[1]):
+            if not np.isnan(features[i, j]):
+                unseen[i] = False
+                break
+    return unseen
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _mean_of_known(recent: Floats) -> Floats:
+    mean = np.empty(recent.shape[1], dtype=np.float32)
+    for j in range(recent.shape[1]):
+        total, known = np.float32(0), np.float32(0)
+        for k in range(len(recent)):
+            if not np.isnan(recent[k, j]):
+                total += recent[k, j]
+                known += np.float32(1)
+        mean[j] = total / known if known > 0 else np.nan
+    return mean
 
 
 @njit(cache=True, nogil=True)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.thermal.appearance.alignment import aligned, alignment
 from peopleboy.tracker.thermal.appearance.histograms import BINS, cumulative_histograms
+from peopleboy.tracker.thermal.appearance.part_means import WHITE
 from peopleboy.tracker.thermal.appearance.regions import Bounds, covered, part_rectangles, pixel_bounds
 from peopleboy.tracker.thermal.colour_config import REPRESENTATIONS, ColourConfig
 from peopleboy.tracker.thermal.particles import Floats, H
@@ -20,7 +21,6 @@ from peopleboy.tracker.thermal.particles import Floats, H
 Integers = NDArray[np.int64]
 
 LEAST_SEEN = 0.5  # share of a part that must lie in the colour image, or the part counts as unseen
-WHITE = 255.0
 _FULL_TURN = 256
 # With this many pixels of 255, n S2 and S1^2 still fit an int64.
 _MOST_PIXELS = 1 << 23

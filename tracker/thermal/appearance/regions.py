@@ -25,28 +25,40 @@ _LAYOUT = np.array(
 )
 
 
+Rectangle = tuple[np.float32, np.float32, np.float32, np.float32]
+"""Left, top, right, bottom [px]."""
+
+
 @njit(cache=True, nogil=True)
-def part_rectangles(state: Floats) -> Floats:
-    """Lay out head, torso and legs of people.
-
-    Args:
-        state: (N, 9) contours, thermal image.
-
-    Returns:
-        (N, 3, 4) left, top, right, bottom [px] of each part, right and bottom never less than left and top.
+def part_rectangle(sample: Floats, part: int) -> Rectangle:
+    """Lay out one part of a person (9,); right and bottom are never less than left and top.
 
     Source: thesis, section 6.1.2 and figure 6.2 b.
     """
+    w, h = max(sample[W], np.float32(0)), max(sample[H], np.float32(0))
+    middle = sample[X] + _LAYOUT[part, 0] * sample[D]
+    half = _LAYOUT[part, 1] * w + _LAYOUT[part, 2] * h
+    top, bottom = sample[Y] + _LAYOUT[part, 3] * h, sample[Y] + _LAYOUT[part, 4] * h
+    return middle - half, top, middle + half, bottom
+
+
+@njit(cache=True, nogil=True)
+def part_rectangles(state: Floats) -> Floats:
+    """Lay out head, torso and legs (N, 3, 4) of people (N, 9), as `part_rectangle` does for one."""
     result = np.empty((len(state), PARTS, 4), dtype=np.float32)
     for i in range(len(state)):
-        w, h = max(state[i, W], np.float32(0)), max(state[i, H], np.float32(0))
         for part in range(PARTS):
-            middle = state[i, X] + _LAYOUT[part, 0] * state[i, D]
-            half = _LAYOUT[part, 1] * w + _LAYOUT[part, 2] * h
-            result[i, part, 0], result[i, part, 2] = middle - half, middle + half
-            result[i, part, 1] = state[i, Y] + _LAYOUT[part, 3] * h
-            result[i, part, 3] = state[i, Y] + _LAYOUT[part, 4] * h
+            result[i, part] = part_rectangle(state[i], part)
     return result
+
+
+@njit(cache=True, nogil=True)
+def first_pixel_after(edge: np.float32) -> int:
+    """Tell the first column or row whose pixels' centres are not left of, or above, an edge [px].
+
+    Far beyond any image it is still an int32, whatever a stray sample asks for.
+    """
+    return np.int32(np.ceil(min(max(edge, np.float32(-1e6)), np.float32(1e6))))
 
 
 @njit(cache=True, nogil=True)
@@ -56,8 +68,12 @@ def pixel_bounds(rectangles: Floats) -> Bounds:
     Returns:
         (N P, 4) first column, first row, and those after the last ones; they may lie outside the image.
     """
-    # Far beyond any image and still an int32, whatever a stray sample asks for.
-    return np.ceil(np.clip(rectangles, -1e6, 1e6)).astype(np.int32).reshape(-1, 4)
+    edges = rectangles.reshape(-1, 4)
+    bounds = np.empty(edges.shape, dtype=np.int32)
+    for i in range(len(edges)):
+        for k in range(4):
+            bounds[i, k] = first_pixel_after(edges[i, k])
+    return bounds
 
 
 @njit(cache=True, nogil=True)

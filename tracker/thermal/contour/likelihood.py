@@ -27,7 +27,7 @@ from peopleboy.tracker.thermal.contour.contour import (
     build_response,
     section_weights,
 )
-from peopleboy.tracker.thermal.contour.measure_sections import fill_unknown, measure_sections, pixels_under
+from peopleboy.tracker.thermal.contour.measure_sections import fill_unknown, locate_points, measure_sections
 from peopleboy.tracker.thermal.particles import FOOT, HEAD_DIVISOR, D, Floats, H, W, X, Y
 
 FEET_GAIN = 3.0  # factor on the response of the feet, up to 1: they fill only a third of their line
@@ -249,6 +249,22 @@ def _measured(
         image, state, probes.mix, probes.first, response, grey, missing
     )
     return measured
+
+
+def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArray[np.int32]:
+    """Find the pixels nearest to a contour's points (2 P,), all inner ones before all outer ones.
+
+    Args:
+        state: (9,) of a person.
+        probes: the points.
+        shape: (H, W) of the image.
+
+    Returns:
+        Number of each pixel, counted row by row; negative outside the image.
+    """
+    at = np.empty(probes.mix.shape[1], dtype=np.int32)
+    locate_points(at, state, probes.mix, shape[1], shape[0])
+    return at
 
 
 def covered_by(

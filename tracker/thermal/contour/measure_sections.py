@@ -8,29 +8,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.contour.contour import GREYS, SECTIONS, Probes
+from peopleboy.tracker.thermal.contour.contour import GREYS, SECTIONS
 from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y
 
 ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
 UNKNOWN: Final = 1e-4  # share of a section's weight that is none
 
 _Mix = tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats]
-
-
-def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArray[np.int32]:
-    """Find the pixels nearest to a contour's points (2 P,), all inner ones before all outer ones.
-
-    Args:
-        state: (9,) of a person.
-        probes: the points.
-        shape: (H, W) of the image.
-
-    Returns:
-        Number of each pixel, counted row by row; negative outside the image.
-    """
-    at = np.empty(probes.mix.shape[1], dtype=np.int32)
-    _locate_one(at, state, probes.mix, shape[1], shape[0])
-    return at
 
 
 @njit(cache=True, fastmath={"contract"}, nogil=True)
@@ -105,13 +89,14 @@ def fill_unknown(differences: Floats, known: Floats, weights: Floats) -> None:
 
 
 @njit(cache=True, fastmath={"contract"}, nogil=True)
-def _locate_one(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, height: int) -> None:
+def locate_points(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, height: int) -> None:
+    """Write the pixels of `pixels_under` a contour (9,) into (2 P,)."""
     _locate(at, sample, (mix[0], mix[1], mix[2], mix[3], mix[4], mix[5], mix[6]), width, height)
 
 
 @njit(cache=True, fastmath={"contract"}, nogil=True)
 def _locate(at: NDArray[np.int32], sample: Floats, mix: _Mix, width: int, height: int) -> None:
-    """Write the pixels of `pixels_under` into (2 P,): without branches, many points at a time."""
+    """Locate points as `locate_points` does, without branches, many at a time."""
     half, columns, right, bottom = np.float32(0.5), np.int32(width), np.float32(width), np.float32(height)
     x, y, d, w, h = sample[X] + half, sample[Y] + half, sample[D], sample[W], sample[H]
     du, wu, hu, u0, wv, hv, v0 = mix

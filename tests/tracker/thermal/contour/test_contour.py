@@ -28,8 +28,8 @@ from peopleboy.tracker.thermal.contour.likelihood import (
     ContourModel,
     clutter_of,
     person_grey,
+    pixels_under,
 )
-from peopleboy.tracker.thermal.contour.measure_sections import pixels_under
 from peopleboy.tracker.thermal.particles import HEAD_DIVISOR
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, THESIS
 from tests.helpers.images.drawn_people import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
