@@ -29,10 +29,19 @@ def test_type_checkers_are_told_the_same_homes_as_the_interpreter() -> None:
     assert {name: namespace[name] for name in told} == {name: getattr(peopleboy, name) for name in told}
 
 
+HEAVY = ("numba", "pybullet", "scipy", "cv2", "rerun", "matplotlib", "pydantic", "peopleboy.sim")
+WHAT_IS_LOADED = f"import sys; print([name for name in {HEAVY} if name in sys.modules])"
+
+
 def test_importing_it_loads_none_of_the_heavy_packages() -> None:
-    heavy = ("numba", "pybullet", "scipy", "cv2", "rerun", "matplotlib", "pydantic", "peopleboy.sim")
-    told = run_python(f"import sys, peopleboy; print([name for name in {heavy} if name in sys.modules])")
-    assert told.strip() == "[]"
+    assert run_python(f"import peopleboy; {WHAT_IS_LOADED}").strip() == "[]"
+
+
+def test_the_help_of_the_command_line_loads_none_of_them_either() -> None:
+    shows_help = "from peopleboy.scenarios.cli import cli; cli(['--help'], standalone_mode=False)"
+    *told, loaded = run_python(f"{shows_help}; {WHAT_IS_LOADED}").strip().splitlines()
+    assert any("reproduce" in line for line in told)
+    assert loaded == "[]"
 
 
 def test_a_name_that_is_not_there_is_refused_as_modules_do() -> None:

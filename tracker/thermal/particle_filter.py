@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
@@ -212,20 +213,31 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
 
     Source: thesis, section 4.2 and the table of section 4.4.
     """
-    w, h = state[:, W], state[:, H]
-    above, below = floor_rows(height_px, h, limits)
-    return (
-        (w > limits.ratio_wh[0] * h)
-        & (w < limits.ratio_wh[1] * h)
-        & (state[:, D] > limits.ratio_dw[0] * w)
-        & (state[:, D] < limits.ratio_dw[1] * w)
-        & (state[:, Y] > limits.y[0] * height_px)
-        & (state[:, Y] < limits.y[1] * height_px)
-        & (state[:, Y] > above)
-        & (state[:, Y] < below)
-        & (h > limits.h[0] * height_px)
-        & (h < limits.h[1] * height_px)
-    )
+    above, below = floor_rows(height_px, state[:, H], limits)
+    ends = (*limits.ratio_wh, *limits.ratio_dw, *(height_px * end for end in (*limits.y, *limits.h)))
+    inside: NDArray[np.bool_] = _is_between(state, above, below, np.array(ends, dtype=np.float32))
+    return inside
+
+
+@njit(cache=True, nogil=True)
+def _is_between(state: Floats, above: Floats, below: Floats, ends: Floats) -> NDArray[np.bool_]:
+    """Compare w / h, d / w, y and h of samples (N, 9) with their ends (8,), and y with rows (N,) [px]."""
+    inside = np.empty(len(state), dtype=np.bool_)
+    for i in range(len(state)):
+        y, w, h, d = state[i, Y], state[i, W], state[i, H], state[i, D]
+        inside[i] = (
+            (w > ends[0] * h)
+            & (w < ends[1] * h)
+            & (d > ends[2] * w)
+            & (d < ends[3] * w)
+            & (y > ends[4])
+            & (y < ends[5])
+            & (y > above[i])
+            & (y < below[i])
+            & (h > ends[6])
+            & (h < ends[7])
+        )
+    return inside
 
 
 def step(

@@ -207,7 +207,7 @@ def resample(particles: Particles, count: int, rng: np.random.Generator) -> Floa
 
     Source: thesis, algorithm 4.
     """
-    return particles.state[systematic_rows(particles.weight, count, rng.random())]
+    return particles.state.take(systematic_rows(particles.weight, count, rng.random()), axis=0)
 
 
 def mean_state(particles: Particles) -> NDArray[np.float64]:
@@ -227,7 +227,8 @@ def uncertainty_px2(particles: Particles) -> float:
     weight = particles.weight.astype(np.float64)
     away = particles.state[:, :2].astype(np.float64)
     away -= weight @ away
-    return float(weight @ (away * away).sum(axis=1))
+    squares = away * away
+    return float(weight @ (squares[:, 0] + squares[:, 1]))
 
 
 def select(particles: Particles, rows: NDArray[np.int64]) -> Particles:

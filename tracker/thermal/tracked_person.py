@@ -101,8 +101,10 @@ def newborn(
 ) -> TrackedPerson:
     """Make a person of what a filter has settled on."""
     state = belief.estimate
-    person = TrackedPerson(number, time_s, belief, state, np.zeros(2), _foot_of(state), state[SIZE])
-    return _learned(person, view, config)
+    looks = _learned(None, state, view, config)
+    return TrackedPerson(
+        number, time_s, belief, state, np.zeros(2), _foot_of(state), state[SIZE], looks=looks
+    )
 
 
 def approached(person: TrackedPerson, view: FrameView) -> TrackedPerson:
@@ -159,10 +161,12 @@ def seen(
     )
     if missing > 0 or occluder is not None:
         return moved
-    before = moved_on(person.belief.estimate, replace(view, dt_s=0.0))
-    speed = (belief.estimate[[X, Y]] - before[[X, Y]]) / view.dt_s
+    before = person.belief.estimate[[X, Y]]
+    before[:1] = view.after_turn(before[:1])
+    speed = (belief.estimate[[X, Y]] - before) / view.dt_s
     return replace(
-        _learned(moved, view, config),
+        moved,
+        looks=_learned(person.looks, belief.estimate, view, config),
         seen_frames=person.seen_frames + 1,
         velocity=_blend(person.velocity, speed, max(view.dt_s / VELOCITY_S, 1 / (person.seen_frames + 1))),
         foot=_blend(person.foot, _foot_of(belief.estimate), view.dt_s / FOOT_S),
@@ -189,19 +193,17 @@ def _gain(dt_s: float, time_constant_s: float) -> float:
     return 1.0 if time_constant_s == 0 else 1 - math.exp(-dt_s / time_constant_s)
 
 
-def _learned(person: TrackedPerson, view: FrameView, config: TrackerConfig) -> TrackedPerson:
-    """Remember what a person looks like who is seen whole.
+def _learned(
+    known: ColourModel | None, state: NDArray[np.float64], view: FrameView, config: TrackerConfig
+) -> ColourModel | None:
+    """Take in what a person with this state (9,) looks like who is seen whole.
 
     Source: thesis, sections 6.1.3 and 7.4, by which the model is not updated during occlusions.
     """
-    if config.colour is None:
-        return person
-    features = view.describe(person.belief.estimate.astype(np.float32)[None])
-    if features is None:
-        return person
-    known = person.looks
-    looks = ColourModel.begin(features[0], config.colour) if known is None else known.updated(features[0])
-    return replace(person, looks=looks)
+    features = None if config.colour is None else view.describe(state.astype(np.float32)[None])
+    if config.colour is None or features is None:
+        return known
+    return ColourModel.begin(features[0], config.colour) if known is None else known.updated(features[0])
 
 
 def _foot_of(state: NDArray[np.float64]) -> float:

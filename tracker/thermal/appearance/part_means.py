@@ -45,24 +45,33 @@ def write_part_means(
         scale: (3, F) by which the means, 0..1, are multiplied.
         least_seen: share of the part's area that must lie in the image.
     """
-    height, width, channels = integral.shape[0] - 1, integral.shape[1] - 1, integral.shape[2]
+    height, width, channels, degree = integral.shape
+    height, width, sums, step = height - 1, width - 1, integral.reshape(-1), channels * degree
     for i in range(len(state)):
         for part in range(PARTS):
             rectangle = align(alignment, part_rectangle(state[i], part), state[i, H])
             left, top, right, bottom = _within(rectangle, width, height)
             pixels = (right - left) * (bottom - top)
             if pixels == 0 or pixels < least_seen * _area(rectangle):
-                means[i, part, column : column + channels] = np.nan
+                for c in range(channels):
+                    means[i, part, column + c] = np.nan
                 continue
-            share = 1.0 / pixels
+            share, above, below = 1.0 / pixels, top * (width + 1), bottom * (width + 1)
             for c in range(channels):
                 total = (
-                    np.int64(integral[bottom, right, c, 0])
-                    + integral[top, left, c, 0]
-                    - (np.int64(integral[top, right, c, 0]) + integral[bottom, left, c, 0])
+                    _sum_at(sums, (below + right) * step + c * degree)
+                    + _sum_at(sums, (above + left) * step + c * degree)
+                    - _sum_at(sums, (above + right) * step + c * degree)
+                    - _sum_at(sums, (below + left) * step + c * degree)
                 )
                 mean = np.float32(total * share / WHITE)
                 means[i, part, column + c] = mean * scale[part, column + c]
+
+
+@njit(cache=True, nogil=True)
+def _sum_at(sums: NDArray[np.integer[Any]], at: int) -> int:
+    # Unsigned, as numba would ask of every other number whether it counts from the end.
+    return int(sums[np.uint64(at)])
 
 
 @njit(cache=True, nogil=True)
@@ -75,12 +84,13 @@ def _within(rectangle: Rectangle, width: int, height: int) -> tuple[int, int, in
 
 @njit(cache=True, nogil=True)
 def _clamped(edge: np.float32, last: int) -> int:
-    return min(max(np.int64(first_pixel_after(edge)), 0), last)
+    return min(max(int(first_pixel_after(edge)), 0), last)
 
 
 @njit(cache=True, nogil=True)
 def _area(rectangle: Rectangle) -> int:
     """Count the pixels of a rectangle, also those outside of the image."""
-    wide = first_pixel_after(rectangle[2]) - first_pixel_after(rectangle[0])
-    tall = first_pixel_after(rectangle[3]) - first_pixel_after(rectangle[1])
-    return np.int64(max(wide, 0)) * max(tall, 0)
+    left, top, right, bottom = rectangle
+    wide = int(first_pixel_after(right)) - int(first_pixel_after(left))
+    tall = int(first_pixel_after(bottom)) - int(first_pixel_after(top))
+    return max(wide, 0) * max(tall, 0)

@@ -53,7 +53,7 @@ def part_rectangles(state: Floats) -> Floats:
 
 
 @njit(cache=True, nogil=True)
-def first_pixel_after(edge: np.float32) -> int:
+def first_pixel_after(edge: np.float32) -> np.int32:
     """Tell the first column or row whose pixels' centres are not left of, or above, an edge [px].
 
     Far beyond any image it is still an int32, whatever a stray sample asks for.
