@@ -131,12 +131,12 @@ def identity_at(tracks, x):
 @pytest.mark.parametrize("seed", range(2))
 def test_a_person_keeps_its_identity_through_a_total_occlusion(seed):
     tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(seed))
-    tracks = [tracker.update(passing(i)) for i in range(115)]
-    before, after = identity_at(tracks[45], 60 + 2.2 * 15), identity_at(tracks[-1], 60 + 2.2 * 84)
+    tracks = [tracker.update(passing(i)) for i in range(-60, 115)]
+    before, after = identity_at(tracks[60 + 45], 60 + 2.2 * 15), identity_at(tracks[-1], 60 + 2.2 * 84)
     assert before is not None
     assert after == before
     hidden = [t for frame in tracks for t in frame if t.status is Status.TOTALLY_OCCLUDED]
-    front = next(track.id for track in tracks[45] if semi_height(track) > 35)
+    front = next(track.id for track in tracks[60 + 45] if semi_height(track) > 35)
     assert {t.id for t in hidden} == {before}
     assert {t.occluder for t in hidden} <= {front, None}
 
