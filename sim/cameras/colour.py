@@ -11,12 +11,10 @@ from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, Light
 from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows
 from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.paintings import paint_row
+from peopleboy.sim.cameras.paintings import paint_run
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
-    filled_by_row,
-    finish_at,
-    finish_row,
+    finish_run,
     part_from_pixel,
     pattern_value,
     surface_point,
@@ -35,18 +33,63 @@ _CONTRAST = 0.03  # share of the light: fainter edges need no smoothing
 _ROOM = 0.4  # what is mirrored where nothing in particular is, share of the light
 
 
+@njit(cache=True, fastmath=True, forceinline=True)
+def _is_second(
+    v: int,
+    u: int,
+    p: int,
+    depths: NDArray[np.float32],
+    matrices: NDArray[np.float64],
+    kind: NDArray[np.int64],
+    period: NDArray[np.float64],
+    phase: NDArray[np.float64],
+) -> bool:
+    """Whether the pattern of a part has its second colour at a pixel."""
+    x, y, z = surface_point(matrices, p, u, v, depths[u])
+    return pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p) == 1
+
+
+@njit(cache=True, fastmath=True, forceinline=True)
+def _cover_run(
+    image: NDArray[np.float32],
+    factor: NDArray[np.float32],
+    is_second: NDArray[np.bool_],
+    places: NDArray[np.uint32],
+    first: int,
+    end: int,
+    own: NDArray[np.float64],
+    other: NDArray[np.float64],
+    texels: NDArray[np.int16],
+) -> None:
+    """Fill neighbouring pixels of a part with a finish, in its own (6,) and the finish's colour (3,)."""
+    one, two, three, step = np.uint64(1), np.uint64(2), np.uint64(3), np.float32(TEXEL_STEP)
+    other_red, other_green, other_blue = np.float32(other[0]), np.float32(other[1]), np.float32(other[2])
+    for u in range(first, end):
+        c = 3 if is_second[u] else 0
+        red, green, blue = np.float32(own[c]), np.float32(own[c + 1]), np.float32(own[c + 2])
+        texel = texels[places[u]]
+        shade, cover = factor[u] * (step * np.float32(texel[1])), step * np.float32(texel[2])
+        i = three * np.uint64(u)
+        image[i] = shade * (red + cover * (other_red - red))
+        image[i + one] = shade * (green + cover * (other_green - green))
+        image[i + two] = shade * (blue + cover * (other_blue - blue))
+
+
 @njit(cache=True, fastmath=True)
 def _light_row(
     image: NDArray[np.float32],
     factor: NDArray[np.float32],
+    is_second: NDArray[np.bool_],
     places: NDArray[np.uint32],
-    is_filled: NDArray[np.bool_],
     v: int,
     parts: NDArray[np.int32],
     depth: NDArray[np.float32],
     normal: NDArray[np.float32],
     matrices: NDArray[np.float64],
     colour: NDArray[np.float64],
+    kind: NDArray[np.int64],
+    period: NDArray[np.float64],
+    phase: NDArray[np.float64],
     finish: NDArray[np.float64],
     texels: NDArray[np.int16],
     paint: NDArray[np.float64],
@@ -54,38 +97,44 @@ def _light_row(
     light: NDArray[np.float64],
     level: float,
 ) -> None:
-    """Fill a row (W, 3) where parts have paintings or finishes but no patterns, several pixels at a time."""
-    if paint_texels.shape[1] > 0:
-        paint_row(factor, v, parts, depth, matrices, paint, paint_texels, 1)
-    if len(finish) > 0:
-        finish_row(places, v, parts, depth, matrices, finish)
-    part, width, end = parts[v], parts.shape[1], 0
+    """Fill a row (3 W,) in full detail, neighbouring pixels of one part together; normals are (3 W,), too.
+
+    So the compiler knows how far apart pixels lie, and takes several at a time.
+    """
+    part, depths, width, end = parts[v], depth[v], parts.shape[1], 0
     x, y, z = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
-    direct, none, step = np.float32(level * (1.0 - _AMBIENT)), np.float32(0.0), np.float32(TEXEL_STEP)
+    direct, none = np.float32(level * (1.0 - _AMBIENT)), np.float32(0.0)
+    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
+    has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
     while end < width:
         first, p = end, part[end]
         while end < width and part[end] == p:
             end += 1
-        if p < 0 or not is_filled[p]:
+        if p < 0:
+            continue
+        around, factor[first:end] = np.float32(level * _AMBIENT + colour[p, 6]), np.float32(1.0)
+        if has_paint and paint[p, 0] >= 0.0:
+            paint_run(factor, first, end, v, p, depths, matrices, paint, paint_texels, 1)
+        for u in range(first, end):
+            i = three * np.uint64(u)
+            facing = max(normal[i] * x + normal[i + one] * y + normal[i + two] * z, none)
+            factor[u] *= around + direct * facing
+        is_second[first:end] = False
+        if kind[p, 1] != 0:
+            for u in range(first, end):
+                is_second[u] = _is_second(v, u, p, depths, matrices, kind, period, phase)
+        if has_finish and finish[p, 0] >= 0.0:
+            finish_run(places, first, end, v, p, depths, matrices, finish)
+            _cover_run(image, factor, is_second, places, first, end, colour[p], finish[p, 5:], texels)
             continue
         red, green, blue = np.float32(colour[p, 0]), np.float32(colour[p, 1]), np.float32(colour[p, 2])
-        around = np.float32(level * _AMBIENT + colour[p, 6])
-        if paint[p, 0] >= 0.0:
-            for u in range(first, end):
-                facing = max(normal[u, 0] * x + normal[u, 1] * y + normal[u, 2] * z, none)
-                shade = (around + direct * facing) * factor[u]
-                image[u, 0], image[u, 1], image[u, 2] = shade * red, shade * green, shade * blue
-        else:
-            redder, greener = np.float32(finish[p, 5]) - red, np.float32(finish[p, 6]) - green
-            bluer = np.float32(finish[p, 7]) - blue
-            for u in range(first, end):
-                texel = texels[places[u]]
-                facing = max(normal[u, 0] * x + normal[u, 1] * y + normal[u, 2] * z, none)
-                shade = (around + direct * facing) * (step * np.float32(texel[1]))
-                cover = step * np.float32(texel[2])
-                image[u, 0] = shade * (red + cover * redder)
-                image[u, 1] = shade * (green + cover * greener)
-                image[u, 2] = shade * (blue + cover * bluer)
+        redder, greener = np.float32(colour[p, 3]) - red, np.float32(colour[p, 4]) - green
+        bluer = np.float32(colour[p, 5]) - blue
+        for u in range(first, end):
+            i, shade, share = three * np.uint64(u), factor[u], np.float32(is_second[u])
+            image[i] = shade * (red + share * redder)
+            image[i + one] = shade * (green + share * greener)
+            image[i + two] = shade * (blue + share * bluer)
 
 
 @njit(cache=True, fastmath=True)
@@ -107,33 +156,26 @@ def _radiance_image(
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
-    has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
-    line, places = np.empty(width, np.float32), np.empty(width, np.uint32)
-    is_filled = filled_by_row(paint, paint_texels, finish, kind[:, 1].astype(np.float64))
-    for v in range(height):
-        if has_paint or has_finish:
+    if len(finish) > 0 or paint_texels.shape[1] > 0:
+        rows, normals = image.reshape(height, 3 * width), normal.reshape(height, 3 * width)
+        factor, places = np.empty(width, np.float32), np.empty(width, np.uint32)
+        is_second = np.empty(width, np.bool_)
+        for v in range(height):
             _light_row(
-                image[v], line, places, is_filled, v, part, depth, normal[v], matrices, colour, finish,
-                texels, paint, paint_texels, light, level,
+                rows[v], factor, is_second, places, v, part, depth, normals[v], matrices, colour, kind,
+                period, phase, finish, texels, paint, paint_texels, light, level,
             )  # fmt: skip
+        return image
+    for v in range(height):
         for u in range(width):
             p = part[v, u]
-            if p < 0 or is_filled[p]:
+            if p < 0:
                 continue
-            second, is_finished = 0, has_finish and finish[p, 0] >= 0.0
-            if kind[p, 1] != 0 or is_finished:
+            second = 0
+            if kind[p, 1] != 0:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
                 second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
-            if has_paint and paint[p, 0] >= 0.0:
-                shade *= line[u]
-            if is_finished:
-                _, factor, cover = finish_at(finish, texels, p, x, y, z)
-                shade *= factor
-                for c in range(3):
-                    own = colour[p, second + c]
-                    image[v, u, c] = shade * (own + cover * (finish[p, 5 + c] - own))
-                continue
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
     return image

@@ -61,61 +61,57 @@ def painted(
     )
 
 
-@njit(cache=True, fastmath=True)
-def paint_row(
+@njit(cache=True, fastmath=True, forceinline=True)
+def paint_run(
     line: NDArray[np.float32],
+    first: int,
+    end: int,
     v: int,
-    part: NDArray[np.int32],
-    depth: NDArray[np.float32],
+    p: int,
+    depths: NDArray[np.float32],
     matrices: NDArray[np.float64],
     paint: NDArray[np.float64],
     texels: NDArray[np.int16],
     layer: int,
 ) -> None:
-    """Find what paintings do to the pixels of a row, as `painted` says it of points.
+    """Find what a painting does to neighbouring pixels of one part, as `painted` says it of points.
 
-    Pixels of one part that are next to each other share nearly all that is to be reckoned.
+    They share nearly all that is to be reckoned.
 
     Args:
-        line: (W,) gets kelvin or factors on light where parts have paintings, nothing elsewhere.
+        line: (W,) gets kelvin or factors on light of pixels first..end-1.
+        first: column of the first pixel.
+        end: column after the last one.
         v: number of the row.
-        part: (H, W) what each pixel sees.
-        depth: (H, W) [m] how far away that is.
+        p: number of the part.
+        depths: (W,) [m] how far away what the row's pixels see is.
         matrices: (P, 3, 4) as `part_from_pixel` gives them.
         paint: (P, 7) as `make_paint_table` gives them.
         texels: (2, N) beside them.
         layer: 0 for kelvin, 1 for light.
     """
-    width, step = part.shape[1], np.float32(_KELVIN if layer == 0 else _LIGHT)
-    values, depths = texels[layer], depth[v]
+    step, values = np.float32(_KELVIN if layer == 0 else _LIGHT), texels[layer]
     none, one = np.float32(0.0), np.uint32(1)
-    end = 0
-    while end < width:
-        first, p = end, part[v, end]
-        while end < width and part[v, end] == p:
-            end += 1
-        if p < 0 or paint[p, 0] < 0.0:
-            continue
-        scale, columns, texel = paint[p, 4], np.int32(paint[p, 5]), np.int32(paint[p, 0])
-        most_u, most_v = np.float32(paint[p, 5] - 1.001), np.float32(paint[p, 6] - 1.001)
-        m, is_level = matrices[p], int(paint[p, 1]) == _LEVEL
-        low, more = (1, 0.0) if is_level else (2, 1.0)
-        # Texels across are (slope u + start) z + origin, and those up alike.
-        slope_u = np.float32((m[0, 0] + more * m[1, 0]) * scale)
-        start_u = np.float32(((m[0, 1] + more * m[1, 1]) * v + m[0, 2] + more * m[1, 2]) * scale)
-        origin_u = np.float32((m[0, 3] + more * m[1, 3] - paint[p, 2]) * scale)
-        slope_v, start_v = np.float32(m[low, 0] * scale), np.float32((m[low, 1] * v + m[low, 2]) * scale)
-        origin_v = np.float32((m[low, 3] - paint[p, 3]) * scale)
-        for u in range(first, end):
-            z = depths[u]
-            x = min(max((slope_u * np.float32(u) + start_u) * z + origin_u, none), most_u)
-            y = min(max((slope_v * np.float32(u) + start_v) * z + origin_v, none), most_v)
-            i, j = np.int32(x), np.int32(y)
-            # An unsigned place is not checked for being counted from the end.
-            a, at = x - np.float32(i), np.uint32(texel + j * columns + i)
-            value = np.float32(values[at])
-            lower = value + a * (np.float32(values[at + one]) - value)
-            at += np.uint32(columns)
-            value = np.float32(values[at])
-            upper = value + a * (np.float32(values[at + one]) - value)
-            line[u] = step * (lower + (y - np.float32(j)) * (upper - lower))
+    scale, columns, texel = paint[p, 4], np.int32(paint[p, 5]), np.int32(paint[p, 0])
+    most_u, most_v = np.float32(paint[p, 5] - 1.001), np.float32(paint[p, 6] - 1.001)
+    m, is_level = matrices[p], int(paint[p, 1]) == _LEVEL
+    low, more = (1, 0.0) if is_level else (2, 1.0)
+    # Texels across are (slope u + start) z + origin, and those up alike.
+    slope_u = np.float32((m[0, 0] + more * m[1, 0]) * scale)
+    start_u = np.float32(((m[0, 1] + more * m[1, 1]) * v + m[0, 2] + more * m[1, 2]) * scale)
+    origin_u = np.float32((m[0, 3] + more * m[1, 3] - paint[p, 2]) * scale)
+    slope_v, start_v = np.float32(m[low, 0] * scale), np.float32((m[low, 1] * v + m[low, 2]) * scale)
+    origin_v = np.float32((m[low, 3] - paint[p, 3]) * scale)
+    for u in range(first, end):
+        z = depths[u]
+        x = min(max((slope_u * np.float32(u) + start_u) * z + origin_u, none), most_u)
+        y = min(max((slope_v * np.float32(u) + start_v) * z + origin_v, none), most_v)
+        i, j = np.int32(x), np.int32(y)
+        # An unsigned place is not checked for being counted from the end.
+        a, at = x - np.float32(i), np.uint32(texel + j * columns + i)
+        value = np.float32(values[at])
+        lower = value + a * (np.float32(values[at + one]) - value)
+        at += np.uint32(columns)
+        value = np.float32(values[at])
+        upper = value + a * (np.float32(values[at + one]) - value)
+        line[u] = step * (lower + (y - np.float32(j)) * (upper - lower))

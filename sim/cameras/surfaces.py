@@ -215,71 +215,52 @@ def finish_at(
     return TEXEL_STEP * texels[at, 0], TEXEL_STEP * texels[at, 1], TEXEL_STEP * texels[at, 2]
 
 
-@njit(cache=True)
-def filled_by_row(
-    paint: NDArray[np.float64],
-    paint_texels: NDArray[np.int16],
-    finish: NDArray[np.float64],
-    pattern: NDArray[np.float64],
-) -> NDArray[np.bool_]:
-    """(P,) parts that have a painting or a finish but, going by a number of each (P,), no pattern."""
-    has_paint, has_finish = paint_texels.shape[1] > 0, len(finish) > 0
-    is_filled = np.zeros(len(pattern), np.bool_)
-    for p in range(len(pattern)):
-        has_looks = (has_paint and paint[p, 0] >= 0.0) or (has_finish and finish[p, 0] >= 0.0)
-        is_filled[p] = has_looks and pattern[p] == 0.0
-    return is_filled
-
-
-@njit(cache=True, fastmath=True)
-def finish_row(
+@njit(cache=True, fastmath=True, forceinline=True)
+def finish_run(
     places: NDArray[np.uint32],
+    first: int,
+    end: int,
     v: int,
-    part: NDArray[np.int32],
-    depth: NDArray[np.float32],
+    p: int,
+    depths: NDArray[np.float32],
     matrices: NDArray[np.float64],
     finish: NDArray[np.float64],
 ) -> None:
-    """Find the texels of their finishes on which the pixels of a row fall, as `finish_at` does of points.
+    """Find the texels of a finish on which neighbouring pixels of one part fall, as `finish_at` does it.
 
     They are found several at a time, and looked up only when all are known: waiting for memory takes longest.
 
     Args:
-        places: (W,) gets the number of the texel where parts have finishes, nothing elsewhere.
+        places: (W,) gets the number of the texel of pixels first..end-1.
+        first: column of the first pixel.
+        end: column after the last one.
         v: number of the row.
-        part: (H, W) what each pixel sees.
-        depth: (H, W) [m] how far away that is.
+        p: number of the part.
+        depths: (W,) [m] how far away what the row's pixels see is.
         matrices: (P, 3, 4) as `part_from_pixel` gives them.
         finish: (P, 8) as in `MaterialTable`.
     """
-    width, depths, end = part.shape[1], depth[v], 0
     none, half, quarter = np.float32(0.0), np.float32(0.5), np.float32(0.25)
     one, tiny = np.float32(1.0), np.float32(1e-9)
-    while end < width:
-        first, p = end, part[v, end]
-        while end < width and part[v, end] == p:
-            end += 1
-        if p < 0 or finish[p, 0] < 0.0:
-            continue
-        m, texel, columns, fine = matrices[p], np.int32(finish[p, 0]), np.int32(finish[p, 1]), finish[p, 4]
-        around, most = np.float32(columns), np.float32(finish[p, 2] - 0.5)
-        slope_x, start_x = np.float32(m[0, 0]), np.float32(m[0, 1] * v + m[0, 2])
-        slope_y, start_y = np.float32(m[1, 0]), np.float32(m[1, 1] * v + m[1, 2])
-        slope_z, start_z = np.float32(m[2, 0] * fine), np.float32((m[2, 1] * v + m[2, 2]) * fine)
-        origin_x, origin_y = np.float32(m[0, 3]), np.float32(m[1, 3])
-        origin_z = np.float32((m[2, 3] - finish[p, 3]) * fine + 0.5)
-        for u in range(first, end):
-            z = depths[u]
-            x = (slope_x * np.float32(u) + start_x) * z + origin_x
-            y = (slope_y * np.float32(u) + start_y) * z + origin_y
-            across, along = abs(y), abs(x)
-            ratio = min(across, along) / max(max(across, along), tiny)
-            square = ratio * ratio
-            turn = ratio * (_TURN_1 + square * (_TURN_3 + square * (_TURN_5 + _TURN_7 * square)))
-            turn = quarter - turn if across > along else turn
-            turn = half - turn if x < none else turn
-            turn = one - turn if y < none else turn
-            column = np.int32(turn * around + half)
-            column = column if column < columns else np.int32(0)
-            row = np.int32(min(max((slope_z * np.float32(u) + start_z) * z + origin_z, none), most))
-            places[u] = texel + row * columns + column
+    m, texel, columns, fine = matrices[p], np.int32(finish[p, 0]), np.int32(finish[p, 1]), finish[p, 4]
+    around, most = np.float32(columns), np.float32(finish[p, 2] - 0.5)
+    slope_x, start_x = np.float32(m[0, 0]), np.float32(m[0, 1] * v + m[0, 2])
+    slope_y, start_y = np.float32(m[1, 0]), np.float32(m[1, 1] * v + m[1, 2])
+    slope_z, start_z = np.float32(m[2, 0] * fine), np.float32((m[2, 1] * v + m[2, 2]) * fine)
+    origin_x, origin_y = np.float32(m[0, 3]), np.float32(m[1, 3])
+    origin_z = np.float32((m[2, 3] - finish[p, 3]) * fine + 0.5)
+    for u in range(first, end):
+        z = depths[u]
+        x = (slope_x * np.float32(u) + start_x) * z + origin_x
+        y = (slope_y * np.float32(u) + start_y) * z + origin_y
+        across, along = abs(y), abs(x)
+        ratio = min(across, along) / max(max(across, along), tiny)
+        square = ratio * ratio
+        turn = ratio * (_TURN_1 + square * (_TURN_3 + square * (_TURN_5 + _TURN_7 * square)))
+        turn = quarter - turn if across > along else turn
+        turn = half - turn if x < none else turn
+        turn = one - turn if y < none else turn
+        column = np.int32(turn * around + half)
+        column = column if column < columns else np.int32(0)
+        row = np.int32(min(max((slope_z * np.float32(u) + start_z) * z + origin_z, none), most))
+        places[u] = texel + row * columns + column

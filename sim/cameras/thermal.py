@@ -18,12 +18,10 @@ from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.paintings import paint_row
+from peopleboy.sim.cameras.paintings import paint_run
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
-    filled_by_row,
-    finish_at,
-    finish_row,
+    finish_run,
     part_from_pixel,
     pattern_value,
     smooth_variation,
@@ -94,33 +92,29 @@ def _look_up(table: NDArray[np.float64], low: float, high: float, value: float) 
     return result
 
 
-@njit(cache=True, fastmath=True)
-def _finish_row(
+@njit(cache=True, fastmath=True, forceinline=True)
+def _vary_run(
     warmer_k: NDArray[np.float32],
-    places: NDArray[np.uint32],
+    first: int,
+    end: int,
     v: int,
-    part: NDArray[np.int32],
-    depth: NDArray[np.float32],
+    p: int,
+    depths: NDArray[np.float32],
     matrices: NDArray[np.float64],
     thermal: NDArray[np.float64],
+    kind: NDArray[np.int64],
+    period: NDArray[np.float64],
     phase: NDArray[np.float64],
-    finish: NDArray[np.float64],
-    texels: NDArray[np.int16],
 ) -> None:
-    """Find by how much finishes and variation warm the pixels of a row (W,), several pixels at a time."""
-    width, end = part.shape[1], 0
-    while end < width:
-        first, p = end, part[v, end]
-        while end < width and part[v, end] == p:
-            end += 1
-        if p < 0 or finish[p, 0] < 0.0:
-            continue
-        size_k = thermal[p, 2]
+    """Add what variation and pattern of a part add [K] to neighbouring pixels of it, first..end-1 of (W,)."""
+    if thermal[p, 2] != 0.0:
         for u in range(first, end):
-            x, y, z = surface_point(matrices, p, u, v, depth[v, u])
-            warmer_k[u] = size_k * smooth_variation(x, y, z, thermal[p, 3], phase, p)
+            x, y, z = surface_point(matrices, p, u, v, depths[u])
+            warmer_k[u] += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
+    if thermal[p, 4] != 0.0:
         for u in range(first, end):
-            warmer_k[u] += np.float32(TEXEL_STEP) * np.float32(texels[places[u], 0])
+            x, y, z = surface_point(matrices, p, u, v, depths[u])
+            warmer_k[u] += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
 
 
 @njit(cache=True, fastmath=True)
@@ -128,12 +122,13 @@ def _radiate_row(
     image: NDArray[np.float32],
     warmer_k: NDArray[np.float32],
     places: NDArray[np.uint32],
-    is_filled: NDArray[np.bool_],
     v: int,
     parts: NDArray[np.int32],
     depth: NDArray[np.float32],
     matrices: NDArray[np.float64],
     thermal: NDArray[np.float64],
+    kind: NDArray[np.int64],
+    period: NDArray[np.float64],
     phase: NDArray[np.float64],
     finish: NDArray[np.float64],
     texels: NDArray[np.int16],
@@ -141,25 +136,30 @@ def _radiate_row(
     paint_texels: NDArray[np.int16],
     surroundings: float,
 ) -> None:
-    """Fill a row (W,) where parts have paintings or finishes but no patterns, several pixels at a time."""
-    if paint_texels.shape[1] > 0:
-        paint_row(warmer_k, v, parts, depth, matrices, paint, paint_texels, 0)
-    if len(finish) > 0:
-        finish_row(places, v, parts, depth, matrices, finish)
-        _finish_row(warmer_k, places, v, parts, depth, matrices, thermal, phase, finish, texels)
-    part, width, end = parts[v], parts.shape[1], 0
+    """Fill a row (W,) in full detail, neighbouring pixels of one part together."""
+    part, depths, width, end = parts[v], depth[v], parts.shape[1], 0
     scale, most = np.float32(1.0 / _HALF_K), np.float32(1.0)
+    has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
     while end < width:
         first, p = end, part[end]
         while end < width and part[end] == p:
             end += 1
-        if p < 0 or not is_filled[p]:
+        if p < 0:
+            image[first:end] = np.float32(surroundings)
             continue
+        warmer_k[first:end] = np.float32(0.0)
+        if has_paint and paint[p, 0] >= 0.0:
+            paint_run(warmer_k, first, end, v, p, depths, matrices, paint, paint_texels, 0)
+        if has_finish and finish[p, 0] >= 0.0:
+            finish_run(places, first, end, v, p, depths, matrices, finish)
+            for u in range(first, end):
+                warmer_k[u] += np.float32(TEXEL_STEP) * np.float32(texels[places[u], 0])
+        _vary_run(warmer_k, first, end, v, p, depths, matrices, thermal, kind, period, phase)
         base, emissivity = np.float32((thermal[p, 0] - _MIDDLE_C) / _HALF_K), np.float32(thermal[p, 1])
         rest = np.float32((1.0 - thermal[p, 1]) * surroundings)
         for u in range(first, end):
-            x = min(max(base + scale * warmer_k[u], -most), most)
-            radiance = _B0 + x * (_B1 + x * (_B2 + x * (_B3 + x * (_B4 + x * (_B5 + x * _B6)))))
+            at = min(max(base + scale * warmer_k[u], -most), most)
+            radiance = _B0 + at * (_B1 + at * (_B2 + at * (_B3 + at * (_B4 + at * (_B5 + at * _B6)))))
             image[u] = emissivity * radiance + rest
 
 
@@ -182,32 +182,25 @@ def _radiance_image(
 ) -> NDArray[np.float32]:
     height, width = part.shape
     image = np.empty((height, width), np.float32)
-    has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
-    line, places = np.empty(width, np.float32), np.empty(width, np.uint32)
-    is_filled = filled_by_row(paint, paint_texels, finish, thermal[:, 4])
-    for v in range(height):
-        if has_paint or has_finish:
+    if len(finish) > 0 or paint_texels.shape[1] > 0:
+        warmer_k, places = np.empty(width, np.float32), np.empty(width, np.uint32)
+        for v in range(height):
             _radiate_row(
-                image[v], line, places, is_filled, v, part, depth, matrices, thermal, phase, finish, texels,
-                paint, paint_texels, surroundings,
+                image[v], warmer_k, places, v, part, depth, matrices, thermal, kind, period, phase, finish,
+                texels, paint, paint_texels, surroundings,
             )  # fmt: skip
+        return image
+    for v in range(height):
         for u in range(width):
             p = part[v, u]
             if p < 0:
                 image[v, u] = surroundings
                 continue
-            if is_filled[p]:
-                continue
             temperature = thermal[p, 0]
-            if has_paint and paint[p, 0] >= 0.0:
-                temperature += line[u]
-            is_finished = has_finish and finish[p, 0] >= 0.0
-            if is_finished or thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
+            if thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
                 x, y, z = surface_point(matrices, p, u, v, depth[v, u])
                 temperature += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
                 temperature += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
-                if is_finished:
-                    temperature += finish_at(finish, texels, p, x, y, z)[0]
             emitted = _look_up(table, span[0], span[1], temperature)
             image[v, u] = thermal[p, 1] * emitted + (1.0 - thermal[p, 1]) * surroundings
     return image

@@ -8,8 +8,6 @@ twice, and any image of the view can do it. Where an image shows no step, nothin
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -133,6 +131,7 @@ def _smooth(  # noqa: C901 (in one function)
     """
     kind, size, first_surface, shape_of = table.kind, table.size, table.first_surface, table.surface_shape
     pose, piece_of = _shapes_from_camera(table, camera_from_part), _pieces_of(table)
+    faces, is_known = np.empty((len(shape_of), 15)), np.zeros(len(shape_of), np.bool_)
     height, width, channels = image.shape
     # Pixels that get something of others, by how much four times their value changes, and where they are in
     # these lists: of this row and the next.
@@ -187,15 +186,18 @@ def _smooth(  # noqa: C901 (in one function)
                                     break
                         across = (x0 + _RAYS[k, 0] - lens.centre_u) * scale
                         down = (y0 + _RAYS[k, 1] - lens.centre_v) * scale
-                        best, seen = math.inf, last if count == 1 else one
+                        nearest, seen = 0.0, last if count == 1 else one
                         for j in range(count):
                             p = first if j == 0 else last
                             s = shape_of[p]
                             if kind[s] == _MESH:
-                                best, seen = 0.0, one
+                                seen = one
                                 break
                             if kind[s] == _BOX:
-                                t, met = _hit_face(p - first_surface[s], size[s], pose[s], across, down), p
+                                if not is_known[p]:
+                                    _set_face(faces[p], p - first_surface[s], size[s], pose[s])
+                                    is_known[p] = True
+                                here, met = _hit_face(faces[p], across, down), p
                             else:
                                 o = (pose[s, 0, 3], pose[s, 1, 3], pose[s, 2, 3])
                                 d = (
@@ -204,9 +206,9 @@ def _smooth(  # noqa: C901 (in one function)
                                     pose[s, 2, 0] * across + pose[s, 2, 1] * down + pose[s, 2, 2],
                                 )
                                 t, local = hit_shape(kind[s], (size[s, 0], size[s, 1], size[s, 2]), o, d)
-                                met = piece_of[first_surface[s] + local]
-                            if t < best:
-                                best, seen = t, met
+                                here, met = 1.0 / t, piece_of[first_surface[s] + local]
+                            if here > nearest:
+                                nearest, seen = here, met
                         if seen == one or (seen != other and shape_of[seen] == shape_of[one]):
                             break
                         is_met = True
@@ -225,16 +227,38 @@ def _smooth(  # noqa: C901 (in one function)
 
 
 @njit(cache=True, error_model="numpy")
-def _hit_face(face: int, size: Array, pose: Array, x: float, y: float) -> float:
-    """Where the camera's ray (x, y, 1) meets one face of a box, infinite if it does not."""
-    i, j, k = face % 3, (face + 1) % 3, (face + 2) % 3
-    along = pose[i, 0] * x + pose[i, 1] * y + pose[i, 2]
-    end = 0.5 * size[i] if face < 3 else -0.5 * size[i]
-    t = (end - pose[i, 3]) / along
-    across = pose[j, 3] + t * (pose[j, 0] * x + pose[j, 1] * y + pose[j, 2])
-    up = pose[k, 3] + t * (pose[k, 0] * x + pose[k, 1] * y + pose[k, 2])
-    is_met = (abs(across) <= 0.5 * size[j]) & (abs(up) <= 0.5 * size[k]) & (end * along < 0.0)
-    return t if is_met else math.inf
+def _set_face(form: Array, face: int, size: Array, pose: Array) -> None:
+    """Set what tells of a ray (x, y, 1) whether it meets a face of a box, and how near, without a division.
+
+    Args:
+        form: (15,) gets five triples whose product with the ray is positive on the inner side of each of the
+            four edges, and the nearness of the face's plane.
+        face: which of the six.
+        size: (3,) of the box.
+        pose: (3, 4) the camera's frame in that of the box.
+    """
+    i = face % 3
+    away = (0.5 * size[i] if face < 3 else -0.5 * size[i]) - pose[i, 3]
+    for c in range(3):
+        plane = pose[i, c] / away
+        form[12 + c] = plane
+        for k in range(2):
+            # The ray meets the plane where 1 / plane goes along it; within half the size either way.
+            j = (face + 1 + k) % 3
+            slope = pose[j, c] + pose[j, 3] * plane
+            form[6 * k + c] = 0.5 * size[j] * plane - slope
+            form[6 * k + 3 + c] = 0.5 * size[j] * plane + slope
+
+
+@njit(cache=True, error_model="numpy")
+def _hit_face(form: Array, x: float, y: float) -> float:
+    """How near [1/m] the camera's ray (x, y, 1) meets a face of a box, 0 if it does not; form as above."""
+    a = form[0] * x + form[1] * y + form[2]
+    b = form[3] * x + form[4] * y + form[5]
+    c = form[6] * x + form[7] * y + form[8]
+    d = form[9] * x + form[10] * y + form[11]
+    near: float = form[12] * x + form[13] * y + form[14]
+    return near if min(min(a, b), min(c, d)) >= 0.0 else 0.0
 
 
 @njit(cache=True)

@@ -248,7 +248,8 @@ def _draw_beyond(
     for `is_mirrored` (P,), what is wanted, and the mirror's plane as in `_keep`.
     """
     left, top, right, bottom = lens.width, lens.height, -1, -1
-    pose, window, farthest = canvas.pose, lens, 0.0
+    pose, sides, farthest = canvas.pose, _sides(lens), 0.0
+    least, most = np.full(3, math.inf), np.full(3, -math.inf)
     bounds = (0, 0, lens.width - 1, lens.height - 1)
     for is_wanted in (True, False):
         for shape in range(len(table.kind)):
@@ -260,7 +261,7 @@ def _draw_beyond(
             if plane[0] * x + plane[1] * y + plane[2] * z >= plane[3]:
                 continue
             radius = _radius(table.kind[shape], table.size[shape])
-            if _is_outside(x, y, z, radius, window) or (not is_wanted and z - radius > farthest):
+            if _is_outside(x, y, z, radius, sides) or (not is_wanted and z - radius > farthest):
                 continue
             compose(to_camera, middle, pose)
             kind, size = table.kind[shape], table.size[shape]
@@ -270,13 +271,16 @@ def _draw_beyond(
                 max(area[0], bounds[0]), max(area[1], bounds[1]),
                 min(area[2], bounds[2]), min(area[3], bounds[3]),
             )  # fmt: skip
-            is_behind = not is_wanted and kind == _BOX and z - _depth_of(size, pose) > farthest
+            is_behind = (not is_wanted and kind == _BOX) and (
+                z - _depth_of(size, pose) > farthest or _is_beside(size, pose, least, most)
+            )
             if is_behind or area[0] > area[2] or area[1] > area[3]:
                 continue
             if is_wanted:
                 left, top = min(left, area[0]), min(top, area[1])
                 right, bottom = max(right, area[2]), max(bottom, area[3])
                 farthest = max(farthest, z + radius)
+                _take_in(kind, size, pose, least, most)
             if is_round:
                 _draw_round(kind, size, table.first_surface[shape], lens, area, canvas)
             else:
@@ -285,8 +289,8 @@ def _draw_beyond(
             break
         # What hides something must be nearer than that, and within its bounds.
         bounds = (left, top, right, bottom)
-        window = Lens(
-            lens.focal, lens.centre_u - left, lens.centre_v - top, right - left + 1, bottom - top + 1
+        sides = _sides(
+            Lens(lens.focal, lens.centre_u - left, lens.centre_v - top, right - left + 1, bottom - top + 1)
         )
     return left, top, right, bottom
 
@@ -369,18 +373,57 @@ def _depth_of(size: Array, pose: Array) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def _is_outside(x: float, y: float, z: float, radius: float, lens: Lens) -> bool:
+def _sides(lens: Lens) -> Array:
+    """(4, 3) the sides of what a lens sees, left, right, top and bottom: unit normals that point inwards."""
+    sides = np.zeros((4, 3))
+    ends = (lens.centre_u + 1.0, lens.width - lens.centre_u, lens.centre_v + 1.0, lens.height - lens.centre_v)
+    for i in range(4):
+        length = math.sqrt(lens.focal * lens.focal + ends[i] * ends[i])
+        sides[i, i // 2] = (lens.focal if i % 2 == 0 else -lens.focal) / length
+        sides[i, 2] = ends[i] / length
+    return sides
+
+
+@njit(cache=True, error_model="numpy")
+def _is_outside(x: float, y: float, z: float, radius: float, sides: Array) -> bool:
     """Whether a ball lies wholly beyond one of the four sides of what a lens sees, or behind it."""
-    left, right = lens.centre_u + 1.0, lens.width - lens.centre_u
-    top, bottom = lens.centre_v + 1.0, lens.height - lens.centre_v
-    f = lens.focal
-    return (
-        z < -radius
-        or f * x + left * z < -radius * math.sqrt(f * f + left * left)
-        or right * z - f * x < -radius * math.sqrt(f * f + right * right)
-        or f * y + top * z < -radius * math.sqrt(f * f + top * top)
-        or bottom * z - f * y < -radius * math.sqrt(f * f + bottom * bottom)
-    )
+    is_outside = z < -radius
+    for i in range(4):
+        is_outside |= sides[i, 0] * x + sides[i, 1] * y + sides[i, 2] * z < -radius
+    return is_outside
+
+
+@njit(cache=True)
+def _take_in(kind: int, size: Array, pose: Array, least: Array, most: Array) -> None:
+    """Widen the bounds (3,), (3,) [m] of what is drawn, in the camera's frame, by one shape."""
+    for i in range(3):
+        if kind == _BOX:
+            wide = 0.5 * (abs(pose[i, 0]) * size[0] + abs(pose[i, 1]) * size[1] + abs(pose[i, 2]) * size[2])
+        elif kind in (_CAPSULE, _CYLINDER):
+            wide = 0.5 * abs(pose[i, 2]) * size[0] + size[1]
+        else:
+            wide = size[0] if kind == _SPHERE else math.inf
+        least[i], most[i] = min(least[i], pose[i, 3] - wide), max(most[i], pose[i, 3] + wide)
+
+
+@njit(cache=True)
+def _is_beside(size: Array, pose: Array, least: Array, most: Array) -> bool:
+    """Whether the camera and bounds (3,), (3,) [m] of its frame lie before the same face of a box.
+
+    The box hides nothing within them then, but for feet that are sunk into it.
+    """
+    for j in range(3):
+        middle = pose[0, j] * pose[0, 3] + pose[1, j] * pose[1, 3] + pose[2, j] * pose[2, 3]
+        for sign in (-1.0, 1.0):
+            face = sign * middle + 0.5 * size[j]
+            if face > 0.0:
+                continue
+            nearest = 0.0
+            for i in range(3):
+                nearest += min(sign * pose[i, j] * least[i], sign * pose[i, j] * most[i])
+            if nearest >= face - _SUNK_M:
+                return True
+    return False
 
 
 @njit(cache=True)

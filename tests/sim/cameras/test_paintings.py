@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.paintings import make_paint_table, paint_row, painted
+from peopleboy.sim.cameras.paintings import make_paint_table, paint_run, painted
 from peopleboy.sim.shapes.paintings import Painting, Unrolling
 
 ROWS, COLUMNS, TEXEL_M = 5, 7, 0.1
@@ -36,20 +36,18 @@ def test_between_texels_a_painting_is_linear_whatever_lies_across_it(
 
 
 @pytest.mark.parametrize("unrolling", Unrolling)
-def test_a_row_of_pixels_shows_what_a_painting_has_at_their_points(unrolling: Unrolling) -> None:
+def test_a_run_of_pixels_shows_what_a_painting_has_at_their_points(unrolling: Unrolling) -> None:
     rng = np.random.default_rng(3)
     paint, texels = make_paint_table([None, slope(unrolling), slope(unrolling)])
-    part = rng.integers(-1, 3, (4, 9), dtype=np.int32)
-    depth = rng.uniform(0.2, 1.0, part.shape).astype(np.float32)
+    depths = rng.uniform(0.2, 1.0, 9).astype(np.float32)
     matrices = rng.uniform(-0.2, 0.2, (3, 3, 4))
-    for v, layer in ((1, 0), (3, 1)):
+    for v, layer, part in ((1, 0, 1), (3, 1, 2)):
         line = np.full(9, np.nan, np.float32)
-        paint_row(line, v, part, depth, matrices, paint, texels, layer)
-        for u in np.flatnonzero(part[v] >= 1):
-            point = matrices[part[v, u]] @ (u * depth[v, u], v * depth[v, u], depth[v, u], 1.0)
-            expected = painted(paint, texels, int(part[v, u]), *point)[layer]
-            assert line[u] == pytest.approx(expected, abs=1e-4)
-        assert np.isnan(line[part[v] < 1]).all()
+        paint_run(line, 2, 8, v, part, depths, matrices, paint, texels, layer)
+        for u in range(2, 8):
+            point = matrices[part] @ (u * depths[u], v * depths[u], depths[u], 1.0)
+            assert line[u] == pytest.approx(painted(paint, texels, part, *point)[layer], abs=1e-4)
+        assert np.isnan(line[[0, 1, 8]]).all()
 
 
 def test_beyond_its_edge_a_painting_goes_on_as_it_ends() -> None:

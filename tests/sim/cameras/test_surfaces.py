@@ -1,3 +1,5 @@
+from itertools import product
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -6,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.cameras.surfaces import (
     finish_at,
-    finish_row,
+    finish_run,
     make_material_table,
     part_from_pixel,
     pattern_value,
@@ -132,22 +134,21 @@ def test_a_finish_is_that_of_the_nearest_texel_and_closes_round_the_part(
         assert value == pytest.approx(layer[int(up + 0.5), int(across + 0.5) % columns], abs=0.002)
 
 
-def test_a_row_of_pixels_falls_on_the_texels_that_finishes_have_at_their_points() -> None:
+def test_a_run_of_pixels_falls_on_the_texels_that_finishes_have_at_their_points() -> None:
     rng, finishes = np.random.default_rng(4), {0: random_finish(41, 24), 2: random_finish(31, 50)}
     materials = [Material(temperature_c=20.0, finish=finishes.get(k)) for k in range(3)]
     table = make_material_table(materials, stream(0, "surface.variation"))
-    part = np.repeat(rng.integers(-1, 3, (30, 10), dtype=np.int32), 6, axis=1)
-    depth = rng.uniform(0.2, 1.0, part.shape).astype(np.float32)
     matrices = rng.uniform(-0.02, 0.02, (3, 3, 4))
     agree = []
-    for v in range(len(part)):
-        places = np.full(part.shape[1], 10**6, np.uint32)
-        finish_row(places, v, part, depth, matrices, table.finish)
-        is_finished = np.isin(part[v], list(finishes))
-        assert np.all(places[~is_finished] == 10**6)
-        for u in np.flatnonzero(is_finished):
-            point = matrices[part[v, u]] @ (u * depth[v, u], v * depth[v, u], depth[v, u], 1.0)
-            expected = finish_at(table.finish, table.texels, int(part[v, u]), *point)
+    for v, part in product(range(15), finishes):
+        places = np.full(60, 10**6, np.uint32)
+        depths = rng.uniform(0.2, 1.0, 60).astype(np.float32)
+        finish_run(places, 10, 50, v, part, depths, matrices, table.finish)
+        assert np.all(places[:10] == 10**6)
+        assert np.all(places[50:] == 10**6)
+        for u in range(10, 50):
+            point = matrices[part] @ (u * depths[u], v * depths[u], depths[u], 1.0)
+            expected = finish_at(table.finish, table.texels, part, *point)
             agree.append(np.allclose(table.texels[places[u]] / 256.0, expected, atol=1e-9))
     # Between two texels, rounding may choose the other.
     assert len(agree) > 500

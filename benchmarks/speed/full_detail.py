@@ -1,0 +1,107 @@
+"""What full detail costs: both camera images with full truth of a scenario, beside the same in plain detail.
+
+`python -m benchmarks.speed.full_detail glass_corridor street_evening` prints a row for each.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import click
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from peopleboy.behaviours.command import Command
+from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.files.schema.robot import ORACLE
+from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.scenarios.loop.tracker_by_name import make_eyes
+from peopleboy.sim.world import World
+
+SCENARIOS = ("street_evening", "crowded_foyer", "crossing_4", "warm_office", "glass_corridor")
+PRESET = "uncooled"  # electronics of the thermal camera where detail is full, unless the file has others
+SEED = 0
+_COMPILED = 2  # instants after which all kernels are compiled
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DetailTimes:
+    """Medians over the instants of a run: thermal image, colour image and full truth.
+
+    Attributes:
+        plain_ms: [ms] with `detail: plain` and a fixed gain.
+        full_ms: [ms] with `detail: full` and an uncooled camera's electronics.
+    """
+
+    plain_ms: float
+    full_ms: float
+
+    @property
+    def ratio(self) -> float:
+        """How many times as long full detail takes."""
+        return self.full_ms / self.plain_ms
+
+
+def detail_times(name: str, instants: int | None = None) -> DetailTimes:
+    """Play a scenario of the library in both details, instant by instant in turn, and time each.
+
+    Args:
+        name: of the scenario.
+        instants: how many; None for all of them.
+
+    Raises:
+        BadInput: there is no such scenario.
+    """
+    plain, full = _in_detail(name, "plain"), _in_detail(name, "full")
+    commands = _drive(full, instants)
+    times: tuple[list[float], list[float]] = ([], [])
+    with World(plain.world(SEED)) as plain_world, World(full.world(SEED)) as full_world:
+        for command in commands:
+            for world, spent in zip((plain_world, full_world), times, strict=True):
+                start = time.process_time()
+                world.truth()
+                dict(world.observe().images)  # made only when asked for
+                spent.append(time.process_time() - start)
+                world.step(command.linear_m_s, command.angular_rad_s)
+    plain_ms, full_ms = (1000.0 * float(np.median(spent[_COMPILED:])) for spent in times)
+    return DetailTimes(plain_ms=plain_ms, full_ms=full_ms)
+
+
+def _in_detail(name: str, detail: str) -> Scenario:
+    """A scenario of the library in a detail, the thermal camera's electronics with it."""
+    data: dict[str, Any] = load_scenario(name).spec.model_dump(mode="json", exclude_unset=True)
+    robot = data.get("robot", {})
+    cameras = robot.get("cameras", {})
+    electronics = {"preset": PRESET} | cameras.get("thermal", {}) if detail == "full" else {}
+    robot |= {"cameras": cameras | {"thermal": {"kind": "thermal"} | electronics}}
+    return parse_scenario(data | {"detail": detail, "robot": robot}, source=name, folder=LIBRARY)
+
+
+def _drive(scenario: Scenario, instants: int | None) -> list[Command]:
+    """What the robot does in a scenario, so that both worlds are seen from the same places."""
+    config = scenario.world(SEED)
+    frames = round(scenario.duration_s * config.control_hz) if instants is None else instants + _COMPILED
+    with World(config) as world:
+        ticks = closed_loop(world, make_eyes(ORACLE, SEED, world.truth), scenario.make_behaviour(), frames)
+        return [tick.command for tick in ticks]
+
+
+@click.command()
+@click.argument("scenarios", nargs=-1)
+@click.option("--instants", type=click.IntRange(1), help="How many are timed; all of a run by default.")
+def main(scenarios: Sequence[str], instants: int | None) -> None:
+    """Print CPU times of SCENARIOS in plain and in full detail; those of the documentation by default."""
+    table = Table("scenario", "plain, ms", "full, ms", "times as long", box=None)
+    for name in scenarios or SCENARIOS:
+        found = detail_times(name, instants)
+        table.add_row(name, f"{found.plain_ms:.2f}", f"{found.full_ms:.2f}", f"{found.ratio:.2f}")
+    Console(width=100).print(table)
+
+
+if __name__ == "__main__":
+    main()
