@@ -43,6 +43,7 @@ EVERY = 3  # pixels of the image for one of a reflection, in row and column
 _MOST = 6  # planes that mirror at a time, those of most pixels
 _SAME_M, _SAME_COS = 2e-3, 0.99999  # between surfaces in one plane
 _SUNK_M = 0.03  # how far feet may sink into a mirror
+_HAIR_M = 0.004  # how far things and feet may sink into what they touch, and not be hidden by it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -410,7 +411,7 @@ def _take_in(kind: int, size: Array, pose: Array, least: Array, most: Array) -> 
 def _is_beside(size: Array, pose: Array, least: Array, most: Array) -> bool:
     """Whether the camera and bounds (3,), (3,) [m] of its frame lie before the same face of a box.
 
-    The box hides nothing within them then, but for feet that are sunk into it.
+    The box hides nothing within them then, but for what is sunk into it by a hair.
     """
     for j in range(3):
         middle = pose[0, j] * pose[0, 3] + pose[1, j] * pose[1, 3] + pose[2, j] * pose[2, 3]
@@ -421,7 +422,7 @@ def _is_beside(size: Array, pose: Array, least: Array, most: Array) -> bool:
             nearest = 0.0
             for i in range(3):
                 nearest += min(sign * pose[i, j] * least[i], sign * pose[i, j] * most[i])
-            if nearest >= face - _SUNK_M:
+            if nearest >= face - _HAIR_M:
                 return True
     return False
 
