@@ -7,10 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
-import numpy as np
-from numpy.typing import NDArray
-from scipy.stats import ttest_rel
-
 from peopleboy.scenarios.studies.distance_learning.image_errors import ErrorSummary, ImageErrors
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Figures, Line, Samples
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS
@@ -20,19 +16,18 @@ from peopleboy.scenarios.studies.reproduce.showing.error_tests import (
     paired_by_blocks,
     unpaired,
 )
+from peopleboy.scenarios.studies.reproduce.showing.intervals import Gap, by_stretches, margin, paired
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim
 
-SIGNIFICANT = 0.01
-ALIKE = 2.0  # [points] within which two figures are called alike, where the source has no test
 BLIND = 5.0  # [%] below which both figures say only that nobody is found
-
-Floats = NDArray[np.float64]
+MUCH = 0.5  # of what the source gains, which a gain has to reach
 
 
 class ClaimStatus(StrEnum):
     """How a claim fares."""
 
     HOLDS = "holds"
+    WEAKER = "holds, but weaker"
     UNCLEAR = "undecided"
     FAILS = "does not hold"
     BLIND = "finds too few people to tell"
@@ -45,36 +40,15 @@ class Verdict:
 
     Attributes:
         who: which tracker.
-        first, second: our means of the two groups.
-        p: of the paired t-test over the repeats, or over stretches of time; NaN where there is none.
+        difference: of our figures of the two groups.
         outcome: how the claim fares.
         tests: of errors of images, by name, in words.
     """
 
     who: str
-    first: float
-    second: float
-    p: float
+    difference: Gap
     outcome: ClaimStatus
     tests: tuple[str, ...] = ()
-
-    @property
-    def by(self) -> float:
-        """Difference of the means."""
-        return self.first - self.second
-
-
-def paired_t_test(one: Floats, other: Floats) -> float:
-    """Give the p-value of Student's t-test for paired samples (R,), two-sided.
-
-    NaN with fewer than two repeats; 1 where all pairs are equal, 0 where all differ by the same.
-    """
-    if one.shape != other.shape or one.size < 2 or np.isnan(one).any() or np.isnan(other).any():
-        return float("nan")
-    away = one - other
-    if np.ptp(away) < 1e-12:
-        return 1.0 if abs(away[0]) < 1e-12 else 0.0
-    return float(ttest_rel(one, other).pvalue)
 
 
 def judge(claim: Claim, samples: Samples) -> Iterator[Verdict]:
@@ -88,56 +62,61 @@ def judge(claim: Claim, samples: Samples) -> Iterator[Verdict]:
 
 def _verdict(claim: Claim, who: str, one: Figures, other: Figures) -> Verdict:
     if isinstance(one, ImageErrors) and isinstance(other, ImageErrors):
-        return _verdict_on_images(claim, who, one, other)
+        difference = by_stretches(one, other)
+        return Verdict(
+            who, difference, _outcome(claim, difference, other.all.mean), tuple(_tests(one, other))
+        )
     assert not isinstance(one, ImageErrors)
     assert not isinstance(other, ImageErrors)  # a column has figures of one kind
-    p = paired_t_test(one, other)
-    first, second = float(one.mean()), float(other.mean())
-    if np.isnan(first - second):
+    difference, second = paired(claim.metric, one, other), float(other.mean())
+    if math.isnan(difference.by):
         outcome = ClaimStatus.UNKNOWN
-    elif claim.metric in (*THESIS, *PAPER) and max(first, second) < BLIND:
+    elif claim.metric in (*THESIS, *PAPER) and max(second, second + difference.by) < BLIND:
         outcome = ClaimStatus.BLIND
     else:
-        outcome = _outcome(claim, first - second, p)
-    return Verdict(who, first, second, p, outcome)
+        outcome = _outcome(claim, difference, second)
+    return Verdict(who, difference, outcome)
 
 
-def _verdict_on_images(claim: Claim, who: str, one: ImageErrors, other: ImageErrors) -> Verdict:
-    first, second = one.all.mean, other.all.mean
-    paired = paired_by_blocks(one, other)
-    p = float("nan") if paired is None else paired.p
-    told = () if paired is None else (_words("paired by stretches of time", "d_z", paired),)
-    tests = (
-        *told,
-        _words("as the source, all images of a film's splits unpaired", "d", unpaired(one, other)),
-    )
-    return Verdict(who, first, second, p, _outcome(claim, first - second, p), tests)
+def _tests(one: ImageErrors, other: ImageErrors) -> Iterator[str]:
+    paired_test = paired_by_blocks(one, other)
+    if paired_test is not None:
+        yield _words("paired by stretches of time", "d_z", paired_test)
+    yield _words("as the source, all images of a film's splits unpaired", "d", unpaired(one, other))
 
 
 def _words(name: str, effect: str, test: TTest) -> str:
     low, high = test.interval
     size = f"{effect} = {test.effect:.2f} ({low:.2f} to {high:.2f})"
-    return f"{name}: t = {test.t:.2f}, n = {test.count}, {chance(test.p)}, {size}"
+    chance = "p < 0.001" if test.p < 0.001 else f"p = {test.p:.3f}"
+    return f"{name}: t = {test.t:.2f}, n = {test.count}, {chance}, {size}"
 
 
-def chance(p: float) -> str:
-    """Write a p-value."""
-    if math.isnan(p):
-        return "no test"
-    return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
-
-
-def _outcome(claim: Claim, by: float, p: float) -> ClaimStatus:
-    """Compare a difference with a claim; where the source tests, ours has to be significant as well."""
-    is_clear = p < SIGNIFICANT or not claim.tested
+def _outcome(claim: Claim, ours: Gap, second: float) -> ClaimStatus:
+    """Hold the interval of a difference against what is claimed; without an interval nothing is decided."""
+    if not ours.is_sure:
+        return ClaimStatus.UNCLEAR
     if claim.expect in ("alike", "no less"):
-        if by >= -ALIKE and (by <= ALIKE or claim.expect == "no less"):
-            return ClaimStatus.HOLDS
-        return ClaimStatus.UNCLEAR if claim.tested and p >= SIGNIFICANT else ClaimStatus.FAILS
-    ways = {"more": by > 0, "less": by < 0, "differs": by != 0}
-    if not ways[claim.expect]:
-        return ClaimStatus.FAILS
-    return ClaimStatus.HOLDS if is_clear else ClaimStatus.UNCLEAR
+        return _alike(ours, margin(claim.metric, second), either_way=claim.expect == "alike")
+    least = MUCH * abs(claim.by or 0.0)
+    if claim.expect == "differs":
+        is_far = ours.low > least or ours.high < -least
+        is_near = -least <= ours.low and ours.high <= least
+        return ClaimStatus.HOLDS if is_far else ClaimStatus.FAILS if is_near else ClaimStatus.UNCLEAR
+    low, high = (ours.low, ours.high) if claim.expect == "more" else (-ours.high, -ours.low)
+    if low > least:
+        return ClaimStatus.HOLDS
+    if high <= least:
+        return ClaimStatus.WEAKER if low > 0 else ClaimStatus.FAILS
+    return ClaimStatus.UNCLEAR
+
+
+def _alike(ours: Gap, within: float, *, either_way: bool) -> ClaimStatus:
+    """Tell whether the interval is within a margin, on either side or below alone."""
+    if ours.low >= -within and (ours.high <= within or not either_way):
+        return ClaimStatus.HOLDS
+    is_apart = ours.high < -within or (either_way and ours.low > within)
+    return ClaimStatus.FAILS if is_apart else ClaimStatus.UNCLEAR
 
 
 def mean_and_spread(values: Figures) -> tuple[float, float | None]:

@@ -10,8 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from peopleboy.scenarios.studies.reproduce.showing.against_source import chance
-from peopleboy.scenarios.studies.reproduce.showing.source_page import Checked, Section, points
+from peopleboy.scenarios.studies.reproduce.showing.source_page import Checked, Section, span
 
 _FILE_WIDTH = 160
 
@@ -25,6 +24,8 @@ def print_sections(sections: Iterable[Section]) -> None:
         )
         if part.rows:
             console.print(_table(part))
+        if part.compared:
+            console.print(_beside(part))
         if part.picture is not None:
             console.print("  a picture is on the page")
         for item in part.checked:
@@ -42,11 +43,21 @@ def _table(part: Section) -> Table:
     return table
 
 
+def _beside(part: Section) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for name in ("", "", "", "ours less the source's (95 %), effect size", ""):
+        table.add_column(name)
+    for one in part.compared:
+        cells = (one.group, one.column, one.who, span(one.difference, one.column), one.standing.value)
+        table.add_row(*map(Text, cells))
+    return table
+
+
 def _print_claim(console: Console, item: Checked) -> None:
     metric = item.claim.metric
     console.print(f"  {escape(item.claim.says)}")
     for one in item.verdicts:
-        told = f"{one.outcome.value}; {metric} {points(one.by, metric)} ({chance(one.p)})"
+        told = f"{one.outcome.value}; {metric} {span(one.difference, metric)}"
         console.print(f"    {escape(one.who)}: {escape(told)}")
         for test in one.tests:
             console.print(f"      {escape(test)}")

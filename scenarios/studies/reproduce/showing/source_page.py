@@ -15,15 +15,16 @@ from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErro
 from peopleboy.scenarios.studies.reproduce.experiments.catalogue import paper_of
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Outcome, Samples
 from peopleboy.scenarios.studies.reproduce.showing.against_source import (
-    SIGNIFICANT,
+    MUCH,
     ClaimStatus,
     Verdict,
-    chance,
     effect_to_source,
     judge,
     mean_and_spread,
 )
+from peopleboy.scenarios.studies.reproduce.showing.beside_source import Compared, Standing, compare
 from peopleboy.scenarios.studies.reproduce.showing.experiment_plots import draw
+from peopleboy.scenarios.studies.reproduce.showing.intervals import PART, POINTS, Gap
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim, SourceTable, source_tables
 
 HERE = Path(__file__).parent
@@ -77,6 +78,7 @@ class Section:
     rows: tuple[PageRow, ...]
     picture: str | None
     checked: tuple[Checked, ...]
+    compared: tuple[Compared, ...]
     why: str
 
     def summary(self, main: str) -> str:
@@ -84,6 +86,11 @@ class Section:
         verdicts = (verdict for item in self.checked for verdict in item.verdicts)
         count = Counter(verdict.outcome for verdict in verdicts if verdict.who in MAIN[main])
         return ", ".join(f"{outcome.value}: {count[outcome]}" for outcome in ClaimStatus if count[outcome])
+
+    def standings(self, main: str) -> str:
+        """How a main tracker's figures stand beside the printed ones, in a few words."""
+        count = Counter(one.standing for one in self.compared if one.who in MAIN[main])
+        return ", ".join(f"{standing.value}: {count[standing]}" for standing in Standing if count[standing])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,13 +120,13 @@ def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None
         lstrip_blocks=True,
     )
     environment.filters["points"] = points
-    environment.filters["chance"] = chance
+    environment.filters["span"] = span
     notes = _notes()
     text = environment.get_template("page.html.jinja").render(
         sections=sections,
         about=about,
         general=notes["general"],
-        significant=SIGNIFICANT,
+        margins={"points": POINTS, "part": 100 * PART, "much": 100 * MUCH},
         papers=sorted({paper_of(part.id) for part in sections}),
     )
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -140,6 +147,7 @@ def section(outcome: Outcome) -> Section:
         rows=tuple(rows(samples, table, columns, effects)),
         picture=drawn,
         checked=tuple(Checked(claim, tuple(judge(claim, samples))) for claim in table.claims),
+        compared=tuple(compare(samples, table)),
         why=_notes()["why"].get(experiment.id, ""),
     )
 
@@ -192,6 +200,14 @@ def in_order(groups: Iterable[str]) -> list[str]:
 def points(value: float, column: str) -> str:
     """Write a difference: millimetres of metres, two decimals of all else."""
     return "-" if math.isnan(value) else f"{value:+.{_digits(column)}f}"
+
+
+def span(difference: Gap, column: str) -> str:
+    """Write a difference with its 95 % interval and effect size, as far as they are known."""
+    parts = [points(difference.by, column)]
+    if difference.is_sure:
+        parts[0] += f" ({points(difference.low, column)} to {points(difference.high, column)})"
+    return ", ".join([*parts, *([difference.effect] if difference.effect else [])])
 
 
 def _digits(column: str) -> int:
