@@ -25,7 +25,7 @@ from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
 from peopleboy.scenarios.commands.report import report
 from peopleboy.scenarios.commands.run import run
-from peopleboy.scenarios.commands.study import datasets, reproduce, train_distance, train_occlusion
+from peopleboy.scenarios.commands.study import datasets, reproduce, train_distance, train_occlusion, tune
 from peopleboy.scenarios.commands.track import track
 from peopleboy.scenarios.commands.view import view, watch
 from peopleboy.scenarios.running.engine.task import TasksFailed
@@ -56,6 +56,7 @@ COMMANDS = (
     train_windows,
     train_detector,
     reproduce,
+    tune,
 )
 
 

@@ -1,4 +1,4 @@
-"""Commands that follow the sources: `datasets`, `train-occlusion`, `train-distance`, `reproduce`."""
+"""Commands that follow the sources: `datasets`, `train-occlusion`, `train-distance`, `reproduce`, `tune`."""
 
 from __future__ import annotations
 
@@ -170,3 +170,62 @@ def reproduce(
         folder = out if out is not None else Path("runs") / ("reproduce-quick" if quick else "reproduce")
         who = chosen_workers(workers, scheduler)
         click.echo(reproduce_named(names, paper, folder, films, who, quick=quick))
+
+
+@click.command()
+@click.option(
+    "--parameter",
+    "names",
+    multiple=True,
+    help="alpha, kappa, theta, U, B, psi_D, rho, lambda, n_k or rho_o; several by giving it again.  "
+    "[default: all]",
+)
+@click.option(
+    "--seeds", type=click.IntRange(min=1), default=4, show_default=True, help="Films of each scenario."
+)
+@click.option(
+    "--seconds",
+    type=click.FloatRange(min=5.0),
+    default=45.0,
+    show_default=True,
+    help="How long a film is at most.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("runs") / "tune",
+    show_default=True,
+    help="Folder of the page, the curves and the results.",
+)
+@click.option(
+    "--films",
+    type=click.Path(path_type=Path),
+    default=Path("runs") / "films",
+    show_default=True,
+    help="Where rendered frames are kept; for a cluster, a folder that all share.",
+)
+@workers_options
+def tune(
+    names: Sequence[str],
+    seeds: int,
+    seconds: float,
+    out: Path,
+    films: Path,
+    workers: int | None,
+    scheduler: str | None,
+) -> None:
+    """Try other values of the thesis's parameters, one parameter at a time, by area accuracy.
+
+    As in its sections 4.4 to 7.5, each with the tracker of its chapter. Films have seeds from 100 on, which
+    no figure is reported on. Leaves a curve of each parameter and a page. A killed call goes on where it was.
+    """
+    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.studies.tuning.tune import TrainingFilms
+    from peopleboy.scenarios.studies.tuning.tune import tune as tune_all
+    from peopleboy.scenarios.studies.tuning.tuned_page import print_tuned
+    from peopleboy.scenarios.studies.tuning.tuned_parameters import chosen_parameters
+
+    shown = TrainingFilms(cache=films.resolve(), seeds=seeds, seconds=seconds)
+    page, tuned = tune_all(chosen_parameters(names), shown, out, chosen_workers(workers, scheduler))
+    print_tuned(tuned)
+    click.echo(page)

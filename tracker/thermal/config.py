@@ -44,8 +44,9 @@ class ContourConfig:
     clutter_share: float = 0.0
     # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
     cold_response: float = 1.0
-    # Weight of an eighth section, the line under the feet; those of the other seven add up to 1.
-    feet_weight: float = 0.0
+    # alpha of equation 4.3: the head's left, top and right, the shoulders, the sides; scaled to add up to 1.
+    section_weights: tuple[float, ...] = (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16)
+    feet_weight: float = 0.0  # of an eighth section, the line under the feet; the others add up to 1
     unseen_response: float = 0.0  # response of a point outside the image
     # Weight of such a point above the image; for what it lacks to 1, the points inside speak. Not below, or
     # people would grow until all but their shoulders is out of sight.
@@ -67,6 +68,9 @@ class ContourConfig:
             "clutter_share",
         )
         check_share(self, "unseen_share", "cut_share", "dark_share")
+        weights = self.section_weights
+        is_right = len(weights) == 7 and min(weights) >= 0 and sum(weights) > 0
+        refuse_unless(is_right, self, "section_weights", "seven, none negative and not all 0")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -225,6 +229,7 @@ class DepthConfig:
     # By whose feet are lower ("foot"), by looks as well ("appearance"), by a boosted classifier ("learned");
     # None: nobody is in front of anybody.
     order: str | None = None
+    table: str = "peopleboy"  # who the boosted classifier was taught for: its table of that name is taken
     remembers_feet: bool = False  # the classifier takes feet as last seen whole, and not the contour's end
     removes_front: bool = False  # points of the contour on people in front are left out of the evidence
     growth: float = 1.0  # by which the people in front are enlarged for that

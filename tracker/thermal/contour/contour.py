@@ -18,8 +18,6 @@ HEAD_LEFT, HEAD_TOP, HEAD_RIGHT, SHOULDER_LEFT, SHOULDER_RIGHT, SIDE_LEFT, SIDE_
 SECTIONS = 8
 GREYS = 256
 
-# Thesis, equation 4.3: alpha_1..7 of the head's left, top and right, the shoulders and the sides.
-SECTION_WEIGHTS = (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16)
 # The sources show the sections in a figure only; these are readings of it.
 HEAD_ASPECT = 0.75  # head semi-width / head semi-height
 NECK_DEG = 60.0  # opening of the head ellipse at the neck
@@ -155,6 +153,6 @@ def build_response(config: ContourConfig) -> Floats:
 
 def section_weights(config: ContourConfig) -> NDArray[np.float64]:
     """Give the weights (8,) of the sections, which sum to 1."""
-    weights = np.array([*SECTION_WEIGHTS, config.feet_weight])
+    weights = np.array([*config.section_weights, config.feet_weight])
     shares: NDArray[np.float64] = weights / weights.sum()
     return shares

@@ -1,0 +1,1 @@
+"""One parameter of the thesis's tracker after the other, by area accuracy."""
