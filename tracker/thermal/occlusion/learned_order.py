@@ -95,10 +95,13 @@ def features_of(
 
 
 @cache
-def shipped_order(tracker: str = "peopleboy", *, remembers_feet: bool = True) -> LearnedOrder:
+def shipped_order(tracker: str, *, remembers_feet: bool = True) -> LearnedOrder:
     """Give the order that was learned for the tracker of that name, and comes with it.
 
     Trackers measure contours and colours in different units, so that each needs a table of its own.
+
+    Raises:
+        BadInput: there is no such table.
     """
     return LearnedOrder.build(LearnedTable.load(TABLES / f"{tracker}.yaml"), remembers_feet=remembers_feet)
 
@@ -106,5 +109,5 @@ def shipped_order(tracker: str = "peopleboy", *, remembers_feet: bool = True) ->
 def make_order(config: DepthConfig) -> Order | None:
     """Give the way in which a tracker compares people; None if it does not."""
     if config.order == LEARNED:
-        return shipped_order(remembers_feet=config.remembers_feet)
+        return shipped_order(config.table, remembers_feet=config.remembers_feet)
     return None if config.order is None else ORDERS[config.order]

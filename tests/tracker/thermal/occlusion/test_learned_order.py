@@ -5,9 +5,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.config import DepthConfig
 from peopleboy.tracker.thermal.occlusion.boosting import train
-from peopleboy.tracker.thermal.occlusion.learned_order import LearnedOrder, shipped_order
-from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable, WeakClassifier
+from peopleboy.tracker.thermal.occlusion.learned_order import LearnedOrder, make_order, shipped_order
+from peopleboy.tracker.thermal.occlusion.learned_table import TABLES, LearnedTable, WeakClassifier
 from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
 from peopleboy.tracker.thermal.occlusion.weak_classifiers import weighted_sums
 from tests.helpers.calls.refused import refused
@@ -121,6 +122,14 @@ def test_a_missing_file_is_refused(tmp_path):
         LearnedTable.load(tmp_path / "nothing.yaml")
 
 
-def test_the_shipped_table_says_that_the_larger_and_lower_of_two_is_in_front():
+@pytest.mark.parametrize("tracker", [path.stem for path in TABLES.glob("*.yaml")])
+def test_the_shipped_tables_say_that_the_larger_and_lower_of_two_is_in_front(tracker):
     nearer = np.array([[0.0, -0.1, 0.15, 0.0, 0.0, 0.0]])
-    assert shipped_order().lead(nearer)[0] > 0.2
+    assert shipped_order(tracker).lead(nearer)[0] > 0.2
+
+
+def test_a_tracker_orders_by_the_table_that_its_settings_name():
+    order = make_order(DepthConfig(order="learned", table="peopleboy", remembers_feet=True))
+    assert order is shipped_order("peopleboy", remembers_feet=True)
+    with refused("nobody.yaml"):
+        make_order(DepthConfig(order="learned", table="nobody"))
