@@ -51,13 +51,16 @@ class Tuned:
         return "it matters little" if is_flat else "undecided"
 
     def plain(self) -> dict[str, Any]:
-        """Give all of it as plain data."""
-        gain = self.gain
+        """Give all of it as plain data; without an interval, its ends are None."""
+        gain, printed = self.gain, self.parameter.printed
         return {
-            "printed": self.parameter.printed,
-            "best": self.best,
+            "printed": float(printed),
+            "best": float(self.best),
+            "as_printed": float(self.accuracy[printed].mean()),
+            "at_best": float(self.accuracy[self.best].mean()),
             "gain": gain.by,
-            "interval": [gain.low, gain.high] if gain.is_sure else None,
+            "low": gain.low if gain.is_sure else None,
+            "high": gain.high if gain.is_sure else None,
             "verdict": self.verdict,
             CRITERION: {value: figures.tolist() for value, figures in self.accuracy.items()},
         }

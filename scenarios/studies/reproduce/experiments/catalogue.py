@@ -14,7 +14,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.drive_windows import WIND
 from peopleboy.scenarios.studies.reproduce.experiments.drives import DRIVES
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Line
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
-from peopleboy.scenarios.studies.reproduce.experiments.pictures import DEPICTIONS
+from peopleboy.scenarios.studies.reproduce.experiments.pictures import DEPICTIONS, Depiction
 from peopleboy.scenarios.studies.reproduce.experiments.scene_models import SCENES
 from peopleboy.scenarios.studies.reproduce.experiments.timing import ATTENTION_TIMES, TIMINGS
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, TrackerTrial, Tracking
@@ -218,6 +218,7 @@ _TABLE_7_3 = tuple(Way(name, (name,), 1) for name in FEATURES)
 
 _ALL: tuple[Experiment, ...] = (
     Contents(),
+    Depiction("figure-4.4"),
     _per_suite("figure-4.8", SINGLE, "thesis-single"),
     *_SWEEPS[:2],
     TIMINGS[0],
@@ -230,12 +231,14 @@ _ALL: tuple[Experiment, ...] = (
     # A histogram takes so long that few samples have to do when there is little time.
     _colours("figure-6.6", _SPACES, (), (("person.count", 200),)),
     *TIMINGS[2:],
+    Depiction("figure-7.2"),
     Learning("table-7.1", _TABLE_7_1),
     Learning("table-7.2", _TABLE_7_2),
     Learning("table-7.3", _TABLE_7_3),
     BestClassifiers(),
     _chapters("figure-7.3", _STEPS),
     *_SWEEPS[5:],
+    Depiction("paper-figure-4"),
     _paper_figure_5(),
     *DEPICTIONS[:2],
     Webcams(),

@@ -1,4 +1,4 @@
-"""Figures that are pictures: of the 2003 paper, and of attention."""
+"""Figures that are pictures: of thermal contours and tracks, of the 2003 paper, and of attention."""
 
 from __future__ import annotations
 

@@ -19,6 +19,7 @@ LIBRARY = STUDIES.with_name("library")
 _STUDIES = ("webcams", "distance_learning", "depth_drives", "window_learning")
 _MODELS = (
     "corridor_meeting", "corridor_straight", "crossing_2", "follow_visitors", "hall_visits", "hidden_2s",
+    "passers_by",
 )  # fmt: skip
 _SCENARIOS = ("corner_webcams", "room_long", "room_narrow", "room_short", *SETS, TURNS, *_MODELS)
 

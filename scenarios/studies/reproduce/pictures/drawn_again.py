@@ -14,12 +14,17 @@ from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import (
 )
 from peopleboy.scenarios.studies.reproduce.pictures.set_up import draw_set_up
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
+from peopleboy.scenarios.studies.reproduce.pictures.thermal_contours import draw_cues, draw_fitness
+from peopleboy.scenarios.studies.reproduce.pictures.time_ranges import draw_time_ranges
 from peopleboy.scenarios.studies.reproduce.pictures.webcam_views import (
     draw_fields_of_view,
     draw_webcam_images,
 )
 
 DRAWN: Mapping[str, Callable[[], Figure]] = {
+    "figure-4.4": draw_fitness,
+    "figure-7.2": draw_cues,
+    "paper-figure-4": draw_time_ranges,
     "panoramic-figure-1": draw_set_up,
     "panoramic-figure-2": draw_webcam_images,
     "panoramic-figure-3": draw_fields_of_view,

@@ -51,9 +51,9 @@ from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import refused
 from tests.helpers.visible_text import assert_reads_as
 
-FIGURES = ("4.8", "4.9a", "4.9b", "5.4", "5.5a", "5.5b", "5.6", "6.4", "6.5", "6.6", "7.3")
+FIGURES = ("4.4", "4.8", "4.9a", "4.9b", "5.4", "5.5a", "5.5b", "5.6", "6.4", "6.5", "6.6", "7.2", "7.3")
 TABLES = ("3.1", "4.1", "5.1", "6.1", "6.2", "7.1", "7.2", "7.3", "7.4")
-PAPER = ("table-1", "table-2", "table-3", "figure-5")
+PAPER = ("table-1", "table-2", "table-3", "figure-4", "figure-5")
 PANORAMIC = (
     *(f"figure-{number}" for number in range(1, 7)),
     *("webcams", "angle", "general", "personal", "position", "noise"),
@@ -273,7 +273,13 @@ def test_claims_are_judged_by_the_interval_of_the_difference(
     assert [verdict.outcome for verdict in judge(claim, samples)] == [outcome]
 
 
-PICTURE = {f"panoramic-figure-{number}": "data:image/png;base64,AAAA" for number in range(1, 7)}
+DRAWN = (
+    "figure-4.4",
+    "figure-7.2",
+    "paper-figure-4",
+    *(f"panoramic-figure-{number}" for number in range(1, 7)),
+)
+PICTURE = dict.fromkeys(DRAWN, "data:image/png;base64,AAAA")
 
 
 class Addresses(HTMLParser):

@@ -74,7 +74,7 @@ def test_curves_and_a_page_are_left_and_what_is_done_is_not_done_again(tmp_path:
     page, (found,) = tune([RHO], films, tmp_path / "out", Workers())
     assert set(found.accuracy) == set(RHO.values)
     assert "rho.svg" in page.read_text()
-    assert json.loads((page.parent / "tuned.json").read_text())["rho"]["printed"] == "2"
+    assert json.loads((page.parent / "tuned.json").read_text())["rho"]["printed"] == 2.0
     curve, done = (page.parent / "rho.svg").read_bytes(), (page.parent / RESULTS).read_text()
     assert tune([RHO], films, tmp_path / "out", Workers())[0] == page
     assert (page.parent / "rho.svg").read_bytes() == curve
