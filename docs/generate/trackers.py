@@ -24,7 +24,8 @@ ABOUT: Mapping[str, tuple[str, str]] = {
     ),
     "thesis": (
         "thesis, chapters 4 to 7",
-        "As it is written: independent filters, colour moments, occlusion handling.",
+        "As it is written: independent filters, colour moments, occlusion handling by a boosted classifier "
+        "of who is in front.",
     ),
     "thermal": ("thesis, chapters 4 and 5", "Thermal image alone."),
     "colour": ("thesis, chapters 4 to 6", "With colour, without occlusion handling."),

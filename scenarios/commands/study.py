@@ -65,8 +65,8 @@ def train_occlusion(
 ) -> None:
     """Learn from scenarios which of two overlapping people is in front, and compare with the thesis.
 
-    One set of scenarios is learned from, another one is for testing. Needs scikit-learn.
-    A killed call goes on where it was.
+    Examples are split at random, as there, and scenario by scenario; the table is learned from all of them.
+    Needs scikit-learn. A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson

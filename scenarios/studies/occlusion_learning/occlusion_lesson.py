@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 from rich.console import Console
 
 from peopleboy.bad_input import BadInput
@@ -19,8 +17,7 @@ from peopleboy.scenarios.studies.occlusion_learning.pair_files import read_pairs
 from peopleboy.scenarios.studies.occlusion_learning.pair_task import PairTask, examples_of
 from peopleboy.scenarios.studies.occlusion_learning.show_training import print_best, print_trials
 from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import (
-    TRAINING,
-    UNSEEN,
+    SCENARIOS,
     check_examples,
     learn,
     run_trials,
@@ -60,15 +57,13 @@ def give_lesson(
         raise BadInput(f"--tracker {tracker}: must be one that orders people: {', '.join(PUPILS)}")
     with writing_to(out):
         out.mkdir(parents=True, exist_ok=True)
-    training = _examples(out / "training.csv", TRAINING, tracker, seeds, workers, again=again)
-    unseen = _examples(out / "unseen.csv", UNSEEN, tracker, seeds, workers, again=again)
+    examples = _examples(out / "pairs.csv", tracker, seeds, workers, again=again)
     for path in out.glob("*.jsonl"):
         path.unlink()
-    check_examples(training, "training")
-    check_examples(unseen, "unseen")
+    check_examples(examples)
     with Console(stderr=True).status("learning"):
-        trials = list(run_trials(training, unseen, np.random.default_rng(0), most=3 if triplets else 2))
-        learned = learn(training, unseen)
+        trials = list(run_trials(examples, most=3 if triplets else 2))
+        learned = learn(examples)
     print_trials(trials)
     print_best(learned)
     path = (TABLES if ship else out) / f"{tracker}.yaml"
@@ -76,14 +71,12 @@ def give_lesson(
     return path
 
 
-def _examples(
-    path: Path, scenarios: Sequence[str], tracker: str, seeds: int, workers: Workers, *, again: bool
-) -> list[PairExample]:
+def _examples(path: Path, tracker: str, seeds: int, workers: Workers, *, again: bool) -> list[PairExample]:
     """Read the examples, or run the scenarios and write them; what a killed call has collected is used."""
     if path.exists() and not again:
         return read_pairs(path)
     store = Store(path.with_suffix(".jsonl"), code_digest(*map(Path, (occlusion_pairs.__file__, __file__))))
-    tasks = [PairTask(name, seed, tracker, PUPILS[tracker]) for name in scenarios for seed in range(seeds)]
+    tasks = [PairTask(name, seed, tracker, PUPILS[tracker]) for seed in range(seeds) for name in SCENARIOS]
     missing = [task for task in tasks if task.name not in store]
     work_through(missing, workers, path.stem, lambda task, result: store.add(task.name, result))
     examples = [

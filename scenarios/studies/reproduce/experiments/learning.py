@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import TRAINING, UNSEEN
+from peopleboy.scenarios.studies.occlusion_learning.train_occlusion import SCENARIOS
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.scenarios.studies.reproduce.measuring.learn_units import LearnUnit, PairUnit, examples
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
@@ -36,16 +36,8 @@ class Way:
 
     def unit(self, plan: Plan, done: Done, split: int, whose: Setting) -> LearnUnit:
         """Give the work of one split; the examples must have been collected."""
-        rounds = 1 if len(self.uses) == 1 else plan.rounds
-        training, unseen = (
-            tuple(
-                example
-                for unit in pair_units(plan, names, whose)
-                for example in examples(unit, done[unit.key])
-            )
-            for names in (TRAINING, UNSEEN)
-        )
-        return LearnUnit(self.uses, self.most, rounds, split, training, unseen, whose)
+        found = (example for unit in pair_units(plan, whose) for example in examples(unit, done[unit.key]))
+        return LearnUnit(self.uses, self.most, plan.rounds, split, tuple(found), whose)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +51,7 @@ class Learning:
 
     def wants(self, plan: Plan, done: Done) -> list[Unit]:
         """Examples first, then what is learned from them."""
-        pairs = [
-            unit for whose in TRACKERS.values() for unit in pair_units(plan, (*TRAINING, *UNSEEN), whose)
-        ]
+        pairs = [unit for whose in TRACKERS.values() for unit in pair_units(plan, whose)]
         lessons = (
             unit
             for whose in TRACKERS.values()
@@ -108,9 +98,9 @@ class BestClassifiers:
         }
 
 
-def pair_units(plan: Plan, names: tuple[str, ...], whose: Setting) -> list[PairUnit]:
+def pair_units(plan: Plan, whose: Setting) -> list[PairUnit]:
     """List where a tracker's examples come from."""
-    return [PairUnit(name, seed, whose) for name in names for seed in range(plan.pair_seeds)]
+    return [PairUnit(name, seed, whose) for seed in range(plan.pair_seeds) for name in SCENARIOS]
 
 
 def _splits(way: Way, plan: Plan, done: Done, whose: Setting) -> list[LearnUnit]:

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from scipy.stats import t as student
 
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
+from peopleboy.scenarios.studies.occlusion_learning.example_splits import TRAINING_SHARE
 from peopleboy.scenarios.studies.reproduce.experiments.learning import SHARE
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS
-from peopleboy.scenarios.studies.reproduce.measuring.learn_units import TRAINING_SHARE
 
 Floats = NDArray[np.float64]
 
