@@ -43,7 +43,7 @@ class Tuned:
     def verdict(self) -> str:
         """Say in a few words what follows."""
         if self.best == self.parameter.printed:
-            return "the printed value is best"
+            return "no other does better"
         gain = self.gain
         if gain.is_sure and gain.low > 0:
             return f"{self.best} is better"
