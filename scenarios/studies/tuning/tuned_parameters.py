@@ -79,7 +79,7 @@ def _shoulders(weight: float) -> Changes:
 
 _ALPHA = Parameter(
     name="alpha",
-    says="weight of each shoulder, where a piece of the head has 0.18 and a side 0.16",
+    says="weight of each shoulder; a side has 0.16",
     section="4.4",
     base="thesis-single",
     scenario=_SINGLE,
