@@ -204,7 +204,9 @@ class World:
         pose, (speed, _) = self._robot.pose(), self._robot.velocity()
         heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
         place = np.array([pose.x, pose.y])
-        return PlanarState(position=place, velocity=speed * heading, radius_m=RADIUS_M)
+        return PlanarState(
+            position=place, velocity=speed * heading, radius_m=RADIUS_M, heading_rad=pose.heading
+        )
 
     def _build(self) -> None:
         config, physics = self.config, self._physics

@@ -145,13 +145,13 @@ def _run_one(scenario: Scenario, options: RunOptions, output: Output) -> None:
 
 def _show(scores: RunScores, options: RunOptions) -> None:
     from peopleboy.scenarios.scores.headline import headline
-    from peopleboy.scenarios.scores.show_scores import print_corridor, print_following, print_scores
+    from peopleboy.scenarios.scores.show_scores import print_drive, print_scores
 
     print_scores(scores.people)
-    if scores.following is not None:
-        print_following(scores.following)
-    if scores.corridor is not None:
-        print_corridor(scores.corridor)
+    drives = {"following": scores.following, "corridor": scores.corridor, "comfort": scores.comfort}
+    for title, score in drives.items():
+        if score is not None:
+            print_drive(title, score.rows())
     click.echo(headline(scores))
     click.echo(f"{options.out / 'contact_sheet.png'} shows the key moments.")
     if options.record:

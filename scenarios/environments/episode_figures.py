@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict
 
+from peopleboy.scenarios.scores.comfort_score import ComfortLog
 from peopleboy.scenarios.scores.corridor_score import CorridorLog
 from peopleboy.scenarios.scores.following_metrics import FollowingTask
 from peopleboy.scenarios.scores.following_score import TARGET, FollowingLog, Spot, track_on
@@ -25,7 +26,7 @@ class EpisodeFigures:
 
     def __init__(self, plan: FloorPlan, task: FollowingTask) -> None:
         self._plan, self._task = plan, task
-        self._following, self._corridor = FollowingLog(), CorridorLog()
+        self._following, self._corridor, self._comfort = FollowingLog(), CorridorLog(), ComfortLog()
 
     def add_tracked(self, scene: ImageFreeTruth, tracks: Iterable[Track], box: Box | None) -> None:
         """Take in an instant of which a tracker made tracks; the person to follow truly is in that box."""
@@ -41,12 +42,14 @@ class EpisodeFigures:
         self._add(scene, TARGET if is_seen else 0)
 
     def metrics(self) -> Figures:
-        """Give the groups `following` and `corridor` of a run's metrics.json; what is undefined is NaN."""
+        """Give the groups `following`, `corridor` and `comfort` of a run's metrics.json, or NaN."""
         return {
             "following": asdict(self._following.score(self._task)),
             "corridor": asdict(self._corridor.score(self._plan)),
+            "comfort": asdict(self._comfort.score()),
         }
 
     def _add(self, scene: ImageFreeTruth, track: int) -> None:
         self._following.add(scene, track)
         self._corridor.add(scene)
+        self._comfort.add(scene)

@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 
 from peopleboy.scenarios.files.schema.people import ClothesSpec, GroupSpec, PersonSpec, WaypointSpec
+from peopleboy.scenarios.files.schema.reactions import ReactionSpec
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.looks.wardrobe import usual_clothes
 from peopleboy.sim.people.person import PersonConfig
+from peopleboy.sim.people.reacting.reaction import USUAL, Lead, Reaction
 from peopleboy.sim.people.walking.path import abreast
 from peopleboy.sim.people.walking.walk import Waypoint
 from peopleboy.sim.random_streams import stream
@@ -88,7 +90,15 @@ def make_config(person: PersonSpec) -> PersonConfig:
         yields=person.yields,
         bag=person.bag,
         arms=person.arms,
+        reacts=None if person.reacts is None else _make_reaction(person.reacts),
+        leads=None if person.leads is None else Lead(**person.leads.model_dump(exclude={"whom"})),
+        group=person.group,
     )
+
+
+def _make_reaction(spec: ReactionSpec) -> Reaction:
+    given = {key: value for key, value in spec.distances().items() if value is not None}
+    return Reaction(way=spec.way, **(dict(USUAL[spec.way]) | given))
 
 
 def make_way(path: Path) -> tuple[Waypoint, ...]:
@@ -100,6 +110,8 @@ def make_way(path: Path) -> tuple[Waypoint, ...]:
             pause_s=spec.pause_s,
             face=spec.face,
             posture=Posture(spec.posture),
+            until_robot_within_m=spec.until_robot_within_m,
+            waits_at_most_s=spec.waits_at_most_s,
         )
         for spec in path
     )

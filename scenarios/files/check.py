@@ -124,12 +124,14 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]],
         BadInput: with the key of what it is.
     """
     _check_names(people)
+    _check_groups(people)
     _check_robot(spec, ground)
     _check_cameras(spec.robot)
     _check_order("at_s", [light.at_s for light in spec.lights], ("lights",))
     for key, person in people:
         with found_in(*key):
             _check_times(person, spec.duration_s)
+            _check_lead(person)
             _check_faces(person, [other.name for _, other in people])
             fault = ground.fault(person)
             if fault is not None:
@@ -162,6 +164,28 @@ def _check_names(people: Sequence[tuple[Key, PersonSpec]]) -> None:
             other = dotted(seen[person.name])
             raise BadInput(f"name {person.name!r} is also that of {other}; give each its own", key=key)
         seen[person.name] = key
+
+
+def _check_groups(people: Sequence[tuple[Key, PersonSpec]]) -> None:
+    """Refuse people who are to keep together and cannot compare how far they have got."""
+    first: dict[str, PersonSpec] = {}
+    for key, person in people:
+        if person.group is None:
+            continue
+        other = first.setdefault(person.group, person)
+        if len(other.path) != len(person.path):
+            raise BadInput(
+                f"{person.group!r}: {person.name!r} has {len(person.path)} points of its path, and "
+                f"{other.name!r} {len(other.path)}; give them as many",
+                key=(*key, "group"),
+            )
+
+
+def _check_lead(person: PersonSpec) -> None:
+    if person.leads is not None and person.reacts is not None:
+        raise BadInput(
+            "who leads the robot looks out for it already; leave out reacts, or leads", key=("leads",)
+        )
 
 
 def _check_robot(spec: ScenarioSpec, ground: Ground) -> None:

@@ -123,7 +123,7 @@ def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[Key, list
             continue
         steps.append(step)
         if isinstance(step, str) and models:
-            known = [key for candidate in models for key in candidate.model_fields]
+            known = [f.alias or key for candidate in models for key, f in candidate.model_fields.items()]
             fields = [c.model_fields[step].annotation for c in models if step in c.model_fields]
             # A step that is no field is the key of a mapping, and what follows is inside its value.
             types = [inner for annotation in fields for inner in _inside(annotation)] if fields else types

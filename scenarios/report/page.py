@@ -29,6 +29,7 @@ _NAMED = 4  # scenarios in a title
 _DRIVES = {
     "following": "How well the person was followed",
     "corridor": "How well the corridor was followed",
+    "comfort": "How comfortable people were with the robot",
 }
 
 

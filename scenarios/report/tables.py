@@ -18,6 +18,7 @@ from peopleboy.scenarios.report.findings.sentences import seconds, spoken
 from peopleboy.scenarios.report.findings.summary import RunFindings, headline
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap
+from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
 from peopleboy.sim.truth.thing_events import Move
@@ -38,7 +39,7 @@ PLAIN: Final = (
     ("IDSW", "switches", "How often the number on a person became another, even if only for a moment."),
     ("false_tracks", "tracks on nobody", "Track numbers that never lay on a person at all."),
 )  # fmt: skip
-_SCORES: Final = {"following": FollowingScore, "corridor": CorridorScore}
+_SCORES: Final = {"following": FollowingScore, "corridor": CorridorScore, "comfort": ComfortScore}
 
 
 class Head(NamedTuple):
@@ -177,7 +178,7 @@ def all_figures(columns: Sequence[Column]) -> PageTable:
 
 
 def drive_figures(columns: Sequence[Column], group: str) -> PageTable:
-    """How the robot drove, if any run says: `following` or `corridor`."""
+    """How the robot drove, if any run says: `following`, `corridor` or `comfort`."""
     rows = [[_rows(found.run, group) for found in column.runs] for column in columns]
     first = next((of_run for column in rows for of_run in column if of_run), [])
 
@@ -204,7 +205,7 @@ def _rows(run: FinishedRun, group: str) -> list[Row]:
     figures = run.metrics.get(group)
     if figures is None:
         return []
-    score: Callable[..., FollowingScore | CorridorScore] = _SCORES[group]
+    score: Callable[..., FollowingScore | CorridorScore | ComfortScore] = _SCORES[group]
     try:
         return score(**{name: math.nan if v is None else v for name, v in figures.items()}).rows()
     except (TypeError, AttributeError) as error:

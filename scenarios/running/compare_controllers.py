@@ -20,7 +20,7 @@ from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
-GROUPS = ("following", "corridor")  # of metrics.json: how the robot drove
+GROUPS = ("following", "corridor", "comfort")  # of metrics.json: how the robot drove
 
 
 @dataclass(frozen=True, slots=True)

@@ -137,7 +137,10 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         corridor = None
         if scenario.robot.behaviour == "follow_corridor":
             corridor = watchers.corridor.score(scenario.plan)
-        scores = score_run(options.out, frames, following, corridor)
+        comfort = None
+        if scenario.robot.behaviour != "stand" and config.people:
+            comfort = watchers.comfort.score()
+        scores = score_run(options.out, frames, following, corridor, comfort)
         watchers.save(options.out)
         folder.complete(scores.to_json())
     return scores

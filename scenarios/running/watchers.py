@@ -8,6 +8,7 @@ from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
 from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.scores.comfort_score import ComfortLog
 from peopleboy.scenarios.scores.corridor_score import CorridorLog
 from peopleboy.scenarios.scores.following_score import FollowingLog, whose_tracks
 from peopleboy.sim.config import WorldConfig
@@ -19,6 +20,7 @@ class Watchers:
     def __init__(self, config: WorldConfig, title: str, recorder: Recorder | None) -> None:
         self.following = FollowingLog()
         self.corridor = CorridorLog()
+        self.comfort = ComfortLog()
         self._events = RunEvents()
         self._sheet = ContactSheet(title, config.robot)
         self._recorder = recorder
@@ -28,6 +30,7 @@ class Watchers:
         events = self._events.update(tick)
         self.following.add(tick.truth, *whose_tracks(tick))
         self.corridor.add(tick.truth)
+        self.comfort.add(tick.truth)
         self._sheet.add(tick, events)
         if self._recorder is not None:
             self._recorder.log(tick, events)

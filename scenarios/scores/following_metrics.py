@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.contacts import count_contacts, count_starts
+from peopleboy.scenarios.scores.contacts import count_contacts
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -27,8 +27,6 @@ class FollowingTask:
         facing_rad: [rad] bearing within which the robot faces the person.
         lost_s: [s] a person out of track for this long is lost; shorter gaps are drop-outs.
         reached_s: [s] last part of the run, which tells whether the person was followed to the end.
-        spaces_m: [m] intimate and personal space, from the robot's outline to the middle of a body (E. T.
-            Hall, The Hidden Dimension, 1966).
     """
 
     keep_m: float = 3.9
@@ -36,7 +34,6 @@ class FollowingTask:
     facing_rad: float = math.radians(10.0)
     lost_s: float = 0.5
     reached_s: float = 5.0
-    spaces_m: tuple[float, float] = (0.45, 1.2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,10 +55,8 @@ class FollowingScore:
         followed_to_end: whether the person was tracked for most of the last reached_s, and not exchanged.
         path_efficiency: from the encounter to the first time in the band, straight way / way driven.
         mean_heading_error_rad: [rad] mean absolute bearing of the person.
-        jerk_m_s3: [m/s3] root mean square of the second difference of the forward speed, over the whole run.
         wrong_person_s: [s] for which the robot went after somebody else; NaN if nobody knows.
         identity_changes: how often the track that lay on the person got another number.
-        intimate_intrusions, personal_intrusions: how often somebody and the robot came so near.
 
     What is not defined (no encounter, nobody there) is NaN.
     """
@@ -81,11 +76,8 @@ class FollowingScore:
     followed_to_end: bool
     path_efficiency: float
     mean_heading_error_rad: float
-    jerk_m_s3: float
     wrong_person_s: float
     identity_changes: int
-    intimate_intrusions: int
-    personal_intrusions: int
 
     def rows(self) -> list[Row]:
         """Give the scores as table rows: name, value, unit, explanation."""
@@ -105,11 +97,8 @@ class FollowingScore:
             ("to the end", float(self.followed_to_end), "", "1 if the right person was followed at the end"),
             ("path efficiency", 100.0 * self.path_efficiency, "%", "straight way to the band / way driven"),
             ("heading error", math.degrees(self.mean_heading_error_rad), "deg", "mean absolute since found"),
-            ("jerk", self.jerk_m_s3, "m/s3", "root mean square, forwards"),
             ("wrong person", self.wrong_person_s, "s", "time spent going after somebody else"),
             ("identity changes", float(self.identity_changes), "", "new numbers of the person's track"),
-            ("within 0.45 m", float(self.intimate_intrusions), "", "intrusions into intimate space"),
-            ("within 1.2 m", float(self.personal_intrusions), "", "intrusions into personal space"),
         ]
 
 
@@ -125,7 +114,6 @@ class FollowingRun:
         is_contact: (T,) whether the robot touched anything or anyone.
         track: (T,) number of the track that lay on this person, 0 for none; None to leave that out.
         is_wrong: (T,) whether the robot went after somebody else; None if nobody knows.
-        gap_m: (T,) [m] from the robot's outline to the nearest body's middle; None to leave that out.
 
     Raises:
         BadInput: the arrays do not have these shapes, or time does not rise.
@@ -138,7 +126,6 @@ class FollowingRun:
     is_contact: Flags
     track: NDArray[np.int64] | None = None
     is_wrong: Flags | None = None
-    gap_m: Floats | None = None
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not belong together."""
@@ -149,9 +136,9 @@ class FollowingRun:
             raise BadInput(
                 f"following: shapes must be (T,), (T, 3), (T, 2), (T,), (T,) with T > 0, got {shapes}"
             )
-        more = [a.shape for a in (self.track, self.is_wrong, self.gap_m) if a is not None]
+        more = [a.shape for a in (self.track, self.is_wrong) if a is not None]
         if any(shape != (frames,) for shape in more):
-            raise BadInput(f"following: track, is_wrong and gap_m must be ({frames},), got {more}")
+            raise BadInput(f"following: track and is_wrong must be ({frames},), got {more}")
         if not np.all(np.diff(self.time_s) > 0.0):
             raise BadInput("following: time_s must rise from frame to frame")
 
@@ -178,7 +165,6 @@ def score_following(run: FollowingRun, task: FollowingTask | None = None) -> Fol
     is_facing = np.abs(bearing) < task.facing_rad
     error = np.abs(distance[since] - task.keep_m)
     lost = _periods(time_s, since & ~is_tracked)
-    intimate, personal = (_intrusions(run.gap_m, space_m) for space_m in task.spaces_m)
     return FollowingScore(
         found=bool(is_tracked.any()),
         time_to_find_s=float(time_s[first] - time_s[0]) if is_tracked.any() else math.nan,
@@ -195,11 +181,8 @@ def score_following(run: FollowingRun, task: FollowingTask | None = None) -> Fol
         followed_to_end=_is_at_end(run, task.reached_s),
         path_efficiency=_path_efficiency(run.robot[first:], is_kept[first:]),
         mean_heading_error_rad=_mean(np.abs(bearing[since])),
-        jerk_m_s3=_jerk(run),
         wrong_person_s=math.nan if run.is_wrong is None else float(np.sum(_periods(time_s, run.is_wrong))),
         identity_changes=0 if run.track is None else _changes(run.track),
-        intimate_intrusions=intimate,
-        personal_intrusions=personal,
     )
 
 
@@ -220,25 +203,9 @@ def _path_efficiency(robot: Floats, is_kept: Flags) -> float:
     return float(np.hypot(*(way[-1] - way[0]))) / driven if driven > 0.1 else math.nan
 
 
-def _jerk(run: FollowingRun) -> float:
-    """Give the root mean square of the second derivative of the forward speed [m/s3], by differences."""
-    if len(run.time_s) < 4:
-        return math.nan
-    steps, heading = np.diff(run.robot[:, :2], axis=0), run.robot[:-1, 2]
-    ahead = steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading)
-    step_s = np.diff(run.time_s)
-    acceleration = np.diff(ahead / step_s) / step_s[1:]
-    return float(np.sqrt(np.mean((np.diff(acceleration) / step_s[2:]) ** 2)))
-
-
 def _changes(track: NDArray[np.int64]) -> int:
     """Count how often the number on the person is another than the last one before."""
     return int(np.sum(np.diff(track[track > 0]) != 0))
-
-
-def _intrusions(gap_m: Floats | None, space_m: float) -> int:
-    """Count how often the gap falls below a space."""
-    return 0 if gap_m is None else count_starts(gap_m < space_m)
 
 
 def _person_from_robot(robot: Floats, person: Floats) -> tuple[Floats, Floats]:

@@ -17,7 +17,6 @@ from peopleboy.scenarios.scores.following_metrics import (
 )
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.robot.robot_body import outline_gap
 from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
@@ -47,12 +46,11 @@ class FollowingLog:
         robot = truth.robot
         target = next((person for person in truth.people if person.id == TARGET), None)
         position = (math.nan, math.nan) if target is None else target.position_m
-        gap_m = min((outline_gap(robot, person.position_m) for person in truth.people), default=math.inf)
         wrong = math.nan if is_wrong is None else float(is_wrong)
         self._rows.append(
             (
                 *(truth.time_s, robot.x, robot.y, robot.heading, *position),
-                *(bool(truth.contacts), track, wrong, gap_m),
+                *(bool(truth.contacts), track, wrong),
             )
         )
 
@@ -68,7 +66,6 @@ class FollowingLog:
             is_contact=table[:, 6] > 0.0,
             track=table[:, 7].astype(np.int64),
             is_wrong=None if np.isnan(wrong).any() else wrong > 0.0,
-            gap_m=table[:, 9],
         )
         return score_following(run, task)
 

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import (
     FollowingScore,
@@ -26,18 +27,21 @@ class RunScores:
         people: detection, localisation and identity; from the files of the run.
         following: of the first person in the scenario; None if the robot was not to follow anybody.
         corridor: of the way along corridors; None if the robot was not to follow any.
+        comfort: of people among whom the robot drove; None if it was not to drive, or nobody was there.
         further: of people by the boxes that the tracker gave in further cameras' images, by camera.
     """
 
     people: Scores
     following: FollowingScore | None
     corridor: CorridorScore | None = None
+    comfort: ComfortScore | None = None
     further: Mapping[str, Scores] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         """Give all figures as JSON can hold them: None for what is undefined."""
         groups: dict[str, Any] = dict(to_json(self.people))
-        for group, score in (("following", self.following), ("corridor", self.corridor)):
+        drives = {"following": self.following, "corridor": self.corridor, "comfort": self.comfort}
+        for group, score in drives.items():
             if score is not None:
                 groups[group] = {
                     name: None if isinstance(value, float) and math.isnan(value) else value
@@ -49,7 +53,11 @@ class RunScores:
 
 
 def score_run(
-    folder: Path, frames: int, following: FollowingScore | None, corridor: CorridorScore | None = None
+    folder: Path,
+    frames: int,
+    following: FollowingScore | None,
+    corridor: CorridorScore | None = None,
+    comfort: ComfortScore | None = None,
 ) -> RunScores:
     """Score a run from the truth and tracks in its folder."""
     truth, tracks = read_truth(folder / "truth" / "gt.txt"), read_tracks(folder / "tracks.txt")
@@ -58,5 +66,6 @@ def score_run(
         score_people(folder, truth, tracks, frames),
         following,
         corridor,
+        comfort,
         {camera: score_camera(folder, camera, frames) for camera in further},
     )

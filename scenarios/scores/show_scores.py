@@ -11,8 +11,7 @@ from rich.table import Table
 
 from peopleboy.scenarios.scores.bootstrap import Interval
 from peopleboy.scenarios.scores.by_tracker import Difference, Groups, differences
-from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
-from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
+from peopleboy.scenarios.scores.following_metrics import Row
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread
 from peopleboy.wording import counted
@@ -30,17 +29,8 @@ def print_scores(scores: Scores, who: str = "people") -> None:
     _tell_unknown(scores)
 
 
-def print_following(score: FollowingScore) -> None:
-    """Print how well one person was followed."""
-    _print_rows("following", score.rows())
-
-
-def print_corridor(score: CorridorScore) -> None:
-    """Print how well corridors were followed."""
-    _print_rows("corridor", score.rows())
-
-
-def _print_rows(title: str, rows: Sequence[Row]) -> None:
+def print_drive(title: str, rows: Sequence[Row]) -> None:
+    """Print how the robot drove: how well one person or corridors were followed, or people's comfort."""
     table = _table(title, "figure", "value", "meaning")
     for name, value, unit, meaning in rows:
         table.add_row(name, _number(value, unit), meaning)

@@ -57,10 +57,18 @@ class Crowd:
         """Let everybody walk on for dt_s from time_s, knowing where the others and the robot are now."""
         states = {person.name: _state(person) for person in self.people if person.present}
         obstacles = self._place.obstacles_at(time_s)
+        progress = {p.name: p.progress for p in self.people if p.present and p.config.group is not None}
         for person in self.people:
             self._before[person.name] = person.position.copy()
             others = {name: state for name, state in states.items() if name != person.name}
-            person.step(time_s, dt_s, others, robot, obstacles)
+            company = [
+                progress[other.name]
+                for other in self.people
+                if other.name in progress
+                and other is not person
+                and other.config.group == person.config.group
+            ]
+            person.step(time_s, dt_s, others, robot, obstacles, company)
 
     def move_bodies(self, share: float) -> None:
         """Move the solid capsules to where people are when this share of the control step has passed."""

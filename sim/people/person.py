@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,14 +26,17 @@ from peopleboy.sim.people.body.gait import Gait, lowest_sole
 from peopleboy.sim.people.body.joints import joint_points
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
-from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations
+from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations, wave
 from peopleboy.sim.people.body.reaching import arm_length, least_stoop, stoop, turn_arm
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
 from peopleboy.sim.people.looks.finish_person import Finisher
 from peopleboy.sim.people.person_config import Arms, PersonConfig
+from peopleboy.sim.people.reacting.encounter import Situation
+from peopleboy.sim.people.reacting.mind import Mind
 from peopleboy.sim.people.timetable import timetable
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.walk import RISE_S, Surroundings, Walker, Waypoint
+from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part
 
@@ -64,6 +67,11 @@ _LOOK_RATIO = 0.57  # how often one looks about, to how often one sways
 # Who turns on the spot takes small steps: as if the feet went round a circle, and so many cycles a turn.
 _TURNING_RADIUS_M = 0.04
 _CYCLES_PER_RAD = 0.4
+# How far round one looks without turning the body, which bones turn for it, and how fast.
+_FARTHEST_LOOK_RAD = math.radians(100.0)
+_LOOKING_RAD_S = math.radians(200.0)
+_GAZE_SHARES = {"chest": 0.2, "neck": 0.3, "head": 0.5}
+_BEHIND_RAD = math.radians(150.0)  # beyond which one keeps looking over the same shoulder
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,6 +114,9 @@ class Person:
         self._gait = Gait(self._offsets, config.height_m, self._manner)
         self._held, self._is_held = held_arms(self._manner.holds)
         self._walker = Walker(config.path, config.yields, self.radius_m)
+        self._mind = Mind([waypoint.at_m for waypoint in config.path], config.reacts, config.leads)
+        self._wish = AS_PLANNED
+        self._gaze = 0.0
         self._phase = float(rng.uniform())
         self._sway_phase = float(rng.uniform())
         self._time_s = 0.0
@@ -134,7 +145,12 @@ class Person:
     @property
     def posture(self) -> Posture:
         """The posture that it has or is about to take up."""
-        return self._walker.posture
+        return Posture.CALLING if self._wish.calls else self._walker.posture
+
+    @property
+    def progress(self) -> float:
+        """How far along its path it is: waypoints reached, and the share of the way to the next one."""
+        return self._walker.progress
 
     @property
     def radius_m(self) -> float:
@@ -149,6 +165,7 @@ class Person:
         others: Mapping[str, PlanarState],
         robot: PlanarState | None,
         walls: Array,
+        company: Iterable[float] = (),
     ) -> None:
         """Move on.
 
@@ -158,6 +175,7 @@ class Person:
             others: the other people who are present, by name.
             robot: None if there is none.
             walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
+            company: progress of the others of its group who are present.
         """
         config = self.config
         was_present = self.present
@@ -166,11 +184,43 @@ class Person:
         self.present = config.enter_s <= self._time_s + 1e-9 and not has_left
         around = Surroundings(others=others, robot=robot, walls=walls)
         if self.present and was_present:
-            self._walker.step(dt_s, around)
+            self._wish = self._make_up_mind(dt_s, around, company)
+            self._walker.step(dt_s, around, self._wish)
+            self._look(dt_s, robot)
             self._move_limbs(dt_s)
         elif self.present:
             self._walker.enter(around)
             self._bones = None
+
+    def _make_up_mind(self, dt_s: float, around: Surroundings, company: Iterable[float]) -> Wish:
+        """Decide how to change the script, if at all."""
+        walker, now = self._walker, None
+        if around.robot is not None and (self.config.reacts or self.config.leads):
+            now = Situation(
+                at=walker.position,
+                heading=walker.heading,
+                home=walker.home,
+                is_walking=walker.is_walking,
+                is_seated=walker.posture is Posture.SITTING,
+                robot=around.robot,
+                walls=around.walls,
+            )
+        return self._mind.wish(dt_s, now, walker.progress if self.config.group else 0.0, company)
+
+    def _look(self, dt_s: float, robot: PlanarState | None) -> None:
+        """Turn the head towards what is to be looked at, else back to the front."""
+        target = self._wish.looks_at
+        if target is None and robot is not None and self._walker.is_awaiting(robot):
+            target = robot.position
+        wanted = 0.0
+        if target is not None:
+            x, y = target - self.position
+            off = math.remainder(math.atan2(y, x) - self.heading, math.tau)
+            if abs(off) > _BEHIND_RAD and self._gaze:
+                off = math.copysign(off, self._gaze)
+            wanted = min(max(off, -_FARTHEST_LOOK_RAD), _FARTHEST_LOOK_RAD)
+        step = _LOOKING_RAD_S * dt_s
+        self._gaze += min(max(wanted - self._gaze, -step), step)
 
     def reach_for(self, point: Array, share: float, halfway: Array) -> None:
         """Have a hand at a point (3,) [m] of the world; by less than a share of 1, on the way there.
@@ -210,7 +260,7 @@ class Person:
         turning_hz = 0.0 if walker.is_walking else _CYCLES_PER_RAD * abs(walker.turn_rate)
         self._phase = (self._phase + max(walking_hz, turning_hz) * dt_s) % 1.0
         for posture in Posture:
-            wanted = float(posture is walker.posture)
+            wanted = float(posture is self.posture)
             step = dt_s / RISE_S
             self._blend[posture] += min(max(wanted - self._blend[posture], -step), step)
         self._bones = None
@@ -298,6 +348,11 @@ class Person:
                 rotations += weight * (_POSTURES[posture] - standing)
                 front += weight * pelvis_shift(posture) * self.config.height_m
         self._sway(rotations)
+        if weights[Posture.CALLING] > 0.0:
+            rotations[BONE_INDEX["left_forearm"], 0] += weights[Posture.CALLING] * wave(self._time_s)
+        if self._gaze != 0.0:
+            for bone, share in _GAZE_SHARES.items():
+                rotations[BONE_INDEX[bone], 2] += share * self._gaze
         return rotations, (front, float(sway[1]))
 
     def _steady_bag_arm(self, rotations: Array, standing: Array) -> None:

@@ -11,6 +11,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.people.body.anthropometry import Build, Sex
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.reacting.reaction import FROM_M, Lead, Reaction
 from peopleboy.sim.people.walking.walk import Waypoint
 
 Arms = Literal["swinging", "crossed", "raised"]
@@ -35,6 +36,9 @@ class PersonConfig:
             robot in their way.
         bag: whether it carries a bag.
         arms: what the arms do while it walks.
+        reacts: how it takes to the robot; None for no way in particular.
+        leads: how it leads the robot along its path; None if it does not.
+        group: with whom it keeps together: those of the same word, whose paths have as many points.
     """
 
     name: str
@@ -48,6 +52,9 @@ class PersonConfig:
     yields: bool = False
     bag: bool = False
     arms: Arms = "swinging"
+    reacts: Reaction | None = None
+    leads: Lead | None = None
+    group: str | None = None
 
     def __post_init__(self) -> None:
         check_person(self)
@@ -67,6 +74,8 @@ def check_person(config: PersonConfig) -> None:
     for key, known in (("sex", get_args(Sex)), ("build", get_args(Build)), ("arms", get_args(Arms))):
         if getattr(config, key) not in known:
             raise BadInput(f"{who}: {key} {getattr(config, key)!r} must be one of {', '.join(known)}")
+    if config.reacts is not None and config.leads is not None:
+        raise BadInput(f"{who}: who leads the robot looks out for it; leave out reacts, or leads")
     _check_times(who, config.enter_s, config.leave_s)
     _check_path(who, config.path)
 
@@ -99,6 +108,11 @@ def _check_waypoint(where: str, waypoint: Waypoint) -> None:
         )
     if not 0.0 <= waypoint.pause_s < math.inf:
         raise BadInput(f"{where}: pause_s {waypoint.pause_s!r} must be 0 or more")
+    within_m = waypoint.until_robot_within_m
+    if within_m is not None and not FROM_M[0] <= within_m <= FROM_M[1]:
+        raise BadInput(f"{where}: until_robot_within_m {within_m!r} must be {FROM_M[0]} .. {FROM_M[1]}")
+    if not 0.0 < waypoint.waits_at_most_s < math.inf:
+        raise BadInput(f"{where}: waits_at_most_s {waypoint.waits_at_most_s!r} must be more than 0")
     if isinstance(waypoint.face, tuple) and not all(math.isfinite(c) for c in waypoint.face):
         raise BadInput(f"{where}: face {waypoint.face!r} must be finite")
     if waypoint.posture not in set(Posture):

@@ -145,10 +145,13 @@ class MovedThings:
 
 
 def _check_hand(mover: Mover, action: Action, person: PersonSpec, key: Key) -> None:
-    if person.yields or person.jitter_m or person.speed_jitter or person.enter_jitter_s:
+    waits = any(waypoint.until_robot_within_m is not None for waypoint in person.path)
+    is_moved = person.yields or person.reacts or person.leads or person.group or waits
+    if is_moved or person.jitter_m or person.speed_jitter or person.enter_jitter_s:
         raise BadInput(
             f"{person.name!r} must be where the file says, to the moment, to move {mover.name!r}: "
-            "without yields, jitter_m, speed_jitter and enter_jitter_s",
+            "without yields, reacts, leads, group, until_robot_within_m, jitter_m, speed_jitter and "
+            "enter_jitter_s",
             key=(*key, "by"),
         )
     ways = dict(_walk(person, action.ends_s + 2.0 * _STEP_S))

@@ -6,8 +6,10 @@ from typing import Literal
 
 from pydantic import Field
 
+from peopleboy.scenarios.files.schema.reactions import LeadSpec, ReactionSpec
 from peopleboy.scenarios.files.schema.values import Colour, Face, Name, Point, Seconds, Strict
 from peopleboy.sim.people.body.clothes import BOTTOMS, HAIR, SHOES, TOPS
+from peopleboy.sim.people.reacting.reaction import FROM_M
 
 
 class ClothesSpec(Strict):
@@ -37,11 +39,22 @@ class WaypointSpec(Strict):
     face: Face | None = Field(
         default=None, description="where the person looks meanwhile: robot, another person's name, or a point"
     )
-    posture: Literal["standing", "sitting", "bending", "arms_raised", "arms_crossed"] = Field(
+    until_robot_within_m: float | None = Field(
+        default=None,
+        ge=FROM_M[0],
+        le=FROM_M[1],
+        description="the pause lasts until the robot is so near, too, to which the person turns if `face` "
+        "says nothing else; left out, it does not wait for the robot",
+    )
+    waits_at_most_s: float = Field(
+        default=60.0, gt=0.0, le=3600.0, description="for the robot, after `pause_s`"
+    )
+    posture: Literal["standing", "sitting", "bending", "arms_raised", "arms_crossed", "calling"] = Field(
         default="standing",
         description="posture during the pause: `standing` upright, arms at the sides; `sitting` as on a "
         "chair, which may stand at that point; `bending` forward; `arms_raised`, both of them; "
-        "`arms_crossed` in front of the chest",
+        "`arms_crossed` in front of the chest; `calling` with one arm raised, which waves, until the robot "
+        "is as near as `until_robot_within_m` says",
     )
 
 
@@ -68,6 +81,15 @@ class _Walk(Strict):
     enter_jitter_s: float = Field(
         default=0.0, ge=0.0, le=60.0, description="the seed delays the entry by up to this long"
     )
+    group: Name | None = Field(
+        default=None,
+        description="word for those who keep together: who is ahead slows for who is behind, and waits; all "
+        "of one word have paths of as many points",
+    )
+    reacts: ReactionSpec | None = Field(
+        default=None,
+        description="how they take to the robot; left out, they take no note of it in particular",
+    )
 
 
 class PersonSpec(_Walk):
@@ -87,6 +109,9 @@ class PersonSpec(_Walk):
     bag: bool = Field(default=False, description="whether the person carries a bag")
     arms: Literal["swinging", "crossed", "raised"] = Field(
         default="swinging", description="what the arms do while walking"
+    )
+    leads: LeadSpec | None = Field(
+        default=None, description="how the person leads the robot along its path; left out, it does not"
     )
 
 

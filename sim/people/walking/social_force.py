@@ -26,7 +26,7 @@ TOUCH_STRENGTH = 8.0  # [m/s2]
 TOUCH_RANGE_M = 0.08
 # Ours: who comes head-on is passed on the right, so that nobody gets stuck; a force bends by this much.
 KEEP_RIGHT_RAD = 0.25
-_POINT_RADIUS_M = 0.25  # the size of the bodies that the constants were made for
+POINT_RADIUS_M = 0.25  # the size of the bodies that the constants were made for
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,11 +37,13 @@ class PlanarState:
         position: (2,) [m] in the world frame.
         velocity: (2,) [m/s].
         radius_m: [m] of the circle that it takes up.
+        heading_rad: [rad] where its front is; of people it is not asked for.
     """
 
     position: Array
     velocity: Array
     radius_m: float = 0.25
+    heading_rad: float = 0.0
 
 
 def social_force(
@@ -86,10 +88,10 @@ def _push_of(gaps: Array, velocity: Array, others: Sequence[PlanarState]) -> Arr
     Helbing and Shukla 2007), so that a robot that stands still is avoided like a person who comes.
     """
     distance = np.maximum(_length(gaps), 1e-3)
-    beyond = np.array([other.radius_m for other in others]) - _POINT_RADIUS_M
+    beyond = np.array([other.radius_m for other in others]) - POINT_RADIUS_M
     shrink = np.maximum(1.0 - beyond / distance, 0.2)
     gaps, distance = gaps * shrink[:, None], distance * shrink
-    touch = TOUCH_STRENGTH * np.exp((2.0 * _POINT_RADIUS_M - distance) / TOUCH_RANGE_M)
+    touch = TOUCH_STRENGTH * np.exp((2.0 * POINT_RADIUS_M - distance) / TOUCH_RANGE_M)
     step = (np.array([other.velocity for other in others]) - velocity) * STEP_TIME_S
     ahead = gaps - step
     ahead_distance = np.maximum(_length(ahead), 1e-3)

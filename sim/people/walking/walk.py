@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.walking.path import PathPiece, is_about_turn, route, turn_between
-from peopleboy.sim.people.walking.social_force import KEEP_RIGHT_RAD, PlanarState, social_force
+from peopleboy.sim.people.walking.social_force import (
+    KEEP_RIGHT_RAD,
+    POINT_RADIUS_M,
+    PlanarState,
+    social_force,
+)
+from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
 
 Array = NDArray[np.float64]
 
@@ -25,6 +31,9 @@ _STEER_GAIN = 8.0  # [1/s]
 _START_WITHIN_RAD = math.radians(25.0)
 _GIVING_WAY_M_S2 = 4.0
 _TRY_SIDE_S = 2.0  # how long one tries to pass on one side
+_ERRAND_M_S = 1.2  # how fast one goes where no script sends one
+_NEARLY_M = 0.1  # how near to the goal of an errand one has arrived
+_SIDESTEP_M = 0.8  # the last of an errand, on which one does not turn away from what one faces
 _HURRY = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
 
 
@@ -38,6 +47,8 @@ class Waypoint:
         pause_s: [s] waits there.
         face: while pausing, turn to a point, to "robot", or to a person by name; None keeps the direction.
         posture: while pausing.
+        until_robot_within_m: [m] the pause lasts until the robot is so near, too; None does not wait for it.
+        waits_at_most_s: [s] after the pause, for the robot.
     """
 
     at_m: tuple[float, float]
@@ -45,6 +56,8 @@ class Waypoint:
     pause_s: float = 0.0
     face: tuple[float, float] | str | None = None
     posture: Posture = Posture.STANDING
+    until_robot_within_m: float | None = None
+    waits_at_most_s: float = 60.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,11 +113,35 @@ class Walker:
         self._along = 0.0
         self._on_feet_in = 0.0
         self._blocked_s = 0.0
+        self._wait_left = self._path[0].waits_at_most_s
+        self._is_astray = False
+        self._is_turned_away = False
 
     @property
     def is_walking(self) -> bool:
         """Whether it is on its way to a waypoint."""
         return bool(self._pieces)
+
+    @property
+    def home(self) -> Array | None:
+        """(2,) [m] the waypoint at which it is to be now; None on the way to the next one."""
+        return np.array(self._path[self.reached].at_m, dtype=float) if self._pause_left > 0.0 else None
+
+    @property
+    def progress(self) -> float:
+        """Waypoints reached, from 0 on, and the share of the way from the last one to the next."""
+        if self.reached == len(self._path) - 1:
+            return float(self.reached)
+        start, end = (np.array(self._path[i].at_m) for i in (self.reached, self.reached + 1))
+        left = math.dist(self.position, end) / math.dist(start, end)
+        return self.reached + min(max(1.0 - left, 0.0), 1.0)
+
+    def is_awaiting(self, robot: PlanarState | None) -> bool:
+        """Whether it waits for the robot, as its script says."""
+        within_m = self._path[self.reached].until_robot_within_m
+        if within_m is None or robot is None or self._pieces or self._wait_left <= 0.0:
+            return False
+        return math.dist(self.position, robot.position) > within_m
 
     def enter(self, around: Surroundings) -> None:
         """Face at once what the first waypoint says, if it is there."""
@@ -113,17 +150,25 @@ class Walker:
         if target is not None:
             self.heading = self._bearing(target)
 
-    def step(self, dt_s: float, around: Surroundings) -> None:
-        """Move on by a time step; long ones are divided."""
+    def step(self, dt_s: float, around: Surroundings, wish: Wish = AS_PLANNED) -> None:
+        """Move on by a time step, by the script as far as a wish leaves it; long steps are divided."""
         count = max(math.ceil(dt_s / _LONGEST_STEP_S - 1e-9), 1)
         for _ in range(count):
-            self._step(dt_s / count, around)
+            self._step(dt_s / count, around, wish)
 
-    def _step(self, dt_s: float, around: Surroundings) -> None:
-        if self._pieces and self._yields:
-            self._give_way(dt_s, around)
+    def _step(self, dt_s: float, around: Surroundings, wish: Wish) -> None:
+        if wish.goes_to is not None:
+            self._stray(dt_s, wish.goes_to, around, wish)
+        elif wish.stands:
+            self._halt(dt_s, around, wish)
+        elif self._is_astray and not self._pieces:
+            self._turn_back()
+        elif self._pieces and self._is_turned_away:
+            self._turn_to_the_way(dt_s)
+        elif self._pieces and (self._yields or self._is_astray or wish.clear_m is not None):
+            self._give_way(dt_s, around, wish)
         elif self._pieces:
-            self._follow(dt_s, around)
+            self._follow(dt_s, around, wish.pace)
         else:
             self._pause(dt_s, around)
 
@@ -139,7 +184,9 @@ class Walker:
         return math.atan2(target[1] - first.at_m[1], target[0] - first.at_m[0])
 
     def _has_pause(self, index: int) -> bool:
-        return index == len(self._path) - 1 or self._path[index].pause_s > 0.0
+        waypoint = self._path[index]
+        is_kept = waypoint.pause_s > 0.0 or waypoint.until_robot_within_m is not None
+        return index == len(self._path) - 1 or is_kept
 
     def _pause_of(self, index: int) -> float:
         """How long to stay at a waypoint [s]; at the last one for ever."""
@@ -150,8 +197,12 @@ class Walker:
         self.velocity = np.zeros(2)
         self._speed = 0.0
         self._pause_left -= dt_s
-        if self._pause_left > 1e-9:
-            face = self._path[self.reached].face
+        is_awaiting = self.is_awaiting(around.robot)
+        if self._pause_left > 1e-9 or is_awaiting:
+            if self._pause_left <= 1e-9 or self.reached == len(self._path) - 1:
+                self._wait_left -= dt_s
+            self._stop_calling(is_awaiting)
+            face = self._path[self.reached].face or ("robot" if is_awaiting else None)
             target = None if face is None else around.find(face)
             self._turn(dt_s, self.heading if target is None else self._bearing(target))
             return
@@ -163,6 +214,59 @@ class Walker:
         self._turn(dt_s, bearing)
         if self._on_feet_in <= 0.0 and abs(turn_between(self.heading, bearing)) < _START_WITHIN_RAD:
             self._set_off()
+
+    def _stop_calling(self, is_awaiting: bool) -> None:
+        """Lower the arm of one whose call was heard: the robot has come."""
+        waits = self._path[self.reached].until_robot_within_m is not None
+        if waits and not is_awaiting and self.posture is Posture.CALLING:
+            self.posture = Posture.STANDING
+
+    def _halt(self, dt_s: float, around: Surroundings, wish: Wish) -> None:
+        """Come to a stand, and turn to what is to be faced."""
+        if self._speed > 0.0 and self._pieces and not self._is_astray and not self._yields:
+            self._follow(dt_s, around, pace=0.0)
+            return
+        self._speed = max(self._speed - 2.0 * _BRAKE_M_S2 * dt_s, 0.0)
+        self.velocity = _shorten(self.velocity, self._speed)
+        self.position = self.position + self.velocity * dt_s
+        if self._speed == 0.0 and self.posture is not Posture.SITTING:
+            self._turn(dt_s, self.heading if wish.faces is None else self._bearing(wish.faces))
+            self._is_turned_away = wish.faces is not None
+
+    def _turn_to_the_way(self, dt_s: float) -> None:
+        """Turn back to where the way leads, as who has stopped and looked elsewhere."""
+        bearing = self._bearing(np.array(self._path[self._pieces[0].goal].at_m))
+        self._turn(dt_s, bearing)
+        self._is_turned_away = abs(turn_between(self.heading, bearing)) > _START_WITHIN_RAD
+
+    def _stray(self, dt_s: float, goal: Array, around: Surroundings, wish: Wish) -> None:
+        """Leave the way of the script, on foot, for a point of the floor."""
+        if self.posture is not Posture.STANDING:
+            self.posture = Posture.STANDING
+            self._on_feet_in = RISE_S
+        self._is_astray, self._is_turned_away, self._pieces = True, False, ()
+        self._on_feet_in -= dt_s
+        gap = goal - self.position
+        distance = float(np.hypot(*gap))
+        if self._on_feet_in > 0.0 or distance < _NEARLY_M:
+            self._halt(dt_s, around, wish)
+            return
+        wanted = min(_ERRAND_M_S, _braking_speed(distance, 0.0, ACCELERATION_M_S2, dt_s))
+        self._be_pushed(dt_s, gap / distance * wanted, _ERRAND_M_S, around, wish)
+        if wish.faces is not None and distance < _SIDESTEP_M:
+            self._turn(dt_s, self._bearing(wish.faces))
+
+    def _turn_back(self) -> None:
+        """Plan the way back to where the script is: to the waypoint to stay at, or to the next one."""
+        if self.home is None:
+            self._set_off()
+            return
+        here, home = (float(self.position[0]), float(self.position[1])), self._path[self.reached].at_m
+        if math.dist(here, home) < _NEARLY_M:
+            self._is_astray = False
+        else:
+            self._pieces = route([here, home], self.reached)
+            self._along = 0.0
 
     def _set_off(self) -> None:
         """Plan the way to the next waypoint at which to stop."""
@@ -186,15 +290,19 @@ class Walker:
         """Stop at the end of the planned way."""
         self._speed = 0.0
         self.velocity = np.zeros(2)
-        self.reached = self._pieces[-1].goal
+        goal = self._pieces[-1].goal
+        if goal > self.reached:  # else it has come back to where it was to stay
+            self._pause_left, self._wait_left = self._pause_of(goal), self._path[goal].waits_at_most_s
+        self.reached = goal
         self._pieces = ()
-        self._pause_left = self._pause_of(self.reached)
+        self._is_astray = False
         if self._has_pause(self.reached):
             self.posture = Posture(self._path[self.reached].posture)
 
-    def _follow(self, dt_s: float, around: Surroundings) -> None:
-        """Move along the planned way, exactly."""
-        limit = min(self._speed_limit(dt_s), self._limit_by_robot(around.robot))
+    def _follow(self, dt_s: float, around: Surroundings, pace: float) -> None:
+        """Move along the planned way, exactly, at a share of the planned speed."""
+        _, ahead = self._pieces[0].at(self._along)
+        limit = pace * min(self._speed_limit(dt_s), self._limit_by_robot(around.robot, ahead))
         rise = ACCELERATION_M_S2 * dt_s
         self._speed = max(min(limit, self._speed + rise), self._speed - 2.0 * _BRAKE_M_S2 * dt_s, 0.0)
         self._along += self._speed * dt_s
@@ -224,11 +332,10 @@ class Walker:
         speed = self._path[piece.goal].speed_m_s
         return speed if piece.curvature == 0.0 else min(speed, TURN_RATE_RAD_S * 0.8 / abs(piece.curvature))
 
-    def _limit_by_robot(self, robot: PlanarState | None) -> float:
-        """Speed [m/s] at which a person does not walk into a robot that stands in the way."""
+    def _limit_by_robot(self, robot: PlanarState | None, direction: float) -> float:
+        """Speed [m/s] in a direction [rad] at which a person does not walk into a robot that stands there."""
         if robot is None:
             return math.inf
-        _, direction = self._pieces[0].at(self._along)
         gap = robot.position - self.position
         ahead = gap[0] * math.cos(direction) + gap[1] * math.sin(direction)
         aside = abs(gap[1] * math.cos(direction) - gap[0] * math.sin(direction))
@@ -238,8 +345,9 @@ class Walker:
         clear = ahead - math.sqrt(max(reach**2 - aside**2, 0.0)) - _KEEP_CLEAR_M
         return math.sqrt(2.0 * _BRAKE_M_S2 * max(clear, 0.0))
 
-    def _give_way(self, dt_s: float, around: Surroundings) -> None:
+    def _give_way(self, dt_s: float, around: Surroundings, wish: Wish) -> None:
         """Move by social force towards the next waypoint."""
+        self._is_astray = self._is_astray or not self._yields
         goal = self._pieces[0].goal
         target = np.array(self._path[goal].at_m, dtype=float)
         gap = target - self.position
@@ -247,17 +355,33 @@ class Walker:
         is_last = goal == self._pieces[-1].goal
         speed = self._path[goal].speed_m_s
         wanted = min(speed, _braking_speed(distance, 0.0, ACCELERATION_M_S2, dt_s)) if is_last else speed
-        desired = gap / max(distance, 1e-9) * wanted
-        others = [*around.others.values(), *([around.robot] if around.robot is not None else [])]
-        force = social_force(self.position, self.velocity, desired, others, around.walls, self._bend())
-        self.velocity = _shorten(self.velocity + _shorten(force, _GIVING_WAY_M_S2) * dt_s, _HURRY * speed)
-        self.position = self.position + self.velocity * dt_s
-        self._speed = float(np.hypot(*self.velocity))
+        wanted = wish.pace * wanted
+        others = self._be_pushed(dt_s, gap / max(distance, 1e-9) * wanted, speed, around, wish)
         is_blocked = self._speed < 0.5 * wanted
         self._blocked_s = self._blocked_s + dt_s if is_blocked else max(self._blocked_s - dt_s, 0.0)
+        self._pass_waypoint(target, is_last, others)
+
+    def _be_pushed(
+        self, dt_s: float, desired: Array, speed: float, around: Surroundings, wish: Wish
+    ) -> list[PlanarState]:
+        """Move by social force at a desired velocity (2,) [m/s], a little faster than a speed [m/s] at most.
+
+        Returns:
+            Those whom it made way for.
+        """
+        robot = None if around.robot is None else _as_wished(around.robot, wish)
+        others = [*around.others.values(), *([robot] if robot is not None else [])]
+        force = social_force(self.position, self.velocity, desired, others, around.walls, self._bend())
+        velocity = self.velocity + _shorten(force, _GIVING_WAY_M_S2) * dt_s
+        limit = _HURRY * speed
+        if robot is None:
+            limit = min(limit, self._limit_by_robot(around.robot, math.atan2(velocity[1], velocity[0])))
+        self.velocity = _shorten(velocity, limit)
+        self.position = self.position + self.velocity * dt_s
+        self._speed = float(np.hypot(*self.velocity))
         if self._speed > 0.15:
             self._turn(dt_s, math.atan2(self.velocity[1], self.velocity[0]))
-        self._pass_waypoint(target, is_last, others)
+        return others
 
     def _bend(self) -> float:
         """To which side to give way [rad]: to the right; if that does not help, left and right in turn."""
@@ -287,6 +411,15 @@ class Walker:
         turn = min(max(turn, -TURN_RATE_RAD_S * dt_s), TURN_RATE_RAD_S * dt_s)
         self.turn_rate = turn / dt_s
         self.heading = math.remainder(self.heading + turn, 2.0 * math.pi)
+
+
+def _as_wished(robot: PlanarState, wish: Wish) -> PlanarState | None:
+    """The robot as one makes way for it: larger for who keeps farther away; None for who does not care."""
+    if not wish.heeds_robot:
+        return None
+    if wish.clear_m is None:
+        return robot
+    return replace(robot, radius_m=max(robot.radius_m, wish.clear_m - POINT_RADIUS_M))
 
 
 def _braking_speed(distance: float, final: float, brake: float, dt_s: float) -> float:

@@ -52,6 +52,38 @@ def camera(**keys: Any) -> Change:
 
 
 MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
+    "unknown reaction": (
+        lambda d: d["people"][0].update(reacts={"as": "curios"}),
+        ("people[0].reacts.as: unknown as 'curios'", "did you mean 'curious'?"),
+    ),
+    "misspelt key of a reaction": (
+        lambda d: d["people"][0].update(reacts={"as": "wary", "form_m": 3.0}),
+        ("people[0].reacts: unknown key 'form_m'", "did you mean 'from_m'?"),
+    ),
+    "distance that a reaction does not take": (
+        lambda d: d["people"][0].update(reacts={"as": "surprised", "keep_m": 1.0}),
+        ("people[0].reacts: keep_m 1: a person who is surprised takes none",),
+    ),
+    "reaction that begins too late to keep its distance": (
+        lambda d: d["people"][0].update(reacts={"as": "wary", "keep_m": 6.0}),
+        ("people[0].reacts: keep_m 6 must be at most from_m, 5",),
+    ),
+    "leader who never goes on": (
+        lambda d: d["people"][0].update(leads={"waits_beyond_m": 3.0, "goes_on_within_m": 3.0}),
+        ("people[0].leads: goes_on_within_m 3 must be less than waits_beyond_m, 3",),
+    ),
+    "leader who reacts": (
+        lambda d: d["people"][0].update(leads={}, reacts={"as": "wary"}),
+        ("people[0].leads: who leads the robot looks out for it already",),
+    ),
+    "wait for a robot that would be inside": (
+        lambda d: d["people"][0]["path"][0].update(until_robot_within_m=0.1),
+        ("people[0].path[0].until_robot_within_m: must be at least 0.8, got 0.1",),
+    ),
+    "group whose paths cannot be compared": (
+        lambda d: [person.update(group="us") for person in d["people"]],
+        ("people[1].group: 'us': 'ben' has 1 points of its path, and 'anna' 3; give them as many",),
+    ),
     "floor that mirrors more than there is": (
         lambda d: d["place"].update(floor_shine=1.2),
         ("place.floor_shine: must be at most 1, got 1.2",),

@@ -84,7 +84,7 @@ def test_whoever_is_never_tracked_was_not_found():
     assert math.isnan(result.time_to_find_s)
     assert math.isnan(result.followed)
     assert result.times_lost == 0
-    assert len(result.rows()) == 20
+    assert len(result.rows()) == 17
 
 
 def test_frames_without_the_person_do_not_count():
@@ -134,13 +134,11 @@ def test_a_person_lost_or_exchanged_in_the_last_seconds_was_not_followed_to_the_
     assert math.isnan(score([3.0] * 20).wrong_person_s)
 
 
-def test_new_numbers_of_the_track_and_intrusions_are_counted():
-    result = score([3.0] * 6, track=np.array([0, 4, 4, 0, 4, 7]), gap_m=np.array([2.0, 1, 0.4, 1, 0.4, 2]))
-    assert result.identity_changes == 1
-    assert (result.intimate_intrusions, result.personal_intrusions) == (2, 1)
+def test_new_numbers_of_the_track_are_counted():
+    assert score([3.0] * 6, track=np.array([0, 4, 4, 0, 4, 7])).identity_changes == 1
 
 
-def test_a_detour_to_the_person_halves_the_efficiency_and_a_steady_run_has_no_jerk():
+def test_a_detour_to_the_person_halves_the_efficiency():
     frames = 9
     time_s, x = STEP_S * np.arange(frames), 0.1 * np.arange(frames)
     robot = np.stack([x, np.where(np.arange(frames) % 2, 0.1 * math.sqrt(3.0), 0.0), 0.0 * x], axis=1)
@@ -149,7 +147,6 @@ def test_a_detour_to_the_person_halves_the_efficiency_and_a_steady_run_has_no_je
     seen = np.ones(frames, bool)
     run = FollowingRun(time_s=time_s, robot=robot, person=person, is_tracked=seen, is_contact=~seen)
     assert score_following(run).path_efficiency == pytest.approx(0.5)
-    assert score_following(run).jerk_m_s3 == pytest.approx(0.0, abs=1e-9)
     assert score_following(run).mean_heading_error_rad < 0.05
 
 

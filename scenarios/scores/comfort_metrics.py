@@ -1,0 +1,147 @@
+"""How comfortable people were with a robot that drives among them: nearness, collisions to come, jerk."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.scores.contacts import count_starts
+from peopleboy.scenarios.scores.following_metrics import Floats, Row
+
+# Spaces about a person, from the robot's outline to the middle of the body (E. T. Hall, The Hidden Dimension,
+# 1966, which measures from body to body).
+INTIMATE_M: Final = 0.45
+PERSONAL_M: Final = 1.2
+SOCIAL_M: Final = 3.6
+_FORESEEN_S: Final = 30.0  # beyond which nobody goes on as they are
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComfortScore:
+    """Scores of one run, over all of it and everybody in it.
+
+    Source: metrics of HuNavSim (Perez-Higueras et al. 2023) and of Francis et al. 2023, Principles and
+    Guidelines for Evaluating Social Robot Navigation, which have time in spaces, least time to collision and
+    jerk; ours are in seconds rather than in shares of a run.
+
+    Attributes:
+        personal_s, intimate_s: [s] for which somebody was within personal, and within intimate space.
+        personal_intrusions, intimate_intrusions: how often somebody and the robot came so near.
+        min_time_to_collision_s: [s] least time after which a robot and a person who both went on as they
+            were would have touched, both being discs; NaN if none ever would have within 30 s.
+        jerk_m_s3: [m/s3] root mean square of the second difference of the forward speed.
+        felt_jerk_m_s3: [m/s3] the same while somebody was within social space, 3.6 m; NaN if nobody was.
+
+    What is not defined is NaN.
+    """
+
+    personal_s: float
+    intimate_s: float
+    personal_intrusions: int
+    intimate_intrusions: int
+    min_time_to_collision_s: float
+    jerk_m_s3: float
+    felt_jerk_m_s3: float
+
+    def rows(self) -> list[Row]:
+        """Give the scores as table rows: name, value, unit, explanation."""
+        return [
+            ("within 1.2 m", self.personal_s, "s", "time with somebody in personal space"),
+            ("within 0.45 m", self.intimate_s, "s", "time with somebody in intimate space"),
+            ("intrusions, 1.2 m", float(self.personal_intrusions), "", "into personal space"),
+            ("intrusions, 0.45 m", float(self.intimate_intrusions), "", "into intimate space"),
+            (
+                "time to collision",
+                self.min_time_to_collision_s,
+                "s",
+                "least, if both had gone on as they were",
+            ),
+            ("jerk", self.jerk_m_s3, "m/s3", "of the robot, root mean square, forwards"),
+            ("jerk felt", self.felt_jerk_m_s3, "m/s3", "the same with somebody within 3.6 m"),
+        ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ComfortRun:
+    """What happened in a run; one row a frame.
+
+    Attributes:
+        time_s: (T,) [s] rising.
+        robot: (T, 3) [m, m, rad] x, y, heading in the world frame.
+        gap_m: (T,) [m] from the robot's outline to the nearest person's middle; inf where nobody is there.
+        time_to_collision_s: (T,) [s] least over all people; inf where none is on a collision course.
+
+    Raises:
+        BadInput: the arrays do not have these shapes, or time does not rise.
+    """
+
+    time_s: Floats
+    robot: Floats
+    gap_m: Floats
+    time_to_collision_s: Floats
+
+    def __post_init__(self) -> None:
+        """Refuse arrays that do not belong together."""
+        frames = len(self.time_s)
+        shapes = [a.shape for a in (self.time_s, self.robot, self.gap_m, self.time_to_collision_s)]
+        if frames == 0 or shapes != [(frames,), (frames, 3), (frames,), (frames,)]:
+            raise BadInput(f"comfort: shapes must be (T,), (T, 3), (T,), (T,) with T > 0, got {shapes}")
+        if not np.all(np.diff(self.time_s) > 0.0):
+            raise BadInput("comfort: time_s must rise from frame to frame")
+
+
+def score_comfort(run: ComfortRun) -> ComfortScore:
+    """Score one run; a frame lasts until the next one."""
+    lasts_s = np.diff(run.time_s, append=run.time_s[-1])
+    is_personal, is_intimate = run.gap_m < PERSONAL_M, run.gap_m < INTIMATE_M
+    nearest_s = float(np.min(run.time_to_collision_s))
+    jerk = _jerk(run)
+    return ComfortScore(
+        personal_s=float(lasts_s[is_personal].sum()),
+        intimate_s=float(lasts_s[is_intimate].sum()),
+        personal_intrusions=count_starts(is_personal),
+        intimate_intrusions=count_starts(is_intimate),
+        min_time_to_collision_s=nearest_s if nearest_s <= _FORESEEN_S else math.nan,
+        jerk_m_s3=_root_mean_square(jerk),
+        felt_jerk_m_s3=_root_mean_square(jerk[run.gap_m[3:] < SOCIAL_M]),
+    )
+
+
+def time_to_collision(gap: Floats, velocity: Floats, reach_m: float) -> float:
+    """Tell after what time two discs touch that go on as they are.
+
+    Args:
+        gap: (2,) [m] from one middle to the other.
+        velocity: (2,) [m/s] of the other against the one.
+        reach_m: [m] sum of the radii.
+
+    Returns:
+        [s] the smaller root of |gap + t velocity| = reach_m; 0 while they overlap, inf if they never touch.
+    """
+    c = float(gap @ gap) - reach_m**2
+    if c <= 0.0:
+        return 0.0
+    a, b = float(velocity @ velocity), float(gap @ velocity)
+    inner = b * b - a * c
+    return c / (math.sqrt(inner) - b) if b < 0.0 and inner >= 0.0 else math.inf
+
+
+def _jerk(run: ComfortRun) -> Floats:
+    """Give the second derivative of the forward speed [m/s3] by differences: (T - 3,)."""
+    if len(run.time_s) < 4:
+        return np.zeros(0)
+    steps, heading = np.diff(run.robot[:, :2], axis=0), run.robot[:-1, 2]
+    ahead = steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading)
+    step_s = np.diff(run.time_s)
+    acceleration = np.diff(ahead / step_s) / step_s[1:]
+    jerk: NDArray[np.float64] = np.diff(acceleration) / step_s[2:]
+    return jerk
+
+
+def _root_mean_square(values: Floats) -> float:
+    return math.sqrt(float(np.mean(values**2))) if values.size else math.nan

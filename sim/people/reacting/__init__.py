@@ -1,0 +1,1 @@
+"""How people take to the robot: reactions, leading it, and keeping together."""

@@ -1,0 +1,77 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.scores.comfort_metrics import ComfortRun, score_comfort, time_to_collision
+
+STEP_S = 0.5
+
+
+def run(gap, *, x=None, soonest=None):
+    frames = len(gap)
+    x = np.zeros(frames) if x is None else np.array(x)
+    return ComfortRun(
+        time_s=3.0 + STEP_S * np.arange(frames),
+        robot=np.stack([x, 0.0 * x, 0.0 * x], axis=1),
+        gap_m=np.array(gap, float),
+        time_to_collision_s=np.full(frames, math.inf) if soonest is None else np.array(soonest),
+    )
+
+
+def test_time_within_spaces_is_that_of_their_frames_and_intrusions_are_their_starts():
+    score = score_comfort(run([2.0, 1.0, 0.4, 1.0, 0.4, 2.0]))
+    assert (score.personal_s, score.intimate_s) == (4 * STEP_S, 2 * STEP_S)
+    assert (score.personal_intrusions, score.intimate_intrusions) == (1, 2)
+    assert math.isnan(score.min_time_to_collision_s)
+
+
+def test_jerk_is_that_of_the_forward_speed_and_felt_only_by_who_is_near():
+    x = (STEP_S * np.arange(9)) ** 3 / 6.0  # jerk 1
+    near = score_comfort(run([3.0] * 9, x=x))
+    assert (near.jerk_m_s3, near.felt_jerk_m_s3) == pytest.approx((1.0, 1.0))
+    far = score_comfort(run([4.0] * 9, x=x))
+    assert far.jerk_m_s3 == pytest.approx(1.0)
+    assert math.isnan(far.felt_jerk_m_s3)
+    assert score_comfort(run([3.0] * 9, x=0.3 * np.arange(9))).jerk_m_s3 == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_least_time_to_collision_is_told_unless_it_is_far_off():
+    assert score_comfort(run([2.0] * 3, soonest=[math.inf, 2.5, 4.0])).min_time_to_collision_s == 2.5
+    assert math.isnan(score_comfort(run([2.0] * 3, soonest=[math.inf, 31.0, 90.0])).min_time_to_collision_s)
+
+
+def test_head_on_the_time_is_that_of_the_gap_between_the_discs():
+    assert time_to_collision(np.array([5.0, 0.0]), np.array([-1.0, 0.0]), 1.0) == pytest.approx(4.0)
+    assert time_to_collision(np.array([5.0, 1.1]), np.array([-1.0, 0.0]), 1.0) == math.inf
+    assert time_to_collision(np.array([5.0, 0.0]), np.array([1.0, 0.0]), 1.0) == math.inf
+    assert time_to_collision(np.array([5.0, 0.0]), np.zeros(2), 1.0) == math.inf
+    assert time_to_collision(np.array([0.5, 0.0]), np.array([1.0, 0.0]), 1.0) == 0.0
+
+
+speeds = st.floats(-2.0, 2.0)
+
+
+@given(st.floats(1.1, 8.0), st.floats(-3.0, 3.0), speeds, speeds)
+def test_at_the_time_to_collision_the_discs_touch(x, y, vx, vy):
+    gap, velocity = np.array([x, y]), np.array([vx, vy])
+    time_s = time_to_collision(gap, velocity, 1.0)
+    if math.isfinite(time_s):
+        assert np.hypot(*(gap + time_s * velocity)) == pytest.approx(1.0, abs=1e-6)
+    else:
+        times = np.linspace(0.0, 20.0, 400)[:, None]
+        assert np.linalg.norm(gap + times * velocity, axis=1).min() > 1.0 - 1e-6
+
+
+def test_arrays_that_do_not_belong_together_are_refused():
+    with pytest.raises(BadInput, match="shapes"):
+        ComfortRun(
+            time_s=np.zeros(0), robot=np.zeros((0, 3)), gap_m=np.zeros(0), time_to_collision_s=np.zeros(0)
+        )
+    with pytest.raises(BadInput, match="rise"):
+        ComfortRun(
+            time_s=np.zeros(2), robot=np.zeros((2, 3)), gap_m=np.zeros(2), time_to_collision_s=np.zeros(2)
+        )

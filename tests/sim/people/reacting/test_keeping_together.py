@@ -1,0 +1,41 @@
+import numpy as np
+import pytest
+
+from peopleboy.sim.people.person import PlanarState, Waypoint
+from peopleboy.sim.people.reacting.keeping_together import pace_among
+from tests.helpers.worlds.walkers import NO_WALLS, make_person
+
+WAY = ((0.0, 0.0), (4.0, 0.0), (4.0, 2.0))
+
+
+@pytest.mark.parametrize(
+    ("progress", "company", "pace"),
+    [
+        (0.5, [], 1.0),
+        (0.5, [0.4], 1.0),  # 0.4 m ahead
+        (0.5, [0.125, 0.9], 0.0),  # 1.5 m ahead of the last
+        (1.0, [0.7625], pytest.approx(0.5)),  # 0.95 m
+        (1.5, [0.875], pytest.approx(0.0)),  # 1.5 m, round the corner
+        (0.2, [1.9], 1.0),
+    ],
+)
+def test_who_is_ahead_slows_by_how_far(progress, company, pace):
+    assert pace_among(WAY, progress, company) == pace
+
+
+def test_a_group_waits_for_one_who_starts_late_and_is_slow():
+    def member(name, y, speed):
+        way = (Waypoint(at_m=(0.0, y)), Waypoint(at_m=(10.0, y), speed_m_s=speed))
+        return make_person(name=name, path=way, group="us")
+
+    people = [member("ann", 0.0, 1.3), member("bob", 0.8, 0.6)]
+    apart = []
+    for k in range(120):
+        states = {p.name: PlanarState(p.position.copy(), p.velocity.copy()) for p in people}
+        progress = {p.name: p.progress for p in people}
+        for p in people:
+            others = {name: state for name, state in states.items() if name != p.name}
+            p.step(k / 15, 1 / 15, others, None, NO_WALLS, [progress[name] for name in others])
+        apart.append(people[0].position[0] - people[1].position[0])
+    assert max(apart) < 1.3
+    assert np.hypot(*people[0].velocity) == pytest.approx(0.6, abs=0.05)
