@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from docs.generate.markdown import table
+import math
+
+from docs.generate.markdown import sentence, table
+from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.tracker.evaluation.table import FIGURES
 
 
@@ -13,4 +16,19 @@ def metrics(group: str) -> str:
         for figure in FIGURES
         if figure.group == group
     ]
+    return table(("figure", "unit", "meaning"), rows)
+
+
+def comfort() -> str:
+    """List the figures of people's comfort."""
+    score = ComfortScore(
+        personal_s=math.nan,
+        intimate_s=math.nan,
+        personal_intrusions=0,
+        intimate_intrusions=0,
+        min_time_to_collision_s=math.nan,
+        jerk_m_s3=math.nan,
+        felt_jerk_m_s3=math.nan,
+    )
+    rows = [(f"**{name}**", unit or "count", sentence(meaning)) for name, _, unit, meaning in score.rows()]
     return table(("figure", "unit", "meaning"), rows)

@@ -44,12 +44,14 @@ def evaluate(
     tracker give mean and standard deviation over them, beside the figure of all their frames. Runs of several
     trackers stand side by side, with how each differs from the first over runs of the same scenario and seed.
     Where a tracker says where on the floor people stand, its errors are told in metres; one that gives no
-    boxes is scored on the floor alone.
+    boxes is scored on the floor alone. Of runs in which the robot drove among people, it is told how
+    comfortable they were.
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in
     from peopleboy.scenarios.scores.by_tracker import ScoredRun, figures_of_all, score_by_tracker
+    from peopleboy.scenarios.scores.comfort_of_runs import comfort_by_tracker
     from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
-    from peopleboy.scenarios.scores.show_scores import print_runs
+    from peopleboy.scenarios.scores.show_scores import print_comfort, print_runs
 
     if camera != "thermal" and not runs:
         raise BadInput("evaluate: --camera goes with folders of runs; give --truth RUN/truth/CAMERA.gt.txt")
@@ -63,4 +65,11 @@ def evaluate(
     else:
         scores = evaluate_files(truth, tracks, min_visible=min_visible)
         groups = {str(tracks): [ScoredRun(str(tracks), str(tracks), None, scores)]}
-    output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))
+    comfort = comfort_by_tracker(groups)
+
+    def show() -> None:
+        print_runs(groups)
+        print_comfort(comfort)
+
+    told = {tracker: score.to_json() for tracker, score in comfort.items()}
+    output.figures(lambda: figures_of_all(groups) | ({"comfort": told} if told else {}), show)

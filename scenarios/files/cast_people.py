@@ -17,7 +17,7 @@ from peopleboy.sim.people.looks.wardrobe import usual_clothes
 from peopleboy.sim.people.person import PersonConfig
 from peopleboy.sim.people.reacting.reaction import USUAL, Lead, Reaction
 from peopleboy.sim.people.walking.path import abreast
-from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.people.walking.waypoint import Waypoint
 from peopleboy.sim.random_streams import stream
 
 # Stature of adults [m]: mean and standard deviation (NCD-RisC 2016, young adults of central Europe, rounded).

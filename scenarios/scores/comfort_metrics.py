@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Final
 
 import numpy as np
@@ -31,7 +31,8 @@ class ComfortScore:
 
     Attributes:
         personal_s, intimate_s: [s] for which somebody was within personal, and within intimate space.
-        personal_intrusions, intimate_intrusions: how often somebody and the robot came so near.
+        personal_intrusions, intimate_intrusions: how often somebody and the robot came so near; a whole
+            number but in means of runs.
         min_time_to_collision_s: [s] least time after which a robot and a person who both went on as they
             were would have touched, both being discs; NaN if none ever would have within 30 s.
         jerk_m_s3: [m/s3] root mean square of the second difference of the forward speed.
@@ -42,19 +43,23 @@ class ComfortScore:
 
     personal_s: float
     intimate_s: float
-    personal_intrusions: int
-    intimate_intrusions: int
+    personal_intrusions: float
+    intimate_intrusions: float
     min_time_to_collision_s: float
     jerk_m_s3: float
     felt_jerk_m_s3: float
+
+    def to_json(self) -> dict[str, float | None]:
+        """Give the figures as JSON can hold them: None for what is undefined."""
+        return {name: None if math.isnan(value) else value for name, value in asdict(self).items()}
 
     def rows(self) -> list[Row]:
         """Give the scores as table rows: name, value, unit, explanation."""
         return [
             ("within 1.2 m", self.personal_s, "s", "time with somebody in personal space"),
             ("within 0.45 m", self.intimate_s, "s", "time with somebody in intimate space"),
-            ("intrusions, 1.2 m", float(self.personal_intrusions), "", "into personal space"),
-            ("intrusions, 0.45 m", float(self.intimate_intrusions), "", "into intimate space"),
+            ("intrusions, 1.2 m", self.personal_intrusions, "", "into personal space"),
+            ("intrusions, 0.45 m", self.intimate_intrusions, "", "into intimate space"),
             (
                 "time to collision",
                 self.min_time_to_collision_s,
@@ -104,8 +109,8 @@ def score_comfort(run: ComfortRun) -> ComfortScore:
     return ComfortScore(
         personal_s=float(lasts_s[is_personal].sum()),
         intimate_s=float(lasts_s[is_intimate].sum()),
-        personal_intrusions=count_starts(is_personal),
-        intimate_intrusions=count_starts(is_intimate),
+        personal_intrusions=float(count_starts(is_personal)),
+        intimate_intrusions=float(count_starts(is_intimate)),
         min_time_to_collision_s=nearest_s if nearest_s <= _FORESEEN_S else math.nan,
         jerk_m_s3=_root_mean_square(jerk),
         felt_jerk_m_s3=_root_mean_square(jerk[run.gap_m[3:] < SOCIAL_M]),

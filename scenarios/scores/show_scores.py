@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from rich.console import Console
 from rich.table import Table
 
 from peopleboy.scenarios.scores.bootstrap import Interval
 from peopleboy.scenarios.scores.by_tracker import Difference, Groups, differences
+from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.following_metrics import Row
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread
@@ -34,6 +35,17 @@ def print_drive(title: str, rows: Sequence[Row]) -> None:
     table = _table(title, "figure", "value", "meaning")
     for name, value, unit, meaning in rows:
         table.add_row(name, _number(value, unit), meaning)
+    _print(table)
+
+
+def print_comfort(by_tracker: Mapping[str, ComfortScore]) -> None:
+    """Print how comfortable people were, means over the runs of each tracker; nothing if none tells it."""
+    if not by_tracker:
+        return
+    table = _table("comfort, mean of runs", "figure", *by_tracker, "meaning")
+    for lines in zip(*(score.rows() for score in by_tracker.values()), strict=True):
+        name, _, unit, meaning = lines[0]
+        table.add_row(name, *[_number(value, unit) for _, value, _, _ in lines], meaning)
     _print(table)
 
 

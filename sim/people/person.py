@@ -23,6 +23,7 @@ from peopleboy.sim.people.body.body_shapes import (
 )
 from peopleboy.sim.people.body.clothes import dress
 from peopleboy.sim.people.body.gait import Gait, lowest_sole
+from peopleboy.sim.people.body.gaze import Gaze
 from peopleboy.sim.people.body.joints import joint_points
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
@@ -35,7 +36,9 @@ from peopleboy.sim.people.reacting.encounter import Situation
 from peopleboy.sim.people.reacting.mind import Mind
 from peopleboy.sim.people.timetable import timetable
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.people.walking.walk import RISE_S, Surroundings, Walker, Waypoint
+from peopleboy.sim.people.walking.surroundings import Surroundings
+from peopleboy.sim.people.walking.walk import RISE_S, Walker
+from peopleboy.sim.people.walking.waypoint import Waypoint
 from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part
@@ -67,11 +70,6 @@ _LOOK_RATIO = 0.57  # how often one looks about, to how often one sways
 # Who turns on the spot takes small steps: as if the feet went round a circle, and so many cycles a turn.
 _TURNING_RADIUS_M = 0.04
 _CYCLES_PER_RAD = 0.4
-# How far round one looks without turning the body, which bones turn for it, and how fast.
-_FARTHEST_LOOK_RAD = math.radians(100.0)
-_LOOKING_RAD_S = math.radians(200.0)
-_GAZE_SHARES = {"chest": 0.2, "neck": 0.3, "head": 0.5}
-_BEHIND_RAD = math.radians(150.0)  # beyond which one keeps looking over the same shoulder
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,7 +114,7 @@ class Person:
         self._walker = Walker(config.path, config.yields, self.radius_m)
         self._mind = Mind([waypoint.at_m for waypoint in config.path], config.reacts, config.leads)
         self._wish = AS_PLANNED
-        self._gaze = 0.0
+        self._gaze = Gaze()
         self._phase = float(rng.uniform())
         self._sway_phase = float(rng.uniform())
         self._time_s = 0.0
@@ -212,15 +210,11 @@ class Person:
         target = self._wish.looks_at
         if target is None and robot is not None and self._walker.is_awaiting(robot):
             target = robot.position
-        wanted = 0.0
+        bearing = None
         if target is not None:
             x, y = target - self.position
-            off = math.remainder(math.atan2(y, x) - self.heading, math.tau)
-            if abs(off) > _BEHIND_RAD and self._gaze:
-                off = math.copysign(off, self._gaze)
-            wanted = min(max(off, -_FARTHEST_LOOK_RAD), _FARTHEST_LOOK_RAD)
-        step = _LOOKING_RAD_S * dt_s
-        self._gaze += min(max(wanted - self._gaze, -step), step)
+            bearing = math.atan2(y, x) - self.heading
+        self._gaze.update(dt_s, bearing)
 
     def reach_for(self, point: Array, share: float, halfway: Array) -> None:
         """Have a hand at a point (3,) [m] of the world; by less than a share of 1, on the way there.
@@ -350,9 +344,7 @@ class Person:
         self._sway(rotations)
         if weights[Posture.CALLING] > 0.0:
             rotations[BONE_INDEX["left_forearm"], 0] += weights[Posture.CALLING] * wave(self._time_s)
-        if self._gaze != 0.0:
-            for bone, share in _GAZE_SHARES.items():
-                rotations[BONE_INDEX[bone], 2] += share * self._gaze
+        self._gaze.turn(rotations)
         return rotations, (front, float(sway[1]))
 
     def _steady_bag_arm(self, rotations: Array, standing: Array) -> None:

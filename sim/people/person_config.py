@@ -12,7 +12,7 @@ from peopleboy.sim.people.body.anthropometry import Build, Sex
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.reacting.reaction import FROM_M, Lead, Reaction
-from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.people.walking.waypoint import Waypoint
 
 Arms = Literal["swinging", "crossed", "raised"]
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.walk import ALONE, Walker
+from peopleboy.sim.people.walking.surroundings import ALONE
+from peopleboy.sim.people.walking.walk import Walker
 
 _STEP_S = 0.05
 _LONGEST_S = 3600.0

@@ -23,7 +23,7 @@ from docs.generate.pictures import (
     tracker,
 )
 from docs.generate.pictures.paper import save
-from docs.generate.pictures.worlds import hard_scenes, light, proposals
+from docs.generate.pictures.worlds import hard_scenes, light, proposals, reactions
 from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import draw_parts
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 
@@ -47,6 +47,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "moved": depth.moved,
     "rgbd": rgbd.steps,
     "scene_model": scene_model.scenes,
+    "reactions": reactions.reactions,
     "panoramic_features": draw_features,
     "panoramic_errors": panorama.errors_over_distance,
     "attention": attention.absence,

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.drawing.labels import Labels
 from peopleboy.sim.people.person import PersonConfig
-from peopleboy.sim.people.walking.walk import ALONE, Walker
+from peopleboy.sim.people.walking.surroundings import ALONE
+from peopleboy.sim.people.walking.walk import Walker
 
 _STEP_S = 0.05
 _MARK_EVERY_S = 5.0

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from peopleboy.sim.people.walking.social_force import (
     PlanarState,
     social_force,
 )
+from peopleboy.sim.people.walking.surroundings import Surroundings
+from peopleboy.sim.people.walking.waypoint import Waypoint
 from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
 
 Array = NDArray[np.float64]
@@ -35,54 +37,6 @@ _ERRAND_M_S = 1.2  # how fast one goes where no script sends one
 _NEARLY_M = 0.1  # how near to the goal of an errand one has arrived
 _SIDESTEP_M = 0.8  # the last of an errand, on which one does not turn away from what one faces
 _HURRY = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Waypoint:
-    """A place to go to.
-
-    Attributes:
-        at_m: (x, y) [m] in the world frame.
-        speed_m_s: [m/s] on the way to it.
-        pause_s: [s] waits there.
-        face: while pausing, turn to a point, to "robot", or to a person by name; None keeps the direction.
-        posture: while pausing.
-        until_robot_within_m: [m] the pause lasts until the robot is so near, too; None does not wait for it.
-        waits_at_most_s: [s] after the pause, for the robot.
-    """
-
-    at_m: tuple[float, float]
-    speed_m_s: float = 1.2
-    pause_s: float = 0.0
-    face: tuple[float, float] | str | None = None
-    posture: Posture = Posture.STANDING
-    until_robot_within_m: float | None = None
-    waits_at_most_s: float = 60.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Surroundings:
-    """What a walker may have to give way to.
-
-    Attributes:
-        others: people by name.
-        robot: None if there is none.
-        walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
-    """
-
-    others: Mapping[str, PlanarState]
-    robot: PlanarState | None
-    walls: Array
-
-    def find(self, face: tuple[float, float] | str) -> Array | None:
-        """Position (2,) [m] of what somebody turns to; None if it is not there."""
-        if not isinstance(face, str):
-            return np.array(face)
-        state = self.robot if face == "robot" else self.others.get(face)
-        return None if state is None else state.position
-
-
-ALONE = Surroundings(others={}, robot=None, walls=np.empty((0, 4)))
 
 
 class Walker:

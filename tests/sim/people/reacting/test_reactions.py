@@ -186,5 +186,5 @@ def test_a_reaction_that_cannot_be_is_refused(values, said):
 
 
 def test_a_leader_that_would_never_go_on_is_refused():
-    with pytest.raises(BadInput, match="goes_on_within_m 3.0 must be"):
+    with pytest.raises(BadInput, match=r"goes_on_within_m 3\.0 must be"):
         Lead(waits_beyond_m=3.0, goes_on_within_m=3.0)
