@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from docs.generate.markdown import sentence, table
-from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
+from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortScore
 from peopleboy.tracker.evaluation.table import FIGURES
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict
 
-from peopleboy.scenarios.scores.comfort_score import ComfortLog
+from peopleboy.scenarios.scores.comfort.comfort_score import ComfortLog
 from peopleboy.scenarios.scores.corridor_score import CorridorLog
 from peopleboy.scenarios.scores.following_metrics import FollowingTask
 from peopleboy.scenarios.scores.following_score import TARGET, FollowingLog, Spot, track_on

@@ -18,7 +18,7 @@ from peopleboy.scenarios.report.findings.sentences import seconds, spoken
 from peopleboy.scenarios.report.findings.summary import RunFindings, headline
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap
-from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
+from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
 from peopleboy.sim.truth.thing_events import Move

@@ -8,7 +8,7 @@ from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
 from peopleboy.scenarios.recording.recorder import Recorder
-from peopleboy.scenarios.scores.comfort_score import ComfortLog
+from peopleboy.scenarios.scores.comfort.comfort_score import ComfortLog
 from peopleboy.scenarios.scores.corridor_score import CorridorLog
 from peopleboy.scenarios.scores.following_score import FollowingLog, whose_tracks
 from peopleboy.sim.config import WorldConfig

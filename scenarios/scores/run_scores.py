@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
+from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import (
     FollowingScore,

@@ -22,7 +22,7 @@ from docs.generate.pictures import (
     thermal,
     tracker,
 )
-from docs.generate.pictures.paper import save
+from docs.generate.pictures.paper import COLOURS, save
 from docs.generate.pictures.worlds import hard_scenes, light, proposals, reactions
 from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import draw_parts
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
@@ -62,5 +62,8 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "timeline": occlusion.timeline,
 }
 
+# Where fewer do as well, to the eye.
+FEWER_COLOURS = {"panorama": 96, "scene_model": 192}
+
 for name in sys.argv[1:] or PICTURES:
-    print(save(PICTURES[name](), FOLDER / f"{name}.png"))
+    print(save(PICTURES[name](), FOLDER / f"{name}.png", FEWER_COLOURS.get(name, COLOURS)))

@@ -52,7 +52,7 @@ def zoom(axes: Axes, box: tuple[float, float, float, float], margin: float, aspe
     axes.set_ylim(top + height + margin, top - margin)
 
 
-def save(picture: Figure | Image.Image, path: Path) -> Path:
+def save(picture: Figure | Image.Image, path: Path, colours: int = COLOURS) -> Path:
     """Write a picture as a PNG of few colours."""
     if isinstance(picture, Figure):
         file = io.BytesIO()
@@ -60,7 +60,7 @@ def save(picture: Figure | Image.Image, path: Path) -> Path:
         picture = Image.open(file)
     path.parent.mkdir(exist_ok=True)
     few = picture.convert("RGB").quantize(
-        COLOURS, Image.Quantize.MEDIANCUT, kmeans=2, dither=Image.Dither.NONE
+        colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=Image.Dither.NONE
     )
     few.save(path, optimize=True)
     return path

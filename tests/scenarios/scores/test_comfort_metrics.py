@@ -1,3 +1,4 @@
+import json
 import math
 
 import numpy as np
@@ -6,9 +7,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.comfort_metrics import ComfortRun, score_comfort, time_to_collision
+from peopleboy.scenarios.scores.by_tracker import ScoredRun
+from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortRun, score_comfort, time_to_collision
+from peopleboy.scenarios.scores.comfort.comfort_of_runs import comfort_by_tracker
+from peopleboy.tracker.evaluation.evaluate import evaluate
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 STEP_S = 0.5
+_ONE = np.ones(1)
+NOTHING = evaluate(
+    TrueBoxes(frame=_ONE, id=_ONE, box=np.ones((1, 4)), counted=_ONE, visible=_ONE),
+    TrackBoxes(frame=_ONE, id=_ONE, box=np.ones((1, 4)), confidence=_ONE),
+    frames=1,
+)
 
 
 def run(gap, *, x=None, soonest=None):
@@ -75,3 +86,26 @@ def test_arrays_that_do_not_belong_together_are_refused():
         ComfortRun(
             time_s=np.zeros(2), robot=np.zeros((2, 3)), gap_m=np.zeros(2), time_to_collision_s=np.zeros(2)
         )
+
+
+def test_comfort_of_runs_is_the_mean_over_those_that_tell_it(tmp_path):
+    counts = score_comfort(run([2.0, 1.0, 2.0]))
+    for name, figures in (
+        ("a", counts.to_json()),
+        ("b", score_comfort(run([2.0] * 3)).to_json()),
+        ("c", None),
+    ):
+        (tmp_path / name).mkdir()
+        metrics = {} if figures is None else {"comfort": figures}
+        (tmp_path / name / "metrics.json").write_text(json.dumps(metrics), encoding="utf-8")
+    groups = {
+        "one": [ScoredRun(str(tmp_path / name), "one", None, NOTHING) for name in ("a", "b")],
+        "two": [ScoredRun(str(tmp_path / "c"), "two", None, NOTHING)],
+    }
+    means = comfort_by_tracker(groups)
+    assert list(means) == ["one"]
+    assert means["one"].personal_s == STEP_S / 2.0
+    assert math.isnan(means["one"].min_time_to_collision_s)
+    (tmp_path / "a" / "metrics.json").write_text('{"comfort": {"personal_s": 1.0}}', encoding="utf-8")
+    with pytest.raises(BadInput, match="not the figures of this version"):
+        comfort_by_tracker(groups)

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.scenarios.scores.comfort_metrics import (
+from peopleboy.scenarios.scores.comfort.comfort_metrics import (
     ComfortRun,
     ComfortScore,
     score_comfort,

@@ -12,7 +12,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.scores.by_tracker import Groups
-from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
+from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortScore
 
 _NAMES = tuple(field.name for field in fields(ComfortScore))
 
@@ -38,7 +38,7 @@ def _figures(folder: Path) -> list[float] | None:
     group = json.loads(path.read_text(encoding="utf-8")).get("comfort")
     if group is None:
         return None
-    if set(group) != set(_NAMES):
+    if not isinstance(group, dict) or set(group) != set(_NAMES):
         raise BadInput(f"{path}: comfort: not the figures of this version; run the scenario again")
     return [math.nan if group[name] is None else float(group[name]) for name in _NAMES]
 

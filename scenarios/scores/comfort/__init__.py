@@ -1,0 +1,1 @@
+"""How comfortable people were with a robot that drives among them."""
