@@ -42,7 +42,7 @@ def print_comfort(by_tracker: Mapping[str, ComfortScore]) -> None:
     """Print how comfortable people were, means over the runs of each tracker; nothing if none tells it."""
     if not by_tracker:
         return
-    table = _table("comfort, mean of runs", "figure", *by_tracker, "meaning")
+    table = _table("comfort, means over runs", "figure", *by_tracker, "meaning")
     for lines in zip(*(score.rows() for score in by_tracker.values()), strict=True):
         name, _, unit, meaning = lines[0]
         table.add_row(name, *[_number(value, unit) for _, value, _, _ in lines], meaning)

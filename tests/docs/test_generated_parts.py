@@ -11,7 +11,7 @@ from docs.generate.offline import loads
 from docs.generate.parts import PARTS, PLACE, fill_in, outdated_pages
 from docs.generate.settings import COLUMNS, settings_of
 from peopleboy.scenarios.cli import cli
-from peopleboy.scenarios.files.schema import people, place, robot, scenario_file, things
+from peopleboy.scenarios.files.schema import people, place, reactions, robot, scenario_file, things
 from peopleboy.scenarios.files.schema.people import WaypointSpec
 from peopleboy.scenarios.files.schema.robot import FaultSpec, RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import json_schema
@@ -20,7 +20,7 @@ from peopleboy.tracker.thermal import config
 from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers.pages import DOCS
 
-MODULES = (place, things, people, robot, scenario_file)
+MODULES = (place, things, people, reactions, robot, scenario_file)
 SPECS = [
     kind
     for module in MODULES
@@ -54,7 +54,7 @@ def test_every_part_of_a_scenario_file_is_documented() -> None:
 @pytest.mark.parametrize("spec", [spec for spec in SPECS if spec.__name__ not in PARTS_OF_OTHERS])
 def test_every_key_of_a_scenario_file_is_documented_with_a_meaning(spec: type[BaseModel]) -> None:
     listed = {key.name: key for key in KEYS if key.part == spec.__name__}
-    assert listed.keys() == spec.model_fields.keys()
+    assert listed.keys() == {field.alias or name for name, field in spec.model_fields.items()}
     assert all(key.values and key.meaning for key in listed.values())
     text = page("scenario.md")
     assert all(f"| `{name}` |" in text for name in listed)
