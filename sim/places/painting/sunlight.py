@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.places.extent import Extent
@@ -14,6 +15,7 @@ from peopleboy.sim.places.place import Sun
 
 _SOFT_TEXELS = 2
 _INSIDE_M = 0.12  # a ray has left the room when it is so far behind the plane of a pane
+_LEAST_M = 0.02  # what is nearer to a point than that is the point's own
 
 
 def shine_on(fresco: Fresco, sun: Sun, panes: Sequence[Extent], blocking: Sequence[Extent]) -> None:
@@ -27,9 +29,8 @@ def shine_on(fresco: Fresco, sun: Sun, panes: Sequence[Extent], blocking: Sequen
     """
     way = _towards(sun)
     lit = np.ones(fresco.kelvin.shape, bool) if not panes else _through(fresco.world, way, panes)
-    for extent in blocking:
-        if lit.any():
-            lit[lit] &= ~_hits(fresco.world[lit], way, extent)
+    if blocking:
+        _shade(lit, fresco.world, np.where(np.abs(way) < 1e-9, 1e-9, way), np.array(blocking))
     share = _softened(lit.astype(np.float64), _SOFT_TEXELS)
     warm = _softened(lit.astype(np.float64), max(round(0.12 / fresco.texel_m), 1))
     fresco.kelvin += sun.warms_k * warm * (1.0 + 0.12 * fresco.cloudy(0.4))
@@ -64,12 +65,20 @@ def _through(points: Array, way: Array, panes: Sequence[Extent]) -> NDArray[np.b
     return lit
 
 
-def _hits(points: Array, way: Array, extent: Extent) -> NDArray[np.bool_]:
-    """(N,) whether rays from points (N, 3) meet a box (slab method)."""
-    steps = np.where(np.abs(way) < 1e-9, 1e-9, way)
-    first, second = (extent[0] - points) / steps, (extent[1] - points) / steps
-    near, far = np.minimum(first, second).max(axis=-1), np.maximum(first, second).min(axis=-1)
-    return np.asarray((near < far) & (far > 0.02))
+@njit(cache=True)
+def _shade(lit: NDArray[np.bool_], points: Array, way: Array, blocking: Array) -> None:
+    """Take the light (H, W) from points (H, W, 3) whose rays meet a box of some (B, 2, 3) (slab method)."""
+    for v in range(lit.shape[0]):
+        for u in range(lit.shape[1]):
+            for k in range(len(blocking)):
+                if not lit[v, u]:
+                    break
+                near, far = -np.inf, np.inf
+                for axis in range(3):
+                    first = (blocking[k, 0, axis] - points[v, u, axis]) / way[axis]
+                    second = (blocking[k, 1, axis] - points[v, u, axis]) / way[axis]
+                    near, far = max(near, min(first, second)), min(far, max(first, second))
+                lit[v, u] = near >= far or far <= _LEAST_M
 
 
 def _softened(share: Array, texels: int) -> Array:
