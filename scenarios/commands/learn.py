@@ -112,7 +112,7 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
 @click.command("train-detector")
 @click.option(
     "--worlds",
-    type=click.IntRange(min=4, max=2000),
+    type=click.IntRange(min=5, max=2000),
     default=530,
     show_default=True,
     help="How many to learn from.",
@@ -129,7 +129,7 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
 def train_detector(worlds: int, out: Path, ship: bool, workers: int | None, scheduler: str | None) -> None:
     """Learn what people look like to a thermal camera, from random worlds.
 
-    Half of them are as drawn, others full of people, plain, or warm. A tenth is held back, to make scores log
+    Some are as drawn, others full of people, plain, both, or warm. A tenth is held back, to make scores log
     odds; random worlds of seeds 0 to 29 tell how good it is. Needs scikit-learn. Films that are
     there are not made again.
     """

@@ -86,6 +86,8 @@ class ExistenceConfig:
 
     Attributes:
         weakest: proposals of a lower score are not looked at.
+        lasting: what is added to all others: they speak for themselves, and who is proposed in one image
+            after another is somebody more often than they say.
         birth: score of a proposal that may be somebody new.
         independent_s: images so far apart speak for themselves.
         highest_score: what one image can say at most.
@@ -103,6 +105,7 @@ class ExistenceConfig:
     """
 
     weakest: float = -2.0
+    lasting: float = 0.5
     birth: float = -0.5
     independent_s: float = 0.25
     highest_score: float = 1.5

@@ -14,8 +14,6 @@ from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES,
 from peopleboy.scenarios.random_worlds.random_world import random_world
 from peopleboy.sim.random_streams import stream
 
-LASTS_S: Final = 12.0
-
 _RANGES: Final[Mapping[str, tuple[float, float]]] = {
     "room_length": (9.0, 20.0),
     "room_width": (6.0, 14.0),
@@ -44,7 +42,7 @@ _TRIES: Final = 4
 
 def crowded_world(seed: int) -> dict[str, Any]:
     """Draw a world of 5 to 10 people, as far as they find room, and of those who walk beside them."""
-    world = random_world(seed, LASTS_S, _CROWDS)
+    world = random_world(seed, distribution=_CROWDS)
     rng = stream(seed, "crowded_world")
     for person in world.get("people", ()):
         if rng.random() < _TOGETHER:

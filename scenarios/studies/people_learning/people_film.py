@@ -24,7 +24,7 @@ from peopleboy.tracker.thermal.mount import Mount, mount_of
 Floats = NDArray[np.float64]
 Grey = NDArray[np.uint8]
 
-APART_S: Final = 1.0
+APART_S: Final = 0.5
 """Between two images that are kept."""
 
 _LOW: Final = (Posture.SITTING, Posture.BENDING)

@@ -71,15 +71,20 @@ def _library_world(seed: int) -> World:
     return as_the_library(random_world(seed))
 
 
+def _library_crowd(seed: int) -> World:
+    return as_the_library(crowded_world(seed))
+
+
 def _warm_world(seed: int) -> World:
     return as_warm_as_people(random_world(seed), rounded(stream(seed, "warm_world").uniform(*_WARM_AIR_C)))
 
 
 KINDS: Final = (
-    Kind("random worlds", 1000, 0.5, random_world),
+    Kind("random worlds", 1000, 0.44, random_world),
     Kind("crowds", 2000, 0.1, crowded_world),
-    Kind("worlds in the robot's own span", 3000, 0.34, _library_world),
+    Kind("worlds in the robot's own span", 3000, 0.3, _library_world),
     Kind("plain worlds as warm as people", 4000, 0.06, _warm_world),
+    Kind("crowds in the robot's own span", 5000, 0.1, _library_crowd),
 )
 
 

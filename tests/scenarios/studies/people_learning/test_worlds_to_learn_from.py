@@ -6,7 +6,7 @@ import pytest
 
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.random_worlds.random_world import random_world
-from peopleboy.scenarios.studies.people_learning.crowds import LASTS_S, crowded_world
+from peopleboy.scenarios.studies.people_learning.crowds import crowded_world
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import (
     KINDS,
@@ -54,7 +54,6 @@ def test_a_crowded_world_can_be_played_and_some_walk_side_by_side(seed: int) -> 
     world = crowded_world(seed)
     assert world == crowded_world(seed)
     parse_scenario(world, source="world", folder=Path())
-    assert world["duration_s"] == LASTS_S
     people = {person["name"]: person for person in world["people"]}
     beside = [name for name in people if name.endswith("_beside")]
     for name in beside:
@@ -83,6 +82,11 @@ def test_worlds_of_each_kind_have_seeds_of_their_own() -> None:
         assert list(kind.seeds(1)) == [kind.first_seed]
         assert world_of(kind.first_seed + 1) == kind.draw(kind.first_seed + 1)
     assert world_of(3) == random_world(3)
+
+
+def test_crowds_are_learned_from_in_the_robot_s_own_span_too() -> None:
+    assert as_the_library(crowded_world(5001)) == world_of(5001)
+    assert len(world_of(5001)["people"]) > 4
 
 
 def test_a_film_is_of_the_world_of_its_seed() -> None:
