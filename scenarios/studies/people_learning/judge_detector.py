@@ -98,7 +98,7 @@ def log_odds_line(model: PeopleModel, shots: Sequence[PeopleShot]) -> tuple[floa
     try:
         from sklearn.linear_model import LogisticRegression  # here, as it comes with the extra `train`
     except ImportError as error:
-        raise BadInput("scikit-learn is missing: install peopleboy[train]") from error
+        raise BadInput("train-detector needs scikit-learn: pip install scikit-learn") from error
     scores: list[float] = []
     is_somebody: list[bool] = []
     for shot in shots:

@@ -38,7 +38,7 @@ def teach_cascade(people: NDArray[np.float16], others: NDArray[np.float16], boos
         # Here, as it comes with the package's extra `train`.
         from sklearn.ensemble import GradientBoostingClassifier
     except ImportError as error:
-        raise BadInput("scikit-learn is missing: install peopleboy[train]") from error
+        raise BadInput("train-detector needs scikit-learn: pip install scikit-learn") from error
     if min(len(people), len(others)) < _SMALLEST_LEAF:
         raise BadInput(f"{len(people)} windows with people and {len(others)} without; take more worlds")
     windows = np.concatenate([people, others]).astype(np.float32)

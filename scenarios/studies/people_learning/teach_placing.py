@@ -29,7 +29,7 @@ def teach_placing(windows: NDArray[np.float16], offsets: NDArray[np.float64]) ->
         # Here, as it comes with the package's extra `train`.
         from sklearn.ensemble import GradientBoostingRegressor
     except ImportError as error:
-        raise BadInput("scikit-learn is missing: install peopleboy[train]") from error
+        raise BadInput("train-detector needs scikit-learn: pip install scikit-learn") from error
     features = windows.astype(np.float32)
     tables = []
     for number, target in enumerate(offsets.T):

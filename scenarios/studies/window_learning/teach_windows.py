@@ -31,7 +31,7 @@ def _taught(examples: WindowExamples, kind: Range, *, sees_depth: bool) -> Featu
     try:
         from sklearn.svm import LinearSVC  # here, as it comes with the package's extra `train`
     except ImportError as error:
-        raise BadInput("scikit-learn is missing: install peopleboy[train]") from error
+        raise BadInput("train-windows needs scikit-learn: pip install scikit-learn") from error
     is_person = examples.is_person[kind]
     if is_person.all() or not is_person.any():
         raise BadInput(f"{kind} windows: {len(is_person)} with {is_person.sum()} people; take more scenes")
