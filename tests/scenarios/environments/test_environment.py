@@ -48,8 +48,15 @@ def test_the_three_names_are_known_to_who_imports_peopleboy() -> None:
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True, timeout=120)
 
 
-@pytest.mark.parametrize("name", ENVIRONMENTS)
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        (name, kind)
+        for name in ENVIRONMENTS
+        for kind in KINDS
+        if name == next(iter(ENVIRONMENTS)) or kind == "truth"
+    ],
+)
 def test_gymnasiums_own_check_finds_nothing(name: str, kind: str, scene: Path) -> None:
     task = ENVIRONMENTS[name]["task"]
     check_env(

@@ -75,7 +75,10 @@ def known(figures: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.mark.parametrize(
     ("like", "duration_s", "tracker"),
-    [("follow_occluded", 27.0, "peopleboy"), ("single_follow", 12.0, "truth")],
+    [
+        pytest.param("follow_occluded", 27.0, "peopleboy", marks=pytest.mark.heavy),
+        ("single_follow", 12.0, "truth"),
+    ],
 )
 def test_an_episode_has_the_truth_and_the_figures_of_a_run_of_its_commands(
     like: str, duration_s: float, tracker: str, tmp_path: Path

@@ -15,8 +15,9 @@ V, D = "{http://lamp.cfar.umd.edu/viper#}", "{http://lamp.cfar.umd.edu/viperdata
 # By ViPER's schema.
 KINDS = {"bvalue", "bbox", "dvalue", "fvalue", "lvalue", "svalue"}
 
-edges = st.floats(-500.0, 500.0)
-sizes = st.floats(0.01, 400.0)
+# In steps of 1/64 px, whose sums are exact.
+edges = st.integers(-500 * 64, 500 * 64).map(lambda steps: steps / 64)
+sizes = st.integers(1, 400 * 64).map(lambda steps: steps / 64)
 
 
 @pytest.fixture(scope="module")

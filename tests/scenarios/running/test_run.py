@@ -263,7 +263,14 @@ def test_an_earlier_run_is_replaced_only_when_asked_and_other_folders_never(
     assert json.loads((out / "run.json").read_text())["seed"] == 1
 
 
-@pytest.mark.parametrize("name", sorted(library()))
+# Every sixth at once, and all with the heavy ones.
+@pytest.mark.parametrize(
+    "name",
+    [
+        name if k % 6 == 0 else pytest.param(name, marks=pytest.mark.heavy)
+        for k, name in enumerate(sorted(library()))
+    ],
+)
 def test_every_library_scenario_runs_a_little(name: str, tmp_path: Path) -> None:
     loaded = load_scenario(name)
     short = replace(loaded, spec=loaded.spec.model_copy(update={"duration_s": 0.2}))

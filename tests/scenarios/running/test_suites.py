@@ -38,9 +38,8 @@ def test_data_sets_are_as_long_as_those_of_the_thesis(name: str) -> None:
     assert frames == pytest.approx(THESIS[name].frames, rel=0.01)
 
 
-@pytest.mark.parametrize(
-    "name", ["dataset1", *(pytest.param(n, marks=pytest.mark.heavy) for n in list(THESIS)[1:])]
-)
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", list(THESIS))
 def test_data_sets_hold_what_those_of_the_thesis_hold_within_5_percent(name: str, tmp_path: Path) -> None:
     ours, theirs = asdict(count_suite(name, tmp_path)), asdict(THESIS[name])
     if theirs["at_once"] == 1:

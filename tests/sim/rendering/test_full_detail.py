@@ -37,7 +37,7 @@ def draw(*shapes: tuple[ShapeKind, tuple[float, float, float], np.ndarray]) -> t
     nobody, hidden = np.full(len(shapes), -1), np.zeros(len(shapes), np.bool_)
     view = cast(table, CAMERA, POSE, poses, nobody, hidden)
     scene = Scene(
-        renderer="raycast", bullet=None, table=table, world_from_part=poses, person_of_part=nobody,
+        renderer="raycast", physics=None, table=table, world_from_part=poses, person_of_part=nobody,
         hidden=hidden,
     )  # type: ignore[arg-type] # fmt: skip
     return Seen(sight=FLAT, scene=scene, camera=CAMERA, world_from_camera=POSE, view=view), table

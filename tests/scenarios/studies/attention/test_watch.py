@@ -47,6 +47,7 @@ def test_people_of_a_short_film_are_looked_for_and_the_default_finds_most():
     assert right > 4 * sum(others)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["attentive"])
 def test_a_tracker_that_knows_people_again_takes_nobody_else_for_them(name):
     found = watch_absence(load_scenario("absence_10s"), 100, [name])[name]

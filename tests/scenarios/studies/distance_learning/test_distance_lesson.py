@@ -69,6 +69,7 @@ def test_a_second_lesson_takes_the_examples_that_are_there_and_gives_the_same_fi
     assert {path.name: path.read_bytes() for path in lesson.iterdir()} == before
 
 
+@pytest.mark.heavy
 def test_a_run_is_tracked_with_the_network_near_the_truth(
     lesson: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
