@@ -17,7 +17,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bodies import Bodies, Body, PartKey, Place
 from peopleboy.sim.physics.bullet_shapes import shape_arguments, visual_shape
-from peopleboy.sim.physics.model_files import MISSING, find_model
+from peopleboy.sim.physics.model_files import MISSING_PHYSICS, find_model
 from peopleboy.sim.physics.opengl import metric_depth, projection_matrix, view_matrix
 from peopleboy.sim.physics.quiet import quiet
 from peopleboy.sim.physics.solid_boxes import SolidBoxes
@@ -29,7 +29,7 @@ try:
     with quiet():
         import pybullet
 except ImportError as error:
-    raise BadInput(f"{MISSING}, or physics kinematic, which needs none") from error
+    raise BadInput(MISSING_PHYSICS) from error
 
 GRAVITY_M_S2 = 9.81
 _SHAPES_A_BODY = 16  # PyBullet silently drops the rest

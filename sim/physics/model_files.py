@@ -10,6 +10,9 @@ from peopleboy.bad_input import BadInput
 MISSING = "pybullet is not installed: its wheels are for Linux and Python 3.10 or 3.11; use Python 3.11"
 """What is said wherever PyBullet or its models are needed and are not there."""
 
+MISSING_PHYSICS = f"{MISSING}, or physics kinematic, which needs none"
+"""What is said where PyBullet is to move the robot and is not there."""
+
 
 def data_folder() -> Path:
     """The folder of pybullet_data.

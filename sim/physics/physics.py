@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Final, Literal, Protocol, get_args, runtime_checkable
@@ -9,8 +10,10 @@ from typing import Final, Literal, Protocol, get_args, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.physics.bodies import PartKey
+from peopleboy.sim.physics.model_files import MISSING_PHYSICS
 from peopleboy.sim.shapes.shape_table import VisualShape
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, Vector
 
@@ -164,6 +167,16 @@ class Rasteriser(Protocol):
     ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """Draw the world, or only the bodies of some names: parts (H, W) and depths (H, W) [m]."""
         ...
+
+
+def check_physics(name: PhysicsName) -> None:
+    """Refuse physics that cannot be opened here, without loading them.
+
+    Raises:
+        BadInput: PyBullet is asked for and not installed.
+    """
+    if name == "bullet" and importlib.util.find_spec("pybullet") is None:
+        raise BadInput(MISSING_PHYSICS)
 
 
 def open_physics(name: PhysicsName, physics_hz: int) -> Physics:

@@ -27,6 +27,7 @@ from peopleboy.scenarios.run_folder.out_folder import check_named, writing_to
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
+from peopleboy.sim.physics.physics import check_physics
 
 DRAWN: Final = "drawn.json"
 """The file in which a set of random worlds says what was drawn for each."""
@@ -77,6 +78,8 @@ def render_set(
         TasksFailed: some runs failed.
     """
     members = contents.members
+    for member in members:
+        check_physics(member.scenario.spec.physics)
     _claim(folder)
     tasks = [
         RunTask(

@@ -139,3 +139,12 @@ def test_a_folder_of_something_else_is_refused_and_left_alone(
     (tmp_path / "thesis.txt").write_text("do not lose me")
     assert_names(refusal(capsys, "render", rendered / "tiny.yaml", "--out", tmp_path), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_without_the_physics_that_it_asks_for_nothing_is_left(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    assert_names(refusal(capsys, "render", "crossing_2", "--seeds", 2), "pybullet", "3.11", "kinematic")
+    assert not list(tmp_path.iterdir())
