@@ -1,11 +1,13 @@
 # `make demo` and `make test` set up what they need. Everything lives in .venv.
 VENV := .venv
 BIN := $(VENV)/bin
-READY := $(VENV)/.ready
+INSTALLED := $(VENV)/.installed# what `peopleboy` needs
+READY := $(VENV)/.ready# and what its development does
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 .PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
 
-demo: $(READY)
+demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
 
 test: $(READY)
@@ -39,8 +41,8 @@ peers: $(READY)
 
 # For examples/train_follower.py. PyPI's torch would bring gigabytes of CUDA along.
 rl: $(READY)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps --index-url https://download.pytorch.org/whl/cpu torch
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[rl]'
+	$(PIP) --no-deps --index-url https://download.pytorch.org/whl/cpu torch
+	$(PIP) --editable '.[rl]'
 
 # The parts of pages that are made from the code, and from the figures in docs/results.yaml.
 pages: $(READY)
@@ -49,12 +51,12 @@ pages: $(READY)
 # Strictly: a warning is an error. Leaves build/docs/index.html, which needs no server and no network.
 # Its pictures are drawn by `python -m docs.generate.pictures`, and kept.
 docs: $(READY)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
+	$(PIP) --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 
 # Leaves dist/: an sdist and the wheel that is made from it, both looked at as PyPI would.
 dist: $(READY)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt build twine
+	$(PIP) build twine
 	rm -rf dist
 	$(BIN)/python -m build
 	$(BIN)/python -m twine check --strict dist/*
@@ -68,7 +70,7 @@ clean:
 	find . -name '*.nb[ic]' -delete
 	rm -rf $(VENV) runs build/docs dist
 
-$(READY): pyproject.toml constraints.txt
+$(INSTALLED): pyproject.toml constraints.txt
 	@set -e; \
 	if [ ! -x $(BIN)/python ]; then \
 	  if command -v uv >/dev/null 2>&1; then uv venv --quiet --seed --python 3.11 $(VENV); \
@@ -77,7 +79,11 @@ $(READY): pyproject.toml constraints.txt
 	  else echo "PeopleBoy needs Python 3.11: install python3.11 with its venv module, or uv (https://docs.astral.sh/uv)" >&2; exit 2; \
 	  fi; \
 	fi
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	$(PIP) --editable .
+	@touch $(INSTALLED)
+
+$(READY): $(INSTALLED)
+	$(PIP) --editable '.[dev]'
 	# Both ask for opencv-python, which would overwrite the headless build; what else they need is there.
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-deps trackeval trackers
+	$(PIP) --no-deps trackeval trackers
 	@touch $(READY)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,6 +23,7 @@ from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.running.watchers import Watchers
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import TRACKERS
 
 _KEPT = ("mounted_for_tracker", "behaviour")
@@ -63,9 +64,7 @@ def adopt(what: Adoption, report: Callable[[int, int], None]) -> RunScores:
     Raises:
         BadInput: run, tracks or name cannot be used; nothing is written then.
     """
-    _check_name(what.name)
-    (run,) = open_whole_runs([what.run])
-    tracks = foreign_tracks(what.tracks, run, what.camera)
+    run, tracks = _look_at(what)
     whys = {line.frame: line.why for line in run.events if line.kind == "mode"}
     with writing_to(what.out), ExitStack() as stack:
         check_out(what.out, "run", overwrite=what.overwrite)
@@ -92,6 +91,22 @@ def adopt(what: Adoption, report: Callable[[int, int], None]) -> RunScores:
         watchers.save(part)
         folder.complete(scores.to_json())
     return scores
+
+
+def check_adoption(what: Adoption) -> None:
+    """Refuse what cannot be adopted, without writing anything.
+
+    Raises:
+        BadInput: run, tracks, name or the folder to leave cannot be used.
+    """
+    _look_at(what)
+    check_out(what.out, "run", overwrite=what.overwrite)
+
+
+def _look_at(what: Adoption) -> tuple[FinishedRun, Mapping[int, tuple[Track, ...]]]:
+    _check_name(what.name)
+    (run,) = open_whole_runs([what.run])
+    return run, foreign_tracks(what.tracks, run, what.camera)
 
 
 def _check_name(name: str) -> None:

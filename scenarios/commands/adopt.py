@@ -14,7 +14,7 @@ import click
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
-    help="Folder to leave.  [default: beside RUN, SCENARIO-SEED-NAME]",
+    help="Folder to leave.  [default: beside RUN, SCENARIO-SEED-NAME, or RUN-NAME for a folder of runs]",
 )
 @click.option("--camera", default="thermal", show_default=True, help="In whose images the boxes are.")
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
@@ -29,22 +29,41 @@ def adopt(
     and with these tracks, which report, view, evaluate and export take like any other. What such text does
     not tell, status and place on the floor, is said to be unknown. The images are rendered again, and are
     those of RUN.
+
+    RUN may be a folder of runs, such as a sweep's. TRACKS is one of files then, SCENARIO-SEED.txt for each
+    of them, as benchmarks ask for; those files may lie in a folder data in it.
     """
     from peopleboy.scenarios.adopting.adopt import Adoption
     from peopleboy.scenarios.adopting.adopt import adopt as take
+    from peopleboy.scenarios.adopting.sequences import sequences
     from peopleboy.scenarios.progress_bar import progress_bar
-    from peopleboy.scenarios.run_folder.finished_run import open_run
     from peopleboy.scenarios.scores.headline import headline
     from peopleboy.scenarios.scores.show_scores import print_scores
 
-    about = open_run(run).about
-    folder = out if out is not None else run.resolve().parent / f"{about.scenario}-{about.seed}-{name}"
     what = Adoption(
-        run=run, tracks=tracks, name=name, out=folder, camera=camera, record=not no_rrd, overwrite=overwrite
+        run=run,
+        tracks=tracks,
+        name=name,
+        out=out if out is not None else run.resolve().parent / f"{_title(run, tracks)}-{name}",
+        camera=camera,
+        record=not no_rrd,
+        overwrite=overwrite,
     )
-    with progress_bar(name, unit="frames") as show:
-        scores = take(what, show)
-    print_scores(scores.people)
-    click.echo(headline(scores))
+    each = sequences(what) if tracks.is_dir() else [what]
+    for adoption in each:
+        with progress_bar(adoption.out.name, unit="frames") as show:
+            scores = take(adoption, show)
+        if len(each) == 1:
+            print_scores(scores.people)
+        click.echo(f"{adoption.tracks.stem}: {headline(scores)}")
     click.echo("Status and place on the floor of these tracks are unknown.")
-    click.echo(folder)
+    click.echo(what.out)
+
+
+def _title(run: Path, tracks: Path) -> str:
+    from peopleboy.scenarios.run_folder.finished_run import open_run
+
+    if tracks.is_dir():
+        return run.resolve().name
+    about = open_run(run).about
+    return f"{about.scenario}-{about.seed}"
