@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final, SupportsFloat
+from typing import TYPE_CHECKING, Any, Final, SupportsFloat
 
 import gymnasium
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import Command
 from peopleboy.scenarios.environments.episode_figures import EpisodeFigures, Figures
+from peopleboy.scenarios.environments.normalise import Normaliser
 from peopleboy.scenarios.environments.observations import (
     KINDS,
     Arrays,
@@ -25,7 +26,7 @@ from peopleboy.scenarios.environments.observations import (
     see_tracks,
     see_truth,
 )
-from peopleboy.scenarios.environments.randomise import check_options, vary
+from peopleboy.scenarios.environments.randomise import check_options, vary, world_of
 from peopleboy.scenarios.environments.rewards import TASKS, TERMS, reward_terms
 from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.environments.situation import Episode
@@ -36,6 +37,7 @@ from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.loop.tracker_by_name import camera_names, check_cameras, make_eyes
+from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
 from peopleboy.sim.config import WorldConfig
@@ -48,6 +50,9 @@ from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
+
+if TYPE_CHECKING:
+    from peopleboy.scenarios.recording.live_picture import LivePicture
 
 SMALLEST_PX: Final = (64, 48)
 LARGEST_PX: Final = (1280, 960)
@@ -79,16 +84,18 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         image_size: width and height [px] of all images.
         tracker: name of the tracker behind "tracks", "truth" for exact boxes, or None for the scenario's.
         randomise: options of every episode for which `reset` is given none.
-        render_mode: "rgb_array" or None.
+        render_mode: "rgb_array" for `render`; "human" to show every step in rerun's viewer, a window, or a
+            page whose address is printed if there is no screen; or None.
         physics: "bullet" or "kinematic", which is quicker and needs no PyBullet; None for the scenario's.
         physics_hz: steps of physics a second, a multiple of 15; None is that of a run, 240. 60 is quicker by
             what `python -m benchmarks.environments` prints, beside how far the robot's way is off then.
+        normalise: whether numbers are brought within -1..1, see `peopleboy.scenarios.environments.normalise`.
 
     Raises:
         BadInput: an argument cannot be used.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 15}  # noqa: RUF012
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 15}  # noqa: RUF012
 
     def __init__(
         self,
@@ -102,15 +109,16 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         render_mode: str | None = None,
         physics: str | None = None,
         physics_hz: int | None = None,
+        normalise: bool = False,
     ) -> None:
         self._world: World | None = None
+        self._viewer: LivePicture | None = None
         _check_word("task", task, TASKS)
         _check_word("observation", observation, KINDS)
         _check_word("render_mode", render_mode, (None, *self.metadata["render_modes"]))
         _check_size(image_size)
-        self._randomise = {} if randomise is None else dict(randomise)
-        check_options(self._randomise)
         self._draws_worlds, self._physics = scenario is None, physics
+        self.vary_by({} if randomise is None else randomise)
         first = self._moved(_random_episode(0) if scenario is None else load_scenario(scenario))
         self._tracker_name = first.tracker if tracker is None else tracker
         self._wanted = camera_names(self._tracker_name)  # refuses an unknown name now
@@ -122,6 +130,9 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._take(first)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = observation_space(observation, self._robot)
+        self._normaliser = Normaliser(self._robot) if normalise else None
+        if self._normaliser is not None:
+            self.observation_space = self._normaliser.space(self.observation_space)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -133,11 +144,11 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """
         super().reset(seed=seed)
         chosen = self._randomise if options is None else options
-        check_options(chosen)
-        self.close()
+        check_options(chosen, draws_worlds=self._draws_worlds)
+        self._free()
         self._seed = int(self.np_random.integers(_SEEDS)) if seed is None else seed
         if self._draws_worlds:
-            self._take(self._moved(_random_episode(self._seed)))
+            self._take(self._moved(_random_episode(self._seed, world_of(chosen))))
         config = self._config(chosen)
         self._world = World(config)
         self._calibrations = calibrations_of(config.robot.cameras)
@@ -158,9 +169,25 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._tracks: tuple[Track, ...] = ()
         self._images: Arrays = {}
         self._is_over = False
+        if self._normaliser is not None:
+            self._normaliser.begin()
         observation = self._observe()
         self._episode.judge(self._scene)
+        if self.render_mode == "human":
+            self._show_first()
         return observation, self._info(dict.fromkeys(TERMS, 0.0))
+
+    def vary_by(self, options: Mapping[str, Any]) -> None:
+        """Vary every episode from the next one on for which `reset` is given no options, as lessons do.
+
+        Args:
+            options: as `reset` takes them; none at all for the scenario as it is.
+
+        Raises:
+            BadInput: options that there are not.
+        """
+        check_options(options, draws_worlds=self._draws_worlds)
+        self._randomise = dict(options)
 
     def step(
         self, action: NDArray[np.float32] | Sequence[float]
@@ -189,19 +216,18 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         terminated = situation.collided or situation.is_lost
         truncated = self._frame >= self._frames
         self._is_over = terminated or truncated
-        return observation, math.fsum(terms.values()), terminated, truncated, self._info(terms)
+        reward = math.fsum(terms.values())
+        if self._viewer is not None:
+            self._viewer.go_on(self._draw(), reward, self._dt_s)
+        return observation, reward, terminated, truncated, self._info(terms)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Draw thermal image, colour image and plan side by side, (360, 1440, 3).
+        """Draw thermal image, colour image and plan side by side, (360, 1440, 3); None but of "rgb_array".
 
         Raises:
             BadInput: there is no episode yet.
         """
-        if self._picture is None:
-            return None
-        self._running(even_over=True)
-        assert isinstance(self._senses, Observation)
-        return self._picture.draw(self._senses, self._scene, self._tracks, explanation_of(self._tracker))
+        return self._draw() if self.render_mode == "rgb_array" else None
 
     def metrics(self) -> Figures:
         """Give the figures of the episode so far, see `EpisodeFigures`.
@@ -251,7 +277,27 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         save_episode(self._scenario, self._commands, frames, options, config.control_hz)
 
     def close(self) -> None:
-        """Free the physics world."""
+        """Free the physics world, and end the viewer."""
+        self._free()
+        if self._viewer is not None:
+            self._viewer.close()
+            self._viewer = None
+
+    def _draw(self) -> NDArray[np.uint8]:
+        self._running(even_over=True)
+        assert self._picture is not None
+        assert isinstance(self._senses, Observation)
+        return self._picture.draw(self._senses, self._scene, self._tracks, explanation_of(self._tracker))
+
+    def _show_first(self) -> None:
+        """Show the episode's first instant, in a viewer that is there already or opened now."""
+        if self._viewer is None:
+            from peopleboy.scenarios.recording.live_picture import LivePicture  # here, as it loads rerun
+
+            self._viewer = LivePicture(print)
+        self._viewer.begin(self._draw(), f"{self._scenario.name}, seed {self._seed}")
+
+    def _free(self) -> None:
         if self._world is not None:
             self._world.close()
             self._world = None
@@ -284,7 +330,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         found = feel(self._senses, self._start) | self._see(before)
         if self._frame < self._frames:
             self._note(world)
-        return found
+        return found if self._normaliser is None else self._normaliser(found)
 
     def _see(self, before: Planar | None) -> Arrays:
         """Give what the chosen eyes tell."""
@@ -319,8 +365,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         return self._world
 
 
-def _random_episode(seed: int) -> Scenario:
-    return random_scenario(seed, _RANDOM_S)
+def _random_episode(seed: int, distribution: Distribution | None = None) -> Scenario:
+    return random_scenario(seed, _RANDOM_S, distribution)
 
 
 def _check_word(name: str, word: str | None, known: Sequence[str | None]) -> None:

@@ -9,12 +9,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.schema_errors import hint
+from peopleboy.scenarios.random_worlds.distribution import Distribution
+from peopleboy.scenarios.random_worlds.narrow import is_number, narrowed
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
 from peopleboy.sim.people.looks.wardrobe import usual_clothes
-from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.person_config import SPEEDS_M_S, PersonConfig
 from peopleboy.sim.places.place import Fixture, Place, air_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
@@ -25,26 +27,45 @@ LIMITS: Final[Mapping[str, tuple[float, float]]] = {
     "noise": (0.0, 20.0),
     "people": (0, 64),
     "clothes": (0, 1),
+    "pace": (0.2, 2.0),
+    "facing": (0, 1),
 }
 """What `reset(options=...)` takes, with its limits; each a number, or a pair from which one is drawn evenly.
 
 warmer_k [K] is added to the temperatures of the place and of everything in it; light is a factor on the
 light, and noise one on the noise of all cameras; people is how many of the scenario's people are there, its
-first ones; clothes, 1 or True, draws everybody's clothes anew.
+first ones, so that fewer hide each other; clothes, 1 or True, draws everybody's clothes anew; pace is a
+factor on everybody's walking speeds, which stay within 0.1..2.5 m/s; facing, 1 or True, lets the robot look
+at first to where the first person comes in.
+
+Of random worlds there is `world` as well: what they are drawn from, see
+`peopleboy.scenarios.random_worlds.narrow`.
 """
 
-_WHOLE: Final = ("people", "clothes")
+WORLD: Final = "world"
+
+_SWITCHES: Final = ("clothes", "facing")
+_WHOLE: Final = ("people", *_SWITCHES)
 
 
-def check_options(options: Mapping[str, Any]) -> None:
+def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> None:
     """Refuse options that there are not, and values out of their limits.
+
+    Args:
+        options: by name.
+        draws_worlds: whether worlds are drawn at random, so that `world` can be said.
 
     Raises:
         BadInput: with the key, the value, and what would be right.
     """
     for key, value in options.items():
+        if key == WORLD and draws_worlds:
+            world_of(options)
+            continue
+        if key == WORLD:
+            raise BadInput("options: world is of worlds drawn at random; make that of scenario=None")
         if key not in LIMITS:
-            raise BadInput(f"options: unknown key {key!r}; {hint(str(key), list(LIMITS))}")
+            raise BadInput(f"options: unknown key {key!r}; {hint(str(key), [*LIMITS, WORLD])}")
         low, high = LIMITS[key]
         bounds = value if isinstance(value, tuple | list) else (value, value)
         is_fine = len(bounds) == 2 and all(
@@ -53,6 +74,18 @@ def check_options(options: Mapping[str, Any]) -> None:
         if not is_fine or bounds[0] > bounds[1]:
             what = "a whole number" if key in _WHOLE else "a number"
             raise BadInput(f"options: {key} {value!r} must be {what} or a pair, within {low:g} .. {high:g}")
+
+
+def world_of(options: Mapping[str, Any]) -> Distribution | None:
+    """Give what random worlds are drawn from by these options; None for what they are always drawn from.
+
+    Raises:
+        BadInput: there is no such name, or its value is beyond the limits.
+    """
+    if WORLD not in options:
+        return None
+    with found_in("options", WORLD):
+        return narrowed(options[WORLD])
 
 
 def vary(config: WorldConfig, options: Mapping[str, Any], rng: np.random.Generator) -> WorldConfig:
@@ -69,7 +102,25 @@ def vary(config: WorldConfig, options: Mapping[str, Any], rng: np.random.Generat
         people = people[: round(drawn["people"])]
     if drawn.get("clothes"):
         people = tuple(replace(person, clothes=_clothes(config, person, rng)) for person in people)
+    if "pace" in drawn:
+        people = tuple(_paced(person, drawn["pace"]) for person in people)
+    if drawn.get("facing") and people:
+        robot = _facing(robot, people[0])
     return replace(config, place=place, robot=robot, people=people)
+
+
+def _paced(person: PersonConfig, factor: float) -> PersonConfig:
+    slowest, fastest = SPEEDS_M_S
+    path = tuple(
+        replace(waypoint, speed_m_s=min(max(factor * waypoint.speed_m_s, slowest), fastest))
+        for waypoint in person.path
+    )
+    return replace(person, path=path)
+
+
+def _facing(robot: RobotConfig, person: PersonConfig) -> RobotConfig:
+    dx, dy = (there - here for there, here in zip(person.path[0].at_m, robot.at_m, strict=True))
+    return replace(robot, heading_rad=math.atan2(dy, dx))
 
 
 def _clothes(config: WorldConfig, person: PersonConfig, rng: np.random.Generator) -> Clothes:
@@ -81,10 +132,8 @@ def _clothes(config: WorldConfig, person: PersonConfig, rng: np.random.Generator
 
 def _is_number(value: object, key: str) -> bool:
     if isinstance(value, bool):
-        return key == "clothes"
-    if isinstance(value, int | np.integer):
-        return True
-    return key not in _WHOLE and isinstance(value, float | np.floating) and math.isfinite(value)
+        return key in _SWITCHES
+    return is_number(value, is_whole=key in _WHOLE)
 
 
 def _draw(key: str, value: Any, rng: np.random.Generator) -> float:

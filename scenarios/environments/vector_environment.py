@@ -105,6 +105,15 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self._is_over = terminations | truncations
         return found, rewards, terminations, truncations, infos
 
+    def vary_by(self, options: dict[str, Any]) -> None:
+        """Vary every world's episodes from its next one on, as for a single environment.
+
+        Raises:
+            BadInput: options that there are not.
+        """
+        for env in self._envs:
+            env.vary_by(options)
+
     def close_extras(self, **_: Any) -> None:
         """Free all worlds."""
         for env in self._envs:

@@ -58,9 +58,11 @@ def random_world(seed: int, duration_s: float = LASTS_S, distribution: Distribut
     return scene
 
 
-def random_scenario(seed: int, duration_s: float = LASTS_S) -> Scenario:
+def random_scenario(
+    seed: int, duration_s: float = LASTS_S, distribution: Distribution | None = None
+) -> Scenario:
     """Draw a world, ready to be played."""
-    return parse_scenario(random_world(seed, duration_s), source=f"world_{seed}", folder=Path())
+    return parse_scenario(random_world(seed, duration_s, distribution), source=f"world_{seed}", folder=Path())
 
 
 def _with_door(draws: Draws, scene: Data) -> Data:

@@ -67,26 +67,26 @@ def serve(recordings: Sequence[Path], say: Callable[[str], None], port: int | No
 
 
 @contextmanager
-def live_viewer(say: Callable[[str], None]) -> Iterator[str]:
-    """Have a viewer ready for a run: a window, or a page if there is no screen; yield where it takes data.
-
-    A window stays open afterwards. A page is served until interrupted.
+def live_viewer(say: Callable[[str], None], *, is_left_open: bool = True) -> Iterator[str]:
+    """Have a viewer ready: a window, or a page if there is no screen; yield where it takes data.
 
     Args:
         say: is told where to look.
+        is_left_open: whether a window stays open afterwards, and a page is served until interrupted.
 
     Raises:
         BadInput: the viewer fails.
     """
     if not has_screen():
         with _page(None) as (viewer, address, source):
-            say(f"{address} shows the run as it goes.")
+            say(f"{address} shows it as it goes.")
             yield source
-            say(f"{address} still shows it; Ctrl-C ends that.")
-            _wait(viewer)
+            if is_left_open:
+                say(f"{address} still shows it; Ctrl-C ends that.")
+                _wait(viewer)
         return
     port, _ = _ports(None)
-    with _rerun("--port", str(port), "--expect-data-soon", is_left_open=True) as viewer:
+    with _rerun("--port", str(port), "--expect-data-soon", is_left_open=is_left_open) as viewer:
         _wait_for(port, viewer)
         yield _source(port)
 

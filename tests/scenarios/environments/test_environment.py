@@ -220,6 +220,9 @@ def test_options_change_what_they_name_for_one_episode(scene: Path) -> None:
         ({"light": [1.0, 0.5]}, ("light",)),
         ({"people": 1.5}, ("people 1.5", "whole")),
         ({"noise": float("nan")}, ("noise nan",)),
+        ({"pace": 3.0}, ("pace 3.0", "0.2 .. 2")),
+        ({"facing": 2}, ("facing 2", "whole")),
+        ({"world": {"people": 1}}, ("world", "scenario=None")),
     ],
 )
 def test_wrong_options_are_refused_in_one_line(options: dict, named: tuple[str, ...], scene: Path) -> None:
@@ -235,7 +238,7 @@ def test_wrong_options_are_refused_in_one_line(options: dict, named: tuple[str, 
         ({"task": "dance"}, ("task 'dance'",)),
         ({"image_size": (40, 30)}, ("image_size (40, 30)",)),
         ({"tracker": "none"}, ("'none'", "peopleboy")),
-        ({"render_mode": "human"}, ("render_mode", "'human'")),
+        ({"render_mode": "ansi"}, ("render_mode", "'ansi'")),
         ({"scenario": "singel_follow"}, ("'singel_follow'", "'single_follow'")),
     ],
 )

@@ -1,0 +1,78 @@
+"""Pictures shown in rerun's viewer as they are made, and nowhere kept."""
+
+from __future__ import annotations
+
+import uuid
+import weakref
+from collections.abc import Callable
+from contextlib import ExitStack
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.recording.recorder import APPLICATION
+from peopleboy.scenarios.recording.viewer import live_viewer
+
+_QUALITY = 75  # of JPEG
+_SCENE, _REWARD, _EPISODES = "scene", "reward", "episodes"
+
+
+class LivePicture:
+    """A viewer that shows an environment: a window, or a page if there is no screen.
+
+    It goes when it is closed, or with the program. Time goes on from one episode to the next, so that earlier
+    ones can be gone back to.
+
+    Args:
+        say: is told the page's address.
+
+    Raises:
+        BadInput: the viewer fails.
+    """
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._time_s = 0.0
+        self._earned = 0.0
+        with ExitStack() as stack:
+            source = stack.enter_context(live_viewer(say, is_left_open=False))
+            self._stream = rr.RecordingStream(APPLICATION, recording_id=uuid.uuid4())
+            self._stream.set_sinks(rr.GrpcSink(source), default_blueprint=_lay_out())
+            stack.callback(self._stream.disconnect)
+            self._end = weakref.finalize(self, stack.pop_all().close)
+
+    def begin(self, picture: NDArray[np.uint8], words: str) -> None:
+        """Show an episode's first picture, (H, W, 3), and say which it is."""
+        self._earned = 0.0
+        self._show(picture)
+        self._stream.log(_EPISODES, rr.TextLog(words))
+
+    def go_on(self, picture: NDArray[np.uint8], reward: float, dt_s: float) -> None:
+        """Show the next picture, (H, W, 3), with what was earned since the last one, dt_s before it [s]."""
+        self._time_s += dt_s
+        self._earned += reward
+        self._show(picture)
+
+    def close(self) -> None:
+        """End the viewer; again is nothing."""
+        self._end()
+
+    def _show(self, picture: NDArray[np.uint8]) -> None:
+        self._stream.set_time("time", duration=self._time_s)
+        self._stream.log(_SCENE, rr.Image(picture).compress(_QUALITY))
+        self._stream.log(_REWARD, rr.Scalars(self._earned))
+
+
+def _lay_out() -> rrb.Blueprint:
+    below = rrb.Horizontal(
+        rrb.TimeSeriesView(origin=_REWARD, name="Reward of the episode so far"),
+        rrb.TextLogView(origin=_EPISODES, name="Episodes"),
+    )
+    above = rrb.Spatial2DView(origin=_SCENE, name="Thermal image with tracks, colour image, plan")
+    return rrb.Blueprint(
+        rrb.Vertical(above, below, row_shares=[2.0, 1.0]),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        rrb.TimePanel(state="collapsed", timeline="time", play_state="following"),
+    )
