@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from peopleboy.scenarios.scores.bootstrap import bootstrap
+from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 
 FIGURES = {
     "reward": ("reward of an episode", 1.0, ""),
@@ -21,8 +21,10 @@ FIGURES = {
     "mean_distance_error_m": ("distance error", 1.0, "m"),
     "collided": ("episodes with a collision", 100.0, "%"),
     "lost": ("episodes in which the person was lost", 100.0, "%"),
+    "personal_s": ("somebody within 1.2 m", 1.0, "s"),
+    "jerk_m_s3": ("jerk", 1.0, "m/s3"),
 }
-"""What is printed of an episode: its name, factor and unit; see `FollowingScore`."""
+"""What is printed of an episode: its name, factor and unit; see `FollowingScore` and `ComfortScore`."""
 
 Controller = Callable[[Any], Any]
 Figures = Mapping[str, float]
@@ -36,20 +38,41 @@ def play(env: gymnasium.Env[Any, Any], controller: Controller, seed: int) -> Fig
         observation, earned, terminated, truncated, info = env.step(controller(observation))
         reward, is_over = reward + float(earned), terminated or truncated
     ends = {"collided": float(info["reward"]["collision"] < 0), "lost": float(info["reward"]["lost"] < 0)}
-    return {**info["metrics"]["following"], **ends, "reward": reward}
+    return {**info["metrics"]["following"], **info["metrics"]["comfort"], **ends, "reward": reward}
 
 
 def print_figures(title: str, runs: Mapping[str, Sequence[Figures]], console: Console) -> None:
-    """Print a row for each figure: means over the seeds, with bootstrap intervals of 95 %."""
+    """Print a row for each figure: means over the worlds, with bootstrap intervals of 95 %.
+
+    Of two controllers the differences in each world have a column, too.
+    """
     console.print(title, soft_wrap=True)  # as a table's title, it would be wrapped to the table's width
     table = Table(box=None)
     table.add_column("")
-    for name in runs:
+    for name in summary(runs):
         table.add_column(name, justify="right")
-    for figure, (words, factor, unit) in FIGURES.items():
-        cells = []
-        for played in runs.values():
-            found = bootstrap([factor * figures[figure] for figures in played], np.random.default_rng(0))
-            cells.append(f"{found.mean:.2f} [{found.low:.2f}, {found.high:.2f}]")
+    for figure, (words, _, unit) in FIGURES.items():
+        cells = [
+            f"{found.mean:.2f} [{found.low:.2f}, {found.high:.2f}]"
+            for found in (of_one[figure] for of_one in summary(runs).values())
+        ]
         table.add_row(f"{words}{', ' + unit if unit else ''}", *cells)
     console.print(table)
+
+
+def summary(runs: Mapping[str, Sequence[Figures]]) -> dict[str, dict[str, Interval]]:
+    """Give every figure of each controller; of two also of the differences, paired by world."""
+    values = {
+        name: {
+            figure: np.array([factor * one[figure] for one in played])
+            for figure, (_, factor, _) in FIGURES.items()
+        }
+        for name, played in runs.items()
+    }
+    if len(values) == 2:
+        (one, first), (other, second) = values.items()
+        values[f"{one} - {other}"] = {figure: first[figure] - second[figure] for figure in FIGURES}
+    return {
+        name: {figure: bootstrap(list(array), np.random.default_rng(0)) for figure, array in arrays.items()}
+        for name, arrays in values.items()
+    }

@@ -28,7 +28,6 @@ from examples.show import Controller, Figures, play, print_figures
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.scores.bootstrap import bootstrap
 
 FIRST_SEED = 1000  # of the worlds in which they are compared
 PHYSICS_HZ = 60  # a quarter of a run's: the way is off by millimetres, and learning takes many steps
@@ -110,9 +109,6 @@ def main(scenario: str, steps: int, seeds: int, eyes: str, out: Path) -> None:
     runs = compare(scenario, eyes, out, range(FIRST_SEED, FIRST_SEED + seeds))
     console = Console(width=110)
     print_figures(f"{scenario}, on {eyes}, {seeds} seeds: mean [95 % interval]", runs, console)
-    gains = [one["reward"] - other["reward"] for one, other in zip(*runs.values(), strict=True)]
-    gain = bootstrap(gains, np.random.default_rng(0))
-    console.print(f"learned - written, reward: {gain.mean:+.2f} [{gain.low:+.2f}, {gain.high:+.2f}]")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,141 @@
+"""The written follower with a learned correction of its commands.
+
+What is learned is small: sixteen weights, by which the command of `FollowPerson` is corrected by at most
+`MOST`. With weights of zero it is the written follower, so that learning begins with a tie. Left and right
+are alike: the speed is corrected by what a mirror leaves as it is, the turn rate by what it turns round.
+
+    peopleboy run single_follow --behaviour examples.learning.follower:LearnedFollower
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.following.follow_person import (
+    FollowConfig,
+    FollowPerson,
+    FollowState,
+    distance_error,
+)
+from peopleboy.behaviours.percept import Percept
+
+Weights = NDArray[np.float64]  # (16,)
+
+SPEED_SIGHTS: Final = (
+    "follow", "too far", "walking", "speed", "off the nose", "drifting", "free ahead", "wait", "recover",
+)  # fmt: skip
+TURN_SIGHTS: Final = (
+    "bearing",
+    "drift",
+    "turning",
+    "freer side",
+    "wait bearing",
+    "search side",
+    "recover bearing",
+)
+SIZE: Final = len(SPEED_SIGHTS) + len(TURN_SIGHTS)
+MOST: Final = (0.4, 0.8)  # [m/s], [rad/s] of a correction
+FASTEST: Final = (-0.25, 0.8)  # [m/s] backwards and forwards, as the written follower
+_FAR_M: Final = 3.0
+_AHEAD: Final = slice(2, 6)  # of the sonars
+_LEFT, _RIGHT = slice(0, 3), slice(5, 8)
+
+
+class LearnedFollower:
+    """Follows a person as `FollowPerson` does, each command corrected by what was learned.
+
+    A subclass with another `file` drives by weights of your own.
+
+    Args:
+        weights: (16,) for `SPEED_SIGHTS` and then `TURN_SIGHTS`; those of the file if None.
+
+    Raises:
+        BadInput: there is no such file, or it has no such weights.
+    """
+
+    file: Path = Path(__file__).with_name("follower.npz")
+
+    def __init__(self, weights: Weights | None = None) -> None:
+        self._weights = load_weights(self.file) if weights is None else weights
+        self._config = FollowConfig()
+        self._written = FollowPerson(self._config)
+
+    @property
+    def mode(self) -> str:
+        """What the robot is doing."""
+        return self._written.mode
+
+    @property
+    def reason(self) -> str:
+        """Why it is doing that."""
+        return self._written.reason
+
+    @property
+    def following(self) -> int | None:
+        """Number of the track that it drives after."""
+        return self._written.following
+
+    def command(self, percept: Percept) -> Command:
+        """Give the written command, corrected; none is where there is no sound sight."""
+        written = self._written.command(percept)
+        if self.mode == "blind":
+            return written
+        speed_sights, turn_sights = sights(percept, self._written.state, self._config)
+        of_speed, of_turn = np.split(self._weights, [len(SPEED_SIGHTS)])
+        speed = written.linear_m_s + MOST[0] * math.tanh(speed_sights @ of_speed)
+        turn = written.angular_rad_s + MOST[1] * math.tanh(turn_sights @ of_turn)
+        most_turn = self._config.max_turn_rad_s
+        return Command(
+            linear_m_s=min(max(speed, FASTEST[0]), FASTEST[1]),
+            angular_rad_s=min(max(turn, -most_turn), most_turn),
+        )
+
+
+def sights(percept: Percept, state: FollowState, config: FollowConfig) -> tuple[Weights, Weights]:
+    """Give what corrections of speed (9,) and of turn rate (7,) are made from, each within about -1..1.
+
+    Zero is what does not count in the follower's mode.
+    """
+    follows, waits, recovers = (float(state.mode == mode) for mode in ("follow", "wait", "recover"))
+    near = np.minimum(percept.sonar_m, _FAR_M) / _FAR_M
+    speed = [0.0] * len(SPEED_SIGHTS)
+    turn = [0.0] * len(TURN_SIGHTS)
+    if state.target is not None:
+        target = state.target
+        off, drift = target.bearing_rad / 0.6, target.drift_rad_s / 0.6
+        too_far = min(max(distance_error(target.height, config), -1.0), 1.0)
+        walking, driving = state.walking_m_s / 0.8, percept.linear_m_s / 0.8
+        seen = (1.0, too_far, walking, driving, abs(off), abs(drift), float(near[_AHEAD].min()))
+        speed[:7] = [follows * sight for sight in seen]
+        turn[:3] = [follows * sight for sight in (off, drift, percept.angular_rad_s / 1.2)]
+        turn[4] = waits * off
+    speed[7:] = [waits, recovers]
+    turn[3] = (follows or recovers) * float(near[_LEFT].min() - near[_RIGHT].min())
+    turn[5] = state.side * float(state.mode == "search")
+    turn[6] = recovers * (0.0 if state.place is None else state.place.bearing_rad / 0.6)
+    return np.clip(speed, -2.0, 2.0), np.clip(turn, -2.0, 2.0)
+
+
+def load_weights(file: Path) -> Weights:
+    """Read weights, without pickles.
+
+    Raises:
+        BadInput: there is no such file, or it has no such weights.
+    """
+    try:
+        with np.load(file, allow_pickle=False) as stored:
+            weights = np.asarray(stored["weights"], np.float64)
+    except (OSError, ValueError, KeyError) as error:
+        raise BadInput(
+            f"{file}: there are no weights; `python -m examples.learning.train` makes them"
+        ) from error
+    if weights.shape != (SIZE,) or not np.isfinite(weights).all():
+        raise BadInput(f"{file}: weights must be ({SIZE},) finite numbers, got {weights.shape}")
+    return weights
