@@ -65,7 +65,8 @@ RANGES: Final[Mapping[str, Range]] = {
     "least_span": Range(low=2.0, high=10.0, unit="K", what="the gain's least span"),
     "plateau": Range(low=0.1, high=3.0, unit="%", what="plateau of a plateau gain"),
     "linear_share": Range(low=0.1, high=0.8, unit="", what="linear share of a plateau gain"),
-    "sharpening": Range(low=0.0, high=1.2, unit="", what="sharpening"),
+    "sharpening": Range(low=0.0, high=1.8, unit="", what="sharpening"),
+    "coring": Range(low=0.0, high=0.2, unit="K", what="details that are taken for noise"),
     "shutter_every": Range(low=5.0, high=60.0, unit="s", what="time between shutters, where there is one"),
     "jpeg_quality": Range(
         low=60, high=95, unit="", what="quality of JPEG, where images went through it", is_whole=True
@@ -81,7 +82,7 @@ RANGES: Final[Mapping[str, Range]] = {
 """All that is drawn evenly."""
 
 SHARES: Final[Mapping[str, Mapping[str, float]]] = {
-    "place": {"room": 0.36, "street": 0.4, "corridor": 0.08, "l_corridor": 0.08, "t_corridor": 0.08},
+    "place": {"room": 0.32, "street": 0.5, "corridor": 0.06, "l_corridor": 0.06, "t_corridor": 0.06},
     "houses": {"both": 0.5, "north": 0.2, "south": 0.2, "none": 0.1},
     "door": {"open": 0.5, "closed": 0.5},
     "robot": {"stands": 0.5, "drives": 0.5},

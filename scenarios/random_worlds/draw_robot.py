@@ -45,6 +45,7 @@ def draw_cameras(draws: Draws) -> Data:
         "vignetting_k": draws.number("vignetting"),
         "offset_drift_k_per_min": draws.number("drift"),
         "sharpening": draws.number("sharpening"),
+        "coring_k": draws.number("coring"),
         **_draw_gain(draws),
     }
     if draws.happens("has_shutter"):

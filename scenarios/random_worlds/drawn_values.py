@@ -30,6 +30,7 @@ _CAMERA: Final[Mapping[str, str]] = {
     "vignetting": "vignetting_k",
     "drift": "offset_drift_k_per_min",
     "sharpening": "sharpening",
+    "coring": "coring_k",
     "gain": "gain",
     "gain_follows": "gain_follows_s",
     "tail": "tail_percent",

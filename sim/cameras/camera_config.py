@@ -93,6 +93,8 @@ class ThermalConfig(CameraConfig):
         shutter_lasts_s: [s] for which the image stands still then.
         sharpening: amount of the unsharp mask in 8 bits; 0 for none.
         sharpening_px: [px] standard deviation of its blur.
+        coring_k: [K] that a pixel of 8 bits must differ from its blurred neighbourhood to be more than noise,
+            which is evened out; 0 for none.
         jpeg_quality: 1..100, of the compression that the 8-bit image went through; None for none.
 
     Raises:
@@ -122,6 +124,7 @@ class ThermalConfig(CameraConfig):
     shutter_lasts_s: float = 0.4
     sharpening: float = 0.0
     sharpening_px: float = 1.5
+    coring_k: float = 0.0
     jpeg_quality: int | None = None
 
     def __post_init__(self) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.shapes.paintings import Painting, Unrolling
 
-_LEVEL = int(Unrolling.LEVEL)
+_LEVEL, _ASLANT = int(Unrolling.LEVEL), int(Unrolling.ASLANT)
 _STEPS = np.array([256.0, 4096.0])  # to a kelvin, and to a factor of 1 on light
 _KELVIN, _LIGHT = 1.0 / _STEPS
 
@@ -46,6 +46,8 @@ def painted(
     Between the middles of texels it is linear; beyond the edge the nearest texel counts.
     """
     across, up = (x, y) if int(paint[part, 1]) == _LEVEL else (x + y, z)
+    if int(paint[part, 1]) == _ASLANT:
+        up += 0.5 * (x - y)
     columns, rows = int(paint[part, 5]), int(paint[part, 6])
     u = min(max((across - paint[part, 2]) * paint[part, 4], 0.0), columns - 1.001)
     v = min(max((up - paint[part, 3]) * paint[part, 4], 0.0), rows - 1.001)
@@ -96,12 +98,16 @@ def paint_run(
     most_u, most_v = np.float32(paint[p, 5] - 1.001), np.float32(paint[p, 6] - 1.001)
     m, is_level = matrices[p], int(paint[p, 1]) == _LEVEL
     low, more = (1, 0.0) if is_level else (2, 1.0)
+    lean = 0.5 if int(paint[p, 1]) == _ASLANT else 0.0
     # Texels across are (slope u + start) z + origin, and those up alike.
     slope_u = np.float32((m[0, 0] + more * m[1, 0]) * scale)
     start_u = np.float32(((m[0, 1] + more * m[1, 1]) * v + m[0, 2] + more * m[1, 2]) * scale)
     origin_u = np.float32((m[0, 3] + more * m[1, 3] - paint[p, 2]) * scale)
-    slope_v, start_v = np.float32(m[low, 0] * scale), np.float32((m[low, 1] * v + m[low, 2]) * scale)
-    origin_v = np.float32((m[low, 3] - paint[p, 3]) * scale)
+    slope_v = np.float32((m[low, 0] + lean * (m[0, 0] - m[1, 0])) * scale)
+    start_v = np.float32(
+        ((m[low, 1] + lean * (m[0, 1] - m[1, 1])) * v + m[low, 2] + lean * (m[0, 2] - m[1, 2])) * scale
+    )
+    origin_v = np.float32((m[low, 3] + lean * (m[0, 3] - m[1, 3]) - paint[p, 3]) * scale)
     for u in range(first, end):
         z = depths[u]
         x = min(max((slope_u * np.float32(u) + start_u) * z + origin_u, none), most_u)

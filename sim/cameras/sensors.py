@@ -115,7 +115,7 @@ class ThermalSensor:
 
     def _grey(self, temperature_c: NDArray[np.float32], time_s: float) -> NDArray[np.uint8]:
         config = self._config
-        crisp = sharpen(temperature_c, config.sharpening, config.sharpening_px)
+        crisp = sharpen(temperature_c, config.sharpening, config.sharpening_px, config.coring_k)
         return compress(self._gain.grey(crisp, time_s), config.jpeg_quality)
 
 

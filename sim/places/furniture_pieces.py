@@ -115,6 +115,12 @@ def plant(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         )
     )
     return (
-        Piece(name="leaves", shapes=(*leaves, stem), temperature_c=temperature, rgb=rgb),
+        Piece(
+            name="leaves",
+            shapes=(*leaves, stem),
+            temperature_c=temperature,
+            rgb=rgb,
+            covering=Covering.LEAVES,
+        ),
         Piece(name="pot", shapes=(pot,), temperature_c=temperature + 0.5, rgb=(0.45, 0.2, 0.1)),
     )

@@ -14,6 +14,7 @@ class Unrolling(IntEnum):
 
     LEVEL = 0  # across is x, up is y: floors and ceilings
     UPRIGHT = 1  # across is x + y, up is z: walls, and whatever stands on the floor
+    ASLANT = 2  # across is x + y, up is z + (x - y) / 2: what is round, which has no side without a pattern
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

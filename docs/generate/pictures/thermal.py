@@ -215,7 +215,7 @@ def _camera() -> Callable[..., Grey]:
         detector = make_detector(settings, stream(0, "thermal.detector"))
         drift_k = Drift(settings, "thermal", 0).offset_k(_DRIFT_S)
         temperature = detect(apparent, detector, settings, stream(0, "thermal.noise"), drift_k)
-        crisp = sharpen(temperature, settings.sharpening, settings.sharpening_px)
+        crisp = sharpen(temperature, settings.sharpening, settings.sharpening_px, settings.coring_k)
         grey = Gain(settings).grey(crisp, 0.0) if encode is None else encode(crisp)
         coarse = compress(grey, settings.jpeg_quality) // _STEP * _STEP
         return np.asarray(coarse, np.uint8)[40:200, 60:]

@@ -175,6 +175,13 @@ class ThermalCameraSpec(_Camera):
     sharpening_px: float | None = Field(
         default=None, gt=0.0, le=20.0, description="of that blur, a standard deviation; usually 1.5"
     )
+    coring_k: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=5.0,
+        description="details of 8 bits that differ by less from what is about them are taken for noise and "
+        "evened out; usually 0",
+    )
     jpeg_quality: int | None = Field(
         default=None,
         ge=1,

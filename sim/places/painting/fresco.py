@@ -50,10 +50,13 @@ class Fresco:
     kelvin: Array
     light: Array
 
-    def cloudy(self, metres: float) -> Array:
-        """(H, W) noise of deviation 1, its largest blotches so many metres wide, from a place of its own."""
+    def cloudy(self, metres: float, flatter: float = 1.0) -> Array:
+        """(H, W) noise of deviation 1, its largest blotches so many metres wide, from a place of its own.
+
+        They are as high as wide, or so many times flatter.
+        """
         x, y = self.rng.uniform(0.0, 100.0, 2)
-        return self.clouds.at(self.across + x, self.up + y, metres)
+        return self.clouds.at(self.across + x, flatter * self.up + y, metres)
 
     def strip(self, distance: Array, half_m: float | Array, soft_m: float) -> Array:
         """1 where a distance [m] is below a half width, 0 beyond; between them over a soft edge."""
@@ -79,19 +82,26 @@ class Fresco:
 
 
 def begin(
-    fixture: Fixture, clouds: Clouds, rng: np.random.Generator, *, is_shell: bool, air_k: float
+    fixture: Fixture,
+    clouds: Clouds,
+    rng: np.random.Generator,
+    *,
+    is_shell: bool,
+    is_leafy: bool,
+    air_k: float,
 ) -> Fresco:
-    """Begin a fresco on a fixture; floors and ceilings lie, all else stands."""
+    """Begin a fresco on a fixture; floors and ceilings lie, leaves are all round, and all else stands."""
     extents = np.array(shape_extents(fixture))
     low, high = extents[:, 0].min(axis=0), extents[:, 1].max(axis=0)
     is_level = is_shell and high[2] - low[2] < 0.5 * min(high[0] - low[0], high[1] - low[1])
-    start, size = _span(low, high, is_level=is_level)
+    unrolling = Unrolling.LEVEL if is_level else Unrolling.ASLANT if is_leafy else Unrolling.UPRIGHT
+    start, size = _span(low, high, unrolling)
     texel = _texel(size, is_shell=is_shell)
     columns, rows = (max(int(np.ceil(side / texel)), 2) for side in size)
     across: Array = (np.arange(columns, dtype=np.float64) + 0.5) * texel
     up: Array = (np.arange(rows, dtype=np.float64) + 0.5) * texel
     return Fresco(
-        unrolling=Unrolling.LEVEL if is_level else Unrolling.UPRIGHT,
+        unrolling=unrolling,
         origin_m=(start[0] + 0.5 * texel, start[1] + 0.5 * texel),
         texel_m=texel,
         across=across[None, :],
@@ -106,12 +116,14 @@ def begin(
     )
 
 
-def _span(low: Array, high: Array, *, is_level: bool) -> tuple[tuple[float, float], tuple[float, float]]:
+def _span(low: Array, high: Array, unrolling: Unrolling) -> tuple[tuple[float, float], tuple[float, float]]:
     """Where the surface starts, and its size, both across and up [m]."""
-    if is_level:
+    if unrolling is Unrolling.LEVEL:
         return (low[0], low[1]), (high[0] - low[0], high[1] - low[1])
-    across = low[0] + low[1], high[0] + high[1]
-    return (across[0], low[2]), (across[1] - across[0], high[2] - low[2])
+    across, up = (low[0] + low[1], high[0] + high[1]), (low[2], high[2])
+    if unrolling is Unrolling.ASLANT:
+        up = up[0] + 0.5 * (low[0] - high[1]), up[1] + 0.5 * (high[0] - low[1])
+    return (across[0], up[0]), (across[1] - across[0], up[1] - up[0])
 
 
 def _texel(size: tuple[float, float], *, is_shell: bool) -> float:

@@ -11,6 +11,8 @@ import numpy as np
 from peopleboy.sim.places.painting.fresco import Array, Fresco
 
 _STUDS_M, _SKIRTING_M = 0.6, 0.08
+_STUDDED = 0.35  # of walls are boards on studs, the others stone
+_LAYERED = 2.5  # blotches are so many times as wide as high, as air lies in layers of one warmth
 
 
 def paint_plaster(fresco: Fresco) -> None:
@@ -18,10 +20,13 @@ def paint_plaster(fresco: Fresco) -> None:
     rng, width = fresco.rng, fresco.size[0]
     fresco.kelvin += rng.uniform(0.5, 1.1) * (fresco.up - 1.2)
     fresco.kelvin -= _edges(fresco, rng.uniform(1.2, 3.0), 0.22)
-    fresco.kelvin -= rng.uniform(0.3, 1.1) * fresco.lines(
-        fresco.across + rng.uniform(0.0, 0.6), _STUDS_M, 0.05
+    if rng.random() < _STUDDED:
+        _studs(fresco)
+    else:
+        _courses(fresco)
+    fresco.kelvin += rng.uniform(0.25, 0.55) * fresco.cloudy(2.8, _LAYERED) + 0.15 * fresco.cloudy(
+        0.5, _LAYERED
     )
-    fresco.kelvin += rng.uniform(0.25, 0.55) * fresco.cloudy(1.6) + 0.15 * fresco.cloudy(0.25)
     for _ in range(rng.poisson(0.25 * width)):
         _stain(fresco)
     for _ in range(rng.poisson(0.3 * width)):
@@ -59,6 +64,19 @@ def paint_ceiling(fresco: Fresco) -> None:
     fresco.light *= (1.0 - 0.3 * joints) * np.where(is_grille, 0.7, 1.0) * (1.0 + 0.02 * tiles)
 
 
+def _studs(fresco: Fresco) -> None:
+    """Studs behind boards, which spread what they lead through."""
+    off = (fresco.across + fresco.rng.uniform(0.0, _STUDS_M)) % _STUDS_M - 0.5 * _STUDS_M
+    fresco.kelvin -= fresco.rng.uniform(0.2, 0.7) * np.exp(-((off / 0.04) ** 2))
+
+
+def _courses(fresco: Fresco) -> None:
+    """Blocks and their joints behind plaster, which spreads what they lead through."""
+    rng, high = fresco.rng, fresco.rng.uniform(0.2, 0.33)
+    off = (fresco.up + rng.uniform(0.0, high)) % high - 0.5 * high
+    fresco.kelvin -= rng.uniform(0.1, 0.4) * np.exp(-((off / 0.025) ** 2)) * (1.0 + 0.3 * fresco.cloudy(1.0))
+
+
 def _stain(fresco: Fresco) -> None:
     """A damp, warm, leaned-on or badly insulated patch."""
     rng, (width, height) = fresco.rng, fresco.size
@@ -71,10 +89,10 @@ def _stain(fresco: Fresco) -> None:
 def _wire(fresco: Fresco) -> None:
     """A wire in the wall from a socket or switch up to the ceiling; the socket is as warm again."""
     rng, width = fresco.rng, fresco.size[0]
-    u, v, warm = rng.uniform(0.2, max(width - 0.2, 0.21)), rng.choice([0.35, 1.1]), rng.uniform(0.6, 2.0)
+    u, v, warm = rng.uniform(0.2, max(width - 0.2, 0.21)), rng.choice([0.35, 1.1]), rng.uniform(0.2, 0.8)
     fresco.kelvin += warm * fresco.strip(fresco.across - u, 0.008, 0.03) * (fresco.up > v)
     socket = fresco.strip(fresco.across - u, 0.04, 0.004) * fresco.strip(fresco.up - v, 0.04, 0.004)
-    fresco.kelvin += 1.5 * warm * socket
+    fresco.kelvin += 2.5 * warm * socket
     fresco.light *= 1.0 + 0.25 * socket
 
 

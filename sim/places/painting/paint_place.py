@@ -73,6 +73,7 @@ def _paint(
         clouds,
         rng,
         is_shell=material.covering in _FLAT,
+        is_leafy=material.covering is Covering.LEAVES,
         air_k=place.surroundings_c - material.temperature_c,
     )
     painter = _PAINTERS.get(material.covering)

@@ -27,12 +27,17 @@ def slope(unrolling: Unrolling) -> Painting:
 def test_between_texels_a_painting_is_linear_whatever_lies_across_it(
     across: float, up: float, other: float
 ) -> None:
-    paint, texels = make_paint_table([None, slope(Unrolling.UPRIGHT), slope(Unrolling.LEVEL)])
+    paint, texels = make_paint_table(
+        [None, *(slope(way) for way in (Unrolling.UPRIGHT, Unrolling.LEVEL, Unrolling.ASLANT))]
+    )
     expected = (3.0 * across + 2.0 * up, 1.0 - 0.5 * across)
     upright = painted(paint, texels, 1, across - 0.3 - other, other, up + 0.2)
     level = painted(paint, texels, 2, across - 0.3, up + 0.2, other)
     assert upright == pytest.approx(expected, abs=0.002)
     assert level == pytest.approx(expected, abs=0.002)
+    # Of a round thing, both sums of two coordinates change whichever way one looks at it.
+    aslant = painted(paint, texels, 3, across - 0.3 - other, other, up + 0.2 - 0.5 * (across - 0.3) + other)
+    assert aslant == pytest.approx(expected, abs=0.002)
 
 
 @pytest.mark.parametrize("unrolling", Unrolling)

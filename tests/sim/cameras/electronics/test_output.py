@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
+from peopleboy.sim.cameras.blur import optics_blur
 from peopleboy.sim.cameras.electronics.output import MOST_K, compress, sharpen
 
 
@@ -26,6 +27,20 @@ def test_sharpening_leaves_flat_areas_and_puts_halos_at_edges() -> None:
 def test_a_lamp_does_not_blacken_all_around_it() -> None:
     change = sharpen(edge(60.0), 1.0, 1.5) - edge(60.0)
     assert np.abs(change).max() == pytest.approx(MOST_K)
+
+
+def test_coring_evens_out_what_is_less_and_leaves_what_is_more() -> None:
+    noise = np.random.default_rng(1).normal(0.0, 0.03, (40, 60)).astype(np.float32)
+    image = edge(8.0) + noise
+    cored = sharpen(image, 0.0, 1.5, coring_k=0.12)
+    assert cored[:, :20].std() < 0.4 * image[:, :20].std()
+    assert cored[:, 29:31] == pytest.approx(image[:, 29:31])
+
+
+def test_coring_without_end_is_the_blurred_image_and_none_is_the_unsharp_mask() -> None:
+    image = edge(1.0)
+    assert sharpen(image, 0.8, 1.5, coring_k=50.0) == pytest.approx(optics_blur(image, 1.5), abs=1e-5)
+    assert sharpen(image, 0.8, 1.5, coring_k=1e-6) == pytest.approx(sharpen(image, 0.8, 1.5), abs=1e-5)
 
 
 def test_no_sharpening_is_the_same_image() -> None:
