@@ -20,7 +20,7 @@ SCENES: Final = {
     "workshop": 6.0,
     "crowded_foyer": 6.0,
 }
-_GREYS: Final = 12  # apart, so that the file is small
+_GREYS: Final = 14  # apart, so that the file is small
 
 
 def hard_scenes() -> Figure:
