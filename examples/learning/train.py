@@ -39,7 +39,7 @@ def judge(
 @click.command()
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Draws the members.")
 @click.option(
-    "--generations", type=click.IntRange(min=1), default=30, show_default=True, help="How many to try."
+    "--generations", type=click.IntRange(min=1), default=8, show_default=True, help="How many to try."
 )
 @click.option("--members", type=click.IntRange(min=4), default=10, show_default=True, help="Of each of them.")
 @click.option("--scenario", "scenarios", multiple=True, default=LEARNED_ON, show_default=True, help="Names.")
