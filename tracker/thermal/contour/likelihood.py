@@ -17,17 +17,23 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, ContourConfig, LikelihoodConfig
 from peopleboy.tracker.thermal.contour.contour import (
+    CHUNK,
     FEET,
     GREYS,
     HEAD_ASPECT,
     HEAD_RIGHT,
-    SECTIONS,
+    SHOULDER_LEFT,
     Probes,
     build_probes,
     build_response,
     section_weights,
 )
-from peopleboy.tracker.thermal.contour.measure_sections import fill_unknown, locate_points, measure_sections
+from peopleboy.tracker.thermal.contour.measure_sections import (
+    fill_unknown,
+    locate_points,
+    measure_sections,
+    share_in_view,
+)
 from peopleboy.tracker.thermal.particles import FOOT, HEAD_DIVISOR, D, Floats, H, W, X, Y
 
 FEET_GAIN = 3.0  # factor on the response of the feet, up to 1: they fill only a third of their line
@@ -248,7 +254,7 @@ def _measured(
     grey = NO_GREY if covered[0] is None else COVERED
     missing = np.array([*unseen, covered[0] or 0.0, covered[1]], dtype=np.float32)
     measured: tuple[Floats, Floats] = measure_sections(
-        image, state, probes.mix, probes.first, response, grey, missing
+        image, state, probes.chunks, probes.reach, probes.first, response, grey, missing
     )
     return measured
 
@@ -264,9 +270,12 @@ def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArr
     Returns:
         Number of each pixel, counted row by row; negative outside the image.
     """
-    at = np.empty(probes.mix.shape[1], dtype=np.int32)
-    locate_points(at, state, probes.mix, shape[1], shape[0])
-    return at
+    at = locate_points(state, probes.chunks, shape[1], shape[0])
+    pairs, head = np.arange(len(probes.section)), probes.first[SHOULDER_LEFT]
+    wide, narrow = CHUNK * -(-head // CHUNK), CHUNK * -(-(len(pairs) - head) // CHUNK)
+    inner = np.where(pairs < head, pairs, pairs - head + 2 * wide)
+    found: NDArray[np.int32] = at[np.concatenate([inner, inner + np.where(pairs < head, wide, narrow)])]
+    return found
 
 
 def covered_by(
@@ -316,12 +325,9 @@ def seen_shares(image: NDArray[np.uint8], state: NDArray[np.float64], probes: Pr
         state: (9,) of a person.
         probes: the points of its contour.
     """
-    at = pixels_under(state.astype(np.float32), probes, image.shape)
-    is_seen = (at >= 0) & (image.reshape(-1)[at] != COVERED)
-    seen = is_seen[: len(probes.section)] & is_seen[len(probes.section) :]
-    count = np.bincount(probes.section, minlength=SECTIONS)
-    shares: NDArray[np.float64] = np.bincount(probes.section, seen, SECTIONS) / np.maximum(count, 1)
-    return np.where(count > 0, shares, 1.0)
+    sample = state.astype(np.float32)
+    shares: NDArray[np.float64] = share_in_view(image, sample, probes.chunks, probes.first, COVERED)
+    return shares
 
 
 def head_share(shares: NDArray[np.float64]) -> float:
