@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -172,7 +174,7 @@ def weigh(
         core=core,
         estimate=mean_state(core),
         # A sample outside the limits is no person, however well it fits.
-        confidence=float(core.weight @ np.where(inside, chance, np.float32(0))[rows]),
+        confidence=float(core.weight @ np.where(inside.take(rows), chance.take(rows), np.float32(0))),
         uncertainty_px2=uncertainty_px2(core),
     )
 
@@ -213,15 +215,25 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
 
     Source: thesis, section 4.2 and the table of section 4.4.
     """
-    above, below = floor_rows(height_px, state[:, H], limits)
-    ends = (*limits.ratio_wh, *limits.ratio_dw, *(height_px * end for end in (*limits.y, *limits.h)))
-    inside: NDArray[np.bool_] = _is_between(state, above, below, np.array(ends, dtype=np.float32))
+    ends = _ends(height_px, limits)
+    if math.isinf(limits.y_below_horizon[0]) and math.isinf(limits.y_below_horizon[1]):
+        anywhere = np.full(1, -np.inf, np.float32), np.full(1, np.inf, np.float32)
+        inside: NDArray[np.bool_] = _is_between(state, *anywhere, ends)
+    else:
+        inside = _is_between(state, *floor_rows(height_px, state[:, H], limits), ends)
     return inside
+
+
+@lru_cache(maxsize=8)
+def _ends(height_px: int, limits: LimitsConfig) -> Floats:
+    """Give the ends (8,) of w / h, d / w, y and h [px]."""
+    ends = (*limits.ratio_wh, *limits.ratio_dw, *(height_px * end for end in (*limits.y, *limits.h)))
+    return np.array(ends, dtype=np.float32)
 
 
 @njit(cache=True, nogil=True)
 def _is_between(state: Floats, above: Floats, below: Floats, ends: Floats) -> NDArray[np.bool_]:
-    """Compare w / h, d / w, y and h of samples (N, 9) with their ends (8,), and y with rows (N,) [px]."""
+    """Compare w / h, d / w, y, h of samples (N, 9) with their ends (8,), and y with rows [px]."""
     inside = np.empty(len(state), dtype=np.bool_)
     for i in range(len(state)):
         y, w, h, d = state[i, Y], state[i, W], state[i, H], state[i, D]
@@ -232,8 +244,8 @@ def _is_between(state: Floats, above: Floats, below: Floats, ends: Floats) -> ND
             & (d < ends[3] * w)
             & (y > ends[4])
             & (y < ends[5])
-            & (y > above[i])
-            & (y < below[i])
+            & (y > above[i % len(above)])
+            & (y < below[i % len(below)])
             & (h > ends[6])
             & (h < ends[7])
         )
@@ -295,10 +307,17 @@ def _resize(state: Floats, share: float, rng: np.random.Generator) -> None:
     for a whole person is found out that way.
     """
     tried = state[:: round(1 / share)]
-    factor = np.exp(RESIZING * rng.standard_normal(len(tried), dtype=np.float32))
-    kept = np.where(np.arange(len(tried)) % 2 == 0, -CROWN, FOOT).astype(np.float32)
-    tried[:, Y] -= kept * (factor - 1) * tried[:, H]
-    tried[:, W : H + 1] *= factor[:, None]
+    _scale(tried, np.exp(RESIZING * rng.standard_normal(len(tried), dtype=np.float32)))
+
+
+@njit(cache=True, nogil=True)
+def _scale(state: Floats, factor: Floats) -> None:
+    """Scale samples (N, 9) by factors (N,), in place, as `_resize` says."""
+    for i in range(len(state)):
+        kept = np.float32(-CROWN) if i % 2 == 0 else np.float32(FOOT)
+        state[i, Y] -= kept * (factor[i] - np.float32(1)) * state[i, H]
+        state[i, W] *= factor[i]
+        state[i, H] *= factor[i]
 
 
 def begin(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -160,8 +161,7 @@ def predict(
     """
     noise = rng.standard_normal((len(state), 5), dtype=np.float32)
     amplitude = noise_per_step(dt_s, size, config)
-    memory = np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
-    moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, memory)
+    moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, _memory(config))
     return moved
 
 
@@ -170,11 +170,17 @@ def turned(x: Columns, turn_rad: float, focal_px: float, centre_px: float) -> Co
 
     The thesis leaves the robot's motion to chance; its turn is known from odometry and need not be.
     """
-    tangent, slope = math.tan(turn_rad), (x - centre_px) / focal_px
-    moved: Columns = centre_px + focal_px * (slope + tangent) / (1 - slope * tangent)
+    moved: Columns = _turned(x, math.tan(turn_rad), focal_px, centre_px)
     return moved
 
 
+@lru_cache(maxsize=8)
+def _memory(config: MotionConfig) -> Floats:
+    """Give the shares (4,) of vx, vy, vw, vh that last to the next step."""
+    return np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
+
+
+@lru_cache(maxsize=8)
 def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
     """Give the amplitudes (5,) of the random walk in d, vx, vy, vw, vh over one step, the last entries of B.
 
@@ -197,7 +203,7 @@ def normalised(weight: Floats) -> Floats:
     total = float(weight.sum(dtype=np.float64))
     if not total > 0:
         return np.full(len(weight), 1 / len(weight), dtype=np.float32)
-    return (weight / total).astype(np.float32)
+    return (weight / total).astype(np.float32, copy=False)
 
 
 def resample(particles: Particles, count: int, rng: np.random.Generator) -> Floats:
@@ -233,7 +239,7 @@ def uncertainty_px2(particles: Particles) -> float:
 
 def select(particles: Particles, rows: NDArray[np.int64]) -> Particles:
     """Keep some of the particles, their weights scaled to sum to 1."""
-    return Particles(particles.state[rows], normalised(particles.weight[rows]))
+    return Particles(particles.state.take(rows, axis=0), normalised(particles.weight.take(rows)))
 
 
 def core_rows(particles: Particles, share: float, reach: float) -> NDArray[np.int64]:
@@ -250,13 +256,8 @@ def core_rows(particles: Particles, share: float, reach: float) -> NDArray[np.in
     count = math.ceil(share * len(particles))
     # The count-th heaviest weight: those equal to it stay, so that no sorting order decides.
     least = np.partition(particles.weight, len(particles) - count)[len(particles) - count]
-    rows = np.flatnonzero(particles.weight >= least)
-    if math.isinf(reach):
-        return rows
-    best = particles.state[np.argmax(particles.weight)]
-    away = (particles.state[rows, :2] - best[:2]) / best[W : H + 1]
-    near: NDArray[np.int64] = rows[(away * away).sum(axis=1) <= reach * reach]
-    return near
+    rows: NDArray[np.int64] = _near_and_heavy(particles.state, particles.weight, least, reach)
+    return rows
 
 
 @njit(cache=True, nogil=True)
@@ -277,6 +278,50 @@ def _predicted(
             result[i, VX + k] = memory[k] * state[i, VX + k] + scale * amplitude[1 + k] * noise[i, 1 + k]
         result[i, D] = state[i, D] + scale * amplitude[0] * noise[i, 0]
     return result
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _turned(x: Columns, tangent: float, focal_px: float, centre_px: float) -> Columns:
+    result = np.empty_like(x)
+    # In the type of the columns, as numpy reckons.
+    kind = x.dtype.type
+    along, focal, centre, one = kind(tangent), kind(focal_px), kind(centre_px), kind(1)
+    for i in range(len(x)):
+        slope = (x[i] - centre) / focal
+        result[i] = centre + focal * (slope + along) / (one - slope * along)
+    return result
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _near_and_heavy(state: Floats, weight: Floats, least: np.float32, reach: float) -> NDArray[np.int64]:
+    """Find the rows of the samples of `core_rows`, from the least weight that is heavy enough."""
+    best, farthest = state[np.argmax(weight)], np.float32(reach * reach)
+    rows, count = np.empty(len(state), dtype=np.int64), 0
+    for i in range(len(state)):
+        if weight[i] >= least:
+            across, down = (state[i, X] - best[X]) / best[W], (state[i, Y] - best[Y]) / best[H]
+            if np.isinf(reach) or across * across + down * down <= farthest:
+                rows[count] = i
+                count += 1
+    return rows[:count]
+
+
+@njit(cache=True, nogil=True)
+def twin_of(state: Floats, i: int) -> int:
+    """Find one of the two samples before the i-th whose body is the same; negative if there is none.
+
+    Samples (N, 9) drawn from the same one lie together and differ in d alone, but for one in every few that
+    is tried at another size.
+    """
+    for before in (i - 1, i - 2):
+        if before >= 0 and (
+            state[i, X] == state[before, X]
+            and state[i, Y] == state[before, Y]
+            and state[i, W] == state[before, W]
+            and state[i, H] == state[before, H]
+        ):
+            return before
+    return -1
 
 
 @njit(cache=True, nogil=True)

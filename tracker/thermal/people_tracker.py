@@ -38,6 +38,7 @@ from peopleboy.tracker.thermal.particle_filter import (
 from peopleboy.tracker.thermal.particles import Floats, H, draw_around
 from peopleboy.tracker.thermal.tracked_person import FORGET_S, TrackedPerson, is_born, newborn
 from peopleboy.tracker.thermal.whereabouts import (
+    Regions,
     box_of,
     detector_factor,
     least_overlaps,
@@ -291,11 +292,12 @@ def _follow(
     if order is not None and len(figures) > 1:
         figures = [figures[row] for row in sorted_by_lead(order(figures, view))]
     samples = _shared_filter(config, len(persons))
-    followed: list[TrackedPerson] = []
+    followed: list[tuple[TrackedPerson, Regions]] = []
     for number, figure in enumerate(figures):
         surroundings = surroundings_of(figure, followed, figures[number + 1 :], view, config)
-        followed.append(_carried_on(figure.person, surroundings, view, samples, config, policy, rng))
-    return tuple(sorted(followed, key=lambda person: person.id))
+        person = _carried_on(figure.person, surroundings, view, samples, config, policy, rng)
+        followed.append((person, regions_of([person.belief.estimate], config)[0]))
+    return tuple(sorted((person for person, _ in followed), key=lambda person: person.id))
 
 
 def _shared_filter(config: TrackerConfig, persons: int) -> FilterConfig:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from functools import lru_cache
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,7 +120,7 @@ def moved_on(state: NDArray[np.float64], view: FrameView) -> NDArray[np.float64]
     """Move a state (9,) of the last frame to this one, by its velocity and the camera's turn."""
     later = state.copy()
     later[:4] += view.dt_s * later[VX:]
-    later[[X]] = view.after_turn(later[[X]])
+    later[:1] = view.after_turn(later[:1])
     return later
 
 
@@ -148,24 +149,24 @@ def seen(
     """
     missing = 0 if is_kept(belief, view, config.life) else person.missing + 1
     status = Status.TRACKED if occluder is None else Status.PARTLY_OCCLUDED
-    moved = replace(
-        person,
-        belief=belief,
-        shown=smoothed(person.shown, belief.estimate, view, config.smoothing),
-        status=Status.TENTATIVE if missing >= config.life.doubt_frames else status,
-        occluder=occluder,
-        is_behind=occluder is not None,
-        missing=missing,
-        hidden_frames=0,
-        hidden_s=0.0,
-    )
+    moved: dict[str, Any] = {
+        "belief": belief,
+        "shown": smoothed(person.shown, belief.estimate, view, config.smoothing),
+        "status": Status.TENTATIVE if missing >= config.life.doubt_frames else status,
+        "occluder": occluder,
+        "is_behind": occluder is not None,
+        "missing": missing,
+        "hidden_frames": 0,
+        "hidden_s": 0.0,
+    }
     if missing > 0 or occluder is not None:
-        return moved
-    before = person.belief.estimate[[X, Y]]
+        return replace(person, **moved)
+    before = person.belief.estimate[:2].copy()
     before[:1] = view.after_turn(before[:1])
-    speed = (belief.estimate[[X, Y]] - before) / view.dt_s
+    speed = (belief.estimate[:2] - before) / view.dt_s
     return replace(
-        moved,
+        person,
+        **moved,
         looks=_learned(person.looks, belief.estimate, view, config),
         seen_frames=person.seen_frames + 1,
         velocity=_blend(person.velocity, speed, max(view.dt_s / VELOCITY_S, 1 / (person.seen_frames + 1))),
@@ -183,10 +184,16 @@ def smoothed(
     is not shown late. A person's size changes slowly, and may be smoothed for longer than the place.
     """
     expected = moved_on(before, view)
+    return expected + _gains(view.dt_s, config) * (now - expected)
+
+
+@lru_cache(maxsize=8)
+def _gains(dt_s: float, config: SmoothingConfig) -> NDArray[np.float64]:
+    """Tell how much (9,) of what is new in a state is shown after so long."""
     gain = np.ones(STATE_SIZE)
-    gain[[X, Y]] = _gain(view.dt_s, config.place_s)
-    gain[SIZE] = _gain(view.dt_s, config.size_s)
-    return expected + gain * (now - expected)
+    gain[[X, Y]] = _gain(dt_s, config.place_s)
+    gain[SIZE] = _gain(dt_s, config.size_s)
+    return gain
 
 
 def _gain(dt_s: float, time_constant_s: float) -> float:

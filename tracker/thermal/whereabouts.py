@@ -76,13 +76,13 @@ def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Fl
     Source: thesis, section 5.2, "the amount of overlap between particle i and region j", which is read as a
     share of the sample's own area.
     """
-    return _shares(_regions(state, *_proportions(config.box)), regions)
+    return shared_parts(_regions(state, *_proportions(config.box)), regions)
 
 
 def least_overlaps(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
     """Measure (N, M) the intersection of a sample and a region as a share of the smaller of the two."""
     samples = _regions(state, *_proportions(config.box))
-    return np.maximum(_shares(samples, regions), _shares(regions, samples).T)
+    return np.maximum(shared_parts(samples, regions), shared_parts(regions, samples).T)
 
 
 def detector_factor(shares: Floats, config: InteractionConfig) -> Floats:
@@ -107,8 +107,7 @@ def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
     """
     if shares.shape[1] == 0:
         return np.ones(len(shares), dtype=np.float32)
-    costs = shares.T * strength.astype(np.float32)[:, None]
-    factor: Floats = np.exp(-np.ascontiguousarray(costs).max(axis=0))
+    factor: Floats = np.exp(-_largest_costs(shares, strength.astype(np.float32)))
     return factor
 
 
@@ -207,7 +206,19 @@ def _regions(state: Floats, width_per_w: float, height_per_h: float, top_per_h: 
 
 
 @njit(cache=True, nogil=True)
-def _shares(samples: Regions, regions: Regions) -> Floats:
+def _largest_costs(shares: Floats, strength: Floats) -> Floats:
+    """Give the largest (N,) of shares (N, M) times strengths (M,)."""
+    costs = np.empty(len(shares), dtype=np.float32)
+    for i in range(len(shares)):
+        costs[i] = shares[i, 0] * strength[0]
+        for j in range(1, shares.shape[1]):
+            costs[i] = max(costs[i], shares[i, j] * strength[j])
+    return costs
+
+
+@njit(cache=True, nogil=True)
+def shared_parts(samples: Regions, regions: Regions) -> Floats:
+    """Measure (N, M) which share of the areas of rectangles (N, 4) lies in regions (M, 4)."""
     shares = np.zeros((len(samples), len(regions)), dtype=np.float32)
     for i in range(len(samples)):
         left, top, width, height = samples[i]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
@@ -101,27 +101,24 @@ class ColourModel:
         recent: (K, F) float32 up to n_k descriptions, the newest last; NaN where a part was never seen.
             Becomes read-only.
         frames: n_k.
+        mean: (F,) c* of equation 6.2; NaN for parts that were never seen.
 
     Source: thesis, section 6.1.3; its sum in equation 6.2 has one term too many for its n_k.
     """
 
     recent: Floats
     frames: int
+    mean: Floats = field(init=False)
 
     def __post_init__(self) -> None:
+        # Later descriptions hold no NaN where an earlier one had a value, so the newest tells what is known.
+        object.__setattr__(self, "mean", _mean_of_known(self.recent))
         self.recent.setflags(write=False)
 
     @classmethod
     def begin(cls, features: Floats, config: ColourConfig) -> ColourModel:
         """Start with one description (F,)."""
         return cls(np.array(features, dtype=np.float32)[None], config.frames)
-
-    @property
-    def mean(self) -> Floats:
-        """Return c* of equation 6.2, (F,); NaN for parts that were never seen."""
-        # Later descriptions hold no NaN where an earlier one had a value, so the newest tells what is known.
-        mean: Floats = _mean_of_known(self.recent)
-        return mean
 
     def updated(self, features: Floats) -> ColourModel:
         """Take in the description (F,) of one more frame.

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.appearance.alignment import align
 from peopleboy.tracker.thermal.appearance.regions import (
+    HEAD,
     PARTS,
     Rectangle,
     first_pixel_after,
     part_rectangle,
 )
-from peopleboy.tracker.thermal.particles import Floats, H
+from peopleboy.tracker.thermal.particles import Floats, H, twin_of
 
 WHITE: Final = 255.0
 
@@ -48,7 +49,11 @@ def write_part_means(
     height, width, channels, degree = integral.shape
     height, width, sums, step = height - 1, width - 1, integral.reshape(-1), channels * degree
     for i in range(len(state)):
+        twin = twin_of(state, i)
         for part in range(PARTS):
+            if twin >= 0 and part != HEAD:  # nothing else lies elsewhere for another d
+                means[i, part, column : column + channels] = means[twin, part, column : column + channels]
+                continue
             rectangle = align(alignment, part_rectangle(state[i], part), state[i, H])
             left, top, right, bottom = _within(rectangle, width, height)
             pixels = (right - left) * (bottom - top)

@@ -7,7 +7,6 @@ model is therefore a table of coefficients (`Probes`), laid out once for an imag
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,6 @@ from peopleboy.tracker.thermal.particles import FOOT, HEAD_DIVISOR, Floats
 HEAD_LEFT, HEAD_TOP, HEAD_RIGHT, SHOULDER_LEFT, SHOULDER_RIGHT, SIDE_LEFT, SIDE_RIGHT, FEET = range(8)
 SECTIONS = 8
 GREYS = 256
-CHUNK: Final = 16  # points that are placed at a time
 
 # The sources show the sections in a figure only; these are readings of it.
 HEAD_ASPECT = 0.75  # head semi-width / head semi-height
@@ -40,18 +38,15 @@ class Probes:
         outer: (P, 2, 4) float32 the same for the outer points.
         section: (P,) int64 the section of each pair, in their order.
         first: (9,) int64 the first pair of each section, and one after the last.
-        chunks: (C, 7, 16) float32 the coefficients once more: those of u for d, w, h, 1, and those of v for
-            w, h, 1. So many points at a time are quick to place. First the head's inner points, then its
-            outer ones, then the others' inner and outer ones, each filled up with points at the centre.
-        reach: (2, 7) float32 least and largest of these coefficients.
+        mix: (7, 2 P) float32 the coefficients once more, all inner points before all outer ones: those of
+            u for d, w, h, 1, and those of v for w, h, 1. So many points at a time are quick to place.
     """
 
     inner: Floats
     outer: Floats
     section: NDArray[np.int64]
     first: NDArray[np.int64]
-    chunks: Floats
-    reach: Floats
+    mix: Floats
 
 
 def section_angles(config: ContourConfig) -> dict[int, tuple[float, float]]:
@@ -101,21 +96,10 @@ def build_probes(config: ContourConfig, size: float) -> Probes:
     inner = np.concatenate([inner for inner, _, _ in parts])
     outer = np.concatenate([outer for _, outer, _ in parts])
     sections = np.concatenate([np.full(len(inner), section) for inner, _, section in parts])
+    points = np.concatenate([inner, outer])
+    mix = np.concatenate([points[:, 0], points[:, 1, 1:]], axis=1)
     first = np.searchsorted(sections, np.arange(SECTIONS + 1))
-    head = first[SHOULDER_LEFT]
-    chunks = np.concatenate(
-        [_chunks(part) for part in (inner[:head], outer[:head], inner[head:], outer[head:])]
-    )
-    reach = np.stack([chunks.min(axis=(0, 2)), chunks.max(axis=(0, 2))])
-    return Probes(inner, outer, sections, first, chunks, reach)
-
-
-def _chunks(points: Floats) -> Floats:
-    """Lay the coefficients of points (K, 2, 4) out in chunks (C, 7, 16)."""
-    count = -(-len(points) // CHUNK)
-    filled = np.zeros((count * CHUNK, 7), dtype=np.float32)
-    filled[: len(points)] = np.concatenate([points[:, 0], points[:, 1, 1:]], axis=1)
-    return np.ascontiguousarray(filled.reshape(count, CHUNK, 7).swapaxes(1, 2))
+    return Probes(inner, outer, sections, first, np.ascontiguousarray(mix.T))
 
 
 def body_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: float) -> Floats:

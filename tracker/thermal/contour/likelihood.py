@@ -17,21 +17,21 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, ContourConfig, LikelihoodConfig
 from peopleboy.tracker.thermal.contour.contour import (
-    CHUNK,
     FEET,
     GREYS,
     HEAD_ASPECT,
     HEAD_RIGHT,
-    SHOULDER_LEFT,
     Probes,
     build_probes,
     build_response,
     section_weights,
 )
 from peopleboy.tracker.thermal.contour.measure_sections import (
+    count_differences,
     fill_unknown,
     locate_points,
     measure_sections,
+    pull_to_weakest,
     share_in_view,
 )
 from peopleboy.tracker.thermal.particles import FOOT, HEAD_DIVISOR, D, Floats, H, W, X, Y
@@ -124,9 +124,8 @@ class ContourModel:
             self.response,
             (config.unseen_response, config.unseen_share),
             (covered, covered_share),
+            FEET_GAIN if config.feet_weight > 0 else 0.0,
         )
-        if config.feet_weight > 0:
-            result[:, FEET] = np.minimum(1.0, FEET_GAIN * result[:, FEET])
         if min(config.unseen_share, covered_share) < 1:
             fill_unknown(result, known, self.weights.astype(np.float32))
         return result
@@ -143,11 +142,7 @@ def clutter_of(image: NDArray[np.uint8]) -> float:
     Raised by noise, texture and sharp gain; people, lamps and windows take too little of an image to count.
     """
     apart = max(round(_APART_PX * image.shape[0] / REFERENCE_HEIGHT_PX), 1)
-    rows, columns = image[::_STRIDE], image[:, ::_STRIDE]
-    counts = np.zeros(GREYS)
-    for one, other in ((rows[:, apart:], rows[:, :-apart]), (columns[apart:], columns[:-apart])):
-        if one.size:
-            counts += cv2.calcHist([cv2.absdiff(one, other)], [0], None, [GREYS], [0, GREYS])[:, 0]
+    counts = count_differences(image, apart, _STRIDE)
     return float(np.searchsorted(np.cumsum(counts), _SHARE * counts.sum()))
 
 
@@ -168,9 +163,7 @@ def fitness(differences: Floats, weights: NDArray[np.float64], config: Likelihoo
     if config.model == "thesis":
         total: Floats = differences @ weights.astype(np.float32)
         if config.weakest_share > 0:
-            # By columns: numpy is slow in finding the least of a few numbers many times.
-            weakest = np.array(differences[:, :FEET].T, order="C").min(axis=0)
-            total += np.float32(config.weakest_share) * (weakest - total)
+            pull_to_weakest(total, differences, config.weakest_share)
         return total
     strong = (differences >= config.section_threshold) @ weights.astype(np.float32)
     used = int((weights > 0).sum())
@@ -184,8 +177,8 @@ def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
     Source: thesis, equation 4.4, which equals the logistic function of 2 kappa (f - theta).
     """
     # Beyond +-40 the result no longer changes, and exp would overflow.
-    exponent = np.clip(np.float32(2 * config.slope) * (fit - np.float32(config.threshold)), -40, 40)
-    result: Floats = 1 / (1 + np.exp(-exponent))
+    exponent = np.float32(2 * config.slope) * (fit - np.float32(config.threshold))
+    result: Floats = 1 / (1 + np.exp(-np.minimum(np.maximum(exponent, np.float32(-40)), np.float32(40))))
     return result
 
 
@@ -240,6 +233,7 @@ def _measured(
     response: Floats,
     unseen: tuple[float, float],
     covered: tuple[float | None, float],
+    feet_gain: float = 0.0,
 ) -> tuple[Floats, Floats]:
     """Measure sections as `section_differences` does, and what share (N, 8) of their weight they keep.
 
@@ -250,11 +244,12 @@ def _measured(
         response: (8, 511) what a difference counts.
         unseen: what a pair counts with a point outside the image, and its weight above it.
         covered: the same with a point on a person in front; None in an image without such marks.
+        feet_gain: factor on the response of the feet, which counts up to 1; 0 leaves it as it is.
     """
     grey = NO_GREY if covered[0] is None else COVERED
-    missing = np.array([*unseen, covered[0] or 0.0, covered[1]], dtype=np.float32)
+    missing = float(unseen[0]), float(unseen[1]), float(covered[0] or 0.0), float(covered[1])
     measured: tuple[Floats, Floats] = measure_sections(
-        image, state, probes.chunks, probes.reach, probes.first, response, grey, missing
+        image, state, probes.mix, probes.first, response, grey, missing, feet_gain
     )
     return measured
 
@@ -270,12 +265,9 @@ def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArr
     Returns:
         Number of each pixel, counted row by row; negative outside the image.
     """
-    at = locate_points(state, probes.chunks, shape[1], shape[0])
-    pairs, head = np.arange(len(probes.section)), probes.first[SHOULDER_LEFT]
-    wide, narrow = CHUNK * -(-head // CHUNK), CHUNK * -(-(len(pairs) - head) // CHUNK)
-    inner = np.where(pairs < head, pairs, pairs - head + 2 * wide)
-    found: NDArray[np.int32] = at[np.concatenate([inner, inner + np.where(pairs < head, wide, narrow)])]
-    return found
+    at = np.empty(probes.mix.shape[1], dtype=np.int32)
+    locate_points(at, state, probes.mix, shape[1], shape[0])
+    return at
 
 
 def covered_by(
@@ -326,7 +318,7 @@ def seen_shares(image: NDArray[np.uint8], state: NDArray[np.float64], probes: Pr
         probes: the points of its contour.
     """
     sample = state.astype(np.float32)
-    shares: NDArray[np.float64] = share_in_view(image, sample, probes.chunks, probes.first, COVERED)
+    shares: NDArray[np.float64] = share_in_view(image, sample, probes.mix, probes.first, COVERED)
     return shares
 
 

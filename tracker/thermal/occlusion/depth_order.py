@@ -15,7 +15,7 @@ from peopleboy.tracker.thermal.contour.likelihood import covered_by
 from peopleboy.tracker.thermal.particle_filter import FrameView
 from peopleboy.tracker.thermal.particles import STATE_SIZE, Floats
 from peopleboy.tracker.thermal.tracked_person import TrackedPerson, moved_on
-from peopleboy.tracker.thermal.whereabouts import Regions, overlap_shares, regions_of
+from peopleboy.tracker.thermal.whereabouts import Regions, overlap_shares, regions_of, shared_parts
 
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
 LOOKS = 12.0  # difference of squared distances of looks that counts 1
@@ -107,13 +107,14 @@ def sorted_by_lead(lead: Leads) -> tuple[int, ...]:
 
     Source: thesis, section 7.1, which leaves circles open.
     """
-    rest = list(range(len(lead)))
+    leads: list[list[float]] = lead.tolist()
+    rest = list(range(len(leads)))
     order: list[int] = []
     while rest:
-        among = lead[np.ix_(rest, rest)]
-        behind = (among < 0).sum(axis=1)
-        first = min(range(len(rest)), key=lambda i: (behind[i], -among[i].sum(), rest[i]))
-        order.append(rest.pop(first))
+        over = {i: [leads[i][j] for j in rest] for i in rest}
+        first = min(rest, key=lambda i: (sum(each < 0 for each in over[i]), -sum(over[i]), i))
+        rest.remove(first)
+        order.append(first)
     return tuple(order)
 
 
@@ -157,26 +158,36 @@ class Surroundings:
 
 def surroundings_of(
     figure: ExpectedPerson,
-    ahead: Sequence[TrackedPerson],
+    ahead: Sequence[tuple[TrackedPerson, Regions]],
     behind: Sequence[ExpectedPerson],
     view: FrameView,
     config: TrackerConfig,
 ) -> Surroundings:
-    """Sort the others into those who hide this person and those whom it is to keep off."""
-    near = [person for person in ahead if not person.is_hidden]
-    regions = regions_of([person.belief.estimate for person in near], config)
-    overlaps = overlap_shares(figure.state.astype(np.float32)[None], regions, config)[0] > 0
-    is_front = overlaps & (config.depth.order is not None)
-    front = tuple(person for person, hides in zip(near, is_front, strict=True) if hides)
+    """Sort the others into those who hide this person and those whom it is to keep off.
+
+    Args:
+        figure: the person.
+        ahead: who was looked at before, and the region of each in this frame.
+        behind: who is looked at later.
+        view: this frame.
+        config: of the tracker.
+    """
+    near = [each for each in ahead if not each[0].is_hidden]
     later = [other.region for other in behind if not other.person.is_hidden]
-    rivals = np.concatenate([regions[~is_front], np.array(later, dtype=np.float32).reshape(-1, 4)])
+    is_front = [False] * len(near)
+    if near and config.depth.order is not None:
+        regions = np.array([region for _, region in near])
+        is_front = (shared_parts(figure.region[None], regions)[0] > 0).tolist()
+    front = tuple(person for (person, _), hides in zip(near, is_front, strict=True) if hides)
+    hiding = [region for (_, region), hides in zip(near, is_front, strict=True) if hides]
+    rivals = [region for (_, region), hides in zip(near, is_front, strict=True) if not hides] + later
     interaction, image = config.interaction, view.image
     if front:
         states = [person.belief.estimate for person in front]
         image = covered_by(image, states, config.depth.growth)
     return Surroundings(
         front=front,
-        others=np.concatenate([regions[is_front], rivals]),
-        strength=np.repeat([interaction.occluded_penalty, interaction.penalty], [len(front), len(rivals)]),
+        others=np.array(hiding + rivals, dtype=np.float32).reshape(-1, 4),
+        strength=np.array([interaction.occluded_penalty] * len(hiding) + [interaction.penalty] * len(rivals)),
         image=image,
     )

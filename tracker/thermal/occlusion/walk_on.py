@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.appearance.appearance_model import squared_distances
 from peopleboy.tracker.thermal.config import MotionConfig, TrackerConfig, WalkOnConfig
-from peopleboy.tracker.thermal.contour.contour import SECTIONS
 from peopleboy.tracker.thermal.contour.likelihood import body_share, head_share, probability, seen_shares
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
@@ -202,12 +201,10 @@ def look_at(
 ) -> Visibility:
     """Judge a person by what is in view of it alone."""
     rows = belief.estimate.astype(np.float32)[None]
-    shares = (
-        seen_shares(surroundings.image, belief.estimate, view.model.probes)
-        if surroundings.front
-        else np.ones(SECTIONS)
-    )
-    covered = 0.0 if surroundings.front else None
+    head, body, covered = 1.0, 1.0, None
+    if surroundings.front:
+        shares = seen_shares(surroundings.image, belief.estimate, view.model.probes)
+        head, body, covered = head_share(shares), body_share(shares), 0.0
     differences = view.model.differences(surroundings.image, rows, covered, covered_share=0.0)
     fit = differences[0] @ view.model.weights
     chance = float(probability(np.array([fit], dtype=np.float32), config.likelihood)[0])
@@ -217,7 +214,7 @@ def look_at(
     growth = abs(np.log(max(belief.estimate[H], 1.0) / max(person.shown[H], 1.0)))
     is_alike = growth < SIZE_GATE and not away > LOOKS_GATE
     is_free = not (overlap_shares(rows, surroundings.rivals, config) > CLAIMED).any()
-    return Visibility(head_share(shares), body_share(shares), chance, is_free, is_alike)
+    return Visibility(head, body, chance, is_free, is_alike)
 
 
 def _is_behind(state: NDArray[np.float64], surroundings: Surroundings, view: FrameView) -> bool:
