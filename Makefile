@@ -34,7 +34,7 @@ format: $(READY)
 	$(BIN)/ruff format .
 
 bench: $(READY)
-	$(BIN)/python -m benchmarks
+	$(BIN)/python -m benchmarks $(if $(COMPARE),--compare $(COMPARE))
 
 peers: $(READY)
 	$(BIN)/python -m benchmarks.peers

@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from benchmarks.__main__ import BenchFigure, nested
 from benchmarks.results import __main__ as command
 from benchmarks.results.measured import take_in
 from benchmarks.results.tables import PATH, Column, ResultTable, ResultTables, Row, as_yaml, read_tables
@@ -106,8 +105,3 @@ def test_the_command_writes_what_it_took_in(tmp_path: Path, monkeypatch: pytest.
     assert CliRunner().invoke(command.main, ["one"]).exit_code == 0
     assert read_tables(Path("results.yaml")).tables["one"].rows[0].figures == (98.0,)
     assert isinstance(CliRunner().invoke(command.main, ["two"]).exception, BadInput)
-
-
-def test_figures_of_the_bench_are_kept_by_their_paths() -> None:
-    figures = [BenchFigure(("a", "b", "ms"), 1.0, ""), BenchFigure(("a", "c"), 2.0, "")]
-    assert nested(figures) == {"a": {"b": {"ms": 1.0}, "c": 2.0}}

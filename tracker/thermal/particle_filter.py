@@ -207,7 +207,16 @@ def sample_weights(
         weight = np.maximum(fit, 1e-6)
     else:
         weight = chance
-    return normalised(np.where(is_inside, weight, np.float32(OUTSIDE_WEIGHT) * weight).astype(np.float32))
+    return normalised(_discounted(weight, is_inside))
+
+
+@njit(cache=True, nogil=True)
+def _discounted(weight: Floats, is_inside: NDArray[np.bool_]) -> Floats:
+    """Copy weights (N,), those of samples outside the limits made very low."""
+    result = np.empty(len(weight), dtype=np.float32)
+    for i in range(len(weight)):
+        result[i] = weight[i] if is_inside[i] else np.float32(OUTSIDE_WEIGHT) * weight[i]
+    return result
 
 
 def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np.bool_]:

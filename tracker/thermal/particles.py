@@ -200,7 +200,7 @@ def equally_weighted(state: Floats) -> Particles:
 
 def normalised(weight: Floats) -> Floats:
     """Scale (N,) non-negative weights to sum to 1; equal weights where none is positive."""
-    total = float(weight.sum(dtype=np.float64))
+    total = float(np.add.reduce(weight, dtype=np.float64))
     if not total > 0:
         return np.full(len(weight), 1 / len(weight), dtype=np.float32)
     return (weight / total).astype(np.float32, copy=False)

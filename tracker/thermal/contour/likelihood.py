@@ -31,6 +31,7 @@ from peopleboy.tracker.thermal.contour.measure_sections import (
     fill_unknown,
     locate_points,
     measure_sections,
+    negative_log_odds,
     pull_to_weakest,
     share_in_view,
 )
@@ -50,6 +51,7 @@ CLUTTER_SETTLES_S: Final = 0.5  # time constant with which a tracker takes in th
 _APART_PX: Final = 8  # of 240 rows: between the two pixels of a pair
 _SHARE: Final = 0.75  # of the pairs differ by less: people, lamps and windows are among the others
 _STRIDE: Final = 4
+_EXTREME: Final = 40.0  # log odds beyond which the probability no longer changes, and exp would overflow
 
 
 def _superellipse(power: float, count: int = 32) -> NDArray[np.float64]:
@@ -176,10 +178,10 @@ def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
 
     Source: thesis, equation 4.4, which equals the logistic function of 2 kappa (f - theta).
     """
-    # Beyond +-40 the result no longer changes, and exp would overflow.
-    exponent = np.float32(2 * config.slope) * (fit - np.float32(config.threshold))
-    result: Floats = 1 / (1 + np.exp(-np.minimum(np.maximum(exponent, np.float32(-40)), np.float32(40))))
-    return result
+    odds = negative_log_odds(fit, config.slope, config.threshold, _EXTREME)
+    np.exp(odds, out=odds)
+    odds += 1
+    return np.divide(np.float32(1), odds, out=odds)
 
 
 def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np.uint8]:
@@ -324,12 +326,12 @@ def seen_shares(image: NDArray[np.uint8], state: NDArray[np.float64], probes: Pr
 
 def head_share(shares: NDArray[np.float64]) -> float:
     """Average over the head's sections (8,) what is seen of them."""
-    return float(shares[: HEAD_RIGHT + 1].mean())
+    return float(np.add.reduce(shares[: HEAD_RIGHT + 1])) / (HEAD_RIGHT + 1)
 
 
 def body_share(shares: NDArray[np.float64]) -> float:
     """Average over all sections (8,) but the feet what is seen of them."""
-    return float(shares[:FEET].mean())
+    return float(np.add.reduce(shares[:FEET])) / FEET
 
 
 def _fill_ellipse(image: NDArray[np.uint8], x: float, y: float, a: float, b: float) -> None:

@@ -112,6 +112,16 @@ def pull_to_weakest(fit: Floats, differences: Floats, share: float) -> None:
 
 
 @njit(cache=True, nogil=True)
+def negative_log_odds(fit: Floats, slope: float, threshold: float, most: float) -> Floats:
+    """Give minus the logarithm of the odds (N,) of fitnesses (N,), within -most..most (equation 4.4)."""
+    steep, middle, end = np.float32(2 * slope), np.float32(threshold), np.float32(most)
+    result = np.empty_like(fit)
+    for i in range(len(fit)):
+        result[i] = -min(max(steep * (fit[i] - middle), -end), end)
+    return result
+
+
+@njit(cache=True, nogil=True)
 def count_differences(image: NDArray[np.uint8], apart: int, stride: int) -> NDArray[np.int64]:
     """Count (256,) by how much pixels of an image (H, W) differ from those so far to the right, and below.
 

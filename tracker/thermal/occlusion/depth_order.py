@@ -87,7 +87,8 @@ def likelier_front(figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
     Where two people overlap, the image shows the looks of the one in front; the one behind looks wrong.
     """
     clearer = -_leads([figure.unlikeness for figure in figures]) / LOOKS
-    return lower_foot(figures, view) / (FOOT_PX * view.size) + np.clip(clearer, -MOST, MOST)
+    bounded: Leads = np.minimum(np.maximum(clearer, -MOST), MOST)
+    return lower_foot(figures, view) / (FOOT_PX * view.size) + bounded
 
 
 def _leads(values: Sequence[float]) -> Leads:
