@@ -242,8 +242,11 @@ def _ends(height_px: int, limits: LimitsConfig) -> Floats:
 
 @njit(cache=True, nogil=True)
 def _is_between(state: Floats, above: Floats, below: Floats, ends: Floats) -> NDArray[np.bool_]:
-    """Compare w / h, d / w, y, h of samples (N, 9) with their ends (8,), and y with rows [px]."""
-    inside = np.empty(len(state), dtype=np.bool_)
+    """Compare w / h, d / w, y and h of samples (N, 9) with their ends (8,), and y with rows [px].
+
+    The rows are those of each sample (N,), or of all (1,).
+    """
+    inside, one_each = np.empty(len(state), dtype=np.bool_), len(above) == len(state)
     for i in range(len(state)):
         y, w, h, d = state[i, Y], state[i, W], state[i, H], state[i, D]
         inside[i] = (
@@ -253,8 +256,8 @@ def _is_between(state: Floats, above: Floats, below: Floats, ends: Floats) -> ND
             & (d < ends[3] * w)
             & (y > ends[4])
             & (y < ends[5])
-            & (y > above[i % len(above)])
-            & (y < below[i % len(below)])
+            & (y > above[i * one_each])
+            & (y < below[i * one_each])
             & (h > ends[6])
             & (h < ends[7])
         )
