@@ -46,6 +46,8 @@ from peopleboy.tracker.thermal.particles import (
 )
 from peopleboy.tracker.thermal.whereabouts import Regions
 
+Ends = tuple[float, float]
+
 STANDING = Odometry()
 RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
 OUTSIDE_WEIGHT = 1e-6  # factor on the weight of a sample outside the limits: "a very low chance"
@@ -224,7 +226,7 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
 
     Source: thesis, section 4.2 and the table of section 4.4.
     """
-    ends = _ends(height_px, limits)
+    ends = _ends(height_px, limits.ratio_wh, limits.ratio_dw, limits.y, limits.h)
     if math.isinf(limits.y_below_horizon[0]) and math.isinf(limits.y_below_horizon[1]):
         anywhere = np.full(1, -np.inf, np.float32), np.full(1, np.inf, np.float32)
         inside: NDArray[np.bool_] = _is_between(state, *anywhere, ends)
@@ -234,10 +236,9 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
 
 
 @lru_cache(maxsize=8)
-def _ends(height_px: int, limits: LimitsConfig) -> Floats:
-    """Give the ends (8,) of w / h, d / w, y and h [px]."""
-    ends = (*limits.ratio_wh, *limits.ratio_dw, *(height_px * end for end in (*limits.y, *limits.h)))
-    return np.array(ends, dtype=np.float32)
+def _ends(height_px: int, ratio_wh: Ends, ratio_dw: Ends, y: Ends, h: Ends) -> Floats:
+    """Give the ends (8,) of w / h, d / w, y and h [px]; the last two come in image heights."""
+    return np.array((*ratio_wh, *ratio_dw, *(height_px * end for end in (*y, *h))), dtype=np.float32)
 
 
 @njit(cache=True, nogil=True)

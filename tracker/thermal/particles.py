@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -161,7 +160,8 @@ def predict(
     """
     noise = rng.standard_normal((len(state), 5), dtype=np.float32)
     amplitude = noise_per_step(dt_s, size, config)
-    moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, _memory(config))
+    memory = np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
+    moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, memory)
     return moved
 
 
@@ -174,13 +174,6 @@ def turned(x: Columns, turn_rad: float, focal_px: float, centre_px: float) -> Co
     return moved
 
 
-@lru_cache(maxsize=8)
-def _memory(config: MotionConfig) -> Floats:
-    """Give the shares (4,) of vx, vy, vw, vh that last to the next step."""
-    return np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
-
-
-@lru_cache(maxsize=8)
 def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
     """Give the amplitudes (5,) of the random walk in d, vx, vy, vw, vh over one step, the last entries of B.
 

@@ -184,15 +184,15 @@ def smoothed(
     is not shown late. A person's size changes slowly, and may be smoothed for longer than the place.
     """
     expected = moved_on(before, view)
-    return expected + _gains(view.dt_s, config) * (now - expected)
+    return expected + _gains(view.dt_s, config.place_s, config.size_s) * (now - expected)
 
 
 @lru_cache(maxsize=8)
-def _gains(dt_s: float, config: SmoothingConfig) -> NDArray[np.float64]:
-    """Tell how much (9,) of what is new in a state is shown after so long."""
+def _gains(dt_s: float, place_s: float, size_s: float) -> NDArray[np.float64]:
+    """Tell how much (9,) of what is new in a state is shown after so long, by the time constants."""
     gain = np.ones(STATE_SIZE)
-    gain[[X, Y]] = _gain(dt_s, config.place_s)
-    gain[SIZE] = _gain(dt_s, config.size_s)
+    gain[[X, Y]] = _gain(dt_s, place_s)
+    gain[SIZE] = _gain(dt_s, size_s)
     return gain
 
 

@@ -191,9 +191,8 @@ def _squared_distances(features: Floats, mean: Floats) -> Floats:
         total, seen = 0.0, 0
         for j in range(len(mean)):
             away = features[i, j] - mean[j]
-            # Without branches: what is unseen adds nothing.
-            is_seen = away == away
-            total += away * away if is_seen else np.float32(0)
-            seen += is_seen
+            if not np.isnan(away):
+                total += away * away
+                seen += 1
         result[i] = total * len(mean) / seen if seen > 0 else np.nan
     return result
