@@ -10,7 +10,6 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from benchmarks.bench_figures import BenchFigure, Goal, nested, read_figures, reasons, table_of
 from benchmarks.environments import (
     CASES,
     MANY,
@@ -24,6 +23,7 @@ from benchmarks.environments import (
     way_off_mm,
 )
 from benchmarks.memory import long_run
+from benchmarks.speed.bench_figures import BenchFigure, Goal, nested, read_figures, reasons, table_of
 from benchmarks.speed.closed_loop import loop_speed, peak_memory_mb, run_speed
 from benchmarks.speed.filter_step import step_time_ms
 from benchmarks.speed.render import render_times
