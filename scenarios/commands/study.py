@@ -131,7 +131,13 @@ def train_distance(
     help="Only what is of one source: thesis, of 2007; 2005, its evaluation; panoramic, of 2003; situation, "
     "a thesis on depth and colour.",
 )
-@click.option("--quick", is_flag=True, help="A little of everything, in minutes.")
+@click.option("--quick", is_flag=True, help="A little of everything, in minutes; the page says of what.")
+@click.option(
+    "--repeats",
+    type=click.IntRange(min=1),
+    help="How many random streams, or seeds, everything is repeated with; a later call with more uses "
+    "what is there.  [default: 10, as in the sources]",
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -150,6 +156,7 @@ def reproduce(
     names: Sequence[str],
     paper: str | None,
     quick: bool,
+    repeats: int | None,
     out: Path | None,
     films: Path,
     workers: int | None,
@@ -162,14 +169,18 @@ def reproduce(
     was when it is given again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.studies.reproduce.measuring.workload import REPEATS
     from peopleboy.scenarios.studies.reproduce.show import list_experiments, reproduce_named
 
+    if quick and repeats is not None:
+        raise BadInput("reproduce: --quick has its own number of repeats; give either it or --repeats")
     if lists:
         list_experiments(names, paper)
     else:
+        amount = None if quick else repeats or REPEATS
         folder = out if out is not None else Path("runs") / ("reproduce-quick" if quick else "reproduce")
         who = chosen_workers(workers, scheduler)
-        click.echo(reproduce_named(names, paper, folder, films, who, quick=quick))
+        click.echo(reproduce_named(names, paper, folder, films, who, repeats=amount))
 
 
 @click.command()

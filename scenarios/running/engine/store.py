@@ -36,6 +36,7 @@ class Store(Mapping[str, Result]):
         self.path = path
         self._code = code
         self._results: dict[str, Result] = {}
+        self._spent_s: dict[str, float] = {}
         with writing_to(path.parent):
             path.parent.mkdir(parents=True, exist_ok=True)
             text = path.read_text(encoding="utf-8") if path.is_file() else ""
@@ -52,15 +53,25 @@ class Store(Mapping[str, Result]):
     def __len__(self) -> int:
         return len(self._results)
 
-    def add(self, key: str, result: Result) -> None:
-        """Keep a result; it is on disk when this returns."""
-        line = json.dumps({"key": key, "code": self._code, "result": result}) + "\n"
+    def spent_s(self, key: str) -> float:
+        """Give the processor's time [s] that a result took; 0 where nobody said."""
+        return self._spent_s.get(key, 0.0)
+
+    def add(self, key: str, result: Result, spent_s: float = 0.0) -> None:
+        """Keep a result, with the processor's time [s] that it took; it is on disk when this returns."""
+        entry: dict[str, Any] = {
+            "key": key,
+            "code": self._code,
+            "spent_s": round(spent_s, 3),
+            "result": result,
+        }
+        line = json.dumps(entry) + "\n"
         with self.path.open("a", encoding="utf-8") as file:
             file.write("\n" + line if self._is_torn else line)
             file.flush()
             os.fsync(file.fileno())
         self._is_torn = False
-        self._results[key] = result
+        self._results[key], self._spent_s[key] = result, entry["spent_s"]
 
     def _take(self, line: str) -> None:
         try:
@@ -69,6 +80,7 @@ class Store(Mapping[str, Result]):
             return
         if entry["code"] == self._code:
             self._results[entry["key"]] = entry["result"]
+            self._spent_s[entry["key"]] = entry.get("spent_s", 0.0)
 
 
 @cache

@@ -19,7 +19,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.catalogue import paper_of
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Outcome
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
-from peopleboy.scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan
+from peopleboy.scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan, full_plan
 from peopleboy.scenarios.studies.reproduce.showing.against_source import mean_and_spread
 from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, Section, section, write_page
 
@@ -87,7 +87,7 @@ def unique_units(experiments: Sequence[Experiment], plan: Plan, store: Store) ->
 
 
 def _about(plan: Plan, papers: Set[str], means: Means, store: Store, seconds: float) -> PageHead:
-    spent = sum(result.get("cpu_s", 0.0) for result in store.values())
+    spent = sum(store.spent_s(key) for key in store)
     facts: Mapping[str, str] = {
         "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
         "Python": platform.python_version(),
@@ -95,18 +95,29 @@ def _about(plan: Plan, papers: Set[str], means: Means, store: Store, seconds: fl
         f"panoramic camera 0 to {plan.walks - 1}; drives with a depth camera 0 to {plan.drives - 1}; "
         "data sets as in their files",
         "Machine": f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}",
-        "Time": f"{seconds / 60:.1f} min for this call; {spent / 60:.1f} min of processor time in trackers",
+        "Time": f"{seconds / 60:.1f} min for this call; {spent / 3600:.2f} core-hours for all results, "
+        "those of earlier calls included",
         "Results": f"{len(store)} units of work in {RESULTS}, beside this page",
     }
     return PageHead(command=means.command, is_quick=plan.is_quick, amount=_amount(plan, papers), facts=facts)
+
+
+def _share(plan: Plan) -> str:
+    """Say how much of the data sets a quick run sees."""
+    seen, there = (
+        sum(play.scenario.duration_s for plays in suites.values() for play in plays)
+        for suites in (plan.suites, full_plan(plan.cache).suites)
+    )
+    return f"{seen:.0f} of {there:.0f} s"
 
 
 def _amount(plan: Plan, papers: Set[str]) -> str:
     runs = {name: len(plays) for name, plays in plan.suites.items()}
     if plan.is_quick:
         return (
-            f"One run per data set and of it {QUICK_S:g} s at most, {plan.repeats} repeats instead of 10, "
-            "fewer values of each parameter, figure 6.6 with 200 samples instead of 1000, pairs of people "
+            f"One run per data set and of it {QUICK_S:g} s at most ({_share(plan)}), {plan.repeats} repeats "
+            "instead of 10, fewer values of each parameter (each section says which are left out), "
+            "figure 6.6 with 200 samples instead of 1000, pairs of people "
             f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room, "
             f"{plan.drive_s:g} s of {len(plan.sets)} of the 12 drives with a depth camera, "
             f"{len(plan.scenes)} of the 17 films of things that are moved."

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.reproduce.experiments.catalogue import choose
-from peopleboy.scenarios.studies.reproduce.measuring.workload import full_plan, quick_plan
+from peopleboy.scenarios.studies.reproduce.measuring.workload import REPEATS, full_plan, quick_plan
 from peopleboy.scenarios.studies.reproduce.reproduce import Means, reproduce
 from peopleboy.scenarios.studies.reproduce.showing.print_sections import print_sections
 from peopleboy.scenarios.studies.reproduce.showing.source import source_tables
@@ -27,9 +27,17 @@ def list_experiments(names: Sequence[str], paper: str | None) -> None:
 
 
 def reproduce_named(
-    names: Sequence[str], paper: str | None, out: Path, films: Path, workers: Workers, *, quick: bool
+    names: Sequence[str], paper: str | None, out: Path, films: Path, workers: Workers, *, repeats: int | None
 ) -> Path:
     """Reproduce what is called so in a source, or in all, print it, and return the page.
+
+    Args:
+        names: ids or numbers; all there are if left out.
+        paper: the source to which they are limited.
+        out: folder of the page and the results.
+        films: folder of rendered frames.
+        workers: who does the work.
+        repeats: of everything; None for a quick run.
 
     Raises:
         BadInput: an unknown name, or a folder or cluster that cannot be used.
@@ -37,13 +45,15 @@ def reproduce_named(
     """
     experiments = choose(names, paper)
     # Workers may have another working directory.
-    plan = quick_plan(films.resolve()) if quick else full_plan(films.resolve())
-    means = Means(out=out, workers=workers, command=_command(names, paper, quick=quick))
+    cache = films.resolve()
+    plan = quick_plan(cache) if repeats is None else full_plan(cache, repeats)
+    means = Means(out=out, workers=workers, command=_command(names, paper, repeats))
     page, sections = reproduce(experiments, plan, means)
     print_sections(sections)
     return page
 
 
-def _command(names: Sequence[str], paper: str | None, *, quick: bool) -> str:
+def _command(names: Sequence[str], paper: str | None, repeats: int | None) -> str:
     chosen = [] if paper is None else ["--paper", paper]
-    return shlex.join(["peopleboy", "reproduce", *chosen, *(["--quick"] if quick else []), *names])
+    fewer = [] if repeats == REPEATS else ["--quick"] if repeats is None else ["--repeats", str(repeats)]
+    return shlex.join(["peopleboy", "reproduce", *chosen, *fewer, *names])

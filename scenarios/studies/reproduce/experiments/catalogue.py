@@ -31,11 +31,15 @@ RULES: dict[str, Rule] = {"": "ignore", ", strict": "absent"}
 
 SINGLE = ("dataset1", "dataset2")
 SEVERAL = ("dataset3", "dataset4")
+BOTH, ONE = "both", "one person"
 
 
-def _per_suite(number: str, suites: Sequence[str], literal: str) -> Tracking:
-    """Give one figure per data set, by both rules."""
-    trials = (trial for suite in suites for trial in _by_both_rules(suite, (suite,), literal))
+def _per_suite(number: str, suites: tuple[str, ...], literal: str, *, beside_one: bool = False) -> Tracking:
+    """Give figures of each data set and of both together, by both rules; beside those of one person."""
+    parts = {suite: (suite,) for suite in suites} | {BOTH: suites}
+    trials = [trial for name, part in parts.items() for trial in _by_both_rules(name, part, literal)]
+    if beside_one:
+        trials += _by_both_rules(ONE, SINGLE, "thesis-single")
     return Tracking(number, THESIS, tuple(trials), "bars", THESIS)
 
 
@@ -91,6 +95,15 @@ _SWEEPS = (
         _BOTH_FRESH,
         {f"{percent} %": percent / 100 for percent in (0, 10, 20, 30, 50, 70, 90)},
         ("0 %", "20 %", "50 %", "90 %"),
+    ),
+    _sweep(
+        "section-5.2",
+        THESIS,
+        "thesis-thermal",
+        SEVERAL,
+        ("interaction.penalty",),
+        {"0": 0.0, "1": 1.0, "2": 2.0, "10": 10.0},
+        ("0", "2", "10"),
     ),
     _sweep(
         "figure-5.5a",
@@ -208,8 +221,9 @@ _SPACES: dict[str, Changes | None] = {
 
 
 def _paper_figure_5() -> Tracking:
-    trials = _by_both_rules("several persons", SEVERAL, "paper-several")
-    return Tracking("paper-figure-5", PAPER, tuple(trials), "bars", PAPER)
+    several = _by_both_rules("several persons", SEVERAL, "paper-several")
+    one = _by_both_rules(ONE, SINGLE, "paper-single")
+    return Tracking("paper-figure-5", PAPER, (*several, *one), "bars", PAPER)
 
 
 _TABLE_7_1 = (Way("thermal", THERMAL), Way("colour", COLOUR), Way("both"))
@@ -218,26 +232,30 @@ _TABLE_7_3 = tuple(Way(name, (name,), 1) for name in FEATURES)
 
 _ALL: tuple[Experiment, ...] = (
     Contents(),
+    Depiction("figure-3.4"),
+    Depiction("figure-3.5"),
     Depiction("figure-4.4"),
     _per_suite("figure-4.8", SINGLE, "thesis-single"),
     *_SWEEPS[:2],
-    TIMINGS[0],
-    _per_suite("figure-5.4", SEVERAL, "thesis-thermal"),
-    *_SWEEPS[2:5],
+    *TIMINGS[:2],
+    Depiction("figure-5.3"),
+    _SWEEPS[2],
+    _per_suite("figure-5.4", SEVERAL, "thesis-thermal", beside_one=True),
+    *_SWEEPS[3:6],
     Delay(SINGLE, {LITERAL: Setting("thesis-single"), OURS: Setting("peopleboy")}),
-    TIMINGS[1],
+    TIMINGS[2],
     _chapters("figure-6.4", list(_STEPS)[:2]),
     _colours("figure-6.5", _REPRESENTATIONS, ("histogram",)),
     # A histogram takes so long that few samples have to do when there is little time.
     _colours("figure-6.6", _SPACES, (), (("person.count", 200),)),
-    *TIMINGS[2:],
+    *TIMINGS[3:],
     Depiction("figure-7.2"),
     Learning("table-7.1", _TABLE_7_1),
     Learning("table-7.2", _TABLE_7_2),
     Learning("table-7.3", _TABLE_7_3),
     BestClassifiers(),
     _chapters("figure-7.3", _STEPS),
-    *_SWEEPS[5:],
+    *_SWEEPS[6:],
     Depiction("paper-figure-4"),
     _paper_figure_5(),
     *DEPICTIONS[:2],

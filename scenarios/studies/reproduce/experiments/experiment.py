@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.scenarios.running.engine.store import Result, Store
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
@@ -66,12 +66,57 @@ class Experiment(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """What an experiment took, with the films and runs that it shares with others.
+
+    Attributes:
+        units: pieces of work.
+        seconds: [s] of processor time for them.
+    """
+
+    units: int
+    seconds: float
+
+
+class Touched(Mapping[str, Result]):
+    """Results, and which of them somebody has asked for."""
+
+    def __init__(self, done: Done) -> None:
+        self._done = done
+        self.keys_asked: set[str] = set()
+
+    def __getitem__(self, key: str) -> Result:
+        self.keys_asked.add(key)
+        return self._done[key]
+
+    def __contains__(self, key: object) -> bool:
+        self.keys_asked.add(str(key))
+        return key in self._done
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._done)
+
+    def __len__(self) -> int:
+        return len(self._done)
+
+
 @runtime_checkable
 class Depicted(Protocol):
     """An experiment that has a picture of its own in place of a chart."""
 
     def picture(self, plan: Plan, done: Done) -> str | None:
         """Give the address of its picture, once all is done; None for none."""
+        ...
+
+
+@runtime_checkable
+class Grouped(Protocol):
+    """An experiment of which a quick run leaves lines out."""
+
+    @property
+    def groups(self) -> Sequence[str]:
+        """What is varied in a full run, in the order of its lines."""
         ...
 
 
@@ -83,17 +128,33 @@ class Outcome:
         experiment: which one.
         samples: its figures.
         picture: address of a picture of its own; None for none.
+        left_out: groups of a full run that this one has not.
+        effort: what it took; None if that is not known.
     """
 
     experiment: Experiment
     samples: Samples
     picture: str | None = None
+    left_out: tuple[str, ...] = ()
+    effort: Effort | None = None
 
     @classmethod
-    def of(cls, experiment: Experiment, plan: Plan, done: Done) -> Outcome:
+    def of(cls, experiment: Experiment, plan: Plan, store: Store) -> Outcome:
         """Ask an experiment for all that it has, once all is done."""
+        done = Touched(store)
+        for _ in experiment.wants(plan, done):
+            raise AssertionError(f"{experiment.id} is not done")
+        samples = experiment.samples(plan, done)
         picture = experiment.picture(plan, done) if isinstance(experiment, Depicted) else None
-        return cls(experiment, experiment.samples(plan, done), picture)
+        groups = experiment.groups if isinstance(experiment, Grouped) else ()
+        there = {line.group for line in samples}
+        return cls(
+            experiment,
+            samples,
+            picture,
+            tuple(dict.fromkeys(group for group in groups if group not in there)),
+            Effort(len(done.keys_asked), sum(store.spent_s(key) for key in done.keys_asked)),
+        )
 
 
 def missing(units: Iterable[Unit], done: Done) -> list[Unit]:

@@ -1,4 +1,4 @@
-"""Experiments that measure time: the thesis's tables 4.1, 5.1, 6.1 and 6.2."""
+"""Experiments that measure time: the thesis's tables 4.1, 5.1, 6.1 and 6.2, and a step with 300 samples."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from peopleboy.scenarios.studies.reproduce.measuring.stopwatch import (
     Milliseconds,
     time_attention,
     time_colours,
+    time_counts,
     time_integrals,
     time_people,
     time_steps,
@@ -23,6 +24,8 @@ from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 
 MS = "ms"
+TURNS = 5
+"""How often a table is measured."""
 
 Measure = Callable[[int], Milliseconds]
 
@@ -35,17 +38,19 @@ class TimeUnit:
         table: id of the experiment.
         who: whose column.
         steps: how often every step is timed.
+        turn: which of several measurements it is, from 0.
     """
 
     table: str
     who: str
     steps: int
+    turn: int
     is_timing: bool = True
 
     @property
     def key(self) -> str:
-        """Table and column."""
-        return f"time {self.table} | {self.who} | {self.steps}"
+        """Table, column and turn."""
+        return f"time {self.table} | {self.who} | {self.steps} | {self.turn}"
 
     def run(self) -> Result:
         """Measure."""
@@ -54,26 +59,28 @@ class TimeUnit:
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """A table of times."""
+    """A table of times, all of which are measured several times over."""
 
     id: str
     chart: Chart = "none"
     plotted: tuple[str, ...] = ()
 
     def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """Each column is one piece of work."""
-        return missing(self._units(plan), done)
+        """Each column is one piece of work in each turn."""
+        units = (unit for turn in range(TURNS) for unit in self._units(plan, turn))
+        return missing(units, done)
 
     def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give milliseconds, step by step."""
+        """Give milliseconds, step by step and turn by turn."""
+        turns = [self._units(plan, turn) for turn in range(TURNS)]
         return {
-            Line(step, unit.who): {MS: np.array([time_ms])}
-            for unit in self._units(plan)
-            for step, time_ms in done[unit.key].items()
+            Line(step, same[0].who): {MS: np.array([done[unit.key][step] for unit in same])}
+            for same in zip(*turns, strict=True)
+            for step in done[same[0].key]
         }
 
-    def _units(self, plan: Plan) -> list[TimeUnit]:
-        return [TimeUnit(self.id, who, plan.timing_steps) for who in _MEASURES[self.id]]
+    def _units(self, plan: Plan, turn: int) -> list[TimeUnit]:
+        return [TimeUnit(self.id, who, plan.timing_steps, turn) for who in _MEASURES[self.id]]
 
 
 def _by_tracker(
@@ -87,6 +94,8 @@ def _by_tracker(
 
 _MEASURES: dict[str, dict[str, Measure]] = {
     "table-4.1": _by_tracker(time_steps, "thesis-single", "peopleboy"),
+    "section-4.4": _by_tracker(time_counts, "thesis-single", "peopleboy")
+    | {"literal, paper": lambda steps: time_counts(Setting("paper-single"), steps)},
     "table-5.1": {
         "literal": lambda steps: time_people(Setting("thesis-thermal"), steps),
         "default, thermal only": lambda steps: time_people(Setting("peopleboy-thermal"), steps),

@@ -61,6 +61,11 @@ class Tracking:
     chart: Chart = "bars"
     plotted: tuple[str, ...] = ()
 
+    @property
+    def groups(self) -> list[str]:
+        """What is varied, whether or not a quick run has it."""
+        return [trial.line.group for trial in self.trials]
+
     def wants(self, plan: Plan, done: Done) -> list[Unit]:
         """Films first, then who sees them."""
         films = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -19,7 +20,7 @@ LIBRARY = STUDIES.with_name("library")
 _STUDIES = ("webcams", "distance_learning", "depth_drives", "window_learning")
 _MODELS = (
     "corridor_meeting", "corridor_straight", "crossing_2", "follow_visitors", "hall_visits", "hidden_2s",
-    "passers_by",
+    "leader_swap", "passers_by",
 )  # fmt: skip
 _SCENARIOS = ("corner_webcams", "room_long", "room_narrow", "room_short", *SETS, TURNS, *_MODELS)
 
@@ -47,9 +48,11 @@ class UnitTask:
         """Its key."""
         return self.unit.key
 
-    def __call__(self, tell: Tell) -> Result:  # noqa: ARG002
-        """Do it."""
-        return self.unit.run()
+    def __call__(self, tell: Tell) -> tuple[Result, float]:  # noqa: ARG002
+        """Do it, and give the processor's time [s] that it took, too."""
+        start = time.process_time()
+        result = self.unit.run()
+        return result, time.process_time() - start
 
 
 def open_store(path: Path) -> Store:
@@ -78,5 +81,6 @@ def run_units(units: Sequence[Unit], store: Store, workers: Workers) -> None:
         work_through(tasks, who, "reproduce", keep)
 
 
-def _keep(store: Store, task: Task[Result], result: Result) -> None:
-    store.add(task.name, result)
+def _keep(store: Store, task: Task[tuple[Result, float]], found: tuple[Result, float]) -> None:
+    result, spent_s = found
+    store.add(task.name, result, spent_s)

@@ -102,6 +102,12 @@ def time_steps(setting: Setting, steps: int) -> Milliseconds:
     return {name: milliseconds(work, steps) for name, work in works.items()}
 
 
+def time_counts(setting: Setting, steps: int) -> Milliseconds:
+    """Time one step of a filter with fewer samples than usual, and with as many (thesis, section 4.4)."""
+    config = replace(setting.config(), colour=None, appearance=None)
+    return {str(count): _time_colour(config, None, steps, count) for count in (300, COUNT)}
+
+
 def time_attention(config: AttentionConfig, steps: int) -> Milliseconds:
     """Time what it takes to find a person in an image of 320 x 240 by attention."""
     noise = stream(0, "reproduce.timing").integers(0, 256, (*SHAPE, 3), dtype=np.uint8)
@@ -180,9 +186,9 @@ def time_colours(setting: Setting, steps: int) -> Milliseconds:
     }
 
 
-def _time_colour(config: TrackerConfig, colour: ColourConfig | None, steps: int) -> float:
+def _time_colour(config: TrackerConfig, colour: ColourConfig | None, steps: int, count: int = COUNT) -> float:
     config = replace(config, colour=None, appearance=None)
-    person, rng = replace(config.person, count=COUNT), stream(0, "reproduce.timing")
+    person, rng = replace(config.person, count=count), stream(0, "reproduce.timing")
     frame = frame_of(1)
     view = view_frame(frame, 1 / 15, ContourModel.build(SHAPE, config.contour), config)
     belief = begin(view, person, config, rng)

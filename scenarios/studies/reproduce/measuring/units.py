@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import asdict, dataclass, fields, is_dataclass
 from itertools import islice
 from pathlib import Path
@@ -104,10 +103,8 @@ class TrackUnit(Showing):
     def run(self) -> Result:
         """Track, and score by both rules for people who are not counted."""
         shot = film(self.play.scenario, self.play.seed, self.cache)
-        start = time.process_time()
         found = track_film(shot, self.setting.make(stream(self.repeat, "reproduce.tracker")))
-        seconds = time.process_time() - start
-        result: Result = {"cpu_s": round(seconds, 3), "frames": shot.frames}
+        result: Result = {"frames": shot.frames}
         for rule in RULES:
             scores = evaluate(shot.truth(), found, frames=shot.frames, uncounted=rule)
             result[rule] = {name: asdict(getattr(scores, name)) for name in RECORDS}

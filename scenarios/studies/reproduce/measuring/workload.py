@@ -25,7 +25,7 @@ class Plan:
         splits: of examples into those to learn from and those to test with.
         triplets: whether weighted triplets are tried, which take minutes.
         rounds: of boosting.
-        timing_steps: how often each step is timed.
+        timing_steps: how often each step is timed in each turn.
         walks: seeds of each room in which people walk before a panoramic camera.
         sets: numbers of the drives with a depth camera, from 1.
         drives: seeds of each of them.
@@ -46,7 +46,7 @@ class Plan:
     splits: int = 10
     triplets: bool = True
     rounds: int = 40
-    timing_steps: int = 200
+    timing_steps: int = 40
     walks: int = 10
     sets: tuple[int, ...] = tuple(range(1, 13))
     drives: int = 5
@@ -62,9 +62,27 @@ class Plan:
 QUICK_S = 20.0
 
 
-def full_plan(cache: Path) -> Plan:
-    """Everything, as the sources did it."""
-    return Plan(cache=cache, suites={name: tuple(runs_of(load_suite(name))) for name in DATASETS})
+REPEATS = 10
+"""How often the sources repeat everything."""
+
+
+def full_plan(cache: Path, repeats: int = REPEATS) -> Plan:
+    """Everything, as the sources did it, with as many repeats, or as many seeds where those are repeated.
+
+    What is smaller than the sources' ten stays as small.
+    """
+    return Plan(
+        cache=cache,
+        suites={name: tuple(runs_of(load_suite(name))) for name in DATASETS},
+        repeats=repeats,
+        pair_seeds=repeats,
+        walks=repeats,
+        drives=min(repeats, 5),
+        ablated=min(repeats, 2),
+        scene_seeds=min(repeats, 5),
+        absences=repeats,
+        follows=2 * repeats,
+    )
 
 
 def quick_plan(cache: Path) -> Plan:
@@ -79,7 +97,7 @@ def quick_plan(cache: Path) -> Plan:
         splits=3,
         triplets=False,
         rounds=20,
-        timing_steps=60,
+        timing_steps=20,
         walks=2,
         sets=(2, 7, 11),
         drives=1,

@@ -30,6 +30,8 @@ def print_sections(sections: Iterable[Section]) -> None:
             console.print("  a picture is on the page")
         for item in part.checked:
             _print_claim(console, item)
+        if part.left_out:
+            console.print(f"  left out of this run: {escape(', '.join(part.left_out))}")
         console.print()
 
 

@@ -13,7 +13,7 @@ import jinja2
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
 from peopleboy.scenarios.studies.reproduce.experiments.catalogue import paper_of
-from peopleboy.scenarios.studies.reproduce.experiments.experiment import Outcome, Samples
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Effort, Outcome, Samples
 from peopleboy.scenarios.studies.reproduce.showing.against_source import (
     MUCH,
     ClaimStatus,
@@ -26,6 +26,7 @@ from peopleboy.scenarios.studies.reproduce.showing.beside_source import Compared
 from peopleboy.scenarios.studies.reproduce.showing.experiment_plots import draw
 from peopleboy.scenarios.studies.reproduce.showing.intervals import PART, POINTS, Gap
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim, SourceTable, source_tables
+from peopleboy.scenarios.studies.reproduce.showing.source_contents import source_contents
 
 HERE = Path(__file__).parent
 NOTES = HERE / "notes.yaml"
@@ -43,7 +44,17 @@ FINE = (
     "from",
     "to",
 )  # columns that need three decimals
-COUNTS = ("images", "TP", "FN", "FP", "people", "others", "parameters")  # columns that need none
+COUNTS = (
+    "images",
+    "TP",
+    "FN",
+    "FP",
+    "people",
+    "others",
+    "parameters",
+    "pairs",
+    "weak classifiers",
+)  # columns that need none
 EFFECT = "d to the source (95 %)"
 
 Figures = Mapping[str, tuple[float, float | None]]
@@ -80,6 +91,8 @@ class Section:
     checked: tuple[Checked, ...]
     compared: tuple[Compared, ...]
     why: str
+    left_out: tuple[str, ...] = ()
+    effort: Effort | None = None
 
     def summary(self, main: str) -> str:
         """How the source's claims fare with a main tracker, in a few words."""
@@ -122,12 +135,15 @@ def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None
     environment.filters["points"] = points
     environment.filters["span"] = span
     notes = _notes()
+    papers = {paper_of(part.id) for part in sections}
     text = environment.get_template("page.html.jinja").render(
         sections=sections,
         about=about,
         general=notes["general"],
         margins={"points": POINTS, "part": 100 * PART, "much": 100 * MUCH},
-        papers=sorted({paper_of(part.id) for part in sections}),
+        papers=sorted(papers),
+        contents={name: items for name, items in source_contents().items() if name in papers},
+        there={part.id for part in sections},
     )
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")
@@ -149,6 +165,8 @@ def section(outcome: Outcome) -> Section:
         checked=tuple(Checked(claim, tuple(judge(claim, samples))) for claim in table.claims),
         compared=tuple(compare(samples, table)),
         why=_notes()["why"].get(experiment.id, ""),
+        left_out=outcome.left_out,
+        effort=outcome.effort,
     )
 
 

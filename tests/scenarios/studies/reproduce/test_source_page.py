@@ -33,7 +33,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.experiment import (
     Outcome,
     Samples,
 )
-from peopleboy.scenarios.studies.reproduce.experiments.tracking import THESIS, Tracking
+from peopleboy.scenarios.studies.reproduce.experiments.tracking import THESIS, Tracking, units_of
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import BASES, Setting, changed
 from peopleboy.scenarios.studies.reproduce.measuring.units import RECORDS, TrackUnit, restored
 from peopleboy.scenarios.studies.reproduce.measuring.window_units import MACHINES
@@ -51,7 +51,10 @@ from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import refused
 from tests.helpers.visible_text import assert_reads_as
 
-FIGURES = ("4.4", "4.8", "4.9a", "4.9b", "5.4", "5.5a", "5.5b", "5.6", "6.4", "6.5", "6.6", "7.2", "7.3")
+FIGURES = (
+    *("3.4", "3.5", "4.4", "4.8", "4.9a", "4.9b", "5.3", "5.4", "5.5a", "5.5b", "5.6"),
+    *("6.4", "6.5", "6.6", "7.2", "7.3"),
+)
 TABLES = ("3.1", "4.1", "5.1", "6.1", "6.2", "7.1", "7.2", "7.3", "7.4")
 PAPER = ("table-1", "table-2", "table-3", "figure-4", "figure-5")
 PANORAMIC = (
@@ -72,7 +75,7 @@ ALL = {
     *(f"paper-{number}" for number in PAPER),
     *(f"panoramic-{name}" for name in PANORAMIC),
     *(f"situation-{name}" for name in SITUATION),
-    "section-5.3",
+    *("section-4.4", "section-5.2", "section-5.3"),
 }
 
 
@@ -274,6 +277,9 @@ def test_claims_are_judged_by_the_interval_of_the_difference(
 
 
 DRAWN = (
+    "figure-3.4",
+    "figure-3.5",
+    "figure-5.3",
     "figure-4.4",
     "figure-7.2",
     "paper-figure-4",
@@ -339,10 +345,13 @@ def test_a_little_of_everything_becomes_a_page_and_is_done_once(tmp_path: Path) 
     chosen = choose(["3.1", "4.1", "4.8", "5.5", "figure-7.3", "paper-table-3"])
     page, _ = reproduce(chosen, plan, Means(out=tmp_path))
     assert read(page)[1].ids >= {one.id for one in chosen}
+    assert "Left out of this run: 300, 2000." in page.read_text(encoding="utf-8")
     means = json.loads((tmp_path / MEANS).read_text())
     assert set(means) == {one.id for one in chosen}
     assert means["figure-4.8"]["dataset1"]["default"].keys() == set(THESIS)
-    done = [json.loads(line)["key"] for line in (tmp_path / RESULTS).read_text().splitlines()]
+    lines = [json.loads(line) for line in (tmp_path / RESULTS).read_text().splitlines()]
+    assert sum(line["spent_s"] for line in lines) > 0.0
+    done = [line["key"] for line in lines]
     assert len(done) == len(set(done)) > 30
     assert reproduce(chosen, plan, Means(out=tmp_path))[0] == page
     assert len((tmp_path / RESULTS).read_text().splitlines()) == len(done)
@@ -351,8 +360,8 @@ def test_a_little_of_everything_becomes_a_page_and_is_done_once(tmp_path: Path) 
 def test_a_unit_gives_the_same_result_again_and_its_sums_come_back(tmp_path: Path) -> None:
     play = SuiteRun(load_scenario("crossing_pair").lasting(1.0), 0)
     unit = TrackUnit(play, tmp_path, Setting("peopleboy"), 1)
-    one, other = unit.run(), unit.run()
-    assert {k: v for k, v in one.items() if k != "cpu_s"} == {k: v for k, v in other.items() if k != "cpu_s"}
+    one = unit.run()
+    assert one == unit.run()
     restored_paper = restored(PaperMetrics, one["ignore"]["paper"])
     assert restored_paper.areas.targets == one["ignore"]["counts"]["targets"] > 0
     assert set(RECORDS) == set(one["absent"])
@@ -365,6 +374,18 @@ def test_the_full_plan_has_all_data_sets_and_ten_repeats(tmp_path: Path) -> None
     assert frames == pytest.approx(
         {"dataset1": 1268, "dataset2": 14573, "dataset3": 4369, "dataset4": 2400}, rel=0.05
     )
+
+
+def test_fewer_repeats_are_part_of_more(tmp_path: Path) -> None:
+    few, all_of_them = full_plan(tmp_path, 2), full_plan(tmp_path)
+    assert (few.repeats, few.pair_seeds, few.ablated, few.drives) == (2, 2, 2, 2)
+    trial = next(one for one in EXPERIMENTS.values() if isinstance(one, Tracking)).trials[0]
+    keys = [{unit.key for unit in units_of(trial, plan, 1)} for plan in (few, all_of_them)]
+    assert keys[0] == keys[1]
+
+
+def test_a_quick_run_has_its_own_repeats(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "either it or --repeats" in refusal(capsys, "reproduce", "--quick", "--repeats", "2")
 
 
 def test_the_command_lists_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:
