@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import benchmarks.peers
-from benchmarks.peers.contestants import PEERS, RATE_HZ, make_contestant
+from benchmarks.peers.contestants import JOINT, PEERS, RATE_HZ, make_contestant
 from peopleboy import tracker
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.task import Tell
@@ -120,9 +120,11 @@ def _tracks(rows: list[tuple[int, int, tuple[float, ...]]]) -> TrackBoxes:
 def _digest(name: str) -> str:
     """Of the source on which a contestant's boxes depend."""
     digest = hashlib.sha256()
-    package = benchmarks.peers if name in PEERS else tracker
     if name in PEERS:
         digest.update(version("trackers").encode())
-    for path in sorted(Path(package.__path__[0]).rglob("*.py")):
-        digest.update(path.read_bytes())
+    packages = [tracker] if name not in PEERS else []
+    packages += [benchmarks.peers] if name in (*PEERS, JOINT) else []
+    for package in packages:
+        for path in sorted(Path(package.__path__[0]).rglob("*.py")):
+            digest.update(path.read_bytes())
     return digest.hexdigest()[:8]

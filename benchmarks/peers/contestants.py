@@ -9,8 +9,11 @@ import numpy as np
 import supervision as sv
 from trackers import ByteTrackTracker, SORTTracker
 
+from benchmarks.peers.classic import DetectAndFilter
 from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
+from benchmarks.peers.joint_filter import JointFilter
 from benchmarks.peers.ours import Contestant, Ours
+from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.variants import VARIANTS
@@ -65,13 +68,20 @@ PEERS: dict[str, Callable[[TrueBoxes], Contestant]] = {
     "blobs+bytetrack": lambda _: DetectAndAssociate(Blobs(), _bytetrack()),
     "blobs+sort": lambda _: DetectAndAssociate(Blobs(), _sort()),
     "oracle+bytetrack": lambda truth: DetectAndAssociate(Oracle(truth), _bytetrack()),
+    "blobs+jpda": lambda _: DetectAndFilter(Blobs(), is_joint=True),
+    "blobs+mht": lambda _: DetectAndFilter(Blobs(), is_joint=False),
+    "oracle+jpda": lambda truth: DetectAndFilter(Oracle(truth), is_joint=True),
+    "oracle+mht": lambda truth: DetectAndFilter(Oracle(truth), is_joint=False),
 }
 """Each peer's maker by name; only the oracle sees the truth."""
+
+JOINT = "thermal+mcmc"
+"""The literal tracker's contour in one filter for everybody."""
 
 
 def contestants() -> list[str]:
     """Name all who can compete."""
-    return [*VARIANTS, FOOTAGE_TRACKER, *PEERS]
+    return [*VARIANTS, FOOTAGE_TRACKER, *PEERS, JOINT]
 
 
 def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:
@@ -80,4 +90,6 @@ def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:
     Raises:
         BadInput: an unknown name.
     """
+    if name == JOINT:
+        return JointFilter(stream(seed, "peers.joint"))
     return PEERS[name](truth) if name in PEERS else Ours(name, seed)

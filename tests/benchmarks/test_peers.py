@@ -6,8 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.peers.classic import DetectAndFilter
 from benchmarks.peers.compete import FilmTask
-from benchmarks.peers.detectors import Blobs, Oracle, _from_colour
+from benchmarks.peers.detectors import Blobs, Boxes, Detections, Oracle, _from_colour
+from benchmarks.peers.joint_filter import run_chain
 from benchmarks.peers.show import write_results
 from benchmarks.results.measured import take_in
 from benchmarks.results.tables import read_tables
@@ -75,3 +77,54 @@ def test_what_is_kept_of_the_peers_can_be_taken_into_the_tables_of_results(
         row = next(row for row in tables[name].rows if row.measured.endswith("oracle+bytetrack"))
         taken = take_in(tables[name].model_copy(update={"rows": (row.model_copy(update={"runs": 1}),)}))
         assert None not in taken.rows[0].figures
+
+
+def test_a_chain_of_one_person_visits_places_as_often_as_they_are_likely() -> None:
+    rng = np.random.default_rng(0)
+    chances = rng.choice([0.1, 0.9], 20_000)
+    (visited,) = run_chain([chances], [np.tile([0.0, 0.0, 10.0, 30.0], (20_000, 1))], 2.0, rng)
+    # As many proposals are of the one kind as of the other: 9 visits in 10 are to the likely one.
+    assert (chances[visited] == 0.9).mean() == pytest.approx(0.9, abs=0.02)
+
+
+def test_a_chain_keeps_people_apart_by_its_penalty() -> None:
+    rng = np.random.default_rng(0)
+    places = np.where(rng.random(8000) < 0.5, 0.0, 50.0)
+    boxes = [np.stack([x, 0 * x, 0 * x + 10.0, 0 * x + 30.0], axis=1) for x in (places, np.zeros(8000))]
+    shares = []
+    for penalty in (0.0, 2.0):
+        visited, _ = run_chain([np.full(8000, 0.5)] * 2, boxes, penalty, rng)
+        shares.append((places[visited] == 0.0).mean())
+    # Where the other one is, is as likely as not without a penalty, and 1 / (1 + exp(2)) with this one.
+    assert shares == pytest.approx([0.5, 1 / (1 + np.exp(2.0))], abs=0.03)
+
+
+class TwoWhoPass:
+    """Finds two people who walk past each other, one of them unseen for five frames."""
+
+    def __init__(self) -> None:
+        self._number = -1
+
+    def detect(self, frame: Frame) -> Detections:  # noqa: ARG002
+        self._number += 1
+        k = float(self._number)
+        boxes = [[20.0 + 3 * k, 60.0, 30.0, 110.0], [200.0 - 3 * k, 60.0, 30.0, 110.0]]
+        shown: Boxes = np.array(boxes[:1] if 18 < k < 24 else boxes)
+        return Detections(shown, np.ones(len(shown)))
+
+
+@pytest.mark.parametrize("is_joint", [True, False])
+def test_joint_and_multiple_hypotheses_keep_two_who_pass_each_other_apart(is_joint: bool) -> None:
+    pytest.importorskip("stonesoup")
+    if not is_joint:
+        pytest.importorskip("ortools")
+    people = DetectAndFilter(TwoWhoPass(), is_joint=is_joint)
+    blank = {THERMAL: np.zeros((240, 320), np.uint8)}
+    said = [people.step(Frame(images=blank, time_s=k / 15)) for k in range(50)]
+    firsts = [
+        ids[int(np.argmin(np.abs(boxes[:, 0] - 20.0 - 3 * k)))]
+        for k, (boxes, ids) in enumerate(said)
+        if k > 5
+    ]
+    assert set(firsts) == {firsts[0]}
+    assert {number for _, ids in said for number in ids} == {1, 2}
