@@ -12,12 +12,13 @@ from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import (
     draw_parts,
     draw_paths,
 )
+from peopleboy.scenarios.studies.reproduce.pictures.frame_example import draw_example
 from peopleboy.scenarios.studies.reproduce.pictures.interaction import draw_interaction
 from peopleboy.scenarios.studies.reproduce.pictures.set_up import draw_set_up
 from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
 from peopleboy.scenarios.studies.reproduce.pictures.thermal_contours import draw_cues, draw_fitness
 from peopleboy.scenarios.studies.reproduce.pictures.time_ranges import draw_time_ranges
-from peopleboy.scenarios.studies.reproduce.pictures.typical_errors import draw_errors, draw_example
+from peopleboy.scenarios.studies.reproduce.pictures.typical_errors import draw_errors
 from peopleboy.scenarios.studies.reproduce.pictures.webcam_views import (
     draw_fields_of_view,
     draw_webcam_images,

@@ -3,14 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from peopleboy.scenarios.studies.reproduce.pictures.frame_example import EXAMPLE, score_example, shared
 from peopleboy.scenarios.studies.reproduce.pictures.thermal_contours import fitness_grey
 from peopleboy.scenarios.studies.reproduce.pictures.time_ranges import stretches
-from peopleboy.scenarios.studies.reproduce.pictures.typical_errors import (
-    EXAMPLE,
-    score_error,
-    score_example,
-    shared,
-)
+from peopleboy.scenarios.studies.reproduce.pictures.typical_errors import score_error
 from peopleboy.tracker.thermal.particles import draw_prior
 from peopleboy.tracker.thermal.variants import THESIS
 
