@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.reacting.encounter import Situation
 from peopleboy.sim.people.reacting.reaction import Reaction
-from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
+from peopleboy.sim.people.walking.wish import Wish
 
 Array = NDArray[np.float64]
 
@@ -25,6 +25,7 @@ _RETREAT_M: Final = 1.2  # more than is to be kept, to be left alone for a while
 _ARRIVED_M: Final = 0.3
 _IN_THE_WAY_M: Final = 0.6  # within which of the place to be one is in the robot's way
 _CHASE_S: Final = 15.0  # after which a robot that is not reached is let go
+_PASSES_M: Final = 0.9  # from the robot's middle, where it is in the way of who goes on
 _NECK_RAD: Final = math.radians(70.0)  # who looks farther round turns the body, too
 _WAYS_OUT_RAD: Final = tuple(math.radians(side * off) for off in (0.0, 30.0, 60.0, 90.0) for side in (1, -1))
 
@@ -127,7 +128,7 @@ class Curious:
     def wish(self, dt_s: float, now: Situation) -> Wish:
         """Tell what the person would rather do than its script."""
         if self._looks_s <= 0.0 or self._chases_s <= 0.0:
-            return AS_PLANNED
+            return Wish(clear_m=_PASSES_M)
         robot = now.robot.position
         if now.gap_m <= self._keep_m + _ARRIVED_M:
             self._looks_s -= dt_s
@@ -150,7 +151,7 @@ class Blocking:
     def wish(self, dt_s: float, now: Situation) -> Wish:
         """Tell what the person would rather do than its script."""
         if self._stands_s <= 0.0 or self._chases_s <= 0.0:
-            return AS_PLANNED
+            return Wish(clear_m=_PASSES_M)
         robot = now.robot
         ahead = np.array([math.cos(robot.heading_rad), math.sin(robot.heading_rad)])
         place = robot.position + self._keep_m * ahead
@@ -174,7 +175,7 @@ class Surprised:
     def wish(self, dt_s: float, now: Situation) -> Wish:
         """Tell what the person would rather do than its script."""
         if self._stands_s <= 0.0:
-            return AS_PLANNED
+            return Wish(clear_m=_PASSES_M)
         self._stands_s -= dt_s
         robot = now.robot.position
         off = math.remainder(math.atan2(*(robot - now.at)[::-1]) - now.heading, math.tau)

@@ -117,6 +117,14 @@ def test_who_is_surprised_stops_looks_for_the_time_and_goes_on():
     assert np.abs(np.degrees(met.ahead[-1])) < 8.0
 
 
+@pytest.mark.parametrize("way", ["curious", "blocks", "surprised"])
+def test_who_goes_on_walks_round_a_robot_that_stands_in_its_way(way):
+    path = (Waypoint(at_m=(4.0, 0.0)), Waypoint(at_m=(-4.0, 0.1)))
+    met = meet(make_person(path=path, reacts=reaction(way, lasts_s=2.0)), drive((0.0, 0.0), (0.0, 0.0)), 16.0)
+    assert met.at[-1, 0] < -3.5
+    assert met.gap.min() > 0.6
+
+
 @pytest.mark.parametrize("way", ["makes_way", "curious", "wary", "blocks", "surprised"])
 def test_nobody_reacts_to_a_robot_behind_a_wall(way):
     wall = np.array([[2.5, -3.0, 2.6, 3.0]])
