@@ -113,7 +113,7 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
 @click.option(
     "--worlds",
     type=click.IntRange(min=5, max=2000),
-    default=530,
+    default=600,
     show_default=True,
     help="How many to learn from.",
 )

@@ -15,10 +15,11 @@ from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.studies.people_learning.boosting import Boosting
 from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector, log_odds_line
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
-from peopleboy.scenarios.studies.people_learning.teach_cascade import Boosting, teach_cascade
+from peopleboy.scenarios.studies.people_learning.teach_cascade import teach_cascade
 from peopleboy.scenarios.studies.people_learning.teach_placing import teach_placing
 from peopleboy.scenarios.studies.people_learning.window_mining import (
     mistakes,
@@ -31,12 +32,17 @@ from peopleboy.tracker.proposals.model import WEIGHTS, PeopleModel
 TESTS: Final = 30
 """Worlds to judge by: those of the first seeds."""
 
-ROUNDS: Final = (Boosting(48, 0.3), Boosting(128, 0.2), Boosting(256, 0.15), Boosting(640, 0.1))
+ROUNDS: Final = (
+    Boosting(64, 0.3, features=200),
+    Boosting(160, 0.2, features=300),
+    Boosting(320, 0.15, features=300),
+    Boosting(640, 0.1),
+)
 """After each but the last, mistakes are collected, and learned from in the next."""
 
 _HELD_BACK: Final = 10  # of so many worlds one is not learned from
-_MISTAKES: Final = 9000  # a round
-_OTHERS: Final = 24000  # windows without people that are in memory: 3.6 kB each
+_MISTAKES: Final = 12000  # a round
+_OTHERS: Final = 48000  # windows without people that are in memory: 3.6 kB each
 _FIRST_OTHERS: Final = 12000
 
 
@@ -97,12 +103,12 @@ def teach(
     others = windows_anywhere(shots, rng, _FIRST_OTHERS)
     _say(f"{len(shots)} images, {len(people)} windows with people")
     for number, boosting in enumerate(ROUNDS, 1):
-        cascade = teach_cascade(people, others, boosting)
+        cascade = teach_cascade(people, others, boosting, rng)
         if number < len(ROUNDS):
             found = mistakes(shots, cascade, rng, _MISTAKES)
             _say(f"round {number} of {len(ROUNDS)}: {len(others)} windows without, {len(found)} mistakes")
             others = _some(np.concatenate([others, found]), _OTHERS, rng)
-    model = PeopleModel(cascade, teach_placing(people, places))
+    model = PeopleModel(cascade, teach_placing(people, places, rng))
     return replace(model, cascade=cascade.calibrated(*log_odds_line(model, others_of)))
 
 

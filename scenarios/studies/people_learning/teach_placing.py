@@ -7,37 +7,30 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.studies.people_learning.teach_cascade import as_tables
-from peopleboy.tracker.proposals.cascade import DEPTH
+from peopleboy.scenarios.studies.people_learning.boosting import Binned, Boosting
 from peopleboy.tracker.proposals.placing import Placing
 
-_TREES: Final = 80
-_RATE: Final = 0.15
-_FEATURES_A_NODE: Final = 80
-_SHARE_A_TREE: Final = 0.6
-_SMALLEST_LEAF: Final = 15
+_BOOSTING: Final = Boosting(trees=80, rate=0.15, features=300)
+_FAR: Final = (
+    0.9  # of all windows are nearer to the median; how far off the others are does not count (Huber)
+)
 
 
-def teach_placing(windows: NDArray[np.float16], offsets: NDArray[np.float64]) -> Placing:
-    """Teach trees on windows (N, 1800) whose offsets (N, 4) are known.
+def teach_placing(
+    windows: NDArray[np.float16], offsets: NDArray[np.float64], rng: np.random.Generator
+) -> Placing:
+    """Teach trees on windows (N, 1800) whose offsets (N, 4) are known."""
+    binned, tables = Binned(windows, rng), []
+    for target in offsets.T.astype(np.float32):
+        start = float(np.median(target))
+        far = float(np.quantile(np.abs(target - start), _FAR))
 
-    Raises:
-        BadInput: scikit-learn is missing.
-    """
-    try:
-        # Here, as it comes with the package's extra `train`.
-        from sklearn.ensemble import GradientBoostingRegressor
-    except ImportError as error:
-        raise BadInput("train-detector needs scikit-learn: pip install scikit-learn") from error
-    features = windows.astype(np.float32)
-    tables = []
-    for number, target in enumerate(offsets.T):
-        trees = GradientBoostingRegressor(
-            loss="huber", n_estimators=_TREES, learning_rate=_RATE, max_depth=DEPTH, random_state=number,
-            max_features=_FEATURES_A_NODE, subsample=_SHARE_A_TREE, min_samples_leaf=_SMALLEST_LEAF,
-        ).fit(features, target)  # fmt: skip
-        feature, threshold, leaf = as_tables([tree.tree_ for tree in trees.estimators_[:, 0]], _RATE)
-        leaf[0] += np.float32(np.ravel(trees.init_.constant_)[0])
-        tables.append((feature, threshold, leaf))
+        def loss(
+            told: NDArray[np.float32], target: NDArray[np.float32] = target, far: float = far
+        ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+            return np.clip(target - told, -far, far), np.ones_like(told)
+
+        trees = binned.boosted(loss, _BOOSTING, rng, start)
+        trees.leaf[0] += np.float32(start)
+        tables.append(trees)
     return Placing(*(np.stack(column) for column in zip(*tables, strict=True)))

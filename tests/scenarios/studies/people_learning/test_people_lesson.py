@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.studies.people_learning import people_lesson
+from peopleboy.scenarios.studies.people_learning.boosting import Boosting
 from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
-from peopleboy.scenarios.studies.people_learning.teach_cascade import Boosting
 from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
 from peopleboy.tracker.proposals.model import PeopleModel
 from tests.helpers.calls.command_line import refusal, run_cli
@@ -20,7 +20,9 @@ from tests.helpers.images.drawn_films import drawn_film
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """A lesson on drawn films, of few trees."""
-    monkeypatch.setattr(people_lesson, "ROUNDS", (Boosting(6, 0.5), Boosting(8, 0.5)))
+    monkeypatch.setattr(
+        people_lesson, "ROUNDS", (Boosting(3, 0.5, features=20), Boosting(4, 0.5, features=20))
+    )
     monkeypatch.setattr(people_lesson, "TESTS", 2)
     monkeypatch.setattr(PeopleFilmTask, "__call__", lambda task, _: drawn_film(task.seed).save(task.film))
 

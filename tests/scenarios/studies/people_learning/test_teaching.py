@@ -1,39 +1,20 @@
-import sys
-from collections.abc import Callable
-
 import numpy as np
-import pytest
 
-from peopleboy.scenarios.studies.people_learning.teach_cascade import Boosting, as_tables, teach_cascade
+from peopleboy.scenarios.studies.people_learning.boosting import Boosting
+from peopleboy.scenarios.studies.people_learning.teach_cascade import teach_cascade
 from peopleboy.scenarios.studies.people_learning.teach_placing import teach_placing
-from peopleboy.tracker.proposals.cascade import FEATURES, Cascade
+from peopleboy.tracker.proposals.cascade import FEATURES
 from peopleboy.tracker.proposals.channels import CHANNELS
 from peopleboy.tracker.proposals.placing import offsets
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 from tests.helpers.calls.refused import refused
 
 
-def test_the_tables_say_what_scikit_learn_says() -> None:
-    from sklearn.ensemble import GradientBoostingClassifier
-
-    rng = np.random.default_rng(0)
-    windows = rng.normal(size=(300, FEATURES)).astype(np.float32)
-    is_person = windows[:, 3] + windows[:, 700] * windows[:, 800] > 0.3
-    trees = GradientBoostingClassifier(
-        n_estimators=12, learning_rate=0.3, max_depth=3, min_samples_leaf=40, max_features=200, random_state=0
-    ).fit(windows, is_person)
-    tables = as_tables([tree.tree_ for tree in trees.estimators_[:, 0]], 0.3)
-    cascade = Cascade(*tables, np.full(12, -np.inf, np.float32))
-    prior = np.log(is_person.mean() / (1.0 - is_person.mean()))
-    expected = trees.decision_function(windows)
-    np.testing.assert_allclose(cascade.running(windows)[:, -1] + prior, expected, atol=1e-4)
-
-
 def test_most_people_come_through() -> None:
     rng = np.random.default_rng(0)
     people, others = (rng.normal(size=(200, FEATURES)).astype(np.float16) for _ in range(2))
     people[:, :50] += 1
-    cascade = teach_cascade(people, others, Boosting(20, 0.3))
+    cascade = teach_cascade(people, others, Boosting(20, 0.3), rng)
     running = cascade.running(people.astype(np.float32))
     assert (running >= cascade.least).all(axis=1).mean() > 0.8
     assert np.isfinite(cascade.least).all()
@@ -46,7 +27,7 @@ def test_trees_learn_where_in_their_windows_people_are() -> None:
     told = np.where(is_so, [0.1, 0.05, 0.1, 0.5], [-0.1, -0.05, -0.1, 0.3])
     # Little else, or of the features that are drawn few would be of use.
     seen[:] = np.repeat(is_so, FEATURES // 4, axis=1) + 0.01 * seen
-    placing = teach_placing(seen, told)
+    placing = teach_placing(seen, told, rng)
     none, window = np.zeros(1, np.int64), np.array([[100.0, 50.0, 16.0, 40.0]])
     found = np.concatenate(
         [
@@ -60,22 +41,4 @@ def test_trees_learn_where_in_their_windows_people_are() -> None:
 def test_too_few_windows_are_refused() -> None:
     few, many = np.zeros((3, FEATURES), np.float16), np.zeros((50, FEATURES), np.float16)
     with refused("3 windows with people", "take more worlds"):
-        teach_cascade(few, many, Boosting(2, 0.3))
-
-
-WINDOWS = np.zeros((30, FEATURES), np.float16)
-
-
-@pytest.mark.parametrize(
-    "teach",
-    [
-        lambda: teach_cascade(WINDOWS, WINDOWS, Boosting(2, 0.3)),
-        lambda: teach_placing(WINDOWS, np.zeros((30, 4))),
-    ],
-)
-def test_without_what_teaches_it_is_refused(
-    teach: Callable[[], object], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "sklearn.ensemble", None)
-    with refused("scikit-learn", "pip install scikit-learn"):
-        teach()
+        teach_cascade(few, many, Boosting(2, 0.3), np.random.default_rng(0))
