@@ -40,6 +40,8 @@ ROUNDS: Final = (
 )
 """After each but the last, mistakes are collected, and learned from in the next."""
 
+_SEED_OF_PEOPLE: Final = 0
+_SEED_OF_OTHERS: Final = 100
 _HELD_BACK: Final = 10  # of so many worlds one is not learned from
 _MISTAKES: Final = 12000  # a round
 _OTHERS: Final = 48000  # windows without people that are in memory: 3.6 kB each
@@ -74,9 +76,7 @@ def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) 
     work_through([task for task in (*tests, *tasks) if not task.film.is_file()], workers, "films")
     held = tasks[_HELD_BACK - 1 :: _HELD_BACK] or tasks[-1:]
     lessons = [task.film for task in tasks if task not in held]
-    model = teach(
-        list(shots_of(lessons)), list(shots_of(task.film for task in held)), np.random.default_rng(0)
-    )
+    model = teach(list(shots_of(lessons)), list(shots_of(task.film for task in held)))
     kinds = ", ".join(f"{len(kind.seeds(worlds))} {kind.words} from seed {kind.first_seed}" for kind in KINDS)
     about = {"trained on": f"{kinds}; {len(held)} of them held back"}
     path = WEIGHTS if ship else out / WEIGHTS.name
@@ -86,29 +86,27 @@ def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) 
     return path
 
 
-def teach(
-    shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot], rng: np.random.Generator
-) -> PeopleModel:
+def teach(shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot]) -> PeopleModel:
     """Teach trees on images, each time with the mistakes of those before.
 
     Args:
         shots: to learn from.
         others_of: of other worlds, by which scores are made log odds.
-        rng: draws what is learned from.
 
     Raises:
         BadInput: scikit-learn is missing, or too few people.
     """
-    people, places = windows_with_people(shots, rng)
+    people, places = windows_with_people(shots, np.random.default_rng(_SEED_OF_PEOPLE))
+    rng = np.random.default_rng(_SEED_OF_OTHERS)
     others = windows_anywhere(shots, rng, _FIRST_OTHERS)
     _say(f"{len(shots)} images, {len(people)} windows with people")
     for number, boosting in enumerate(ROUNDS, 1):
-        cascade = teach_cascade(people, others, boosting, rng)
+        cascade = teach_cascade(people, others, boosting)
         if number < len(ROUNDS):
             found = mistakes(shots, cascade, rng, _MISTAKES)
             _say(f"round {number} of {len(ROUNDS)}: {len(others)} windows without, {len(found)} mistakes")
             others = _some(np.concatenate([others, found]), _OTHERS, rng)
-    model = PeopleModel(cascade, teach_placing(people, places, rng))
+    model = PeopleModel(cascade, teach_placing(people, places))
     return replace(model, cascade=cascade.calibrated(*log_odds_line(model, others_of)))
 
 

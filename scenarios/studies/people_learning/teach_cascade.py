@@ -19,9 +19,7 @@ _LAST: Final = -4.0
 """Score below which nothing is told."""
 
 
-def teach_cascade(
-    people: NDArray[np.float16], others: NDArray[np.float16], boosting: Boosting, rng: np.random.Generator
-) -> Cascade:
+def teach_cascade(people: NDArray[np.float16], others: NDArray[np.float16], boosting: Boosting) -> Cascade:
     """Teach trees on windows (N, 1800) with people and without; both together weigh the same.
 
     Raises:
@@ -31,13 +29,14 @@ def teach_cascade(
         raise BadInput(f"{len(people)} windows with people and {len(others)} without; take more worlds")
     windows = np.concatenate([people, others])
     is_person = np.arange(len(windows)) < len(people)
-    weight = np.where(is_person, 1.0 / len(people), 1.0 / len(others)) * len(windows) / 2.0
+    weight = np.where(is_person, 1.0 / len(people), 1.0 / len(others)).astype(np.float32)
+    weight *= np.float32(len(windows) / 2)
 
     def loss(told: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         share = 1.0 / (1.0 + np.exp(-told))
-        slope, bend = weight * (is_person - share), weight * share * (1.0 - share)
-        return slope.astype(np.float32), bend.astype(np.float32)
+        return weight * (is_person - share), weight * share * (1.0 - share)
 
+    rng = np.random.default_rng(0)
     tables = Binned(windows, rng).boosted(loss, boosting, rng)
     return _letting_go(Cascade(*tables, np.full(boosting.trees, -np.inf, np.float32)), people)
 

@@ -16,10 +16,9 @@ _FAR: Final = (
 )
 
 
-def teach_placing(
-    windows: NDArray[np.float16], offsets: NDArray[np.float64], rng: np.random.Generator
-) -> Placing:
+def teach_placing(windows: NDArray[np.float16], offsets: NDArray[np.float64]) -> Placing:
     """Teach trees on windows (N, 1800) whose offsets (N, 4) are known."""
+    rng = np.random.default_rng(0)
     binned, tables = Binned(windows, rng), []
     for target in offsets.T.astype(np.float32):
         start = float(np.median(target))

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from peopleboy.scenarios.studies.people_learning import people_lesson
@@ -29,7 +28,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("quick")
 def test_drawn_people_are_learned_and_found_in_other_images(shots: list[PeopleShot]) -> None:
-    model = people_lesson.teach(shots[:30], shots[30:36], np.random.default_rng(0))
+    model = people_lesson.teach(shots[:30], shots[30:36])
     found = judge_detector(model, shots[36:], knows_mount=False)
     assert (found.people, found.images) == (12, 12)
     assert found.recall(1.0) > 0.7
@@ -57,7 +56,7 @@ def test_a_tenth_of_the_worlds_is_held_back_and_at_least_one(
 ) -> None:
     split: list[int] = []
 
-    def stop(shots: list[PeopleShot], others_of: list[PeopleShot], _: object) -> PeopleModel:
+    def stop(shots: list[PeopleShot], others_of: list[PeopleShot]) -> PeopleModel:
         split.extend((len(shots), len(others_of)))
         raise KeyboardInterrupt
 

@@ -14,7 +14,7 @@ def test_most_people_come_through() -> None:
     rng = np.random.default_rng(0)
     people, others = (rng.normal(size=(200, FEATURES)).astype(np.float16) for _ in range(2))
     people[:, :50] += 1
-    cascade = teach_cascade(people, others, Boosting(20, 0.3), rng)
+    cascade = teach_cascade(people, others, Boosting(20, 0.3))
     running = cascade.running(people.astype(np.float32))
     assert (running >= cascade.least).all(axis=1).mean() > 0.8
     assert np.isfinite(cascade.least).all()
@@ -27,7 +27,7 @@ def test_trees_learn_where_in_their_windows_people_are() -> None:
     told = np.where(is_so, [0.1, 0.05, 0.1, 0.5], [-0.1, -0.05, -0.1, 0.3])
     # Little else, or of the features that are drawn few would be of use.
     seen[:] = np.repeat(is_so, FEATURES // 4, axis=1) + 0.01 * seen
-    placing = teach_placing(seen, told, rng)
+    placing = teach_placing(seen, told)
     none, window = np.zeros(1, np.int64), np.array([[100.0, 50.0, 16.0, 40.0]])
     found = np.concatenate(
         [
@@ -41,4 +41,4 @@ def test_trees_learn_where_in_their_windows_people_are() -> None:
 def test_too_few_windows_are_refused() -> None:
     few, many = np.zeros((3, FEATURES), np.float16), np.zeros((50, FEATURES), np.float16)
     with refused("3 windows with people", "take more worlds"):
-        teach_cascade(few, many, Boosting(2, 0.3), np.random.default_rng(0))
+        teach_cascade(few, many, Boosting(2, 0.3))
