@@ -31,10 +31,11 @@ def teach_cascade(people: NDArray[np.float16], others: NDArray[np.float16], boos
     is_person = np.arange(len(windows)) < len(people)
     weight = np.where(is_person, 1.0 / len(people), 1.0 / len(others)).astype(np.float32)
     weight *= np.float32(len(windows) / 2)
+    one = np.float32(1.0)
 
     def loss(told: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        share = 1.0 / (1.0 + np.exp(-told))
-        return weight * (is_person - share), weight * share * (1.0 - share)
+        share = one / (one + np.exp(-told))
+        return weight * (is_person - share), weight * share * (one - share)
 
     rng = np.random.default_rng(0)
     tables = Binned(windows, rng).boosted(loss, boosting, rng)
