@@ -36,10 +36,10 @@ class Boosting(NamedTuple):
     smallest: int = 20
 
 
-class Loss(Protocol):
+class TreeLoss(Protocol):
     """What trees are to lower."""
 
-    def __call__(self, told: Floats) -> tuple[Floats, Floats]:
+    def __call__(self, told: Floats, /) -> tuple[Floats, Floats]:
         """Give the slope (N,) down which to go from what is told of windows (N,), and its bend (N,)."""
         ...
 
@@ -64,7 +64,9 @@ class Binned:
         for number in range(windows.shape[1]):
             _bin(windows[:, number].astype(np.float32), self.edges[number], self.bins[number])
 
-    def boosted(self, loss: Loss, boosting: Boosting, rng: np.random.Generator, start: float = 0.0) -> Tables:
+    def boosted(
+        self, loss: TreeLoss, boosting: Boosting, rng: np.random.Generator, start: float = 0.0
+    ) -> Tables:
         """Teach trees to lower a loss, by Newton's method on histograms (Chen and Guestrin, KDD 2016).
 
         Args:

@@ -44,9 +44,8 @@ def _step(windows: int) -> float:
 
 
 def test_squares_become_small_tree_by_tree(windows: NDArray[np.float16]) -> None:
-    target = (windows[:, 2] > 0.3).astype(np.float32) + windows[:, 7].astype(np.float32) * (
-        windows[:, 3] > 0.0
-    )
+    both = (windows[:, 2] > 0.3) + windows[:, 7] * (windows[:, 3] > 0.0)
+    target: Floats = both.astype(np.float32)
 
     def loss(sums: Floats) -> tuple[Floats, Floats]:
         return target - sums, np.ones_like(sums)
@@ -65,6 +64,6 @@ def test_squares_become_small_tree_by_tree(windows: NDArray[np.float16]) -> None
 def test_features_that_never_differ_split_nothing() -> None:
     rng = np.random.default_rng(0)
     binned = Binned(np.zeros((50, 12), np.float16), rng)
-    tables = binned.boosted(lambda sums: (1.0 - sums, np.ones_like(sums)), ONE, rng)
+    tables = binned.boosted(lambda sums: (np.float32(1.0) - sums, np.ones_like(sums)), ONE, rng)
     assert np.isinf(tables.threshold).all()
     np.testing.assert_allclose(told(tables, np.ones((1, 12), np.float16)), 0.5 * 50 / 51)
