@@ -17,9 +17,9 @@ Grey = NDArray[np.uint8]
 
 @pytest.fixture(scope="module")
 def shots(tmp_path_factory: pytest.TempPathFactory) -> list[PeopleShot]:
-    """The first image of worlds that nobody learned from."""
+    """The first image of worlds that nobody learned from, and in which somebody is there by then."""
     folder = tmp_path_factory.mktemp("films")
-    for seed in (0, 1, 3, 7):
+    for seed in (3, 23, 24, 28):  # in which people are there from the first image on
         film_upright(random_scenario(seed, 0.3), seed).save(folder / f"{seed}.npz")
     return list(shots_of(sorted(folder.iterdir())))
 
