@@ -1,6 +1,7 @@
 """What full detail costs: both camera images with full truth of a scenario, beside the same in plain detail.
 
-`python -m benchmarks.speed.full_detail glass_corridor street_evening` prints a row for each.
+`python -m benchmarks.speed.full_detail` prints a row for each scenario of the library in full detail, the one
+that it costs most first; names of scenarios behind it choose others.
 """
 
 from __future__ import annotations
@@ -16,14 +17,16 @@ from rich.console import Console
 from rich.table import Table
 
 from peopleboy.behaviours.command import Command
-from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
+from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.sim.world import World
 
-SCENARIOS = ("street_evening", "crowded_foyer", "crossing_4", "warm_office", "glass_corridor")
+GOAL = 1.5
+"""How many times as long full detail may take."""
+
 PRESET = "uncooled"  # electronics of the thermal camera where detail is full, unless the file has others
 SEED = 0
 _COMPILED = 2  # instants after which all kernels are compiled
@@ -95,11 +98,13 @@ def _drive(scenario: Scenario, instants: int | None) -> list[Command]:
 @click.argument("scenarios", nargs=-1)
 @click.option("--instants", type=click.IntRange(1), help="How many are timed; all of a run by default.")
 def main(scenarios: Sequence[str], instants: int | None) -> None:
-    """Print CPU times of SCENARIOS in plain and in full detail; those of the documentation by default."""
-    table = Table("scenario", "plain, ms", "full, ms", "times as long", box=None)
-    for name in scenarios or SCENARIOS:
-        found = detail_times(name, instants)
-        table.add_row(name, f"{found.plain_ms:.2f}", f"{found.full_ms:.2f}", f"{found.ratio:.2f}")
+    """Print CPU times of SCENARIOS in plain and in full detail; those of full detail by default."""
+    names = scenarios or [name for name in library() if load_scenario(name).spec.detail == "full"]
+    times = {name: detail_times(name, instants) for name in names}
+    table = Table("scenario", "plain, ms", "full, ms", "times as long", "goal", box=None)
+    for name, found in sorted(times.items(), key=lambda item: -item[1].ratio):
+        row = (found.plain_ms, found.full_ms, found.ratio, GOAL)
+        table.add_row(name, *(f"{value:.2f}" for value in row))
     Console(width=100).print(table)
 
 

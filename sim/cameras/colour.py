@@ -29,7 +29,7 @@ LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])
 _AMBIENT = 0.55
 
 _GLASS = 0.04  # share of light that glass and varnish, of a refractive index of 1.5, mirror straight on
-_CONTRAST = 0.03  # share of the light: fainter edges need no smoothing
+_CONTRAST = 0.06  # share of the light: fainter edges need no smoothing
 _ROOM = 0.4  # what is mirrored where nothing in particular is, share of the light
 
 

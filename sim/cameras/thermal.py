@@ -32,7 +32,7 @@ from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.finishes import TEXEL_STEP
 
-_CONTRAST = 1.0  # [W / (m2 sr)] about a kelvin: fainter edges need no smoothing
+_CONTRAST = 2.0  # [W / (m2 sr)] about three kelvin: behind the blur fainter edges show no stairs
 _LOWEST_C, _HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
 
 

@@ -34,7 +34,7 @@ _CAPSULE = int(ShapeKind.CAPSULE)
 _MESH = int(ShapeKind.MESH)
 _NONE = -1
 
-_BEHIND = 1.1  # what is farther than this many times another's depth is behind it all over a pixel
+_BEHIND = 1.03  # what is farther than this many times another's depth is behind it all over a pixel
 
 
 def smooth(

@@ -101,28 +101,26 @@ def _mix(
     surroundings: NDArray[np.float64],
 ) -> None:
     """Add to each pixel of a mirror what the window sees in it, linearly between the window's pixels."""
-    (height, width, channels), (rows, columns) = mirrored.shape, part.shape
+    (height, width, channels), (rows, columns), step = mirrored.shape, part.shape, 1.0 / EVERY
     _subtract(mirrored, beyond, surroundings)
     for j in range(height - 1):
         for i in range(width - 1):
             if max(beyond[j, i], beyond[j, i + 1], beyond[j + 1, i], beyond[j + 1, i + 1]) < 0:
                 continue
-            for k in range(EVERY * EVERY):
-                y, x = k // EVERY, k % EVERY
-                row, column = top + EVERY * j + y, left + EVERY * i + x
-                if row >= rows or column >= columns:
-                    continue
-                p = part[row, column]
-                if p < 0 or not is_surface[surface[row, column]]:
-                    continue
-                share = shine[p] * mirrored_share(reflectance[p], cosine[j, i])
-                down, across = y / EVERY, x / EVERY
-                for c in range(channels):
-                    above, below = mirrored[j, i, c], mirrored[j + 1, i, c]
-                    above += across * (mirrored[j, i + 1, c] - above)
-                    below += across * (mirrored[j + 1, i + 1, c] - below)
-                    more = above + down * (below - above)
-                    image[row, column, c] = max(image[row, column, c] + share * more, 0.0)
+            for row in range(top + EVERY * j, min(top + EVERY * (j + 1), rows)):
+                down = (row - top) * step - j
+                for column in range(left + EVERY * i, min(left + EVERY * (i + 1), columns)):
+                    p = part[row, column]
+                    if p < 0 or not is_surface[surface[row, column]]:
+                        continue
+                    share = shine[p] * mirrored_share(reflectance[p], cosine[j, i])
+                    across = (column - left) * step - i
+                    for c in range(channels):
+                        above, below = mirrored[j, i, c], mirrored[j + 1, i, c]
+                        above += across * (mirrored[j, i + 1, c] - above)
+                        below += across * (mirrored[j + 1, i + 1, c] - below)
+                        more = above + down * (below - above)
+                        image[row, column, c] = max(image[row, column, c] + share * more, 0.0)
 
 
 @njit(cache=True, fastmath=True)
