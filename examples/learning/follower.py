@@ -25,6 +25,7 @@ from peopleboy.behaviours.following.follow_person import (
     distance_error,
 )
 from peopleboy.behaviours.percept import Percept
+from peopleboy.tracker.weights_archive import opened_archive
 
 Weights = NDArray[np.float64]  # (16,)
 
@@ -129,13 +130,8 @@ def load_weights(file: Path) -> Weights:
     Raises:
         BadInput: there is no such file, or it has no such weights.
     """
-    try:
-        with np.load(file, allow_pickle=False) as stored:
-            weights = np.asarray(stored["weights"], np.float64)
-    except (OSError, ValueError, KeyError) as error:
-        raise BadInput(
-            f"{file}: there are no weights; `python -m examples.learning.train` makes them"
-        ) from error
+    with opened_archive(file, "python -m examples.learning.train") as stored:
+        weights = np.asarray(stored["weights"], np.float64)
     if weights.shape != (SIZE,) or not np.isfinite(weights).all():
         raise BadInput(f"{file}: weights must be ({SIZE},) finite numbers, got {weights.shape}")
     return weights

@@ -93,8 +93,10 @@ def test_what_ships_is_small_loads_without_pickles_and_goes_where_behaviours_go(
 
 
 def test_weights_that_do_not_fit_are_refused_in_one_line(tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match="no weights"):
-        load_weights(tmp_path / "nowhere.npz")
+    np.save(tmp_path / "bare.npy", np.zeros(SIZE))
+    for name in ("nowhere.npz", "bare.npy"):
+        with pytest.raises(BadInput, match=r"examples\.learning\.train"):
+            load_weights(tmp_path / name)
     np.savez(tmp_path / "short.npz", weights=np.zeros(3))
     with pytest.raises(BadInput, match=rf"\({SIZE},\)"):
         load_weights(tmp_path / "short.npz")
