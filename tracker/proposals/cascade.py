@@ -13,15 +13,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.channels import CHANNELS, Cells
+from peopleboy.tracker.proposals.channels import Cells
+from peopleboy.tracker.proposals.patches import Patches, Sums, patch
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 
 DEPTH: Final = 3
 NODES: Final = 2**DEPTH - 1
 LEAVES: Final = 2**DEPTH
-FEATURES: Final = CHANNELS * ROWS * COLUMNS
-"""Of a window, by channel, row and column."""
-
 STRIDE: Final = 2  # [cells] between windows of the first look
 _LOOKED: Final = 64
 """Trees that a window must come through for those beside it to be looked at, too."""
@@ -43,37 +41,39 @@ class Hits(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cascade:
-    """Trees of depth 3, of which each node sends a window to the right if its feature is above a threshold.
+    """Trees of depth 3, of which each node sends a window to the right if its patch is above a threshold.
 
     Attributes:
-        feature: (T, 7) int32 by node, those of one depth after another: 2 k + 1 and 2 k + 2 follow k.
+        patches: all that nodes ask for.
+        feature: (T, 7) int32 number of a patch by node, those of one depth after another: 2 k + 1 and
+            2 k + 2 follow k.
         threshold: (T, 7) float32.
         leaf: (T, 8) float32, what each leaf adds to the score.
         least: (T,) float32 score below which a window is let go after that tree.
     """
 
+    patches: Patches
     feature: NDArray[np.int32]
     threshold: NDArray[np.float32]
     leaf: NDArray[np.float32]
     least: NDArray[np.float32]
 
-    def scan(self, cells: Cells, rows: tuple[int, int], *, stride: int = STRIDE) -> Hits:
+    def scan(self, sums: Sums, rows: tuple[int, int], *, stride: int = STRIDE) -> Hits:
         """Look through all windows of a level, with their first cell in some rows, borders included.
 
         Args:
-            cells: (9, h, w) channels.
+            sums: (9, h + 1, w + 1) of its channels.
             rows: the first one, and the one after the last.
             stride: cells between windows; with 2 and more, those beside a promising one are looked at, too.
         """
-        _, high, wide = cells.shape
-        first, end = max(rows[0], 0), min(rows[1], high - ROWS + 1)
-        if end <= first or wide < COLUMNS:
+        _, high, wide = sums.shape
+        first, end = max(rows[0], 0), min(rows[1], high - ROWS)
+        if end <= first or wide - 1 < COLUMNS:
             return Hits(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
-        offset = np.empty(self.feature.size, np.uint32)
-        _place(self.feature.ravel(), high, wide, offset)
-        found = np.full((end - first, wide - COLUMNS + 1), -np.inf, np.float32)
+        offset, weight = self.patches.corners(self.feature.ravel(), high, wide)
+        found = np.full((end - first, wide - COLUMNS), -np.inf, np.float32)
         _scan(
-            cells.ravel(), wide, first, offset, self.threshold.ravel(), self.leaf.ravel(), self.least,
+            sums.ravel(), wide, first, offset, weight, self.threshold.ravel(), self.leaf.ravel(), self.least,
             stride, found,
         )  # fmt: skip
         at_row, at_column = np.nonzero(found > -np.inf)
@@ -84,32 +84,24 @@ class Cascade:
         leaf = self.leaf * np.float32(gain)
         leaf[0] += np.float32(offset)
         least = self.least * np.float32(gain) + np.float32(offset)
-        return Cascade(self.feature, self.threshold, leaf, least)
+        return Cascade(self.patches, self.feature, self.threshold, leaf, least)
 
-    def running(self, features: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Give the scores (N, T) after each tree of windows (N, 1800)."""
-        scores = np.empty((len(features), len(self.feature)), np.float32)
-        _run(features, self.feature, self.threshold, self.leaf, scores)
+    def running(self, sums: Sums) -> NDArray[np.float32]:
+        """Give the scores (N, T) after each tree of windows with sums in their columns (9 * 21 * 11, N)."""
+        scores = np.zeros((sums.shape[1], len(self.feature)), np.float32)
+        offset, weight = self.patches.corners(self.feature.ravel(), ROWS + 1, COLUMNS + 1)
+        for number, window in enumerate(np.ascontiguousarray(sums.T)):
+            _run(window, offset, weight, self.threshold.ravel(), self.leaf, scores[number])
         return scores
 
 
 @njit(cache=True, nogil=True)
-def _place(
-    feature: NDArray[np.int32], high: int, wide: int, offset: NDArray[np.uint32]
-) -> None:  # pragma: no cover
-    """Tell how far behind a window's first cell each feature is, in a level of that size."""
-    for k in range(len(feature)):
-        channel, within = divmod(feature[k], ROWS * COLUMNS)
-        row, column = divmod(within, COLUMNS)
-        offset[k] = channel * high * wide + row * wide + column
-
-
-@njit(cache=True, nogil=True)
 def _scan(
-    cells: Cells,
+    sums: Sums,
     wide: int,
     first: int,
     offset: NDArray[np.uint32],
+    weight: Cells,
     threshold: Cells,
     leaf: Cells,
     least: Cells,
@@ -126,12 +118,14 @@ def _scan(
             left[count] = j
             count += 1
         base = (i + first) * wide
-        count = _walk(cells, base, left, count, offset, threshold, leaf, least, 0, _LOOKED, score)
+        count = _walk(sums, base, left, count, offset, weight, threshold, leaf, least, 0, _LOOKED, score)
         for k in range(count):
             top, bottom = max(i - stride + 1, 0), min(i + stride, rows)
             begin = max(np.int64(left[k]) - stride + 1, 0)
             is_wanted[top:bottom, begin : min(np.int64(left[k]) + stride, columns)] = True
-        count = _walk(cells, base, left, count, offset, threshold, leaf, least, _LOOKED, len(least), score)
+        count = _walk(
+            sums, base, left, count, offset, weight, threshold, leaf, least, _LOOKED, len(least), score
+        )
         for k in range(count):
             found[i, left[k]] = score[left[k]]
     for i in range(rows):
@@ -141,18 +135,19 @@ def _scan(
                 left[count] = j
                 count += 1
         base = (i + first) * wide
-        count = _walk(cells, base, left, count, offset, threshold, leaf, least, 0, len(least), score)
+        count = _walk(sums, base, left, count, offset, weight, threshold, leaf, least, 0, len(least), score)
         for k in range(count):
             found[i, left[k]] = score[left[k]]
 
 
 @njit(cache=True, nogil=True)
 def _walk(
-    cells: Cells,
+    sums: Sums,
     base: int,
     left: NDArray[np.uint32],
     count: int,
     offset: NDArray[np.uint32],
+    weight: Cells,
     threshold: Cells,
     leaf: Cells,
     least: Cells,
@@ -174,7 +169,9 @@ def _walk(
             at = np.uint32(base) + window
             node = np.uint32(0)
             for _ in range(DEPTH):
-                is_right = cells[at + offset[nodes + node]] > threshold[nodes + node]
+                corner, by = offset[nodes + node], weight[nodes + node]
+                seen = patch(sums, at, corner, by)
+                is_right = seen > threshold[nodes + node]
                 node = np.uint32(2) * node + np.uint32(1) + np.uint32(is_right)
             total = score[window] + leaf[leaves + node - np.uint32(NODES)]
             score[window] = total
@@ -188,13 +185,18 @@ def _walk(
 
 @njit(cache=True, nogil=True)
 def _run(
-    features: Cells, feature: NDArray[np.int32], threshold: Cells, leaf: Cells, scores: Cells
+    window: Sums,
+    offset: NDArray[np.uint32],
+    weight: Cells,
+    threshold: Cells,
+    leaf: Cells,
+    scores: Cells,
 ) -> None:  # pragma: no cover
-    for i in range(len(features)):
-        score = np.float32(0.0)
-        for tree in range(len(feature)):
-            node = 0
-            for _ in range(DEPTH):
-                node = 2 * node + 1 + (features[i, feature[tree, node]] > threshold[tree, node])
-            score += leaf[tree, node - NODES]
-            scores[i, tree] = score
+    score = np.float32(0.0)
+    for tree in range(len(leaf)):
+        node, nodes = 0, tree * NODES
+        for _ in range(DEPTH):
+            seen = patch(window, np.uint32(0), offset[nodes + node], weight[nodes + node])
+            node = 2 * node + 1 + (seen > threshold[nodes + node])
+        score += leaf[tree, node - NODES]
+        scores[tree] = score

@@ -12,6 +12,7 @@ from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.proposals.channels import Memory
 from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
 from peopleboy.tracker.proposals.motion import change, shifted, turned
+from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.pyramid import levels
 from peopleboy.tracker.proposals.suppression import Proposals, suppress
 from peopleboy.tracker.proposals.window import Floats
@@ -102,9 +103,10 @@ def look(
     boxes: list[Floats] = [np.empty((0, 4))]
     scores: list[Floats] = [np.empty(0)]
     for level in levels(grey, change, mount, smallest_px, memory or Memory()):
-        hits = model.cascade.scan(level.cells, level.rows)
+        sums = summed(level.cells)
+        hits = model.cascade.scan(sums, level.rows)
         is_sure = hits.score >= least_score
         row, column = hits.row[is_sure], hits.column[is_sure]
-        boxes.append(model.placing.boxes(level.cells, row, column, level.boxes(row, column)))
+        boxes.append(model.placing.boxes(sums, row, column, level.boxes(row, column)))
         scores.append(hits.score[is_sure])
     return suppress(np.concatenate(boxes), np.concatenate(scores))

@@ -13,8 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.proposals.cascade import DEPTH, FEATURES, LEAVES, NODES, Cascade
+from peopleboy.tracker.proposals.cascade import DEPTH, LEAVES, NODES, Cascade
+from peopleboy.tracker.proposals.channels import CHANNELS
+from peopleboy.tracker.proposals.patches import Patches
 from peopleboy.tracker.proposals.placing import OFFSETS, Placing
+from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 from peopleboy.tracker.weights_archive import opened_archive
 
 COMMAND: Final = "peopleboy train-detector"
@@ -22,6 +25,7 @@ WEIGHTS: Final = Path(__file__).parent / "weights" / "people.npz"
 """The trees that come with the tracker."""
 
 _ABOUT: Final = "about"
+_PATCHES: Final = ("channel", "first", "second")
 _ARRAYS: Final = ("feature", "threshold", "leaf")
 _KINDS: Final = tuple(np.dtype(kind) for kind in (np.int16, np.float32, np.float32))
 
@@ -45,7 +49,7 @@ class PeopleModel:
         content: dict[str, Any] = {
             "least": self.cascade.least,
             _ABOUT: np.array(json.dumps(dict(self.about))),
-        }
+        } | {name: getattr(self.cascade.patches, name) for name in _PATCHES}
         for trees, prefix in ((self.cascade, ""), (self.placing, "placing_")):
             content |= {prefix + name: getattr(trees, name) for name in _ARRAYS}
             content[prefix + "feature"] = trees.feature.astype(np.int16)
@@ -62,6 +66,7 @@ class PeopleModel:
         with opened_archive(path, COMMAND) as archive:
             about = json.loads(str(archive[_ABOUT]))
             least = np.asarray(archive["least"])
+            patches = Patches(*(np.asarray(archive[name]) for name in _PATCHES))
             whether, where = (
                 [np.asarray(archive[prefix + name]) for name in _ARRAYS] for prefix in ("", "placing_")
             )
@@ -70,27 +75,41 @@ class PeopleModel:
             trees > 0
             and least.dtype == np.float32
             and not np.isnan(least).any()
-            and _are_trees(whether, (trees,))
-            and _are_trees(where, (OFFSETS, where[0].shape[1] if where[0].ndim == 3 else 0))
+            and _are_patches(patches)
+            and _are_trees(whether, (trees,), len(patches))
+            and _are_trees(where, (OFFSETS, where[0].shape[1] if where[0].ndim == 3 else 0), len(patches))
         )
         if not is_right:
             raise BadInput(
-                f"holds no trees of depth {DEPTH} on the {FEATURES} features of a window; "
+                f"holds no trees of depth {DEPTH} on patches of a window of {ROWS} x {COLUMNS} cells; "
                 f"`{COMMAND}` makes some",
                 file=str(path),
             )
-        cascade = Cascade(whether[0].astype(np.int32), whether[1], whether[2], least)
-        return cls(cascade, Placing(where[0].astype(np.int32), where[1], where[2]), about)
+        cascade = Cascade(patches, whether[0].astype(np.int32), whether[1], whether[2], least)
+        return cls(cascade, Placing(patches, where[0].astype(np.int32), where[1], where[2]), about)
 
 
-def _are_trees(arrays: list[NDArray[Any]], trees: tuple[int, ...]) -> bool:
+def _are_patches(patches: Patches) -> bool:
+    """Tell whether all rectangles lie in a window."""
+    boxes = np.stack([patches.first, patches.second]) if patches.first.shape == patches.second.shape else None
+    return (
+        boxes is not None
+        and boxes.shape == (2, patches.channel.size, 4)
+        and all(array.dtype == np.uint8 for array in (patches.channel, patches.first, patches.second))
+        and bool((patches.channel < CHANNELS).all())
+        and bool((boxes[..., :2] <= boxes[..., 2:]).all())
+        and bool((boxes[..., 2:] <= (ROWS, COLUMNS)).all())
+    )
+
+
+def _are_trees(arrays: list[NDArray[Any]], trees: tuple[int, ...], patches: int) -> bool:
     """Tell whether features, thresholds and leaves are those of so many trees."""
     feature, threshold, leaf = arrays
     return (
         feature.shape == threshold.shape == (*trees, NODES)
         and leaf.shape == (*trees, LEAVES)
         and tuple(array.dtype for array in arrays) == _KINDS
-        and bool(((feature >= 0) & (feature < FEATURES)).all())
+        and bool(((feature >= 0) & (feature < patches)).all())
         and not bool(np.isnan(threshold).any())
         and bool(np.isfinite(leaf).all())
     )

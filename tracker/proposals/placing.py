@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.proposals.cascade import DEPTH, NODES
 from peopleboy.tracker.proposals.channels import Cells
-from peopleboy.tracker.proposals.window import COLUMNS, ROWS, Floats
+from peopleboy.tracker.proposals.patches import Patches, Sums, patch
+from peopleboy.tracker.proposals.window import Floats
 
 OFFSETS: Final = 4
 """Numbers that tell a person's box from its window: see `offsets`."""
@@ -22,21 +23,24 @@ class Placing:
     """Trees for each of the numbers.
 
     Attributes:
+        patches: all that nodes ask for.
         feature: (4, T, 7) int32, as in a `Cascade`.
         threshold: (4, T, 7) float32.
         leaf: (4, T, 8) float32; the sum of what all trees say is the number.
     """
 
+    patches: Patches
     feature: NDArray[np.int32]
     threshold: NDArray[np.float32]
     leaf: NDArray[np.float32]
 
-    def boxes(
-        self, cells: Cells, row: NDArray[np.int64], column: NDArray[np.int64], window: Floats
-    ) -> Floats:
+    def boxes(self, sums: Sums, row: NDArray[np.int64], column: NDArray[np.int64], window: Floats) -> Floats:
         """Give the boxes (N, 4) of those who fill windows that begin in some cells, with boxes (N, 4)."""
         told = np.empty((len(row), OFFSETS), np.float32)
-        _place(cells, row, column, self.feature, self.threshold, self.leaf, told)
+        if len(row):
+            _, high, wide = sums.shape
+            offset, weight = self.patches.corners(self.feature.ravel(), high, wide)
+            _place(sums.ravel(), row * wide + column, offset, weight, self.threshold.ravel(), self.leaf, told)
         return moved(window, told.astype(np.float64))
 
 
@@ -67,23 +71,24 @@ def moved(window: Floats, told: Floats) -> Floats:
 
 @njit(cache=True, nogil=True)
 def _place(
-    cells: Cells,
-    row: NDArray[np.int64],
-    column: NDArray[np.int64],
-    feature: NDArray[np.int32],
+    sums: Sums,
+    begin: NDArray[np.int64],
+    offset: NDArray[np.uint32],
+    weight: Cells,
     threshold: Cells,
     leaf: Cells,
     told: Cells,
 ) -> None:  # pragma: no cover
-    for number in range(len(row)):
-        for offset in range(feature.shape[0]):
+    trees = leaf.shape[1]
+    for number in range(len(begin)):
+        at = np.uint32(begin[number])
+        for offset_of in range(leaf.shape[0]):
             total = np.float32(0.0)
-            for tree in range(feature.shape[1]):
-                node = 0
+            for tree in range(trees):
+                node, nodes = 0, (offset_of * trees + tree) * NODES
                 for _ in range(DEPTH):
-                    channel, within = divmod(feature[offset, tree, node], ROWS * COLUMNS)
-                    down, right = divmod(within, COLUMNS)
-                    seen = cells[channel, row[number] + down, column[number] + right]
-                    node = 2 * node + 1 + (seen > threshold[offset, tree, node])
-                total += leaf[offset, tree, node - NODES]
-            told[number, offset] = total
+                    corner, by = offset[nodes + node], weight[nodes + node]
+                    seen = patch(sums, at, corner, by)
+                    node = 2 * node + 1 + (seen > threshold[nodes + node])
+                total += leaf[offset_of, tree, node - NODES]
+            told[number, offset_of] = total

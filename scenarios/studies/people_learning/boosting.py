@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.studies.people_learning.many_threads import CORES, in_threads
 from peopleboy.tracker.proposals.cascade import DEPTH, LEAVES, NODES
+from peopleboy.tracker.proposals.patches import Patches, Sums
 
 Bins = NDArray[np.uint8]
 Floats = NDArray[np.float32]
@@ -53,16 +56,28 @@ class Tables(NamedTuple):
 
 
 class Binned:
-    """Windows (N, F) by the bins in which their features are."""
+    """Windows by the bins in which their patches are."""
 
-    def __init__(self, windows: NDArray[np.float16], rng: np.random.Generator) -> None:
-        """Sort features into bins that hold about as many windows each."""
-        some = windows[rng.permutation(len(windows))[:_LOOKED_AT]].astype(np.float32)
-        borders = np.quantile(some, np.arange(1, _BINS) / _BINS, axis=0).astype(np.float32)
-        self.edges = np.ascontiguousarray(borders.T)
-        self.bins: Bins = np.empty(windows.shape[::-1], np.uint8)
-        for number in range(windows.shape[1]):
-            _bin(windows[:, number].astype(np.float32), self.edges[number], self.bins[number])
+    def __init__(self, patches: Patches, sums: Sums, rng: np.random.Generator) -> None:
+        """Sort patches into bins that hold about as many windows each.
+
+        Args:
+            patches: what may be asked for, F of them.
+            sums: (9 * 21 * 11, N), a window in a column.
+            rng: draws by which windows the bins are told.
+        """
+        count = sums.shape[1]
+        some = np.sort(rng.permutation(count)[:_LOOKED_AT])
+        self.edges: Floats = np.empty((len(patches), _BINS - 1), np.float32)
+        self.bins: Bins = np.empty((len(patches), count), np.uint8)
+
+        def sort(number: int) -> None:
+            told = patches.of(sums, number)
+            self.edges[number] = np.quantile(told[some], np.arange(1, _BINS) / _BINS)
+            _bin(told, self.edges[number], self.bins[number])
+
+        for _ in in_threads(sort, range(len(patches))):
+            pass
 
     def boosted(
         self, loss: TreeLoss, boosting: Boosting, rng: np.random.Generator, start: float = 0.0
@@ -82,16 +97,56 @@ class Binned:
             np.full((boosting.trees, NODES), np.inf, np.float32),
             np.zeros((boosting.trees, LEAVES), np.float32),
         )
-        for feature, threshold, leaf in zip(*tables, strict=True):
-            some = np.sort(rng.permutation(windows)[: round(boosting.share * windows)])
-            tried = rng.integers(0, features, (DEPTH, boosting.features))
-            at = np.full(NODES, _BINS - 1)
-            _grow(self.bins, some, *loss(told), tried, boosting.smallest, feature, at, leaf)
-            leaf *= np.float32(boosting.rate)
-            _add(self.bins, feature, at, leaf, told)
-            is_split = at < _BINS - 1
-            threshold[is_split] = self.edges[feature[is_split], at[is_split]]
+        with ThreadPoolExecutor(CORES) as pool:
+            for feature, threshold, leaf in zip(*tables, strict=True):
+                some = np.sort(rng.permutation(windows)[: round(boosting.share * windows)])
+                slope, bend = loss(told)
+                tried = rng.integers(0, features, (DEPTH, boosting.features))
+                at = self._grown(_Lot(some, slope[some], bend[some]), tried, boosting, feature, leaf, pool)
+                leaf *= np.float32(boosting.rate)
+                _add(self.bins, feature, at, leaf, told)
+                is_split = at < _BINS - 1
+                threshold[is_split] = self.edges[feature[is_split], at[is_split]]
         return tables
+
+    def _grown(
+        self,
+        lot: _Lot,
+        tried: NDArray[np.int64],
+        boosting: Boosting,
+        feature: NDArray[np.int32],
+        leaf: Floats,
+        pool: ThreadPoolExecutor,
+    ) -> NDArray[np.int64]:
+        """Grow a tree level by level: each node takes the feature and the bin that lower the loss most.
+
+        Returns:
+            (7,) the last bin to the left, by node.
+        """
+        node, at = np.zeros(len(lot.window), np.int64), np.full(NODES, _BINS - 1)
+        for depth, numbers in enumerate(tried):
+            parts = np.array_split(numbers, min(CORES, len(numbers)))
+
+            def search(part: NDArray[np.int64], depth: int = depth) -> NDArray[np.float64]:
+                return _search(self.bins, *lot, node, part, 2**depth, boosting.smallest)
+
+            found = np.concatenate(list(pool.map(search, parts)))  # (450, nodes, 2): gain, and bin
+            best = found[:, :, 0].argmax(axis=0)
+            for k, trial in enumerate(best.tolist()):
+                if found[trial, k, 0] > 0.0:
+                    feature[2**depth - 1 + k], at[2**depth - 1 + k] = numbers[trial], found[trial, k, 1]
+            _descend(self.bins, lot.window, 2**depth - 1, feature, at, node)
+        slope, bend = (np.bincount(node, weights, LEAVES) for weights in (lot.slope, lot.bend))
+        leaf[:] = slope / (bend + _LIGHT)
+        return at
+
+
+class _Lot(NamedTuple):
+    """Windows (K,) that a tree learns from, with slope (K,) and bend (K,) of the loss."""
+
+    window: NDArray[np.int64]
+    slope: Floats
+    bend: Floats
 
 
 @njit(cache=True, nogil=True)
@@ -113,49 +168,44 @@ def _bin(column: Floats, edges: Floats, bins: Bins) -> None:  # pragma: no cover
 
 
 @njit(cache=True, nogil=True)
-def _grow(
+def _search(
     bins: Bins,
-    some: NDArray[np.int64],
+    window: NDArray[np.int64],
     slope: Floats,
     bend: Floats,
+    node: NDArray[np.int64],
     tried: NDArray[np.int64],
+    nodes: int,
     smallest: int,
+) -> NDArray[np.float64]:  # pragma: no cover
+    """Give by how much each patch lowers the loss in each node, and the last bin to the left (K, n, 2)."""
+    found = np.empty((len(tried), nodes, 2), np.float64)
+    sums = np.empty((nodes, _BINS, 3), np.float32)
+    for trial in range(len(tried)):
+        row = bins[tried[trial]]
+        sums[:] = 0.0
+        for k in range(len(window)):
+            cell = sums[node[k], row[window[k]]]
+            cell[0] += slope[k]
+            cell[1] += bend[k]
+            cell[2] += np.float32(1.0)
+        for n in range(nodes):
+            found[trial, n, 0], found[trial, n, 1] = _best(sums[n], smallest)
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _descend(
+    bins: Bins,
+    window: NDArray[np.int64],
+    first: int,
     feature: NDArray[np.int32],
     at: NDArray[np.int64],
-    leaf: Floats,
+    node: NDArray[np.int64],
 ) -> None:  # pragma: no cover
-    """Grow a tree level by level: each node takes the feature and the bin that lower the loss most."""
-    count = len(some)
-    node = np.zeros(count, np.int64)
-    g, h = np.empty(count, np.float32), np.empty(count, np.float32)
-    for k in range(count):
-        g[k], h[k] = slope[some[k]], bend[some[k]]
-    for depth in range(DEPTH):
-        first, nodes = 2**depth - 1, 2**depth
-        best = np.zeros(nodes, np.float64)
-        for trial in range(tried.shape[1]):
-            number = tried[depth, trial]
-            row = bins[number]
-            sums = np.zeros((nodes, _BINS, 3), np.float32)
-            for k in range(count):
-                cell = sums[node[k], row[some[k]]]
-                cell[0] += g[k]
-                cell[1] += h[k]
-                cell[2] += np.float32(1.0)
-            for n in range(nodes):
-                gain, split = _best(sums[n], smallest)
-                if gain > best[n]:
-                    best[n] = gain
-                    feature[first + n], at[first + n] = number, split
-        for k in range(count):
-            place = first + node[k]
-            node[k] = 2 * node[k] + (bins[feature[place], some[k]] > at[place])
-    total = np.zeros((LEAVES, 2), np.float64)
-    for k in range(count):
-        total[node[k], 0] += g[k]
-        total[node[k], 1] += h[k]
-    for n in range(LEAVES):
-        leaf[n] = total[n, 0] / (total[n, 1] + _LIGHT)
+    for k in range(len(window)):
+        place = first + node[k]
+        node[k] = 2 * node[k] + (bins[feature[place], window[k]] > at[place])
 
 
 @njit(cache=True, nogil=True)

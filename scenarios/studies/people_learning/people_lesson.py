@@ -1,4 +1,4 @@
-"""The whole lesson: films of random worlds, three rounds of mistakes, and how good it is in other worlds."""
+"""The whole lesson: films of random worlds, four rounds of mistakes, and how good it is in other worlds."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.people_learning.boosting import Boosting
 from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector, log_odds_line
+from peopleboy.scenarios.studies.people_learning.patch_pool import patch_pool
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
 from peopleboy.scenarios.studies.people_learning.teach_cascade import teach_cascade
@@ -36,16 +37,17 @@ ROUNDS: Final = (
     Boosting(64, 0.3, features=200),
     Boosting(160, 0.2, features=300),
     Boosting(320, 0.15, features=300),
-    Boosting(640, 0.1),
+    Boosting(640, 0.12, features=300),
+    Boosting(1500, 0.1),
 )
 """After each but the last, mistakes are collected, and learned from in the next."""
 
 _SEED_OF_PEOPLE: Final = 0
 _SEED_OF_OTHERS: Final = 100
 _HELD_BACK: Final = 10  # of so many worlds one is not learned from
-_MISTAKES: Final = 12000  # a round
-_OTHERS: Final = 48000  # windows without people that are in memory: 3.6 kB each
-_FIRST_OTHERS: Final = 12000
+_MISTAKES: Final = 16000  # a round
+_OTHERS: Final = 80000  # windows without people that are in memory: 3.6 kB each
+_FIRST_OTHERS: Final = 16000
 
 
 def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) -> Path:
@@ -98,15 +100,16 @@ def teach(shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot]) -> Peopl
     """
     people, places = windows_with_people(shots, np.random.default_rng(_SEED_OF_PEOPLE))
     rng = np.random.default_rng(_SEED_OF_OTHERS)
+    patches = patch_pool()
     others = windows_anywhere(shots, rng, _FIRST_OTHERS)
     _say(f"{len(shots)} images, {len(people)} windows with people")
     for number, boosting in enumerate(ROUNDS, 1):
-        cascade = teach_cascade(people, others, boosting)
+        cascade = teach_cascade(people, others, patches, boosting)
         if number < len(ROUNDS):
             found = mistakes(shots, cascade, rng, _MISTAKES)
             _say(f"round {number} of {len(ROUNDS)}: {len(others)} windows without, {len(found)} mistakes")
             others = _some(np.concatenate([others, found]), _OTHERS, rng)
-    model = PeopleModel(cascade, teach_placing(people, places))
+    model = PeopleModel(cascade, teach_placing(people, places, patches))
     return replace(model, cascade=cascade.calibrated(*log_odds_line(model, others_of)))
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,6 +28,10 @@ _LEAST_SPAN: Final = 60.0  # [grey]
 _GAINS: Final = (0.6, 1.6)
 _NEGATED: Final = 0.15  # of images: a camera that shows what is hot black, or people colder than all else
 _FAINT: Final = 0.15  # of images, in which something hotter and something colder take most of the greys
+_SOFT: Final = 0.3  # of images
+_BLURS_PX: Final = (0.4, 1.6)
+_MOST_NOISE: Final = 4.0  # [grey]
+_CURVES: Final = (-0.6, 0.6)  # logarithm of the power
 _FAINTER: Final = (0.15, 0.6)  # gains
 _CUT_OFF: Final = 0.3  # of images
 _MOST_CUT: Final = 0.4  # of the height
@@ -60,6 +66,8 @@ class PeopleShot:
             shot = shot.cut_off(rng)
         if rng.random() < _NEGATED:
             shot = shot.negated()
+        if rng.random() < _SOFT:
+            shot = shot.softened(rng)
         if rng.random() < _SPANNED:
             return shot.spanned(rng)
         return shot.faint(rng) if rng.random() < _FAINT else shot
@@ -67,6 +75,18 @@ class PeopleShot:
     def negated(self) -> PeopleShot:
         """Give it with hot black."""
         return replace(self, grey=255 - self.grey)
+
+    def softened(self, rng: np.random.Generator) -> PeopleShot:
+        """Give it as a camera with poorer optics and more noise, and another curve of greys, would."""
+        blur, noise = rng.uniform(*_BLURS_PX), rng.uniform(0.0, _MOST_NOISE)
+        curve = 255.0 * (np.arange(256.0) / 255.0) ** math.exp(rng.uniform(*_CURVES))
+        soft = cv2.GaussianBlur(curve[self.grey], (0, 0), blur) + rng.normal(0.0, noise, self.grey.shape)
+        change = cv2.GaussianBlur(self.change.astype(np.float64), (0, 0), blur)
+        return replace(
+            self,
+            grey=np.rint(np.clip(soft, 0.0, 255.0)).astype(np.uint8),
+            change=np.rint(change).astype(np.uint8),
+        )
 
     def faint(self, rng: np.random.Generator) -> PeopleShot:
         """Give it with less contrast, as where something is much hotter or colder than all the rest."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.people_learning.boosting import Binned, Boosting
+from peopleboy.tracker.proposals.patches import Patches, summed_windows
 from peopleboy.tracker.proposals.placing import Placing
 
 _BOOSTING: Final = Boosting(trees=80, rate=0.15, features=300)
@@ -16,10 +17,10 @@ _FAR: Final = (
 )
 
 
-def teach_placing(windows: NDArray[np.float16], offsets: NDArray[np.float64]) -> Placing:
-    """Teach trees on windows (N, 1800) whose offsets (N, 4) are known."""
+def teach_placing(windows: NDArray[np.float16], offsets: NDArray[np.float64], patches: Patches) -> Placing:
+    """Teach trees on windows (N, 1800) whose offsets (N, 4) are known, and on patches of them."""
     rng = np.random.default_rng(0)
-    binned, tables = Binned(windows, rng), []
+    binned, tables = Binned(patches, summed_windows(windows), rng), []
     for target in offsets.T.astype(np.float32):
         start = float(np.median(target))
         far = float(np.quantile(np.abs(target - start), _FAR))
@@ -32,4 +33,4 @@ def teach_placing(windows: NDArray[np.float16], offsets: NDArray[np.float64]) ->
         trees = binned.boosted(loss, _BOOSTING, rng, start)
         trees.leaf[0] += np.float32(start)
         tables.append(trees)
-    return Placing(*(np.stack(column) for column in zip(*tables, strict=True)))
+    return Placing(patches, *(np.stack(column) for column in zip(*tables, strict=True)))

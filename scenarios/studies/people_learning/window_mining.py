@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.studies.people_learning.many_threads import in_threads
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.proposals.cascade import FEATURES, Cascade
-from peopleboy.tracker.proposals.channels import Cells
+from peopleboy.tracker.proposals.cascade import Cascade
+from peopleboy.tracker.proposals.channels import CHANNELS, Cells
 from peopleboy.tracker.proposals.detector import SMALLEST_PX
+from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.placing import offsets
 from peopleboy.tracker.proposals.pyramid import STEP, Level, levels
 from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS
 
 Floats = NDArray[np.float64]
 Windows = NDArray[np.float16]
+
+CELLS: Final = CHANNELS * ROWS * COLUMNS
+"""Of a window, by channel, row and column."""
 
 _VARIETIES: Final = 2  # of each image
 _FITS: Final = 1.1 * math.log2(STEP) / 2.0  # a person is looked for in the level, or two, of about their size
@@ -36,19 +41,24 @@ def windows_with_people(shots: Sequence[PeopleShot], rng: np.random.Generator) -
     Returns:
         The windows, and what is to be known of each (N, 4): see `placing.offsets`.
     """
-    found = [
-        example
-        for shot in shots
-        if shot.is_good.any()
-        for _ in range(_VARIETIES)
-        for example in _filled(shot.varied(rng), rng)
-    ]
-    windows = np.array([window for window, _ in found], np.float16).reshape(-1, FEATURES)
+    good = [shot for shot in shots if shot.is_good.any() for _ in range(_VARIETIES)]
+    found = [example for examples in in_threads(_filled, _varied(good, rng)) for example in examples]
+    windows = np.array([window for window, _ in found], np.float16).reshape(-1, CELLS)
     return windows, np.array([offset for _, offset in found]).reshape(-1, 4)
 
 
-def _filled(shot: PeopleShot, rng: np.random.Generator) -> Iterator[tuple[Windows, Floats]]:
-    box = shot.box[shot.is_good]
+def _varied(
+    shots: Iterable[PeopleShot], rng: np.random.Generator
+) -> Iterator[tuple[PeopleShot, np.random.Generator]]:
+    """Give images varied, each with random numbers of its own."""
+    for shot in shots:
+        own = np.random.default_rng(rng.integers(2**63))
+        yield shot.varied(own), own
+
+
+def _filled(drawn: tuple[PeopleShot, np.random.Generator]) -> list[tuple[Windows, Floats]]:
+    shot, rng = drawn
+    box, found = shot.box[shot.is_good], []
     for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
         off = np.abs(np.log2(box[:, 3] * level.scale[0] / PERSON_PX))
         for own in box[off < _FITS]:
@@ -56,7 +66,8 @@ def _filled(shot: PeopleShot, rng: np.random.Generator) -> Iterator[tuple[Window
             aside = rng.integers(-1, 2, 2).tolist()
             for place in sorted({(row, column), (row + aside[0], column + aside[1])}):
                 window = level.boxes(*(np.array([index]) for index in place))
-                yield _cut(level.cells, *place), offsets(window, own[None])[0]
+                found.append((_cut(level.cells, *place), offsets(window, own[None])[0]))
+    return found
 
 
 def windows_anywhere(shots: Sequence[PeopleShot], rng: np.random.Generator, most: int) -> Windows:
@@ -78,7 +89,7 @@ def windows_anywhere(shots: Sequence[PeopleShot], rng: np.random.Generator, most
         found += [here[k] for k in rng.permutation(len(here))[:_AN_IMAGE]]
         if len(found) >= most:
             break
-    return np.array(found, np.float16).reshape(-1, FEATURES)
+    return np.array(found, np.float16).reshape(-1, CELLS)
 
 
 def mistakes(shots: Sequence[PeopleShot], cascade: Cascade, rng: np.random.Generator, most: int) -> Windows:
@@ -91,17 +102,18 @@ def mistakes(shots: Sequence[PeopleShot], cascade: Cascade, rng: np.random.Gener
         most: how many are enough.
     """
     found: list[Windows] = []
-    for k in rng.permutation(len(shots)).tolist():
-        found += _mistakes(shots[k].varied(rng), cascade)
+    order = _varied((shots[k] for k in rng.permutation(len(shots)).tolist()), rng)
+    for here in in_threads(lambda drawn: _mistakes(drawn[0], cascade), order):
+        found += here
         if len(found) >= most:
             break
-    return np.array(found, np.float16).reshape(-1, FEATURES)
+    return np.array(found, np.float16).reshape(-1, CELLS)
 
 
 def _mistakes(shot: PeopleShot, cascade: Cascade) -> list[Windows]:
     boxes, scores, cuts = [np.empty((0, 4))], [np.empty(0)], []
     for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
-        hits = cascade.scan(level.cells, level.rows)
+        hits = cascade.scan(summed(level.cells), level.rows)
         is_bad = hits.score >= _LEAST_SCORE
         boxes.append(level.boxes(hits.row[is_bad], hits.column[is_bad]))
         scores.append(hits.score[is_bad])
@@ -133,7 +145,7 @@ def _is_clear(box: Floats, shot: PeopleShot) -> NDArray[np.bool_]:
 
 
 def _cut(cells: Cells, row: int, column: int) -> Windows:
-    """Give the features (1800,) of a window; beyond what there is, it goes on as it ends."""
+    """Give the cells (1800,) of a window; beyond what there is, it goes on as it ends."""
     _, high, wide = cells.shape
     rows = np.clip(np.arange(row, row + ROWS), 0, high - 1)
     columns = np.clip(np.arange(column, column + COLUMNS), 0, wide - 1)

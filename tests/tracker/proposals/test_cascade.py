@@ -2,19 +2,20 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.cascade import FEATURES, Cascade
+from peopleboy.tracker.proposals.cascade import Cascade
+from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 from tests.helpers.images import drawn_trees
 from tests.helpers.images.drawn_trees import drawn_cascade, drawn_cells, sums_of
 
 
 def score_of(window: NDArray[np.float32], cascade: Cascade) -> list[float]:
-    return sums_of(window, cascade.feature, cascade.threshold, cascade.leaf)
+    return sums_of(window, cascade.patches, cascade.feature, cascade.threshold, cascade.leaf)
 
 
 def test_all_windows_have_the_score_that_their_trees_add_up_to() -> None:
     cells, cascade = drawn_cells(), drawn_cascade()
-    hits = cascade.scan(cells, (0, 34), stride=1)
+    hits = cascade.scan(summed(cells), (0, 34), stride=1)
     assert len(hits.score) == (drawn_trees.ROWS - ROWS + 1) * (drawn_trees.COLUMNS - COLUMNS + 1)
     for row, column, score in zip(*hits, strict=True):
         window = cells[:, row : row + ROWS, column : column + COLUMNS]
@@ -23,8 +24,8 @@ def test_all_windows_have_the_score_that_their_trees_add_up_to() -> None:
 
 def test_a_window_that_is_not_let_go_has_the_score_that_it_has_without_letting_go() -> None:
     cells = drawn_cells()
-    all_of_them = drawn_cascade().scan(cells, (0, 34), stride=1)
-    some = drawn_cascade(least=-1.0).scan(cells, (0, 34), stride=1)
+    all_of_them = drawn_cascade().scan(summed(cells), (0, 34), stride=1)
+    some = drawn_cascade(least=-1.0).scan(summed(cells), (0, 34), stride=1)
     scores = dict(zip(zip(all_of_them.row, all_of_them.column, strict=True), all_of_them.score, strict=True))
     assert 0 < len(some.score) < len(all_of_them.score)
     for row, column, score in zip(*some, strict=True):
@@ -34,37 +35,38 @@ def test_a_window_that_is_not_let_go_has_the_score_that_it_has_without_letting_g
 
 
 def test_a_stride_misses_some_windows_and_makes_up_none() -> None:
-    cells, cascade = drawn_cells(), drawn_cascade(least=-1.0)
-    every, coarse = (set(zip(*cascade.scan(cells, (0, 34), stride=stride), strict=True)) for stride in (1, 2))
+    sums, cascade = summed(drawn_cells()), drawn_cascade(least=-1.0)
+    every, coarse = (set(zip(*cascade.scan(sums, (0, 34), stride=stride), strict=True)) for stride in (1, 2))
     assert coarse <= every
 
 
 def test_beside_a_window_that_comes_through_all_are_looked_at() -> None:
-    cells, cascade = drawn_cells(), drawn_cascade()
-    assert set(zip(*cascade.scan(cells, (0, 34)), strict=True)) == set(
-        zip(*cascade.scan(cells, (0, 34), stride=1), strict=True)
+    sums, cascade = summed(drawn_cells()), drawn_cascade()
+    assert set(zip(*cascade.scan(sums, (0, 34)), strict=True)) == set(
+        zip(*cascade.scan(sums, (0, 34), stride=1), strict=True)
     )
 
 
 def test_only_the_rows_that_are_asked_for_are_looked_at() -> None:
-    assert set(drawn_cascade().scan(drawn_cells(), (3, 6)).row.tolist()) == {3, 4, 5}
+    assert set(drawn_cascade().scan(summed(drawn_cells()), (3, 6)).row.tolist()) == {3, 4, 5}
 
 
 @pytest.mark.parametrize("rows", [(5, 5), (20, 34), (-9, 0)])
 def test_where_no_window_fits_none_is_found(rows: tuple[int, int]) -> None:
-    assert len(drawn_cascade().scan(drawn_cells(), rows).score) == 0
+    assert len(drawn_cascade().scan(summed(drawn_cells()), rows).score) == 0
 
 
 def test_running_scores_are_those_of_the_trees() -> None:
-    windows = np.random.default_rng(6).normal(size=(5, FEATURES)).astype(np.float32)
-    expected = [score_of(window, drawn_cascade()) for window in windows]
-    np.testing.assert_allclose(drawn_cascade().running(windows), expected, atol=1e-4)
+    cells = drawn_cells()[:, :ROWS, : 2 * COLUMNS].reshape(-1, ROWS, 2, COLUMNS).transpose(2, 0, 1, 3)
+    expected = [score_of(window, drawn_cascade()) for window in cells]
+    exact = np.stack([summed(window).ravel() for window in cells], axis=1)
+    np.testing.assert_allclose(drawn_cascade().running(exact), expected, atol=1e-4)
 
 
 def test_calibrated_trees_let_the_same_windows_through_with_scores_on_a_line() -> None:
-    cascade = drawn_cascade(least=-1.0)
-    before = cascade.scan(drawn_cells(), (0, 34))
-    after = cascade.calibrated(0.4, -1.5).scan(drawn_cells(), (0, 34))
+    cascade = drawn_cascade(least=-2.0)
+    before = cascade.scan(summed(drawn_cells()), (0, 34))
+    after = cascade.calibrated(0.4, -1.5).scan(summed(drawn_cells()), (0, 34))
     assert len(before.score) >= 4
     np.testing.assert_array_equal(after.row, before.row)
     np.testing.assert_array_equal(after.column, before.column)

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from peopleboy.tracker.proposals.cascade import FEATURES, LEAVES, NODES
+from peopleboy.tracker.proposals.cascade import LEAVES, NODES
 from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
 from peopleboy.tracker.proposals.placing import OFFSETS
 from tests.helpers.calls.refused import refused
-from tests.helpers.images.drawn_trees import PLACING_TREES, TREES, drawn_cascade, drawn_placing
+from tests.helpers.images.drawn_trees import PATCHES, PLACING_TREES, TREES, drawn_cascade, drawn_placing
 
 PAGE = Path(__file__).parents[3] / "docs" / "how" / "proposals.md"
 PLACING = (OFFSETS, PLACING_TREES)
@@ -26,7 +26,10 @@ def test_trees_come_back_from_their_file(tmp_path: Path) -> None:
     assert read.about == model.about
     for part in ("cascade", "placing"):
         before, after = getattr(model, part), getattr(read, part)
-        for name in before.__dataclass_fields__:
+        np.testing.assert_array_equal(after.patches.channel, before.patches.channel, strict=True)
+        np.testing.assert_array_equal(after.patches.first, before.patches.first, strict=True)
+        np.testing.assert_array_equal(after.patches.second, before.patches.second, strict=True)
+        for name in set(before.__dataclass_fields__) - {"patches"}:
             np.testing.assert_array_equal(getattr(after, name), getattr(before, name), strict=True)
 
 
@@ -63,7 +66,7 @@ def test_a_file_that_lacks_something_is_refused(tmp_path: Path, lack: str) -> No
 @pytest.mark.parametrize(
     ("part", "name", "wrong"),
     [
-        ("cascade", "feature", np.full((TREES, NODES), FEATURES)),
+        ("cascade", "feature", np.full((TREES, NODES), PATCHES)),
         ("cascade", "feature", np.full((TREES, NODES), -1)),
         ("cascade", "feature", np.zeros((TREES, NODES + 1))),
         ("cascade", "leaf", np.full((TREES, LEAVES), np.nan, np.float32)),
@@ -71,7 +74,7 @@ def test_a_file_that_lacks_something_is_refused(tmp_path: Path, lack: str) -> No
         ("cascade", "threshold", np.full((TREES, NODES), np.nan, np.float32)),
         ("cascade", "least", np.zeros(TREES + 1, np.float32)),
         ("cascade", "least", np.zeros((), np.float32)),
-        ("placing", "feature", np.full((*PLACING, NODES), FEATURES)),
+        ("placing", "feature", np.full((*PLACING, NODES), PATCHES)),
         ("placing", "feature", np.zeros((PLACING_TREES, NODES))),
         ("placing", "leaf", np.full((*PLACING, LEAVES), np.inf, np.float32)),
         ("placing", "leaf", np.zeros((OFFSETS + 1, PLACING_TREES, LEAVES), np.float32)),
@@ -81,7 +84,25 @@ def test_a_file_that_lacks_something_is_refused(tmp_path: Path, lack: str) -> No
 def test_other_trees_are_refused(tmp_path: Path, part: str, name: str, wrong: Any) -> None:
     model = drawn_model()
     replace(model, **{part: replace(getattr(model, part), **{name: wrong})}).save(tmp_path / "other.npz")
-    with refused("other.npz", "holds no trees of depth 3 on the 1800 features", "train-detector"):
+    with refused("other.npz", "holds no trees of depth 3 on patches of a window", "train-detector"):
+        PeopleModel.load(tmp_path / "other.npz")
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong"),
+    [
+        ("channel", np.full(PATCHES, 9, np.uint8)),
+        ("channel", np.zeros(PATCHES, np.int64)),
+        ("first", np.tile(np.array([0, 0, 21, 1], np.uint8), (PATCHES, 1))),
+        ("second", np.tile(np.array([0, 5, 1, 4], np.uint8), (PATCHES, 1))),
+        ("second", np.zeros((PATCHES, 3), np.uint8)),
+    ],
+)
+def test_patches_beyond_the_window_are_refused(tmp_path: Path, name: str, wrong: Any) -> None:
+    model = drawn_model()
+    patches = replace(model.cascade.patches, **{name: wrong})
+    replace(model, cascade=replace(model.cascade, patches=patches)).save(tmp_path / "other.npz")
+    with refused("other.npz", "holds no trees of depth 3 on patches", "train-detector"):
         PeopleModel.load(tmp_path / "other.npz")
 
 

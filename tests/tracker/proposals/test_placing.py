@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.placing import OFFSETS, moved, offsets
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 from tests.helpers.images.drawn_trees import drawn_cells, drawn_placing, sums_of
@@ -30,11 +31,11 @@ def test_boxes_are_those_that_a_walk_through_the_trees_tells() -> None:
     cells, placing = drawn_cells(), drawn_placing()
     row, column = np.array([0, 3, 14, 14]), np.array([0, 9, 2, 17])
     window = np.array([[10.0 * k, 5.0 * k, 16.0 + k, 40.0 + k] for k in range(4)])
-    found = placing.boxes(cells, row, column, window)
+    found = placing.boxes(summed(cells), row, column, window)
     for k, (left, top, width, height) in enumerate(window.tolist()):
         seen = cells[:, row[k] : row[k] + ROWS, column[k] : column[k] + COLUMNS]
         aside, down, larger, wide = (
-            sums_of(seen, placing.feature[n], placing.threshold[n], placing.leaf[n])[-1]
+            sums_of(seen, placing.patches, placing.feature[n], placing.threshold[n], placing.leaf[n])[-1]
             for n in range(OFFSETS)
         )
         middle = left + width / 2.0 + aside * height
@@ -46,4 +47,4 @@ def test_boxes_are_those_that_a_walk_through_the_trees_tells() -> None:
 
 def test_of_no_windows_there_are_no_boxes() -> None:
     none = np.empty(0, np.int64)
-    assert drawn_placing().boxes(drawn_cells(), none, none, np.empty((0, 4))).shape == (0, 4)
+    assert drawn_placing().boxes(summed(drawn_cells()), none, none, np.empty((0, 4))).shape == (0, 4)

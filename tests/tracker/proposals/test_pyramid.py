@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.cascade import FEATURES
 from peopleboy.tracker.proposals.channels import CHANNELS
 from peopleboy.tracker.proposals.pyramid import STEP, levels
 from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS, boxes_of, cells_of
@@ -31,8 +30,7 @@ def test_levels_go_from_the_smallest_people_to_those_as_high_as_the_image() -> N
 
 def test_a_window_has_all_features_of_the_trees() -> None:
     level = next(levels(GREY, STILL, None, 24.0))
-    assert level.cells[:, :ROWS, :COLUMNS].size == FEATURES
-    assert level.cells.shape[0] == CHANNELS
+    assert level.cells[:, :ROWS, :COLUMNS].shape == (CHANNELS, ROWS, COLUMNS)
 
 
 def test_a_known_mount_leaves_out_rows_and_changes_nothing_in_the_others() -> None:

@@ -3,9 +3,20 @@ import pytest
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.people_learning.boosting import Binned, Boosting, Tables
+from peopleboy.scenarios.studies.people_learning.window_mining import CELLS
+from peopleboy.tracker.proposals.patches import Patches, summed_windows
 
 Floats = NDArray[np.float32]
 ONE = Boosting(1, 0.5, features=60, share=1.0, smallest=5)
+
+
+def binned(windows: NDArray[np.float16], rng: np.random.Generator) -> Binned:
+    """Bins of windows that differ in the twelve first cells of the first column alone."""
+    whole = np.zeros((len(windows), CELLS), np.float16)
+    whole[:, :120:10] = windows
+    first = np.array([(row, 0, row + 1, 1) for row in range(12)], np.uint8)
+    patches = Patches(np.zeros(12, np.uint8), first, np.zeros((12, 4), np.uint8))
+    return Binned(patches, summed_windows(whole), rng)
 
 
 def told(tables: Tables, windows: NDArray[np.float16]) -> Floats:
@@ -22,7 +33,7 @@ def told(tables: Tables, windows: NDArray[np.float16]) -> Floats:
 
 @pytest.fixture
 def windows() -> NDArray[np.float16]:
-    return np.random.default_rng(1).normal(size=(400, 12)).astype(np.float16)
+    return (np.random.default_rng(1).integers(-1024, 1024, (400, 12)) / 512.0).astype(np.float16)
 
 
 def test_a_tree_says_half_of_newtons_step_in_each_leaf(windows: NDArray[np.float16]) -> None:
@@ -33,7 +44,7 @@ def test_a_tree_says_half_of_newtons_step_in_each_leaf(windows: NDArray[np.float
         return (is_person - 0.5).astype(np.float32), np.full(400, 0.25, np.float32)
 
     rng = np.random.default_rng(0)
-    found = told(Binned(windows, rng).boosted(loss, ONE, rng), windows)
+    found = told(binned(windows, rng).boosted(loss, ONE, rng), windows)
     np.testing.assert_allclose(found[is_person].sum(), 0.5 * 100 * _step(100), rtol=0.02)
     assert (found[is_person] > 0.8).all()
     assert (found[~is_person] < -0.4).all()
@@ -54,7 +65,7 @@ def test_squares_become_small_tree_by_tree(windows: NDArray[np.float16]) -> None
     for trees in (1, 10, 60):
         rng = np.random.default_rng(0)
         sums = told(
-            Binned(windows, rng).boosted(loss, Boosting(trees, 0.3, 12, smallest=5), rng, start=0.5), windows
+            binned(windows, rng).boosted(loss, Boosting(trees, 0.3, 12, smallest=5), rng, start=0.5), windows
         )
         left.append(float(np.square(target - 0.5 - sums).mean()))
     assert left[0] > left[1] > left[2]
@@ -63,7 +74,8 @@ def test_squares_become_small_tree_by_tree(windows: NDArray[np.float16]) -> None
 
 def test_features_that_never_differ_split_nothing() -> None:
     rng = np.random.default_rng(0)
-    binned = Binned(np.zeros((50, 12), np.float16), rng)
-    tables = binned.boosted(lambda sums: (np.float32(1.0) - sums, np.ones_like(sums)), ONE, rng)
+    tables = binned(np.zeros((50, 12), np.float16), rng).boosted(
+        lambda sums: (np.float32(1.0) - sums, np.ones_like(sums)), ONE, rng
+    )
     assert np.isinf(tables.threshold).all()
     np.testing.assert_allclose(told(tables, np.ones((1, 12), np.float16)), 0.5 * 50 / 51)

@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.people_learning import window_mining
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
-from peopleboy.tracker.proposals.cascade import FEATURES
 from tests.helpers.images.drawn_films import WIDTH_PER_HEIGHT
 from tests.helpers.images.drawn_trees import drawn_cascade
 
@@ -15,7 +14,7 @@ Floats = NDArray[np.float64]
 
 def test_windows_with_people_come_with_where_in_them_they_are(shots: list[PeopleShot]) -> None:
     windows, offsets = window_mining.windows_with_people(shots[:6], np.random.default_rng(0))
-    assert windows.shape == (len(windows), FEATURES)
+    assert windows.shape == (len(windows), window_mining.CELLS)
     assert offsets.shape == (len(windows), 4)
     assert 2 * 6 < len(windows) <= 2 * 6 * 2 * 2  # varied twice, in a level or two, and a cell off
     aside, down, larger, wide = offsets.T
@@ -27,7 +26,7 @@ def test_windows_with_people_come_with_where_in_them_they_are(shots: list[People
 def test_who_cannot_be_learned_from_fills_no_window(shots: list[PeopleShot]) -> None:
     hidden = replace(shots[0], is_good=np.zeros(1, np.bool_))
     windows, offsets = window_mining.windows_with_people([hidden], np.random.default_rng(0))
-    assert (windows.shape, offsets.shape) == ((0, FEATURES), (0, 4))
+    assert (windows.shape, offsets.shape) == ((0, window_mining.CELLS), (0, 4))
 
 
 @pytest.mark.parametrize("is_taught", [False, True])
@@ -47,6 +46,6 @@ def test_windows_without_people_show_nobody(
         found = window_mining.mistakes(shots[:8], drawn_cascade(), rng, 50)
     else:
         found = window_mining.windows_anywhere(shots[:12], rng, 10000)
-    assert found.shape == (len(found), FEATURES)
+    assert found.shape == (len(found), window_mining.CELLS)
     assert len(found) >= 50
     assert max(one.max(initial=0.0) for one in seen) < 0.3
