@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import partial
 from types import TracebackType
 
@@ -87,6 +87,31 @@ class World:
         return self.config.robot.cameras
 
     @property
+    def has_images(self) -> bool:
+        """Whether there is a renderer."""
+        return self.config.renderer != BLIND
+
+    @property
+    def crowd(self) -> Crowd:
+        """All people."""
+        return self._crowd
+
+    @property
+    def robot(self) -> PeopleBot:
+        """The robot that `step` drives."""
+        return self._robot
+
+    @property
+    def physics(self) -> Physics:
+        """Where robot, people and things are, and what they hit."""
+        return self._physics
+
+    @property
+    def touching(self) -> tuple[str, ...]:
+        """Names of what the robot touches, the floor aside."""
+        return tuple(sorted(self._touching))
+
+    @property
     def time_s(self) -> float:
         """Seconds since the start: a whole number of control steps."""
         return self._tick / self.config.control_hz
@@ -101,7 +126,10 @@ class World:
             BadInput: this is a world without images.
         """
         self._check_sight()
-        senses = self.sense()
+        return self.with_images(self.sense())
+
+    def with_images(self, senses: Senses) -> Observation:
+        """Add the images of this instant, which are made when they are asked for, to the other senses."""
         return Observation(
             time_s=senses.time_s,
             images=self._rig.read(self._tick),
@@ -125,10 +153,11 @@ class World:
             time_s=self.time_s,
             robot=self._robot.pose(),
             robot_velocity=self._robot.velocity(),
-            contacts=tuple(sorted(self._touching)),
+            contacts=self.touching,
             people=bystanders(
                 self._crowd.people,
                 self._physics,
+                self._robot.pose(),
                 self._robot.world_from_robot(),
                 flat_geometry(self.config.robot.cameras, "thermal"),
             ),
@@ -149,7 +178,7 @@ class World:
             seen=seen,
             robot=self._robot.pose(),
             robot_velocity=self._robot.velocity(),
-            contacts=tuple(sorted(self._touching)),
+            contacts=self.touching,
         )
 
     def box(self, person: int) -> Box | None:
@@ -185,9 +214,7 @@ class World:
         Raises:
             BadInput: the command is not finite.
         """
-        self._robot.command(linear_m_s, angular_rad_s, is_emergency=is_emergency)
-        self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot_state())
-        self._tick += 1
+        self.begin_step(linear_m_s, angular_rad_s, is_emergency=is_emergency)
         touched = set()
         steps = self.config.physics_hz // self.config.control_hz
         for k in range(steps):
@@ -195,9 +222,30 @@ class World:
             self._crowd.move_bodies((k + 1) / steps)
             self._physics.step()
             touched |= self._robot.touching()
-        self._touching = {name.split("/")[0] for name in touched} - {"floor"}
         self._robot.update_odometry()
-        self._settle()
+        self.end_step(touched)
+
+    def begin_step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
+        """Take a command and let people walk on, whom physics still has where they were; see `step`.
+
+        Raises:
+            BadInput: the command is not finite.
+        """
+        self._robot.command(linear_m_s, angular_rad_s, is_emergency=is_emergency)
+        self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot_state())
+
+    def end_step(self, touched: Collection[str], *, are_placed: bool = False) -> None:
+        """Take over what physics made of the step.
+
+        Args:
+            touched: names of the bodies that the robot touched.
+            are_placed: whether people's capsules are already where people are now.
+        """
+        self._tick += 1
+        self._touching = {name.split("/")[0] for name in touched} - {"floor"}
+        is_settled = are_placed and self._crowd.stays and not self.config.place.movers
+        if not (is_settled and self.config.renderer == BLIND):
+            self._settle()
 
     def _robot_state(self) -> PlanarState:
         """Tell people where the robot is, how it moves, and how wide it is."""

@@ -42,11 +42,12 @@ from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.observation import Observation, Senses
+from peopleboy.sim.fleet.instant import Instant
+from peopleboy.sim.fleet.together import perceive
+from peopleboy.sim.observation import Observation
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import BLIND
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
@@ -171,7 +172,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._is_over = False
         if self._normaliser is not None:
             self._normaliser.begin()
-        observation = self._observe()
+        observation = self._observe(perceive(self._world))
         self._episode.judge(self._scene)
         if self.render_mode == "human":
             self._show_first()
@@ -197,16 +198,30 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         Raises:
             BadInput: the action is not two finite numbers, or there is no episode under way.
         """
-        world = self._running()
-        shares = _check_action(action)
-        limits = self._limits
+        command = self.begin_step(action)
+        self.world.step(command.linear_m_s, command.angular_rad_s)
+        return self.end_step(perceive(self.world))
+
+    def begin_step(self, action: NDArray[np.float32] | Sequence[float]) -> Command:
+        """Give the command for an action, by which the world is to be stepped now; see `step`.
+
+        Raises:
+            BadInput: as `step`.
+        """
+        self._running()
+        shares, limits = _check_action(action), self._limits
         command = Command(
             linear_m_s=shares[0] * limits.max_linear_m_s, angular_rad_s=shares[1] * limits.max_angular_rad_s
         )
-        world.step(command.linear_m_s, command.angular_rad_s)
+        self._shares = shares
         self._commands.append(command)
         self._frame += 1
-        observation = self._observe()
+        return command
+
+    def end_step(self, instant: Instant) -> tuple[Arrays, SupportsFloat, bool, bool, dict[str, Any]]:
+        """Judge the instant to which the world has been stepped; see `step`."""
+        shares, limits = self._shares, self._limits
+        observation = self._observe(instant)
         situation = self._episode.judge(self._scene)
         terms = reward_terms(
             self._task, situation, dt_s=self._dt_s, keep_m=self._keep_m,
@@ -220,6 +235,15 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         if self._viewer is not None:
             self._viewer.go_on(self._draw(), reward, self._dt_s)
         return observation, reward, terminated, truncated, self._info(terms)
+
+    @property
+    def world(self) -> World:
+        """That of the last episode, over or not.
+
+        Raises:
+            BadInput: there is no episode yet.
+        """
+        return self._running(even_over=True)
 
     def render(self) -> NDArray[np.uint8] | None:
         """Draw thermal image, colour image and plan side by side, (360, 1440, 3); None but of "rgb_array".
@@ -318,13 +342,11 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         config = replace(config, robot=self._robot, physics_hz=self._physics_hz, renderer=renderer)
         return vary(config, options, stream(self._seed, "environment.options"))
 
-    def _observe(self) -> Arrays:
-        """Sense once, and put it into the form that was asked for."""
+    def _observe(self, instant: Instant) -> Arrays:
+        """Put what is sensed into the form that was asked for."""
         world = self._running()
         before = self._start if self._start is None else self._senses.odometry
-        has_images = world.config.renderer != BLIND
-        self._senses: Senses = world.observe() if has_images else world.sense()
-        self._scene: ImageFreeTruth = world.scene()
+        self._senses, self._scene = instant
         if self._start is None:
             self._start = self._senses.odometry
         found = feel(self._senses, self._start) | self._see(before)

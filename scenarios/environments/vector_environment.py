@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, SupportsFloat
 
 import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.observations import Arrays
+from peopleboy.sim.fleet.together import Together
 
 Flags = NDArray[np.bool_]
 Infos = dict[str, Any]
+Result = tuple[Arrays, SupportsFloat, bool, bool, dict[str, Any]]  # of a single environment's step
 
 
 class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
@@ -51,6 +53,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._is_over = np.zeros(num_envs, np.bool_)
+        self._together: Together | None = None  # until episodes have begun
 
     def reset(
         self,
@@ -80,6 +83,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             _put(found, number, observation)
             infos = self._add_info(infos, info, number)
         self._is_over[:] = False
+        self._together = None
         return found, infos
 
     def step(self, actions: NDArray[np.float32]) -> tuple[Arrays, NDArray[np.float64], Flags, Flags, Infos]:
@@ -94,11 +98,13 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         infos: Infos = {}
         rewards = np.zeros(self.num_envs)
         terminations, truncations = np.zeros((2, self.num_envs), np.bool_)
-        for number, (env, action) in enumerate(zip(self._envs, actions, strict=True)):
+        results = self._step_together(actions)
+        for number, env in enumerate(self._envs):
             if self._is_over[number]:
                 observation, info = env.reset()
+                self._together = None
             else:
-                observation, reward, ended, cut, info = env.step(action)
+                observation, reward, ended, cut, info = results[number]
                 rewards[number], terminations[number], truncations[number] = float(reward), ended, cut
             _put(found, number, observation)
             infos = self._add_info(infos, info, number)
@@ -118,6 +124,17 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         """Free all worlds."""
         for env in self._envs:
             env.close()
+
+    def _step_together(self, actions: NDArray[np.float32]) -> dict[int, Result]:
+        """Step the worlds whose episodes are under way; gives what each environment says, by its number."""
+        going = {number: env for number, env in enumerate(self._envs) if not self._is_over[number]}
+        commands = {number: env.begin_step(actions[number]) for number, env in going.items()}
+        if self._together is None:
+            self._together = Together([env.world for env in self._envs])
+        instants = self._together.step(
+            {number: (command.linear_m_s, command.angular_rad_s) for number, command in commands.items()}
+        )
+        return {number: env.end_step(instants[number]) for number, env in going.items()}
 
     def _empty(self) -> Arrays:
         spaces = self.observation_space.spaces.items()  # type: ignore[attr-defined]  # it is a Dict

@@ -13,7 +13,7 @@ from peopleboy.sim.shapes.shapes import Vector
 Array = NDArray[np.float64]
 Link = tuple[int, int]
 
-_MARGIN_M = 1e-3  # far more than PyBullet's rays are off
+MARGIN_M = 1e-3  # far more than PyBullet's rays are off
 
 
 class SolidBoxes:
@@ -76,7 +76,7 @@ def meets(start: Array, end: Array, box: Array) -> bool:
     """Whether a line from start to end meets a box: it is within all three pairs of faces at once."""
     enters, leaves = 0.0, 1.0
     for axis in range(3):
-        low, high = box[0, axis] - _MARGIN_M - start[axis], box[1, axis] + _MARGIN_M - start[axis]
+        low, high = box[0, axis] - MARGIN_M - start[axis], box[1, axis] + MARGIN_M - start[axis]
         step = end[axis] - start[axis]
         if step == 0.0:
             if low > 0.0 or high < 0.0:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,9 +31,24 @@ _MOTOR_TORQUE_NM = 4.0
 def limit_command(linear: float, angular: float, limits: DriveConfig) -> tuple[float, float]:
     """Clip a velocity command [m/s, rad/s] to what the robot can do."""
     return (
-        float(np.clip(linear, -limits.max_linear_m_s, limits.max_linear_m_s)),
-        float(np.clip(angular, -limits.max_angular_rad_s, limits.max_angular_rad_s)),
+        min(max(linear, -limits.max_linear_m_s), limits.max_linear_m_s),
+        min(max(angular, -limits.max_angular_rad_s), limits.max_angular_rad_s),
     )
+
+
+class Gears(NamedTuple):
+    """What a robot's wheels are to do and have done.
+
+    Attributes:
+        command, target: [m/s, rad/s] speeds now, and those to be reached.
+        rise: [m/s2, rad/s2] at which they are.
+        turned: (2,) [rad] wheel angles as the odometry knows them.
+    """
+
+    command: tuple[float, float]
+    target: tuple[float, float]
+    rise: tuple[float, float]
+    turned: NDArray[np.float64]
 
 
 class PeopleBot:
@@ -59,7 +75,7 @@ class PeopleBot:
             fixed=False,
         )
         self._turn_wheels()
-        self._sonar = SonarRing(physics, config.sonar, stream(seed, "sonar.noise"), NAME)
+        self.ring = SonarRing(physics, config.sonar, stream(seed, "sonar.noise"), NAME)
         self._turned = self._wheel_angles()
         self.odometry = Planar(x, y, config.heading_rad)
 
@@ -80,15 +96,10 @@ class PeopleBot:
         """Move the wheel speeds towards the command, as far as the acceleration limits allow in dt_s."""
         if self._command == self._target:
             return
-        limits = self._limits
-        linear_m_s2, angular_rad_s2 = (
-            (limits.emergency_m_s2, limits.emergency_rad_s2)
-            if self._is_emergency
-            else (limits.linear_acceleration_m_s2, limits.angular_acceleration_rad_s2)
-        )
+        linear_m_s2, angular_rad_s2 = self._rise()
         self._command = (
-            _approach(self._command[0], self._target[0], linear_m_s2 * dt_s),
-            _approach(self._command[1], self._target[1], angular_rad_s2 * dt_s),
+            approach(self._command[0], self._target[0], linear_m_s2 * dt_s),
+            approach(self._command[1], self._target[1], angular_rad_s2 * dt_s),
         )
         self._turn_wheels()
 
@@ -97,7 +108,7 @@ class PeopleBot:
         angles = self._wheel_angles()
         travelled = (angles - self._turned) * WHEEL_RADIUS_M
         self._turned = angles
-        noise = self._encoder_noise.standard_normal(2) * self._limits.encoder_noise_m
+        noise = self.draw_noise() * self.encoder_noise_m
         left, right = (travelled + noise * np.sqrt(np.abs(travelled))).tolist()
         turn = (right - left) / WHEEL_DISTANCE_M
         middle = self.odometry.heading + turn / 2.0
@@ -108,9 +119,27 @@ class PeopleBot:
             math.remainder(self.odometry.heading + turn, math.tau),
         )
 
+    def draw_noise(self) -> NDArray[np.float64]:
+        """(2,) standard normal, what the encoders' noise is made of in the next control step."""
+        return self._encoder_noise.standard_normal(2)
+
+    @property
+    def encoder_noise_m(self) -> float:
+        """[m] what that is to be multiplied by."""
+        return self._limits.encoder_noise_m
+
+    @property
+    def gears(self) -> Gears:
+        """What its wheels are to do and have done."""
+        return Gears(self._command, self._target, self._rise(), self._turned)
+
+    def take_over(self, command: tuple[float, float], turned: NDArray[np.float64], odometry: Planar) -> None:
+        """Be as somebody else has driven it, with wheels that turn and have turned in the world already."""
+        self._command, self._turned, self.odometry = command, turned, odometry
+
     def sonar(self) -> NDArray[np.float64]:
         """Read the ring once: (16,) [m]."""
-        return self._sonar.read(self.world_from_robot())
+        return self.ring.read(self.world_from_robot())
 
     def wheel_speeds(self) -> tuple[float, float]:
         """Rim speeds [m/s] of the left and the right wheel, as they turn."""
@@ -139,6 +168,13 @@ class PeopleBot:
         """Names of the bodies that the robot touched during the last physics step, the floor included."""
         return self._physics.touching(NAME)
 
+    def _rise(self) -> tuple[float, float]:
+        """Accelerations [m/s2, rad/s2] as things are."""
+        limits = self._limits
+        if self._is_emergency:
+            return limits.emergency_m_s2, limits.emergency_rad_s2
+        return limits.linear_acceleration_m_s2, limits.angular_acceleration_rad_s2
+
     def _turn_wheels(self) -> None:
         """Set the motors to the speeds that give the present command."""
         speeds = [speed / WHEEL_RADIUS_M for speed in wheel_speeds(*self._command)]
@@ -149,6 +185,6 @@ class PeopleBot:
         return angles
 
 
-def _approach(value: float, target: float, step: float) -> float:
+def approach(value: float, target: float, step: float) -> float:
     """Move a value towards a target by at most one step."""
     return value + min(max(target - value, -step), step)

@@ -38,17 +38,17 @@ class SonarRing:
 
     def __init__(self, physics: Physics, config: SonarConfig, rng: np.random.Generator, owner: str) -> None:
         self._physics = physics
-        self._config = config
+        self.config = config
         self._rng = rng
         self._owner = owner
         rays = cone_rays(config.cone_rad)
-        self._starts = np.concatenate([SONAR_POSITION_M, np.full((_SONARS, 1), config.height_m)], axis=1)[
-            :, None, :
-        ].repeat(rays.shape[1], axis=1)
+        middles = np.concatenate([SONAR_POSITION_M, np.full((_SONARS, 1), config.height_m)], axis=1)
+        starts = middles[:, None, :].repeat(rays.shape[1], axis=1)
         with np.errstate(divide="ignore"):
             to_floor = (config.height_m - _CLEAR_OF_FLOOR_M) / np.maximum(-rays[..., 2], 0.0)
-        self._reach = np.minimum(config.farthest_m, to_floor)
-        self._ends = self._starts + rays * self._reach[..., None]
+        self.reach = np.minimum(config.farthest_m, to_floor)
+        self.starts = starts.reshape(-1, 3)
+        self.ends = (starts + rays * self.reach[..., None]).reshape(-1, 3)
 
     def read(self, world_from_robot: Matrix) -> NDArray[np.float64]:
         """Read all sonars once.
@@ -59,11 +59,24 @@ class SonarRing:
         Returns:
             (16,) [m] within nearest..farthest; farthest where nothing answers.
         """
-        starts = transform(world_from_robot, self._starts).reshape(-1, 3)
-        ends = transform(world_from_robot, self._ends).reshape(-1, 3)
-        fraction = self._physics.cast_rays(starts, ends, ignore=self._owner)[0].reshape(self._reach.shape)
-        nearest = np.where(fraction < 1.0, fraction * self._reach, np.inf).min(axis=1)
-        noise = self._rng.normal(0.0, self._config.noise_m, _SONARS)
-        is_lost = self._rng.random(_SONARS) < self._config.drop_out
-        reading = np.where(is_lost, np.inf, nearest + noise)
-        return np.clip(reading, self._config.nearest_m, self._config.farthest_m)
+        starts, ends = (transform(world_from_robot, points) for points in (self.starts, self.ends))
+        fraction = self._physics.cast_rays(starts, ends, ignore=self._owner)[0].reshape(self.reach.shape)
+        return read_echoes(fraction, self.reach, *self.draw_noise(), self.config)
+
+    def draw_noise(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """(16,) [m] errors of the next readings, and (16,) which of them are lost."""
+        noise = self._rng.normal(0.0, self.config.noise_m, _SONARS)
+        return noise, self._rng.random(_SONARS) < self.config.drop_out
+
+
+def read_echoes(
+    fraction: NDArray[np.float64],
+    reach_m: NDArray[np.float64],
+    noise_m: NDArray[np.float64],
+    is_lost: NDArray[np.bool_],
+    config: SonarConfig,
+) -> NDArray[np.float64]:
+    """Make readings (..., 16) [m] of the shares (..., 16, 15) of their reach at which rays hit, 1 for none."""
+    nearest = np.where(fraction < 1.0, fraction * reach_m, np.inf).min(axis=-1)
+    reading = np.where(is_lost, np.inf, nearest + noise_m)
+    return np.clip(reading, config.nearest_m, config.farthest_m)

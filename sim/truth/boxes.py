@@ -25,12 +25,6 @@ def box_of_pixels(first_u: float, last_u: float, first_v: float, last_v: float) 
     return (first_u - 0.5, first_v - 0.5, last_u - first_u + 1.0, last_v - first_v + 1.0)
 
 
-def reaches_into(box: Box, camera: CameraGeometry) -> bool:
-    """Tell whether any of a box lies in the image."""
-    left, top, width, height = box
-    return left + width > -0.5 and left < camera.width and top + height > -0.5 and top < camera.height
-
-
 def is_cut_off(bounds: Edges, camera: CameraGeometry) -> bool:
     """Tell whether something with these bounds reaches beyond the image's border."""
     left, top, right, bottom = bounds

@@ -7,51 +7,62 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transform
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.robot.robot_body import NAME
-from peopleboy.sim.truth.boxes import Box, reaches_into
 from peopleboy.sim.truth.image_free_truth import Bystander
+from peopleboy.sim.truth.upright import free_ray_shares, stand_before
 
-# Heights at which a person's middle is looked for, in shares of the stature.
-_LOOKED_AT = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-_NEAREST_M = 0.05
+_RAYS = 5
 
 
 def bystanders(
-    people: Sequence[Person], physics: Physics, world_from_robot: Matrix, camera: Pinhole
+    people: Sequence[Person], physics: Physics, robot: Planar, world_from_robot: Matrix, camera: Pinhole
 ) -> tuple[Bystander, ...]:
     """Tell where everybody is who is present, and how much of them the robot's camera could see.
 
     Args:
         people: in the scenario's order.
         physics: the world, through which rays are cast.
-        world_from_robot: (4, 4).
+        robot: pose on the floor.
+        world_from_robot: (4, 4) the same pose.
         camera: the thermal camera.
     """
-    world_from_camera = world_from_robot @ camera.robot_from_camera
-    heading = math.atan2(world_from_robot[1, 0], world_from_robot[0, 0])
+    present = [(number, person) for number, person in enumerate(people, 1) if person.present]
+    if not present:
+        return ()
+    places = np.array([person.position for _, person in present])
+    heights_m = np.array([person.config.height_m for _, person in present])
+    radii_m = np.array([person.radius_m for _, person in present])
+    poses = (world_from_robot @ camera.robot_from_camera)[None].repeat(len(present), axis=0)
+    uprights = stand_before(places, heights_m, radii_m, camera, poses)
+    fraction = np.ones((len(present), _RAYS))
+    looked = uprights.reaches_in
+    eyes, points = uprights.eyes[looked].repeat(_RAYS, axis=0), uprights.points[looked].reshape(-1, 3)
+    fraction[looked] = physics.cast_rays(eyes, points, ignore=NAME)[0].reshape(-1, _RAYS)
+    shares = free_ray_shares(uprights, fraction, radii_m)
+    return describe(present, robot, uprights.boxes.tolist(), shares.tolist())
+
+
+def describe(
+    present: Sequence[tuple[int, Person]],
+    robot: Planar,
+    boxes: Sequence[list[float]],
+    shares: Sequence[float],
+) -> tuple[Bystander, ...]:
+    """Put together what is known of people with their numbers; boxes and shares are in their order."""
     return tuple(
-        _bystander(number, person, physics, world_from_robot[:2, 3], heading, camera, world_from_camera)
-        for number, person in enumerate(people, 1)
-        if person.present
+        _bystander(number, person, robot, box, share)
+        for (number, person), box, share in zip(present, boxes, shares, strict=True)
     )
 
 
-def _bystander(
-    number: int,
-    person: Person,
-    physics: Physics,
-    robot: Matrix,
-    heading: float,
-    camera: Pinhole,
-    pose: Matrix,
-) -> Bystander:
+def _bystander(number: int, person: Person, robot: Planar, box: list[float], share: float) -> Bystander:
     (x, y), (vx, vy) = person.position.tolist(), person.velocity.tolist()
-    dx, dy = x - float(robot[0]), y - float(robot[1])
-    box = _upright_box(person, camera, pose)
-    is_inside = box is not None and reaches_into(box, camera)
+    dx, dy = x - robot.x, y - robot.y
+    left, top, width, height = box
     return Bystander(
         id=number,
         name=person.name,
@@ -61,33 +72,7 @@ def _bystander(
         height_m=person.config.height_m,
         radius_m=person.radius_m,
         distance_m=math.hypot(dx, dy),
-        bearing_rad=math.remainder(math.atan2(dy, dx) - heading, math.tau),
-        box=box,
-        free_ray_share=_free_ray_share(person, physics, camera, pose) if is_inside else 0.0,
+        bearing_rad=math.remainder(math.atan2(dy, dx) - robot.heading, math.tau),
+        box=None if math.isnan(left) else (left, top, width, height),
+        free_ray_share=share,
     )
-
-
-def _upright_box(person: Person, camera: Pinhole, world_from_camera: Matrix) -> Box | None:
-    """Head to feet, and the body's width to either side of its middle."""
-    x, y = person.position.tolist()
-    height = person.config.height_m
-    ends = np.array([[x, y, height], [x, y, 0.0], [x, y, height / 2.0]])
-    points = transform(invert_pose(world_from_camera), ends)
-    if points[:, 2].min() < _NEAREST_M:
-        return None
-    (_, top), (_, bottom), (middle, _) = camera.project(points).tolist()
-    half = camera.focal_px * person.radius_m / float(points[2, 2])
-    return middle - half, top, 2.0 * half, bottom - top
-
-
-def _free_ray_share(person: Person, physics: Physics, camera: Pinhole, world_from_camera: Matrix) -> float:
-    x, y = person.position.tolist()
-    points = np.array([[x, y, share * person.config.height_m] for share in _LOOKED_AT])
-    u, v = camera.project(transform(invert_pose(world_from_camera), points)).T
-    is_inside = (u > -0.5) & (u < camera.width - 0.5) & (v > -0.5) & (v < camera.height - 0.5)
-    eye = np.tile(world_from_camera[:3, 3], (len(points), 1))
-    fraction, _ = physics.cast_rays(eye, points, ignore=NAME)
-    # A ray ends within the person's own capsule, which it meets a radius before.
-    short = np.linalg.norm(points - eye, axis=1) * (1.0 - fraction)
-    is_free = short <= 1.5 * person.radius_m
-    return float(np.mean(is_inside & is_free))

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import Point, cross, dot, minus
 from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids
-from peopleboy.sim.physics.solid_boxes import meets
+from peopleboy.sim.physics.solid_boxes import MARGIN_M, meets
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 _MESH = int(ShapeKind.MESH)
+_BLOCK = 15  # rays that are looked at together, such as those of a sonar
 
 
 @njit(cache=True, nogil=True)
@@ -35,29 +36,61 @@ def cast(
         part: (R,) what is hit, -1 for nothing.
     """
     fraction, part = np.ones(len(starts)), np.full(len(starts), -1, np.int64)
-    low, high = np.empty(3), np.empty(3)
-    for axis in range(3):
-        low[axis] = min(starts[:, axis].min(), ends[:, axis].min()) if len(starts) else 0.0
-        high[axis] = max(starts[:, axis].max(), ends[:, axis].max()) if len(starts) else 0.0
-    for k in range(len(solids.boxes)):
-        body, box = bodies.of_part[solids.table.part[k]], solids.boxes[k]
-        if body == passed or bodies.hidden[body] or not _share(low, high, box):
-            continue
-        for ray in range(len(starts)):
-            if meets(starts[ray], ends[ray], box):
-                t = _hit(starts[ray], ends[ray], solids, k)
-                if t < fraction[ray]:
-                    fraction[ray], part[ray] = t, solids.table.part[k]
+    if len(starts) > 0:
+        cast_into(starts, ends, bodies, solids, passed, fraction, part)
     return fraction, part
 
 
+@njit(cache=True, nogil=True)
+def cast_into(
+    starts: Array,
+    ends: Array,
+    bodies: Placements,
+    solids: Solids,
+    passed: int,
+    fraction: Array,
+    part: NDArray[np.int64],
+) -> None:
+    """Do as `cast`, where fraction is 1 and part -1 at first; there must be a ray."""
+    whole = _box_of(starts, ends, 0, len(starts))
+    blocks = (len(starts) + _BLOCK - 1) // _BLOCK
+    around = np.empty((blocks, 2, 3))
+    for block in range(blocks):
+        around[block] = _box_of(starts, ends, block * _BLOCK, min((block + 1) * _BLOCK, len(starts)))
+    for k in range(len(solids.boxes)):
+        body, box = bodies.of_part[solids.table.part[k]], solids.boxes[k]
+        if body == passed or bodies.hidden[body] or not _share(whole, box, 0.0):
+            continue
+        for block in range(blocks):
+            if not _share(around[block], box, MARGIN_M):
+                continue
+            for ray in range(block * _BLOCK, min((block + 1) * _BLOCK, len(starts))):
+                if meets(starts[ray], ends[ray], box):
+                    t = _hit(starts[ray], ends[ray], solids, k)
+                    if t < fraction[ray]:
+                        fraction[ray], part[ray] = t, solids.table.part[k]
+
+
 @njit(cache=True)
-def _share(low: Array, high: Array, box: Array) -> bool:
-    """Whether two upright boxes share a point."""
-    shares = True
+def _box_of(starts: Array, ends: Array, first: int, stop: int) -> Array:
+    """(2, 3) least and greatest corner of the upright box around some rays."""
+    box = np.empty((2, 3))
     for axis in range(3):
-        shares = shares and low[axis] <= box[1, axis] and high[axis] >= box[0, axis]
-    return shares
+        low, high = np.inf, -np.inf
+        for ray in range(first, stop):
+            low = min(low, starts[ray, axis], ends[ray, axis])
+            high = max(high, starts[ray, axis], ends[ray, axis])
+        box[0, axis], box[1, axis] = low, high
+    return box
+
+
+@njit(cache=True)
+def _share(one: Array, other: Array, margin_m: float) -> bool:
+    """Whether two upright boxes share a point, or nearly so."""
+    for axis in range(3):
+        if one[0, axis] > other[1, axis] + margin_m or one[1, axis] < other[0, axis] - margin_m:
+            return False
+    return True
 
 
 @njit(cache=True)

@@ -17,6 +17,7 @@ from peopleboy.sim.physics.bodies import PartKey
 from peopleboy.sim.physics.kinematic.cast import cast
 from peopleboy.sim.physics.kinematic.drive import push_out, roll
 from peopleboy.sim.physics.kinematic.solids import Placements, Solids, refresh
+from peopleboy.sim.physics.kinematic.state import Motion, State
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle, make_vehicle, wheels_of
 from peopleboy.sim.physics.model_files import find_model
 from peopleboy.sim.physics.urdf_links import read_links
@@ -132,7 +133,7 @@ class Kinematic:
 
     def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
         """See `Physics.set_pose`; of the vehicle only place and heading on the floor count."""
-        number = self._number_of(name)
+        number = self.number_of(name)
         rolling = self._rolling
         if rolling is not None and rolling.body == number:
             x, y, z, w = orientation
@@ -146,7 +147,7 @@ class Kinematic:
 
     def set_hidden(self, name: str, hidden: bool) -> None:
         """See `Physics.set_hidden`."""
-        number = self._number_of(name)
+        number = self.number_of(name)
         if self._rolling is not None and self._rolling.body == number:
             raise BadInput(f"body {name!r} is not fixed: it cannot be hidden")
         if self._hidden[number] != hidden:
@@ -198,7 +199,7 @@ class Kinematic:
 
     def pose(self, name: str) -> Matrix:
         """See `Physics.pose`."""
-        place = self._places[self._number_of(name)]
+        place = self._places[self.number_of(name)]
         return pose_matrices(place[:3], place[3:])
 
     def part_poses(self) -> Matrix:
@@ -222,7 +223,7 @@ class Kinematic:
         bodies, solids = self._up_to_date()
         starts, ends = np.asarray(from_m, np.float64), np.asarray(to_m, np.float64)
         found: tuple[Matrix, NDArray[np.int64]] = cast(
-            starts, ends, bodies, solids, -1 if ignore is None else self._number_of(ignore)
+            starts, ends, bodies, solids, -1 if ignore is None else self.number_of(ignore)
         )
         return found
 
@@ -231,7 +232,39 @@ class Kinematic:
         self._vehicle_called(name, ())
         if not self._touched.any():
             return set()
-        return {other for other, number in self._numbers.items() if self._touched[number]}
+        return self.names_of(self._touched)
+
+    def number_of(self, name: str) -> int:
+        """Number of the body of that name, in the order of creation.
+
+        Raises:
+            BadInput: there is none.
+        """
+        try:
+            return self._numbers[name]
+        except KeyError:
+            known = ", ".join(self._numbers) or "none"
+            raise BadInput(f"no body is called {name!r}; there are: {known}") from None
+
+    def names_of(self, flags: NDArray[np.bool_]) -> set[str]:
+        """Names of the bodies that have a flag, (B,) in the order of creation."""
+        return {name for name, number in self._numbers.items() if flags[number]}
+
+    def state(self) -> State:
+        """All that is in the world now, none of it copied; there must be a vehicle."""
+        assert self._rolling is not None
+        bodies, solids = self._up_to_date()
+        rolling = self._rolling
+        motion = Motion(rolling.pose, rolling.angles, rolling.speeds, rolling.velocity)
+        return State(bodies, solids, motion, rolling.vehicle, rolling.body)
+
+    def lay_into(self, state: State) -> None:
+        """Keep all that is in the world in other arrays from now on, which hold the same already."""
+        assert self._rolling is not None
+        bodies, rolling = state.bodies, self._rolling
+        self._packed = bodies, state.solids
+        self._places, self._hidden, self._stale = bodies.places, bodies.hidden, bodies.stale
+        rolling.pose, rolling.angles, rolling.speeds, rolling.velocity = state.motion
 
     def _check_new(self, name: str) -> None:
         if name in self._numbers:
@@ -286,16 +319,9 @@ class Kinematic:
     def _mark(self, number: int) -> None:
         self._stale[number] = self._is_stale = True
 
-    def _number_of(self, name: str) -> int:
-        try:
-            return self._numbers[name]
-        except KeyError:
-            known = ", ".join(self._numbers) or "none"
-            raise BadInput(f"no body is called {name!r}; there are: {known}") from None
-
     def _vehicle_called(self, name: str, joints: Sequence[str] | Mapping[str, float]) -> _Rolling:
         """The vehicle, if it goes by that name and has these joints."""
-        number, rolling = self._number_of(name), self._rolling
+        number, rolling = self.number_of(name), self._rolling
         if rolling is None or rolling.body != number:
             raise BadInput(f"body {name!r} stands still: kinematic physics moves vehicles only")
         for joint in joints:

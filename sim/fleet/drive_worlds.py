@@ -1,0 +1,193 @@
+"""One control step of the robots of many worlds, with the people whom they may run into (numba kernels)."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.fleet.side_by_side import Joined, Numbers, world_in
+from peopleboy.sim.physics.kinematic.drive import push_out, roll
+from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids, refresh
+from peopleboy.sim.physics.kinematic.vehicle import Vehicle
+from peopleboy.sim.robot.peoplebot import approach
+from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M, WHEEL_RADIUS_M, wheel_speeds
+
+_approach = njit(cache=True)(approach)
+_wheel_speeds = njit(cache=True)(wheel_speeds)
+
+
+class Robots(NamedTuple):
+    """What moves the robots of G worlds that are to be stepped, and what their encoders make of it.
+
+    Attributes:
+        command, target: (G, 2) [m/s, rad/s] speeds now, and those to be reached.
+        rise: (G, 2) [m/s2, rad/s2] at which they are.
+        turned: (G, 2) [rad] wheel angles as the odometry knows them.
+        odometry: (G, 3) x, y [m], heading [rad].
+        noise: (G, 2) standard normal, of the encoders in this step.
+        noise_m: (G,) [m/sqrt(m)] what they are to be multiplied by.
+    """
+
+    command: Array
+    target: Array
+    rise: Array
+    turned: Array
+    odometry: Array
+    noise: Array
+    noise_m: Array
+
+
+class Capsules(NamedTuple):
+    """Q people of all worlds, one world after the other.
+
+    Attributes:
+        first: (B + 1,) where each world's begin.
+        body: (Q,) number of the upright capsule that stands for a person, within its world.
+        is_solid: (Q,) whether it is there to be met.
+        middle_m: (Q,) [m] height of its middle.
+        before, after: (Q, 2) [m] where it stands at the start and at the end of the step.
+    """
+
+    first: Numbers
+    body: Numbers
+    is_solid: NDArray[np.bool_]
+    middle_m: Array
+    before: Array
+    after: Array
+
+
+@njit(cache=True, nogil=True)
+def drive_worlds(
+    going: Numbers,
+    joined: Joined,
+    vehicle: Vehicle,
+    robots: Robots,
+    people: Capsules,
+    dt_s: float,
+    steps: int,
+    touched: NDArray[np.bool_],
+) -> None:
+    """Do what `World.step` does physics step by physics step, for the worlds of some numbers.
+
+    Args:
+        going: (G,) numbers of the worlds.
+        joined: changed in place; up to date afterwards.
+        vehicle: all robots.
+        robots: `command`, `turned` and `odometry` are changed in place.
+        people: likewise.
+        dt_s: [s] length of a physics step.
+        steps: how many of them.
+        touched: one for each body of `joined`, gets True for what its robot touched.
+    """
+    for row in range(len(going)):
+        world = going[row]
+        bodies, solids = world_in(joined, world)
+        first, end = joined.firsts.body[world], joined.firsts.body[world + 1]
+        met = np.zeros(end - first, np.bool_)
+        for k in range(steps):
+            _set_wheels(robots, row, dt_s, joined.motion.speeds[world])
+            _move_people(people, world, (k + 1) / steps, bodies)
+            refresh(bodies, solids)
+            met[:] = False
+            _roll(joined, world, vehicle, bodies, solids, dt_s, met)
+            touched[first:end] |= met
+        _count(robots, row, joined.motion.angles[world])
+        _put_people(people, world, bodies)
+        refresh(bodies, solids)
+
+
+@njit(cache=True)
+def _set_wheels(robots: Robots, row: int, dt_s: float, speeds: Array) -> None:
+    """Move the speeds towards those to be reached; see `PeopleBot.drive`."""
+    command, target, rise = robots.command[row], robots.target[row], robots.rise[row]
+    if command[0] == target[0] and command[1] == target[1]:
+        return
+    for k in range(2):
+        command[k] = _approach(command[k], target[k], rise[k] * dt_s)
+    left, right = _wheel_speeds(command[0], command[1])
+    speeds[0], speeds[1] = left / WHEEL_RADIUS_M, right / WHEEL_RADIUS_M
+
+
+@njit(cache=True)
+def _move_people(people: Capsules, world: int, share: float, bodies: Placements) -> None:
+    """Put solid people where they are when this share of the step has passed."""
+    for q in range(people.first[world], people.first[world + 1]):
+        if people.is_solid[q]:
+            before, after = people.before[q], people.after[q]
+            x = before[0] + share * (after[0] - before[0])
+            y = before[1] + share * (after[1] - before[1])
+            _place(bodies, people.body[q], x, y, people.middle_m[q])
+
+
+@njit(cache=True)
+def _put_people(people: Capsules, world: int, bodies: Placements) -> None:
+    """Put solid people where they are when the step is over, to the last bit."""
+    for q in range(people.first[world], people.first[world + 1]):
+        if people.is_solid[q]:
+            _place(bodies, people.body[q], people.after[q, 0], people.after[q, 1], people.middle_m[q])
+
+
+@njit(cache=True)
+def _place(bodies: Placements, body: int, x: float, y: float, z: float) -> None:
+    place = bodies.places[body]
+    place[0], place[1], place[2] = x, y, z
+    place[3], place[4], place[5], place[6] = 0.0, 0.0, 0.0, 1.0
+    bodies.stale[body] = True
+
+
+@njit(cache=True)
+def _roll(
+    joined: Joined,
+    world: int,
+    vehicle: Vehicle,
+    bodies: Placements,
+    solids: Solids,
+    dt_s: float,
+    met: NDArray[np.bool_],
+) -> None:
+    """Let a vehicle roll for one physics step; see `Kinematic.step`."""
+    motion, own = joined.motion, joined.own[world]
+    pose, speeds = motion.pose[world], motion.speeds[world]
+    x, y, heading = pose[0], pose[1], pose[2]
+    roll(vehicle, pose, speeds[0], speeds[1], dt_s)
+    push_out(vehicle, pose, bodies, solids, own, met)
+    for k in range(2):
+        motion.angles[world, k] += speeds[k] * dt_s
+    dx, dy, turn = pose[0] - x, pose[1] - y, pose[2] - heading
+    velocity = motion.velocity[world]
+    velocity[0], velocity[1], velocity[2] = dx / dt_s, dy / dt_s, _remainder(turn) / dt_s
+    if dx != 0.0 or dy != 0.0 or turn != 0.0:
+        place = bodies.places[own]
+        place[:] = 0.0
+        place[0], place[1] = pose[0], pose[1]
+        place[5], place[6] = math.sin(pose[2] / 2.0), math.cos(pose[2] / 2.0)
+        bodies.stale[own] = True
+
+
+@njit(cache=True)
+def _count(robots: Robots, row: int, angles: Array) -> None:
+    """Integrate what the encoders counted; see `PeopleBot.update_odometry`."""
+    rims = np.empty(2)
+    for k in range(2):
+        travelled = (angles[k] - robots.turned[row, k]) * WHEEL_RADIUS_M
+        noise = robots.noise[row, k] * robots.noise_m[row]
+        rims[k] = travelled + noise * math.sqrt(abs(travelled))
+        robots.turned[row, k] = angles[k]
+    turn, advance = (rims[1] - rims[0]) / WHEEL_DISTANCE_M, (rims[0] + rims[1]) / 2.0
+    odometry = robots.odometry[row]
+    middle = odometry[2] + turn / 2.0
+    odometry[0] += advance * math.cos(middle)
+    odometry[1] += advance * math.sin(middle)
+    odometry[2] = _remainder(odometry[2] + turn)
+
+
+@njit(cache=True)
+def _remainder(angle: float) -> float:
+    """`math.remainder` by a full turn, exact up to one and a half turns."""
+    if abs(angle) <= math.pi:
+        return angle
+    return angle - 2.0 * math.pi if angle > 0.0 else angle + 2.0 * math.pi
