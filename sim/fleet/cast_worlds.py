@@ -7,7 +7,7 @@ from numba import njit
 
 from peopleboy.sim.fleet.side_by_side import Joined, Numbers, world_in
 from peopleboy.sim.physics.kinematic.cast import cast_into
-from peopleboy.sim.physics.kinematic.solids import Array
+from peopleboy.sim.physics.kinematic.solids import Array, refresh
 
 
 @njit(cache=True, nogil=True)
@@ -16,7 +16,7 @@ def cast_worlds(going: Numbers, joined: Joined, starts: Array, ends: Array, frac
 
     Args:
         going: (G,) numbers of the worlds.
-        joined: up to date.
+        joined: is brought up to date in them.
         starts: (G, R, 3) [m] world frame.
         ends: (G, R, 3) [m].
         fraction: (G, R) 1 at first, gets the share of its way at which a ray hits something.
@@ -24,6 +24,7 @@ def cast_worlds(going: Numbers, joined: Joined, starts: Array, ends: Array, frac
     part = np.empty(starts.shape[1], np.int64)
     for row in range(len(going)):
         bodies, solids = world_in(joined, going[row])
+        refresh(bodies, solids)
         cast_into(starts[row], ends[row], bodies, solids, joined.own[going[row]], fraction[row], part)
 
 

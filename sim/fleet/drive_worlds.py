@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.fleet.side_by_side import Joined, Numbers, world_in
+from peopleboy.sim.geometry.angles import remainder
 from peopleboy.sim.physics.kinematic.drive import push_out, roll
 from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids, refresh
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle
@@ -75,7 +76,7 @@ def drive_worlds(
 
     Args:
         going: (G,) numbers of the worlds.
-        joined: changed in place; up to date afterwards.
+        joined: changed in place.
         vehicle: all robots.
         robots: `command`, `turned` and `odometry` are changed in place.
         people: likewise.
@@ -97,7 +98,6 @@ def drive_worlds(
             touched[first:end] |= met
         _count(robots, row, joined.motion.angles[world])
         _put_people(people, world, bodies)
-        refresh(bodies, solids)
 
 
 @njit(cache=True)
@@ -159,7 +159,7 @@ def _roll(
         motion.angles[world, k] += speeds[k] * dt_s
     dx, dy, turn = pose[0] - x, pose[1] - y, pose[2] - heading
     velocity = motion.velocity[world]
-    velocity[0], velocity[1], velocity[2] = dx / dt_s, dy / dt_s, _remainder(turn) / dt_s
+    velocity[0], velocity[1], velocity[2] = dx / dt_s, dy / dt_s, remainder(turn) / dt_s
     if dx != 0.0 or dy != 0.0 or turn != 0.0:
         place = bodies.places[own]
         place[:] = 0.0
@@ -182,12 +182,5 @@ def _count(robots: Robots, row: int, angles: Array) -> None:
     middle = odometry[2] + turn / 2.0
     odometry[0] += advance * math.cos(middle)
     odometry[1] += advance * math.sin(middle)
-    odometry[2] = _remainder(odometry[2] + turn)
+    odometry[2] = remainder(odometry[2] + turn)
 
-
-@njit(cache=True)
-def _remainder(angle: float) -> float:
-    """`math.remainder` by a full turn, exact up to one and a half turns."""
-    if abs(angle) <= math.pi:
-        return angle
-    return angle - 2.0 * math.pi if angle > 0.0 else angle + 2.0 * math.pi

@@ -14,6 +14,7 @@ from peopleboy.sim.fleet.cast_worlds import cast_eyes, cast_worlds
 from peopleboy.sim.fleet.drive_worlds import Capsules, Robots, drive_worlds
 from peopleboy.sim.fleet.instant import Instant
 from peopleboy.sim.fleet.side_by_side import lay_side_by_side
+from peopleboy.sim.fleet.walk_worlds import Walks
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.geometry.poses import pose_matrices
@@ -54,7 +55,10 @@ class Fleet:
         self._camera = flat_geometry(first.config.robot.cameras, "thermal")
         config = first.config
         self._dt_s, self._steps = 1.0 / config.physics_hz, config.physics_hz // config.control_hz
+        self._control_s = 1.0 / config.control_hz
         self._own = self._joined.firsts.body[:-1] + self._joined.own
+        self._walks = Walks(worlds)
+        self._is_scripted = self._walks.is_scripted.tolist()
         self._know_people(physics)
 
     def step(self, commands: Mapping[int, Command]) -> None:
@@ -64,12 +68,20 @@ class Fleet:
             commands: speeds [m/s, rad/s] by the number of the world.
         """
         going = np.array(list(commands), np.int64)
-        for number, (linear_m_s, angular_rad_s) in commands.items():
-            self._worlds[number].begin_step(linear_m_s, angular_rad_s)
+        before = self._walks.places()
+        self._begin(going, commands)
         robots = self._robots(going)
+        capsules = Capsules(
+            first=self._walks.first,
+            body=self._capsule_bodies,
+            is_solid=np.array([is_solid for world in self._worlds for is_solid in world.crowd.are_solid]),
+            middle_m=self._heights_m / 2.0,
+            before=before,
+            after=self._walks.places(),
+        )
         touched = np.zeros(len(self._joined.bodies.places), np.bool_)
         drive_worlds(
-            going, self._joined, self._vehicle, robots, self._capsules(), self._dt_s, self._steps, touched
+            going, self._joined, self._vehicle, robots, capsules, self._dt_s, self._steps, touched
         )
         firsts, any_touched = self._joined.firsts.body, bool(touched.any())
         rows = zip(going.tolist(), robots.command.tolist(), robots.odometry.tolist(), strict=True)
@@ -79,6 +91,18 @@ class Fleet:
             mine = touched[firsts[number] : firsts[number + 1]] if any_touched else None
             names = set() if mine is None else _kinematic(world).names_of(mine)
             world.end_step(names, are_placed=True)
+
+    def _begin(self, going: NDArray[np.int64], commands: Mapping[int, Command]) -> None:
+        """Give robots their commands, and let people walk on."""
+        places = self._joined.bodies.places[self._own[going], :2]
+        for number, (linear_m_s, angular_rad_s) in commands.items():
+            world = self._worlds[number]
+            if self._is_scripted[number]:
+                world.robot.command(linear_m_s, angular_rad_s)
+            else:
+                world.begin_step(linear_m_s, angular_rad_s)
+        times_s = [self._worlds[number].time_s for number in commands]
+        self._walks.step(going, times_s, self._control_s, places)
 
     def look(self, numbers: Sequence[int]) -> list[Instant]:
         """Sense and tell the truth in some of the worlds, as `World.sense` and `World.scene` do.
@@ -119,7 +143,6 @@ class Fleet:
             tuple(enumerate(crowd.people, 1)) for crowd in crowds
         ]
         everybody = [person for crowd in crowds for person in crowd.people]
-        self._first_person = np.array([0, *accumulate(len(crowd.people) for crowd in crowds)], np.int64)
         self._capsule_bodies = np.array(
             [
                 each.number_of(name)
@@ -145,17 +168,6 @@ class Fleet:
             noise_m=np.array([robot.encoder_noise_m for robot in robots]),
         )
 
-    def _capsules(self) -> Capsules:
-        crowds = [world.crowd for world in self._worlds]
-        return Capsules(
-            first=self._first_person,
-            body=self._capsule_bodies,
-            is_solid=np.array([is_solid for crowd in crowds for is_solid in crowd.are_solid], np.bool_),
-            middle_m=self._heights_m / 2.0,
-            before=_rows([place for crowd in crowds for place in crowd.before]),
-            after=_rows([person.position for crowd in crowds for person in crowd.people]),
-        )
-
     def _hear(self, going: NDArray[np.int64], poses: Matrix) -> Matrix:
         """(G, 16) [m] readings of the sonars."""
         ring = self._ring
@@ -178,7 +190,7 @@ class Fleet:
             return [()] * len(present)
         row = np.repeat(np.arange(len(going)), counts)
         who = np.array([number - 1 for each in present for number, _ in each])
-        who += self._first_person[going[row]]
+        who += self._walks.first[going[row]]
         radii_m = self._radii_m[who]
         world_from_camera = poses @ self._camera.robot_from_camera
         places = _rows([person.position for each in present for _, person in each])

@@ -11,6 +11,14 @@ from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.looks.finish_person import Finisher, looks_stream
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.walking.script import (
+    WALK,
+    Records,
+    ScriptedWalk,
+    is_scripted,
+    start_walk,
+    write_script,
+)
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.places.place import Place, air_of, is_outdoors
@@ -47,11 +55,40 @@ class Crowd:
         self._is_fine = is_visible and detail == "full"
         self.people = tuple(self._make(config, seed) for config in configs)
         self.materials: dict[str, Material] = {}
+        self._walk: ScriptedWalk | None = None
         self._is_shown = dict.fromkeys((person.name for person in self.people), True)
         self._solid: set[str] = set()
         self._before: dict[str, NDArray[np.float64]] = {}
         for person in self.people:
             self._add(person)
+
+    def follow_scripts(self, *, has_begun: bool) -> ScriptedWalk | None:
+        """Walk by records from now on, where nobody looks and scripts and the robot alone guide everybody.
+
+        Args:
+            has_begun: whether anybody has walked otherwise before; then they go on as they did.
+        """
+        is_alone = not self._is_visible and all(is_scripted(person.config) for person in self.people)
+        if self._walk is None and is_alone and not has_begun:
+            self._walk = ScriptedWalk(
+                [write_script(person.config, person.walker) for person in self.people],
+                np.array([start_walk(p.config, p.walker, p.radius_m) for p in self.people], WALK),
+            )
+        return self._walk
+
+    def lay_into(self, records: Records) -> None:
+        """Keep the records of those who walk by them in another array from now on."""
+        assert self._walk is not None
+        self._walk = self._walk._replace(records=records)
+        for person, position, velocity in zip(
+            self.people, records["position"], records["velocity"], strict=True
+        ):
+            person.walker.position, person.walker.velocity = position, velocity
+
+    def take_over(self, headings: Sequence[float], are_present: Sequence[bool]) -> None:
+        """Face and be there as the records say by which people have just walked on."""
+        for person, heading, is_present in zip(self.people, headings, are_present, strict=True):
+            person.walker.heading, person.present = heading, is_present
 
     def step(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
         """Let everybody walk on for dt_s from time_s, knowing where the others and the robot are now."""
@@ -86,11 +123,6 @@ class Crowd:
     def are_solid(self) -> list[bool]:
         """Whether each of them is there to be met."""
         return [person.name in self._solid for person in self.people]
-
-    @property
-    def before(self) -> list[NDArray[np.float64]]:
-        """Where everybody was, (2,) [m], before the control step that has begun."""
-        return [self._before.get(person.name, person.position) for person in self.people]
 
     @property
     def stays(self) -> bool:

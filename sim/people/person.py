@@ -126,6 +126,11 @@ class Person:
         self._grasp: _Grasp | None = None
 
     @property
+    def walker(self) -> Walker:
+        """Where it goes, and how."""
+        return self._walker
+
+    @property
     def position(self) -> Array:
         """(2,) [m] in the world frame."""
         return self._walker.position

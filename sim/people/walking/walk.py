@@ -26,11 +26,11 @@ Array = NDArray[np.float64]
 ACCELERATION_M_S2 = 1.0
 TURN_RATE_RAD_S = math.radians(150.0)
 RISE_S = 0.6  # the time that it takes to sit down, to rise, or to change any other posture
-_LONGEST_STEP_S = 1.0 / 60.0
-_BRAKE_M_S2 = 2.0
-_KEEP_CLEAR_M = 0.25  # of the robot, where a person that waits for it comes to stand
-_STEER_GAIN = 8.0  # [1/s]
-_START_WITHIN_RAD = math.radians(25.0)
+LONGEST_STEP_S = 1.0 / 60.0
+BRAKE_M_S2 = 2.0
+KEEP_CLEAR_M = 0.25  # of the robot, where a person that waits for it comes to stand
+STEER_GAIN = 8.0  # [1/s]
+START_WITHIN_RAD = math.radians(25.0)
 _GIVING_WAY_M_S2 = 4.0
 _TRY_SIDE_S = 2.0  # how long one tries to pass on one side
 _ERRAND_M_S = 1.2  # how fast one goes where no script sends one
@@ -59,9 +59,9 @@ class Walker:
         self.velocity = np.zeros(2)
         self.turn_rate = 0.0
         self.reached = 0
-        self.posture = Posture(path[0].posture) if self._has_pause(0) else Posture.STANDING
+        self.posture = Posture(path[0].posture) if self.has_pause(0) else Posture.STANDING
         self.heading = self._first_heading()
-        self._pause_left = self._pause_of(0)
+        self._pause_left = self.pause_of(0)
         self._speed = 0.0
         self._pieces: tuple[PathPiece, ...] = ()
         self._along = 0.0
@@ -100,13 +100,13 @@ class Walker:
     def enter(self, around: Surroundings) -> None:
         """Face at once what the first waypoint says, if it is there."""
         face = self._path[0].face
-        target = around.find(face) if face is not None and self._has_pause(0) else None
+        target = around.find(face) if face is not None and self.has_pause(0) else None
         if target is not None:
             self.heading = self._bearing(target)
 
     def step(self, dt_s: float, around: Surroundings, wish: Wish = AS_PLANNED) -> None:
         """Move on by a time step, by the script as far as a wish leaves it; long steps are divided."""
-        count = max(math.ceil(dt_s / _LONGEST_STEP_S - 1e-9), 1)
+        count = max(math.ceil(dt_s / LONGEST_STEP_S - 1e-9), 1)
         for _ in range(count):
             self._step(dt_s / count, around, wish)
 
@@ -129,7 +129,7 @@ class Walker:
     def _first_heading(self) -> float:
         """Towards what the first waypoint faces, else towards the second."""
         first = self._path[0]
-        if self._has_pause(0) and isinstance(first.face, tuple):
+        if self.has_pause(0) and isinstance(first.face, tuple):
             target = first.face
         elif len(self._path) > 1:
             target = self._path[1].at_m
@@ -137,12 +137,12 @@ class Walker:
             return 0.0
         return math.atan2(target[1] - first.at_m[1], target[0] - first.at_m[0])
 
-    def _has_pause(self, index: int) -> bool:
+    def has_pause(self, index: int) -> bool:
         waypoint = self._path[index]
         is_kept = waypoint.pause_s > 0.0 or waypoint.until_robot_within_m is not None
         return index == len(self._path) - 1 or is_kept
 
-    def _pause_of(self, index: int) -> float:
+    def pause_of(self, index: int) -> float:
         """How long to stay at a waypoint [s]; at the last one for ever."""
         return math.inf if index == len(self._path) - 1 else self._path[index].pause_s
 
@@ -166,7 +166,7 @@ class Walker:
         self._on_feet_in -= dt_s
         bearing = self._bearing(np.array(self._path[self.reached + 1].at_m))
         self._turn(dt_s, bearing)
-        if self._on_feet_in <= 0.0 and abs(turn_between(self.heading, bearing)) < _START_WITHIN_RAD:
+        if self._on_feet_in <= 0.0 and abs(turn_between(self.heading, bearing)) < START_WITHIN_RAD:
             self._set_off()
 
     def _stop_calling(self, is_awaiting: bool) -> None:
@@ -180,7 +180,7 @@ class Walker:
         if self._speed > 0.0 and self._pieces and not self._is_astray and not self._yields:
             self._follow(dt_s, around, pace=0.0)
             return
-        self._speed = max(self._speed - 2.0 * _BRAKE_M_S2 * dt_s, 0.0)
+        self._speed = max(self._speed - 2.0 * BRAKE_M_S2 * dt_s, 0.0)
         self.velocity = _shorten(self.velocity, self._speed)
         self.position = self.position + self.velocity * dt_s
         if self._speed == 0.0 and self.posture is not Posture.SITTING:
@@ -191,7 +191,7 @@ class Walker:
         """Turn back to where the way leads, as who has stopped and looked elsewhere."""
         bearing = self._bearing(np.array(self._path[self._pieces[0].goal].at_m))
         self._turn(dt_s, bearing)
-        self._is_turned_away = abs(turn_between(self.heading, bearing)) > _START_WITHIN_RAD
+        self._is_turned_away = abs(turn_between(self.heading, bearing)) > START_WITHIN_RAD
 
     def _stray(self, dt_s: float, goal: Array, around: Surroundings, wish: Wish) -> None:
         """Leave the way of the script, on foot, for a point of the floor."""
@@ -225,7 +225,7 @@ class Walker:
     def _set_off(self) -> None:
         """Plan the way to the next waypoint at which to stop."""
         stop = self.reached + 1
-        while not self._stops_at(stop):
+        while not self.stops_at(stop):
             stop += 1
         here = (float(self.position[0]), float(self.position[1]))
         self._pieces = route(
@@ -234,8 +234,8 @@ class Walker:
         self._along = 0.0
         self._pause_left = 0.0
 
-    def _stops_at(self, index: int) -> bool:
-        if self._has_pause(index):
+    def stops_at(self, index: int) -> bool:
+        if self.has_pause(index):
             return True
         before, corner, after = (w.at_m for w in self._path[index - 1 : index + 2])
         return is_about_turn(before, corner, after)
@@ -246,11 +246,11 @@ class Walker:
         self.velocity = np.zeros(2)
         goal = self._pieces[-1].goal
         if goal > self.reached:  # else it has come back to where it was to stay
-            self._pause_left, self._wait_left = self._pause_of(goal), self._path[goal].waits_at_most_s
+            self._pause_left, self._wait_left = self.pause_of(goal), self._path[goal].waits_at_most_s
         self.reached = goal
         self._pieces = ()
         self._is_astray = False
-        if self._has_pause(self.reached):
+        if self.has_pause(self.reached):
             self.posture = Posture(self._path[self.reached].posture)
 
     def _follow(self, dt_s: float, around: Surroundings, pace: float) -> None:
@@ -258,7 +258,7 @@ class Walker:
         _, ahead = self._pieces[0].at(self._along)
         limit = pace * min(self._speed_limit(dt_s), self._limit_by_robot(around.robot, ahead))
         rise = ACCELERATION_M_S2 * dt_s
-        self._speed = max(min(limit, self._speed + rise), self._speed - 2.0 * _BRAKE_M_S2 * dt_s, 0.0)
+        self._speed = max(min(limit, self._speed + rise), self._speed - 2.0 * BRAKE_M_S2 * dt_s, 0.0)
         self._along += self._speed * dt_s
         while self._along >= self._pieces[0].length_m - 1e-4:
             self._along -= self._pieces[0].length_m
@@ -274,14 +274,14 @@ class Walker:
 
     def _speed_limit(self, dt_s: float) -> float:
         """Speed [m/s] from which every slower piece ahead, and the stop, can be reached by gentle braking."""
-        limit = self._piece_speed(self._pieces[0])
+        limit = self.piece_speed(self._pieces[0])
         ahead = self._pieces[0].length_m - self._along
         for piece in self._pieces[1:]:
-            limit = min(limit, _braking_speed(ahead, self._piece_speed(piece), ACCELERATION_M_S2, dt_s))
+            limit = min(limit, _braking_speed(ahead, self.piece_speed(piece), ACCELERATION_M_S2, dt_s))
             ahead += piece.length_m
         return min(limit, _braking_speed(ahead, 0.0, ACCELERATION_M_S2, dt_s))
 
-    def _piece_speed(self, piece: PathPiece) -> float:
+    def piece_speed(self, piece: PathPiece) -> float:
         """Planned speed [m/s], less where the arc is too tight to turn so fast."""
         speed = self._path[piece.goal].speed_m_s
         return speed if piece.curvature == 0.0 else min(speed, TURN_RATE_RAD_S * 0.8 / abs(piece.curvature))
@@ -296,8 +296,8 @@ class Walker:
         reach = self._radius_m + robot.radius_m
         if ahead < 0.0 or aside > reach:
             return math.inf
-        clear = ahead - math.sqrt(max(reach**2 - aside**2, 0.0)) - _KEEP_CLEAR_M
-        return math.sqrt(2.0 * _BRAKE_M_S2 * max(clear, 0.0))
+        clear = ahead - math.sqrt(max(reach**2 - aside**2, 0.0)) - KEEP_CLEAR_M
+        return math.sqrt(2.0 * BRAKE_M_S2 * max(clear, 0.0))
 
     def _give_way(self, dt_s: float, around: Surroundings, wish: Wish) -> None:
         """Move by social force towards the next waypoint."""
@@ -361,7 +361,7 @@ class Walker:
 
     def _turn(self, dt_s: float, wanted: float) -> None:
         """Turn towards a direction, fast at first and gently at the end."""
-        turn = turn_between(self.heading, wanted) * min(_STEER_GAIN * dt_s, 1.0)
+        turn = turn_between(self.heading, wanted) * min(STEER_GAIN * dt_s, 1.0)
         turn = min(max(turn, -TURN_RATE_RAD_S * dt_s), TURN_RATE_RAD_S * dt_s)
         self.turn_rate = turn / dt_s
         self.heading = math.remainder(self.heading + turn, 2.0 * math.pi)

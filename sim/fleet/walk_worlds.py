@@ -1,0 +1,92 @@
+"""The people of many worlds, walking together where nothing but scripts and the robot guide them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.fleet.side_by_side import Numbers
+from peopleboy.sim.people.crowd import Crowd
+from peopleboy.sim.people.walking.script import WALK, Records, Script, Scripts, join_scripts
+from peopleboy.sim.people.walking.walk_scripts import walk_on
+from peopleboy.sim.physics.kinematic.solids import Array
+from peopleboy.sim.world import World
+
+_TWO = 2.0  # see `walk_on`
+_NO_SCRIPT = Script.nothing()
+
+
+class Walks:
+    """Everybody in B worlds; those of worlds in which not all are scripted walk by themselves.
+
+    Attributes:
+        first: (B + 1,) where the people of each world begin.
+        is_scripted: (B,) in which worlds all are.
+    """
+
+    def __init__(self, worlds: Sequence[World]) -> None:
+        self._crowds = [world.crowd for world in worlds]
+        counts = [len(crowd.people) for crowd in self._crowds]
+        self.first = np.cumsum([0, *counts]).astype(np.int64)
+        own = [world.crowd.follow_scripts(has_begun=world.time_s > 0.0) for world in worlds]
+        self.is_scripted = np.array([each is not None for each in own], np.bool_)
+        scripts: list[Script] = []
+        records: list[Records] = []
+        for each, count in zip(own, counts, strict=True):
+            scripts += [_NO_SCRIPT] * count if each is None else each.scripts
+            records.append(np.zeros(count, WALK) if each is None else each.records)
+        self._scripts = join_scripts(scripts)
+        self._records = np.concatenate([np.zeros(0, WALK), *records])
+        for crowd, each, first, end in zip(self._crowds, own, self.first, self.first[1:], strict=False):
+            if each is not None:
+                crowd.lay_into(self._records[first:end])
+
+    def step(self, going: NDArray[np.int64], times_s: list[float], dt_s: float, robots: Array) -> None:
+        """Let all walk on who are guided by scripts.
+
+        Args:
+            going: (G,) numbers of the worlds.
+            times_s: [s] in each of them at the start of the step.
+            dt_s: [s] length of the step.
+            robots: (G, 2) [m] where their robots are.
+        """
+        _walk_worlds(
+            going, self.is_scripted, self.first, self._records, self._scripts, np.array(times_s), dt_s,
+            robots, _TWO,
+        )  # fmt: skip
+        headings, present = self._records["heading"].tolist(), self._records["is_present"].tolist()
+        ends = self.first.tolist()
+        for number in going[self.is_scripted[going]].tolist():
+            first, end = ends[number], ends[number + 1]
+            self._crowds[number].take_over(headings[first:end], present[first:end])
+
+    def places(self) -> Array:
+        """(Q, 2) [m] where everybody is, a copy."""
+        found = self._records["position"].copy()
+        for number in np.flatnonzero(~self.is_scripted).tolist():
+            people = self._crowds[number].people
+            if people:
+                found[self.first[number] : self.first[number + 1]] = [person.position for person in people]
+        return found
+
+
+@njit(cache=True, nogil=True)
+def _walk_worlds(
+    going: Numbers,
+    is_scripted: NDArray[np.bool_],
+    first: Numbers,
+    walks: Records,
+    scripts: Scripts,
+    times_s: Array,
+    dt_s: float,
+    robots: Array,
+    two: float,
+) -> None:
+    for row in range(len(going)):
+        world = going[row]
+        if is_scripted[world]:
+            robot = (robots[row, 0], robots[row, 1])
+            walk_on(first[world], first[world + 1], walks, scripts, times_s[row], dt_s, robot, two)

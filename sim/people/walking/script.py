@@ -1,0 +1,158 @@
+"""Scripts and who follows them, as arrays for kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.walking.path import route
+from peopleboy.sim.people.walking.walk import Walker
+
+Records = NDArray[Any]
+
+NOTHING, POINT, ROBOT = 0, 1, 2  # what to face while pausing
+WAYPOINT: Final = np.dtype(
+    [
+        ("at", np.float64, 2),  # [m]
+        ("pause_s", np.float64),  # inf at the last one
+        ("has_pause", np.bool_),
+        ("is_standing", np.bool_),  # the posture there
+        ("faces", np.int64),
+        ("face", np.float64, 2),  # [m]
+        ("first_piece", np.int64),  # of the way on from here to the next stop
+        ("end_piece", np.int64),
+    ]
+)
+"""A `Waypoint`; numbers of pieces are those within a script."""
+
+PIECE: Final = np.dtype(
+    [
+        ("start", np.float64, 2),  # [m]
+        ("heading", np.float64),  # [rad] at the start
+        ("length", np.float64),  # [m]
+        ("curvature", np.float64),  # [1/m]
+        ("goal", np.int64),  # number of the waypoint to which it leads
+        ("speed", np.float64),  # [m/s] as planned
+        ("speed_squared", np.float64),
+    ]
+)
+"""A `PathPiece`."""
+
+WALK: Final = np.dtype(
+    [
+        ("position", np.float64, 2),  # [m]
+        ("velocity", np.float64, 2),  # [m/s]
+        ("heading", np.float64),  # [rad]
+        ("speed", np.float64),  # [m/s]
+        ("along", np.float64),  # [m] on the piece
+        ("pause_left", np.float64),  # [s]
+        ("on_feet_in", np.float64),  # [s]
+        ("reached", np.int64),
+        ("piece", np.int64),  # under way on it; -1 in a pause
+        ("end_piece", np.int64),
+        ("is_standing", np.bool_),
+        ("is_present", np.bool_),
+        ("enter_s", np.float64),
+        ("leave_s", np.float64),  # inf for never
+        ("radius_m", np.float64),
+    ]
+)
+"""What a `Walker` knows of itself while nothing but its script and the robot decides where it goes."""
+
+
+class Script(NamedTuple):
+    """What somebody is to do: (W,) records WAYPOINT and (P,) records PIECE."""
+
+    waypoints: Records
+    pieces: Records
+
+    @classmethod
+    def nothing(cls) -> Script:
+        """That of somebody who has none."""
+        return cls(np.zeros(0, WAYPOINT), np.zeros(0, PIECE))
+
+
+class ScriptedWalk(NamedTuple):
+    """What the people of one world are to do, and (N,) records WALK of how far they are."""
+
+    scripts: list[Script]
+    records: Records
+
+
+def is_scripted(config: PersonConfig) -> bool:
+    """Whether nothing but the script and where the robot stands decides where a person goes and looks."""
+    is_alone = not config.yields and config.reacts is None and config.leads is None and config.group is None
+    return is_alone and all(
+        waypoint.until_robot_within_m is None
+        and (not isinstance(waypoint.face, str) or waypoint.face == "robot")
+        for waypoint in config.path
+    )
+
+
+def write_script(config: PersonConfig, walker: Walker) -> Script:
+    """Plan all ways between stops at once; the walker is that of the person."""
+    path, pieces = config.path, []
+    waypoints = np.zeros(len(path), WAYPOINT)
+    for index, (waypoint, row) in enumerate(zip(path, waypoints, strict=True)):
+        row["at"], row["pause_s"] = waypoint.at_m, walker.pause_of(index)
+        row["has_pause"] = walker.has_pause(index)
+        row["is_standing"] = Posture(waypoint.posture) is Posture.STANDING
+        if waypoint.face is not None:
+            row["faces"] = ROBOT if isinstance(waypoint.face, str) else POINT
+            row["face"] = (0.0, 0.0) if isinstance(waypoint.face, str) else waypoint.face
+        row["first_piece"] = len(pieces)
+        if index < len(path) - 1 and (index == 0 or walker.stops_at(index)):
+            stop = index + 1
+            while not walker.stops_at(stop):
+                stop += 1
+            pieces += route([each.at_m for each in path[index : stop + 1]], index + 1)
+        row["end_piece"] = len(pieces)
+    speeds = [walker.piece_speed(piece) for piece in pieces]
+    rows = [
+        (piece.start, piece.heading_rad, piece.length_m, piece.curvature, piece.goal, speed, speed**2)
+        for piece, speed in zip(pieces, speeds, strict=True)
+    ]
+    return Script(waypoints, np.array(rows, PIECE))
+
+
+def start_walk(config: PersonConfig, walker: Walker, radius_m: float) -> np.void:
+    """Record WALK of a person who has not moved yet."""
+    walk = np.zeros((), WALK)
+    walk["position"], walk["heading"] = walker.position, walker.heading
+    walk["pause_left"], walk["piece"] = walker.pause_of(0), -1
+    walk["is_standing"] = walker.posture is Posture.STANDING
+    walk["is_present"] = config.enter_s <= 0.0
+    walk["enter_s"] = config.enter_s
+    walk["leave_s"] = np.inf if config.leave_s is None else config.leave_s
+    walk["radius_m"] = radius_m
+    record: np.void = walk[()]
+    return record
+
+
+class Scripts(NamedTuple):
+    """The scripts of Q people, one after the other.
+
+    Attributes:
+        waypoints, pieces: of all of them.
+        first_waypoint, first_piece: (Q,) where each one's begin.
+    """
+
+    waypoints: Records
+    pieces: Records
+    first_waypoint: NDArray[np.int64]
+    first_piece: NDArray[np.int64]
+
+
+def join_scripts(scripts: Sequence[Script]) -> Scripts:
+    """Put scripts one after the other."""
+    return Scripts(
+        waypoints=np.concatenate([np.zeros(0, WAYPOINT), *(script.waypoints for script in scripts)]),
+        pieces=np.concatenate([np.zeros(0, PIECE), *(script.pieces for script in scripts)]),
+        first_waypoint=np.cumsum([0, *(len(script.waypoints) for script in scripts)])[:-1].astype(np.int64),
+        first_piece=np.cumsum([0, *(len(script.pieces) for script in scripts)])[:-1].astype(np.int64),
+    )

@@ -1,0 +1,197 @@
+"""One control step of people whom nothing but their scripts and the robot guide (numba kernels).
+
+Does to the last bit what `Walker` does, of which it is the part without errands, crowds and wishes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from numba import njit
+
+from peopleboy.sim.geometry.angles import remainder
+from peopleboy.sim.people.walking.script import NOTHING, POINT, Records, Scripts
+from peopleboy.sim.people.walking.walk import (
+    ACCELERATION_M_S2,
+    BRAKE_M_S2,
+    KEEP_CLEAR_M,
+    LONGEST_STEP_S,
+    RISE_S,
+    START_WITHIN_RAD,
+    STEER_GAIN,
+    TURN_RATE_RAD_S,
+)
+from peopleboy.sim.robot.robot_body import RADIUS_M
+
+Record = Any  # a row of records
+
+
+@njit(cache=True, nogil=True)
+def walk_on(
+    first: int,
+    end: int,
+    walks: Records,
+    scripts: Scripts,
+    time_s: float,
+    dt_s: float,
+    robot: tuple[float, float],
+    two: float,
+) -> None:
+    """Let some people walk on, come and go.
+
+    Args:
+        first: number of the first of them.
+        end: and after the last.
+        walks: (Q,) records WALK of all people, changed in place.
+        scripts: of all people.
+        time_s: [s] at the start of the step.
+        dt_s: [s] length of the step.
+        robot: [m] where it is now.
+        two: 2, told so late that squares are made by the library's power, as Python makes them.
+    """
+    now_s = time_s + dt_s
+    count = max(math.ceil(dt_s / LONGEST_STEP_S - 1e-9), 1)
+    for q in range(first, end):
+        walk = walks[q]
+        was_present = walk.is_present
+        walk.is_present = walk.enter_s <= now_s + 1e-9 and not now_s > walk.leave_s - 1e-9
+        if not walk.is_present:
+            continue
+        if was_present:
+            for _ in range(count):
+                if walk.piece >= 0:
+                    _follow(walk, scripts, q, dt_s / count, robot, two)
+                else:
+                    _pause(walk, scripts, q, dt_s / count, robot)
+        else:
+            waypoint = scripts.waypoints[scripts.first_waypoint[q]]
+            if waypoint.has_pause and waypoint.faces != NOTHING:
+                walk.heading = _faced(walk, waypoint, robot)
+
+
+@njit(cache=True)
+def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: tuple[float, float]) -> None:
+    """See `Walker._pause`."""
+    walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
+    walk.pause_left -= dt_s
+    waypoint = scripts.waypoints[scripts.first_waypoint[q] + walk.reached]
+    if walk.pause_left > 1e-9:
+        _turn(walk, dt_s, walk.heading if waypoint.faces == NOTHING else _faced(walk, waypoint, robot))
+        return
+    if not walk.is_standing:
+        walk.is_standing = True
+        walk.on_feet_in = RISE_S
+    walk.on_feet_in -= dt_s
+    following = scripts.waypoints[scripts.first_waypoint[q] + walk.reached + 1]
+    bearing = _bearing(walk, following.at[0], following.at[1])
+    _turn(walk, dt_s, bearing)
+    if walk.on_feet_in <= 0.0 and abs(remainder(bearing - walk.heading)) < START_WITHIN_RAD:
+        walk.piece, walk.end_piece = waypoint.first_piece, waypoint.end_piece
+        walk.along = walk.pause_left = 0.0
+
+
+@njit(cache=True)
+def _follow(
+    walk: Record, scripts: Scripts, q: int, dt_s: float, robot: tuple[float, float], two: float
+) -> None:
+    """See `Walker._follow`."""
+    pieces, first = scripts.pieces, scripts.first_piece[q]
+    piece = pieces[first + walk.piece]
+    ahead = piece.heading + piece.curvature * walk.along
+    limit = min(_speed_limit(walk, scripts, q, dt_s, two), _limit_by_robot(walk, robot, ahead, two))
+    rise = ACCELERATION_M_S2 * dt_s
+    walk.speed = max(min(limit, walk.speed + rise), walk.speed - 2.0 * BRAKE_M_S2 * dt_s, 0.0)
+    walk.along += walk.speed * dt_s
+    while walk.along >= pieces[first + walk.piece].length - 1e-4:
+        walk.along -= pieces[first + walk.piece].length
+        if walk.piece + 1 == walk.end_piece:
+            _arrive(walk, scripts, q, pieces[first + walk.piece].goal)
+            return
+        walk.piece += 1
+        walk.reached = pieces[first + walk.piece].goal - 1
+    direction = _put(walk, pieces[first + walk.piece])
+    walk.velocity[0] = walk.speed * math.cos(direction)
+    walk.velocity[1] = walk.speed * math.sin(direction)
+    _turn(walk, dt_s, direction)
+
+
+@njit(cache=True)
+def _put(walk: Record, piece: Record) -> float:
+    """Put somebody where they have got to on a piece, and tell its direction there; see `PathPiece.at`."""
+    heading = piece.heading + piece.curvature * walk.along
+    if piece.curvature == 0.0:
+        walk.position[0] = piece.start[0] + walk.along * math.cos(heading)
+        walk.position[1] = piece.start[1] + walk.along * math.sin(heading)
+    else:
+        chord_x = math.sin(heading) - math.sin(piece.heading)
+        chord_y = math.cos(piece.heading) - math.cos(heading)
+        walk.position[0] = piece.start[0] + chord_x / piece.curvature
+        walk.position[1] = piece.start[1] + chord_y / piece.curvature
+    return heading
+
+
+@njit(cache=True)
+def _arrive(walk: Record, scripts: Scripts, q: int, goal: int) -> None:
+    """See `Walker._arrive`."""
+    waypoint = scripts.waypoints[scripts.first_waypoint[q] + goal]
+    walk.position[0], walk.position[1] = waypoint.at[0], waypoint.at[1]
+    walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
+    walk.pause_left, walk.reached, walk.piece = waypoint.pause_s, goal, -1
+    if waypoint.has_pause:
+        walk.is_standing = waypoint.is_standing
+
+
+@njit(cache=True)
+def _speed_limit(walk: Record, scripts: Scripts, q: int, dt_s: float, two: float) -> float:
+    """See `Walker._speed_limit`."""
+    first = scripts.first_piece[q]
+    piece = scripts.pieces[first + walk.piece]
+    limit, ahead = piece.speed, piece.length - walk.along
+    for k in range(first + walk.piece + 1, first + walk.end_piece):
+        piece = scripts.pieces[k]
+        limit = min(limit, _braking_speed(ahead, piece.speed_squared, dt_s, two))
+        ahead += piece.length
+    return min(limit, _braking_speed(ahead, 0.0, dt_s, two))
+
+
+@njit(cache=True)
+def _braking_speed(distance: float, final_squared: float, dt_s: float, two: float) -> float:
+    lost = ACCELERATION_M_S2 * dt_s / 2.0
+    return math.sqrt(lost**two + 2.0 * ACCELERATION_M_S2 * max(distance, 0.0) + final_squared) - lost
+
+
+@njit(cache=True)
+def _limit_by_robot(walk: Record, robot: tuple[float, float], direction: float, two: float) -> float:
+    """See `Walker._limit_by_robot`."""
+    x, y = robot[0] - walk.position[0], robot[1] - walk.position[1]
+    ahead = x * math.cos(direction) + y * math.sin(direction)
+    aside = abs(y * math.cos(direction) - x * math.sin(direction))
+    reach = walk.radius_m + RADIUS_M
+    if ahead < 0.0 or aside > reach:
+        return math.inf
+    clear = ahead - math.sqrt(max(reach**two - aside**two, 0.0)) - KEEP_CLEAR_M
+    return math.sqrt(2.0 * BRAKE_M_S2 * max(clear, 0.0))
+
+
+@njit(cache=True)
+def _faced(walk: Record, waypoint: Record, robot: tuple[float, float]) -> float:
+    """Direction [rad] of what a waypoint says is to be faced."""
+    if waypoint.faces == POINT:
+        return _bearing(walk, waypoint.face[0], waypoint.face[1])
+    return _bearing(walk, robot[0], robot[1])
+
+
+@njit(cache=True)
+def _bearing(walk: Record, x: float, y: float) -> float:
+    """See `Walker._bearing`."""
+    dx, dy = x - walk.position[0], y - walk.position[1]
+    return walk.heading if math.hypot(dx, dy) < 1e-6 else math.atan2(dy, dx)
+
+
+@njit(cache=True)
+def _turn(walk: Record, dt_s: float, wanted: float) -> None:
+    """See `Walker._turn`."""
+    turn = remainder(wanted - walk.heading) * min(STEER_GAIN * dt_s, 1.0)
+    turn = min(max(turn, -TURN_RATE_RAD_S * dt_s), TURN_RATE_RAD_S * dt_s)
+    walk.heading = remainder(walk.heading + turn)
