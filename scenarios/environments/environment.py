@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, SupportsFloat
 import gymnasium
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import Command
@@ -198,18 +198,18 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         Raises:
             BadInput: the action is not two finite numbers, or there is no episode under way.
         """
-        command = self.begin_step(action)
+        command = self.begin_step(check_actions(action, (2,))[0])
         self.world.step(command.linear_m_s, command.angular_rad_s)
         return self.end_step(perceive(self.world))
 
-    def begin_step(self, action: NDArray[np.float32] | Sequence[float]) -> Command:
-        """Give the command for an action, by which the world is to be stepped now; see `step`.
+    def begin_step(self, shares: tuple[float, float]) -> Command:
+        """Give the command for an action, as checked, by which the world is to be stepped now; see `step`.
 
         Raises:
-            BadInput: as `step`.
+            BadInput: there is no episode under way.
         """
         self._running()
-        shares, limits = _check_action(action), self._limits
+        limits = self._limits
         command = Command(
             linear_m_s=shares[0] * limits.max_linear_m_s, angular_rad_s=shares[1] * limits.max_angular_rad_s
         )
@@ -408,13 +408,19 @@ def _check_size(size: tuple[int, int]) -> None:
         )
 
 
-def _check_action(action: NDArray[np.float32] | Sequence[float]) -> tuple[float, float]:
-    """Give the two shares, clipped."""
-    shares = np.asarray(action, np.float64)
-    if shares.shape != (2,) or not np.isfinite(shares).all():
-        raise BadInput(f"action {action!r} must be two finite numbers: shares of speed and turn rate")
-    linear, angular = np.clip(shares, -1.0, 1.0).tolist()
-    return linear, angular
+def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> list[tuple[float, float]]:
+    """Give the two shares of each of some actions, clipped.
+
+    Raises:
+        BadInput: they have not that shape, or not all numbers are finite.
+    """
+    shares = np.asarray(actions, np.float64)
+    if shares.shape != shape:
+        raise BadInput(f"actions of shape {shares.shape}: must be {shape}, two finite numbers each")
+    if not np.isfinite(shares).all():
+        raise BadInput(f"action {actions!r} must be two finite numbers: shares of speed and turn rate")
+    clipped = np.clip(shares, -1.0, 1.0).reshape(-1, 2).tolist()
+    return [(linear, angular) for linear, angular in clipped]
 
 
 def _resize(robot: RobotConfig, size: tuple[int, int]) -> RobotConfig:

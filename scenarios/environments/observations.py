@@ -36,8 +36,8 @@ border, +1 at the right one; height, top and bottom are in image heights from th
 is_visible is 0 while a person is wholly hidden.
 """
 
-_LOWEST: Final = (0.0, -10.0, 0.0, -10.0, -10.0, 0.0, 0.0)
-_HIGHEST: Final = (1e6, 10.0, 10.0, 10.0, 10.0, 1.0, 1.0)
+_LOWEST: Final = np.array([0.0, -10.0, 0.0, -10.0, -10.0, 0.0, 0.0])
+_HIGHEST: Final = np.array([1e6, 10.0, 10.0, 10.0, 10.0, 1.0, 1.0])
 _SONARS: Final = 16
 _FARTHEST_M: Final = 1e4
 _FASTEST: Final = 10.0
@@ -63,7 +63,7 @@ def observation_space(kind: str, robot: RobotConfig) -> spaces.Space[Arrays]:
             dtype = kind_of(camera).dtype
             found[name] = spaces.Box(0, int(np.iinfo(dtype).max), _shape(camera), dtype)
     else:
-        lowest, highest = (np.tile(np.array(row, np.float32), MOST_TRACKS) for row in (_LOWEST, _HIGHEST))
+        lowest, highest = (np.tile(row.astype(np.float32), MOST_TRACKS) for row in (_LOWEST, _HIGHEST))
         found["tracks"] = spaces.Box(lowest, highest, dtype=np.float32)
     return spaces.Dict(found)  # type: ignore[return-value]  # typed there as if samples were spaces
 
@@ -100,21 +100,16 @@ def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> Arrays:
 
 def see_truth(scene: ImageFreeTruth, robot: RobotConfig) -> Arrays:
     """Give what a perfect tracker would say: everybody within the image, hidden or not."""
-    return _table(
+    rows = (
         _row(person.id, person.box, 1.0, person.is_seen, robot)
         for person in scene.people
-        if person.box is not None and _is_inside(person.box, robot)
+        if person.box is not None
     )
+    return _table(row for row in rows if abs(row[1]) <= 1.0)  # whose middle lies between the borders
 
 
 def _shape(camera: CameraConfig) -> tuple[int, int, int]:
     return camera.camera.height, camera.camera.width, kind_of(camera).channels
-
-
-def _is_inside(box: Box, robot: RobotConfig) -> bool:
-    """Whether a person's middle lies between the borders."""
-    camera = robot.cameras["thermal"].camera
-    return abs(image_shares(box, camera.width, camera.height).x) <= 1.0
 
 
 def _row(number: int, box: Box, confidence: float, visible: bool, robot: RobotConfig) -> Row:

@@ -11,12 +11,12 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv, check_actions
+from peopleboy.scenarios.environments.join_infos import Infos, join_infos
 from peopleboy.scenarios.environments.observations import Arrays
 from peopleboy.sim.fleet.together import Together
 
 Flags = NDArray[np.bool_]
-Infos = dict[str, Any]
 Result = tuple[Arrays, SupportsFloat, bool, bool, dict[str, Any]]  # of a single environment's step
 
 
@@ -77,14 +77,14 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         if len(seeds) != self.num_envs:
             raise BadInput(f"seed: {len(seeds)} seeds for {self.num_envs} worlds; give one each")
         found = self._empty()
-        infos: Infos = {}
+        infos: list[Infos] = []
         for number, (env, own) in enumerate(zip(self._envs, seeds, strict=True)):
             observation, info = env.reset(seed=own, options=options)
             _put(found, number, observation)
-            infos = self._add_info(infos, info, number)
+            infos.append(info)
         self._is_over[:] = False
         self._together = None
-        return found, infos
+        return found, join_infos(infos)
 
     def step(self, actions: NDArray[np.float32]) -> tuple[Arrays, NDArray[np.float64], Flags, Flags, Infos]:
         """Drive every robot for one control step, and begin anew where an episode was over.
@@ -92,13 +92,11 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         Raises:
             BadInput: the actions are not (B, 2) finite numbers, or there are no episodes under way.
         """
-        if np.shape(actions) != (self.num_envs, 2):
-            raise BadInput(f"actions of shape {np.shape(actions)}: must be ({self.num_envs}, 2)")
+        results = self._step_together(check_actions(actions, (self.num_envs, 2)))
         found = self._empty()
-        infos: Infos = {}
+        infos: list[Infos] = []
         rewards = np.zeros(self.num_envs)
         terminations, truncations = np.zeros((2, self.num_envs), np.bool_)
-        results = self._step_together(actions)
         for number, env in enumerate(self._envs):
             if self._is_over[number]:
                 observation, info = env.reset()
@@ -107,9 +105,9 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
                 observation, reward, ended, cut, info = results[number]
                 rewards[number], terminations[number], truncations[number] = float(reward), ended, cut
             _put(found, number, observation)
-            infos = self._add_info(infos, info, number)
+            infos.append(info)
         self._is_over = terminations | truncations
-        return found, rewards, terminations, truncations, infos
+        return found, rewards, terminations, truncations, join_infos(infos)
 
     def vary_by(self, options: dict[str, Any]) -> None:
         """Vary every world's episodes from its next one on, as for a single environment.
@@ -125,7 +123,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         for env in self._envs:
             env.close()
 
-    def _step_together(self, actions: NDArray[np.float32]) -> dict[int, Result]:
+    def _step_together(self, actions: Sequence[tuple[float, float]]) -> dict[int, Result]:
         """Step the worlds whose episodes are under way; gives what each environment says, by its number."""
         going = {number: env for number, env in enumerate(self._envs) if not self._is_over[number]}
         commands = {number: env.begin_step(actions[number]) for number, env in going.items()}

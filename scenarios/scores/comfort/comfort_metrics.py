@@ -131,9 +131,12 @@ def time_to_collision(gap: Floats, velocity: Floats, reach_m: float) -> float:
     c = float(gap @ gap) - reach_m**2
     if c <= 0.0:
         return 0.0
-    a, b = float(velocity @ velocity), float(gap @ velocity)
+    b = float(gap @ velocity)
+    if b >= 0.0:
+        return math.inf
+    a = float(velocity @ velocity)
     inner = b * b - a * c
-    return c / (math.sqrt(inner) - b) if b < 0.0 and inner >= 0.0 else math.inf
+    return c / (math.sqrt(inner) - b) if inner >= 0.0 else math.inf
 
 
 def _jerk(run: ComfortRun) -> Floats:

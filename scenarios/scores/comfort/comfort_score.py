@@ -48,6 +48,7 @@ class ComfortLog:
 
 def _time_to_collision(truth: Truth | ImageFreeTruth, person: PersonTruth | Bystander) -> float:
     robot, (speed, _) = truth.robot, truth.robot_velocity
-    gap = np.subtract(person.position_m, (robot.x, robot.y))
-    own = speed * np.array([math.cos(robot.heading), math.sin(robot.heading)])
-    return time_to_collision(gap, np.array(person.velocity_m_s) - own, RADIUS_M + _BODY_M)
+    (x, y), (vx, vy) = person.position_m, person.velocity_m_s
+    gap = np.array((x - robot.x, y - robot.y))
+    own_x, own_y = speed * math.cos(robot.heading), speed * math.sin(robot.heading)
+    return time_to_collision(gap, np.array((vx - own_x, vy - own_y)), RADIUS_M + _BODY_M)
