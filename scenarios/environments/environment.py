@@ -41,13 +41,14 @@ from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.fleet.instant import Instant
 from peopleboy.sim.fleet.together import perceive
-from peopleboy.sim.observation import Observation
+from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import BLIND
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
@@ -159,8 +160,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._action = (0.0, 0.0)
         self._commands: list[Command] = []
         self._is_varied = bool(chosen)
-        self._tracker: Tracker = make_eyes(self._tracker_name, self._seed, self._world.truth)
-        check_cameras(self._tracker, config.robot.cameras)
+        self._tracker: Tracker | None = None
+        if self._kind == "tracks":
+            self._tracker = make_eyes(self._tracker_name, self._seed, self._world.truth)
+            check_cameras(self._tracker, config.robot.cameras)
         plan, follow = self._scenario.plan, self._scenario.follow_config()
         following = following_task(config, follow.keep_height)
         self._keep_m = following.keep_m
@@ -311,7 +314,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._running(even_over=True)
         assert self._picture is not None
         assert isinstance(self._senses, Observation)
-        return self._picture.draw(self._senses, self._scene, self._tracks, explanation_of(self._tracker))
+        explanation = None if self._tracker is None else explanation_of(self._tracker)
+        return self._picture.draw(self._senses, self._scene, self._tracks, explanation)
 
     def _show_first(self) -> None:
         """Show the episode's first instant, in a viewer that is there already or opened now."""
@@ -346,7 +350,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """Put what is sensed into the form that was asked for."""
         world = self._running()
         before = self._start if self._start is None else self._senses.odometry
-        self._senses, self._scene = instant
+        self._senses: Senses = instant.senses
+        self._scene: ImageFreeTruth = instant.scene
         if self._start is None:
             self._start = self._senses.odometry
         found = feel(self._senses, self._start) | self._see(before)
@@ -362,6 +367,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         if self._kind == "pixels":
             self._images |= see_images(self._senses, self._robot)
             return self._images
+        assert self._tracker is not None
         self._tracks = self._tracker.update(make_frame(self._senses, self._calibrations, before))
         return see_tracks(self._tracks, self._robot)
 

@@ -122,5 +122,5 @@ def _table(rows: Iterable[Row]) -> Arrays:
     tallest = sorted(rows, key=lambda row: -row[2])[:MOST_TRACKS]
     table = np.zeros((MOST_TRACKS, len(COLUMNS)), np.float32)
     if tallest:
-        table[: len(tallest)] = np.clip(tallest, _LOWEST, _HIGHEST)
+        table[: len(tallest)] = np.clip(np.array(tallest), _LOWEST, _HIGHEST)
     return {"tracks": table.reshape(-1)}

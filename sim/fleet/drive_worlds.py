@@ -183,4 +183,3 @@ def _count(robots: Robots, row: int, angles: Array) -> None:
     odometry[0] += advance * math.cos(middle)
     odometry[1] += advance * math.sin(middle)
     odometry[2] = remainder(odometry[2] + turn)
-

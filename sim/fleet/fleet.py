@@ -39,7 +39,8 @@ class Fleet:
     kernels over all worlds; people walk as in one.
 
     Args:
-        worlds: kinematic, and of one kind, see `kind_of_fleet`. A world is in one fleet at a time, the last it was put into.
+        worlds: kinematic, and of one kind, see `kind_of_fleet`. A world is in one fleet at a time, the last
+            that it was put into.
     """
 
     def __init__(self, worlds: Sequence[World]) -> None:
@@ -80,9 +81,7 @@ class Fleet:
             after=self._walks.places(),
         )
         touched = np.zeros(len(self._joined.bodies.places), np.bool_)
-        drive_worlds(
-            going, self._joined, self._vehicle, robots, capsules, self._dt_s, self._steps, touched
-        )
+        drive_worlds(going, self._joined, self._vehicle, robots, capsules, self._dt_s, self._steps, touched)
         firsts, any_touched = self._joined.firsts.body, bool(touched.any())
         rows = zip(going.tolist(), robots.command.tolist(), robots.odometry.tolist(), strict=True)
         for row, (number, (linear, angular), odometry) in enumerate(rows):
@@ -182,9 +181,7 @@ class Fleet:
         self, going: NDArray[np.int64], poses: Matrix, robots: Sequence[Planar]
     ) -> list[tuple[Bystander, ...]]:
         """Tell of everybody who is present in the worlds, as `bystanders` does of one."""
-        present = [
-            [pair for pair in self._people[number] if pair[1].present] for number in going.tolist()
-        ]
+        present = [[pair for pair in self._people[number] if pair[1].present] for number in going.tolist()]
         counts = [len(each) for each in present]
         if not any(counts):
             return [()] * len(present)
@@ -196,7 +193,14 @@ class Fleet:
         places = _rows([person.position for each in present for _, person in each])
         uprights = stand_before(places, self._heights_m[who], radii_m, self._camera, world_from_camera[row])
         fraction = np.ones(uprights.points.shape[:2])
-        cast_eyes(np.flatnonzero(uprights.reaches_in), going[row], self._joined, uprights.eyes, uprights.points, fraction)
+        cast_eyes(
+            np.flatnonzero(uprights.reaches_in),
+            going[row],
+            self._joined,
+            uprights.eyes,
+            uprights.points,
+            fraction,
+        )
         boxes, shares = uprights.boxes.tolist(), free_ray_shares(uprights, fraction, radii_m).tolist()
         ends = list(accumulate(counts, initial=0))
         return [

@@ -1,4 +1,4 @@
-"""The states of many kinematic worlds, joined into arrays of which each world keeps looking at its own part."""
+"""The states of many kinematic worlds in arrays of which each world keeps looking at its own part."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def _state_in(joined: Joined, number: int, before: State) -> State:
 
 @njit(cache=True)
 def world_in(joined: Joined, number: int) -> tuple[Placements, Solids]:
-    """Bodies and solids of one of the worlds; of its table the surfaces, which nobody asks for, are left out."""
+    """Bodies and solids of one of the worlds; its table goes without surfaces, which nobody asks for."""
     firsts, table = joined.firsts, joined.solids.table
     b, b_end = firsts.body[number], firsts.body[number + 1]
     p, p_end = firsts.part[number], firsts.part[number + 1]

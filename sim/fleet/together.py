@@ -36,7 +36,9 @@ class Together:
             inside = {k: commands[number] for k, number in enumerate(group) if number in commands}
             if inside:
                 fleet.step(inside)
-                found |= {group[k]: instant for k, instant in zip(inside, fleet.look(list(inside)), strict=True)}
+                found |= {
+                    group[k]: instant for k, instant in zip(inside, fleet.look(list(inside)), strict=True)
+                }
         return found
 
 

@@ -9,9 +9,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.fleet.side_by_side import Numbers
-from peopleboy.sim.people.crowd import Crowd
-from peopleboy.sim.people.walking.script import WALK, Records, Script, Scripts, join_scripts
-from peopleboy.sim.people.walking.walk_scripts import walk_on
+from peopleboy.sim.people.scripted.script import WALK, Records, Script, Scripts, join_scripts
+from peopleboy.sim.people.scripted.walk_scripts import walk_on
 from peopleboy.sim.physics.kinematic.solids import Array
 from peopleboy.sim.world import World
 

@@ -11,7 +11,7 @@ from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.looks.finish_person import Finisher, looks_stream
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.script import (
+from peopleboy.sim.people.scripted.script import (
     WALK,
     Records,
     ScriptedWalk,
@@ -70,10 +70,11 @@ class Crowd:
         """
         is_alone = not self._is_visible and all(is_scripted(person.config) for person in self.people)
         if self._walk is None and is_alone and not has_begun:
-            self._walk = ScriptedWalk(
-                [write_script(person.config, person.walker) for person in self.people],
-                np.array([start_walk(p.config, p.walker, p.radius_m) for p in self.people], WALK),
-            )
+            records = np.zeros(len(self.people), WALK)
+            for person, record in zip(self.people, records, strict=True):
+                start_walk(person.config, person.walker, person.radius_m, record)
+            scripts = [write_script(person.config, person.walker) for person in self.people]
+            self._walk = ScriptedWalk(scripts, records)
         return self._walk
 
     def lay_into(self, records: Records) -> None:

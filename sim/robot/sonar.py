@@ -76,7 +76,7 @@ def read_echoes(
     is_lost: NDArray[np.bool_],
     config: SonarConfig,
 ) -> NDArray[np.float64]:
-    """Make readings (..., 16) [m] of the shares (..., 16, 15) of their reach at which rays hit, 1 for none."""
+    """Make readings (..., 16) [m] of the shares (..., 16, 15) of their reach at which rays hit, else 1."""
     nearest = np.where(fraction < 1.0, fraction * reach_m, np.inf).min(axis=-1)
     reading = np.where(is_lost, np.inf, nearest + noise_m)
     return np.clip(reading, config.nearest_m, config.farthest_m)

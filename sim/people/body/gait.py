@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,9 +51,6 @@ class Gait:
         leg = -offsets[BONE_INDEX["left_shin"], 2] - offsets[BONE_INDEX["left_foot"], 2]
         self._scale = leg / CLIP_LEG_M
         self.unit_stride_m = load_walking_clip().stride_m * self._scale * manner.stride
-        tables = [self._make_table(float(a)) for a in _AMPLITUDES]
-        self._rotations = np.stack([rotations for rotations, _ in tables])  # (A, P, 17, 3)
-        self._sway = np.stack([sway for _, sway in tables])  # (A, P, 3)
 
     def amplitude(self, speed_m_s: float) -> float:
         """Length of the stride against the clip's at a walking speed.
@@ -82,11 +80,18 @@ class Gait:
             (i + 1, j, di * (1.0 - dj)),
             (i + 1, following, di * dj),
         )
+        all_rotations, all_sway = self._tables
         rotations, sway = np.zeros((len(BONES), 3)), np.zeros(3)
         for row_index, column_index, weight in corners:
-            rotations += weight * self._rotations[row_index, column_index]
-            sway += weight * self._sway[row_index, column_index]
+            rotations += weight * all_rotations[row_index, column_index]
+            sway += weight * all_sway[row_index, column_index]
         return rotations, sway[:2]
+
+    @cached_property
+    def _tables(self) -> tuple[Array, Array]:
+        """(A, P, 17, 3) and (A, P, 3) tables of all amplitudes, made for those who are looked at."""
+        tables = [self._make_table(float(a)) for a in _AMPLITUDES]
+        return np.stack([rotations for rotations, _ in tables]), np.stack([sway for _, sway in tables])
 
     def _make_table(self, amplitude: float) -> tuple[Array, Array]:
         """Compute (P, 17, 3) rotation vectors and (P, 3) pelvis offsets at every phase, for one amplitude."""

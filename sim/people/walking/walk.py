@@ -138,6 +138,7 @@ class Walker:
         return math.atan2(target[1] - first.at_m[1], target[0] - first.at_m[0])
 
     def has_pause(self, index: int) -> bool:
+        """Whether one stays at a waypoint."""
         waypoint = self._path[index]
         is_kept = waypoint.pause_s > 0.0 or waypoint.until_robot_within_m is not None
         return index == len(self._path) - 1 or is_kept
@@ -235,6 +236,7 @@ class Walker:
         self._pause_left = 0.0
 
     def stops_at(self, index: int) -> bool:
+        """Whether one comes to a stand at a waypoint."""
         if self.has_pause(index):
             return True
         before, corner, after = (w.at_m for w in self._path[index - 1 : index + 2])

@@ -58,6 +58,46 @@ def test_each_world_is_to_the_byte_a_single_environment_over_its_end_and_a_new_b
         env.close()
 
 
+@pytest.mark.parametrize(
+    "scenario",
+    [
+        "crowd_8",  # they come in one after the other, and make way
+        "reacts_blocks",
+        "tidying_1",  # things are moved
+        "single_stationary",  # the robot drives into her
+    ],
+)
+def test_fleets_are_to_the_byte_single_worlds_whatever_people_do(scenario: str) -> None:
+    settings = {"observation": "truth", "physics": "kinematic", "physics_hz": 60, "normalise": True}
+    many = PeopleBoyVectorEnv(2, scenario=scenario, **settings)
+    single = [PeopleBoyEnv(scenario, **settings) for _ in range(2)]
+    ends = 0
+    rng = np.random.default_rng(0)
+    many.reset(seed=3)
+    over = [False, False]
+    for number, env in enumerate(single):
+        env.reset(seed=3 + number)
+    for _ in range(100):
+        actions = rng.uniform((0.9, -0.02), (1.0, 0.02), (2, 2)).astype(np.float32)
+        found, rewards, _, _, infos = many.step(actions)
+        for number, env in enumerate(single):
+            if over[number]:
+                seen, info = env.reset()
+                over[number] = False
+            else:
+                seen, reward, ended, cut, info = env.step(actions[number])
+                assert rewards[number] == reward
+                over[number] = ended or cut
+                ends += ended
+            assert infos["truth"][number] == info["truth"]
+            for name, array in seen.items():
+                assert found[name][number].tobytes() == array.tobytes()
+    assert ends > 0 or scenario != "single_stationary"
+    many.close()
+    for env in single:
+        env.close()
+
+
 def test_gymnasium_makes_it_by_name_and_samples_fit() -> None:
     many = gymnasium.make_vec(
         "peopleboy/PersonFollowing-v0",

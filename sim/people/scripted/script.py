@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.path import route
+from peopleboy.sim.people.walking.path import PathPiece, route
 from peopleboy.sim.people.walking.walk import Walker
 
 Records = NDArray[Any]
@@ -96,7 +96,8 @@ def is_scripted(config: PersonConfig) -> bool:
 
 def write_script(config: PersonConfig, walker: Walker) -> Script:
     """Plan all ways between stops at once; the walker is that of the person."""
-    path, pieces = config.path, []
+    path = config.path
+    pieces: list[PathPiece] = []
     waypoints = np.zeros(len(path), WAYPOINT)
     for index, (waypoint, row) in enumerate(zip(path, waypoints, strict=True)):
         row["at"], row["pause_s"] = waypoint.at_m, walker.pause_of(index)
@@ -120,9 +121,8 @@ def write_script(config: PersonConfig, walker: Walker) -> Script:
     return Script(waypoints, np.array(rows, PIECE))
 
 
-def start_walk(config: PersonConfig, walker: Walker, radius_m: float) -> np.void:
-    """Record WALK of a person who has not moved yet."""
-    walk = np.zeros((), WALK)
+def start_walk(config: PersonConfig, walker: Walker, radius_m: float, walk: np.void) -> None:
+    """Fill the record WALK of a person who has not moved yet."""
     walk["position"], walk["heading"] = walker.position, walker.heading
     walk["pause_left"], walk["piece"] = walker.pause_of(0), -1
     walk["is_standing"] = walker.posture is Posture.STANDING
@@ -130,8 +130,6 @@ def start_walk(config: PersonConfig, walker: Walker, radius_m: float) -> np.void
     walk["enter_s"] = config.enter_s
     walk["leave_s"] = np.inf if config.leave_s is None else config.leave_s
     walk["radius_m"] = radius_m
-    record: np.void = walk[()]
-    return record
 
 
 class Scripts(NamedTuple):

@@ -11,7 +11,7 @@ from typing import Any
 from numba import njit
 
 from peopleboy.sim.geometry.angles import remainder
-from peopleboy.sim.people.walking.script import NOTHING, POINT, Records, Scripts
+from peopleboy.sim.people.scripted.script import NOTHING, POINT, Records, Scripts
 from peopleboy.sim.people.walking.walk import (
     ACCELERATION_M_S2,
     BRAKE_M_S2,
@@ -119,7 +119,7 @@ def _follow(
 @njit(cache=True)
 def _put(walk: Record, piece: Record) -> float:
     """Put somebody where they have got to on a piece, and tell its direction there; see `PathPiece.at`."""
-    heading = piece.heading + piece.curvature * walk.along
+    heading: float = piece.heading + piece.curvature * walk.along
     if piece.curvature == 0.0:
         walk.position[0] = piece.start[0] + walk.along * math.cos(heading)
         walk.position[1] = piece.start[1] + walk.along * math.sin(heading)
@@ -147,7 +147,8 @@ def _speed_limit(walk: Record, scripts: Scripts, q: int, dt_s: float, two: float
     """See `Walker._speed_limit`."""
     first = scripts.first_piece[q]
     piece = scripts.pieces[first + walk.piece]
-    limit, ahead = piece.speed, piece.length - walk.along
+    limit: float = piece.speed
+    ahead = piece.length - walk.along
     for k in range(first + walk.piece + 1, first + walk.end_piece):
         piece = scripts.pieces[k]
         limit = min(limit, _braking_speed(ahead, piece.speed_squared, dt_s, two))
@@ -186,7 +187,8 @@ def _faced(walk: Record, waypoint: Record, robot: tuple[float, float]) -> float:
 def _bearing(walk: Record, x: float, y: float) -> float:
     """See `Walker._bearing`."""
     dx, dy = x - walk.position[0], y - walk.position[1]
-    return walk.heading if math.hypot(dx, dy) < 1e-6 else math.atan2(dy, dx)
+    heading: float = walk.heading
+    return heading if math.hypot(dx, dy) < 1e-6 else math.atan2(dy, dx)
 
 
 @njit(cache=True)

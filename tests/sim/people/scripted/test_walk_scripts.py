@@ -1,0 +1,76 @@
+import math
+
+import numpy as np
+import pytest
+
+from peopleboy.sim.geometry.angles import remainder
+from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.person import PlanarState, Waypoint
+from peopleboy.sim.people.reacting.reaction import Reaction
+from peopleboy.sim.people.scripted.script import WALK, is_scripted, join_scripts, start_walk, write_script
+from peopleboy.sim.people.scripted.walk_scripts import walk_on
+from tests.helpers.worlds.walkers import NO_WALLS, make_person
+
+DT_S = 1 / 15
+FACES = (None, "robot", (0.0, 7.0))
+
+
+def chance_person(rng):
+    """Somebody whose script has corners, about-turns, pauses, seats, and times to come and go."""
+    points = rng.uniform(-3.0, 3.0, (rng.integers(1, 7), 2))
+    path = tuple(
+        Waypoint(
+            at_m=tuple(point.tolist()),
+            speed_m_s=float(rng.uniform(0.3, 1.6)),
+            pause_s=float(rng.choice([0.0, rng.uniform(0.1, 3.0)])),
+            face=FACES[rng.integers(3)],
+            posture=Posture.SITTING if rng.random() < 0.2 else Posture.STANDING,
+        )
+        for point in points
+    )
+    enter_s = float(rng.choice([0.0, rng.uniform(0.1, 2.0)]))
+    leave_s = float(rng.uniform(10.0, 20.0)) if rng.random() < 0.3 else None
+    return make_person(path=path, enter_s=enter_s, leave_s=leave_s)
+
+
+def test_records_walk_to_the_last_bit_as_people_do_with_a_robot_in_their_way():
+    rng = np.random.default_rng(0)
+    people = [chance_person(rng) for _ in range(40)]
+    assert all(is_scripted(person.config) for person in people)
+    walks = np.zeros(len(people), WALK)
+    for person, record in zip(people, walks, strict=True):
+        start_walk(person.config, person.walker, person.radius_m, record)
+    scripts = join_scripts([write_script(person.config, person.walker) for person in people])
+    stopped = 0
+    for k in range(300):
+        place = (2.0 * math.sin(0.02 * k), 1.5 * math.cos(0.013 * k))
+        robot = PlanarState(position=np.array(place), velocity=np.zeros(2), radius_m=0.355)
+        for person in people:
+            person.step(k * DT_S, DT_S, {}, robot, NO_WALLS)
+        walk_on(0, len(people), walks, scripts, k * DT_S, DT_S, place, 2.0)
+        for person, walk in zip(people, walks, strict=True):
+            assert person.present == walk["is_present"]
+            assert person.position.tobytes() == walk["position"].tobytes()
+            assert person.velocity.tobytes() == walk["velocity"].tobytes()
+            assert person.heading == walk["heading"]
+            stopped += person.walker.is_walking and not person.velocity.any()
+    assert stopped > 0  # the robot was in somebody's way
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"yields": True},
+        {"reacts": Reaction(way="ignores")},
+        {"group": "pair"},
+        {"path": (Waypoint(at_m=(0.0, 0.0), face="ben", pause_s=1.0), Waypoint(at_m=(1.0, 0.0)))},
+        {"path": (Waypoint(at_m=(0.0, 0.0), until_robot_within_m=1.0), Waypoint(at_m=(1.0, 0.0)))},
+    ],
+)
+def test_whoever_heeds_somebody_is_not_scripted(settings):
+    assert not is_scripted(make_person(**settings).config)
+
+
+def test_the_remainder_of_kernels_is_that_of_the_library():
+    angles = np.random.default_rng(0).uniform(-9.4, 9.4, 2000).tolist()
+    assert [remainder(angle) for angle in angles] == [math.remainder(angle, math.tau) for angle in angles]
