@@ -109,7 +109,7 @@ class World:
     @property
     def touching(self) -> tuple[str, ...]:
         """Names of what the robot touches, the floor aside."""
-        return tuple(sorted(self._touching))
+        return tuple(sorted(self._touching)) if self._touching else ()
 
     @property
     def time_s(self) -> float:

@@ -86,6 +86,8 @@ class Episode:
         """Give what is new as pairs of what happened, and to or with whom."""
         seen = {person.name for person in scene.people if person.is_seen}
         touched = set(scene.contacts)
+        if seen == self._seen and touched == self._touched:
+            return ()
         found = [("seen", name) for name in sorted(seen - self._seen)]
         found += [("out of sight", name) for name in sorted(self._seen - seen)]
         found += [("contact", name) for name in sorted(touched - self._touched)]
@@ -95,7 +97,7 @@ class Episode:
 
 def find_target(scene: ImageFreeTruth) -> Bystander | None:
     """The person to follow: the first in the scenario's order who is present."""
-    return min(scene.people, key=lambda person: person.id, default=None)
+    return scene.people[0] if scene.people else None
 
 
 def corridor_motion(plan: FloorPlan, scene: ImageFreeTruth) -> tuple[float, float]:

@@ -55,7 +55,7 @@ class ImageFreeTruth:
         robot: true pose of the robot.
         robot_velocity: true forward speed [m/s] and turn rate [rad/s].
         contacts: names of what the robot touches, the floor aside.
-        people: everybody who is present.
+        people: everybody who is present, in the scenario's order.
     """
 
     time_s: float
