@@ -34,6 +34,7 @@ START_WITHIN_RAD = math.radians(25.0)
 _GIVING_WAY_M_S2 = 4.0
 _TRY_SIDE_S = 2.0  # how long one tries to pass on one side
 _ERRAND_M_S = 1.2  # how fast one goes where no script sends one
+_TAKEN_WITHIN_M = 1.0  # how near to a waypoint one looks whether somebody stands on it
 _NEARLY_M = 0.1  # how near to the goal of an errand one has arrived
 _SIDESTEP_M = 0.8  # the last of an errand, on which one does not turn away from what one faces
 _HURRY = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
@@ -347,9 +348,11 @@ class Walker:
     def _pass_waypoint(self, target: Array, is_last: bool, others: Sequence[PlanarState]) -> None:
         """Go on to the next waypoint where this one is reached, or where others stand on it."""
         distance = float(np.hypot(*(target - self.position)))
+        if distance >= _TAKEN_WITHIN_M:
+            return
         is_taken = any(np.hypot(*(other.position - target)) < 0.6 for other in others)
         if is_last:
-            if distance < 0.04 or (is_taken and distance < 1.0 and self._speed < 0.4):
+            if distance < 0.04 or (is_taken and self._speed < 0.4):
                 self._arrive()
         elif distance < (0.9 if is_taken else 0.35):
             goal = self._pieces[0].goal
