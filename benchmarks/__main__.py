@@ -22,6 +22,7 @@ from benchmarks.environments import (
     vector_rate,
     way_off_mm,
 )
+from benchmarks.many_worlds import PIXELS, TRUTH, many_rates
 from benchmarks.memory import long_run
 from benchmarks.speed.bench_figures import BenchFigure, Goal, nested, read_figures, reasons, table_of
 from benchmarks.speed.closed_loop import loop_speed, peak_memory_mb, run_speed
@@ -115,6 +116,15 @@ def _environments() -> Iterator[BenchFigure]:
     for case, physics in product(CASES, PHYSICS):
         name = f"{case.name}, {MANY} worlds, {physics} at {QUICK_HZ} Hz"
         yield BenchFigure((of, name, "one process"), vector_rate(case, physics), "{:.0f} steps/s")
+    for case, worlds, least, reason in (
+        (TRUTH, 64, 20, "observations, rewards and figures of episodes are made world by world"),
+        (PIXELS, MANY, 10, "images are drawn world by world, and three quarters of that is Python"),
+    ):
+        ratio = many_rates(case, (worlds,))[worlds].ratio
+        name = f"{case.name}, {worlds} worlds, kinematic"
+        yield BenchFigure(
+            (of, name, "one PyBullet world", "ratio"), ratio, "{:.1f}", Goal(least=least), reason
+        )
     yield BenchFigure((of, f"way off at {QUICK_HZ} Hz"), way_off_mm(), "{:.1f} mm at most, 30 s")
     for size in ((320, 240), (80, 60)):
         name = f"getCameraImage, {size[0]} x {size[1]}"

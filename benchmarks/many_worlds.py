@@ -116,7 +116,9 @@ def main() -> None:
     print(f"truth, {MANY} worlds, whole episodes: {whole_episodes_rate():.0f} steps/s", flush=True)
     for people in PEOPLE:
         scripted, yielding = (people_step_ms(people, yields=yields) for yields in (False, True))
-        print(f"truth, {people} people: {scripted:.2f} ms a step; {yielding:.2f} if they make way", flush=True)
+        print(
+            f"truth, {people} people: {scripted:.2f} ms a step; {yielding:.2f} if they make way", flush=True
+        )
 
 
 if __name__ == "__main__":
