@@ -36,8 +36,8 @@ border, +1 at the right one; height, top and bottom are in image heights from th
 is_visible is 0 while a person is wholly hidden.
 """
 
-_LOWEST: Final = np.array([0.0, -10.0, 0.0, -10.0, -10.0, 0.0, 0.0])
-_HIGHEST: Final = np.array([1e6, 10.0, 10.0, 10.0, 10.0, 1.0, 1.0])
+_LOWEST: Final = (0.0, -10.0, 0.0, -10.0, -10.0, 0.0, 0.0)
+_HIGHEST: Final = (1e6, 10.0, 10.0, 10.0, 10.0, 1.0, 1.0)
 _SONARS: Final = 16
 _FARTHEST_M: Final = 1e4
 _FASTEST: Final = 10.0
@@ -63,7 +63,7 @@ def observation_space(kind: str, robot: RobotConfig) -> spaces.Space[Arrays]:
             dtype = kind_of(camera).dtype
             found[name] = spaces.Box(0, int(np.iinfo(dtype).max), _shape(camera), dtype)
     else:
-        lowest, highest = (np.tile(row.astype(np.float32), MOST_TRACKS) for row in (_LOWEST, _HIGHEST))
+        lowest, highest = (np.tile(np.array(row, np.float32), MOST_TRACKS) for row in (_LOWEST, _HIGHEST))
         found["tracks"] = spaces.Box(lowest, highest, dtype=np.float32)
     return spaces.Dict(found)  # type: ignore[return-value]  # typed there as if samples were spaces
 
@@ -120,7 +120,10 @@ def _row(number: int, box: Box, confidence: float, visible: bool, robot: RobotCo
 def _table(rows: Iterable[Row]) -> Arrays:
     """Put the tallest first, and nobody into the rest."""
     tallest = sorted(rows, key=lambda row: -row[2])[:MOST_TRACKS]
-    table = np.zeros((MOST_TRACKS, len(COLUMNS)), np.float32)
-    if tallest:
-        table[: len(tallest)] = np.clip(np.array(tallest), _LOWEST, _HIGHEST)
-    return {"tracks": table.reshape(-1)}
+    numbers = [
+        min(max(number, low), high)
+        for row in tallest
+        for number, low, high in zip(row, _LOWEST, _HIGHEST, strict=True)
+    ]
+    numbers += [0.0] * (MOST_TRACKS * len(COLUMNS) - len(numbers))
+    return {"tracks": np.array(numbers, np.float32)}

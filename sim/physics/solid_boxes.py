@@ -65,26 +65,29 @@ def _reach(starts: Array, ends: Array, boxes: Array, passed: tuple[int, int]) ->
     found = np.zeros(len(starts), np.bool_)
     for ray in range(len(starts)):
         for row in range(len(boxes)):
-            if not passed[0] <= row < passed[1] and meets(starts[ray], ends[ray], boxes[row]):
+            if not passed[0] <= row < passed[1] and entered_at(starts[ray], ends[ray], boxes[row]) <= 1.0:
                 found[ray] = True
                 break
     return found
 
 
 @njit(cache=True)
-def meets(start: Array, end: Array, box: Array) -> bool:
-    """Whether a line from start to end meets a box: it is within all three pairs of faces at once."""
+def entered_at(start: Array, end: Array, box: Array) -> float:
+    """Share of its way at which a line from start to end comes into a box, or within 1 mm; inf for never.
+
+    There it is within all three pairs of faces at once.
+    """
     enters, leaves = 0.0, 1.0
     for axis in range(3):
         low, high = box[0, axis] - MARGIN_M - start[axis], box[1, axis] + MARGIN_M - start[axis]
         step = end[axis] - start[axis]
         if step == 0.0:
             if low > 0.0 or high < 0.0:
-                return False
+                return np.inf
             continue
         if step < 0.0:
             low, high = high, low
         enters, leaves = max(enters, low / step), min(leaves, high / step)
         if enters > leaves:
-            return False
-    return True
+            return np.inf
+    return enters

@@ -117,26 +117,30 @@ def score_comfort(run: ComfortRun) -> ComfortScore:
     )
 
 
-def time_to_collision(gap: Floats, velocity: Floats, reach_m: float) -> float:
-    """Tell after what time two discs touch that go on as they are.
+def times_to_collision(gaps: Floats, velocities: Floats, reach_m: float) -> Floats:
+    """Tell after what times pairs of discs touch that go on as they are.
 
     Args:
-        gap: (2,) [m] from one middle to the other.
-        velocity: (2,) [m/s] of the other against the one.
+        gaps: (Q, 2) [m] from one middle to the other.
+        velocities: (Q, 2) [m/s] of the other against the one.
         reach_m: [m] sum of the radii.
 
     Returns:
-        [s] the smaller root of |gap + t velocity| = reach_m; 0 while they overlap, inf if they never touch.
+        (Q,) [s] the smaller root of |gap + t velocity| = reach_m; 0 while they overlap, inf if they never
+        touch.
     """
-    c = float(gap @ gap) - reach_m**2
-    if c <= 0.0:
-        return 0.0
-    b = float(gap @ velocity)
-    if b >= 0.0:
-        return math.inf
-    a = float(velocity @ velocity)
+    a, b = _products(velocities, velocities), _products(gaps, velocities)
+    c = _products(gaps, gaps) - reach_m**2
     inner = b * b - a * c
-    return c / (math.sqrt(inner) - b) if inner >= 0.0 else math.inf
+    touches = (b < 0.0) & (inner >= 0.0)
+    roots = c / (np.sqrt(np.where(touches, inner, 1.0)) - np.where(touches, b, 0.0))
+    return np.where(c <= 0.0, 0.0, np.where(touches, roots, np.inf))
+
+
+def _products(one: Floats, other: Floats) -> Floats:
+    """(Q,) scalar products of vectors (Q, 2)."""
+    products: Floats = (one[:, None, :] @ other[:, :, None])[:, 0, 0]
+    return products
 
 
 def _jerk(run: ComfortRun) -> Floats:

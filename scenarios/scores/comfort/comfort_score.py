@@ -6,49 +6,65 @@ import math
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.scenarios.scores.comfort.comfort_metrics import (
     ComfortRun,
     ComfortScore,
     score_comfort,
-    time_to_collision,
+    times_to_collision,
 )
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import RADIUS_M, outline_gap
-from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
-from peopleboy.sim.truth.truth import PersonTruth, Truth
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.truth import Truth
 
 _BODY_M: Final = 0.25  # radius of the disc that stands for a person
 
 
 class ComfortLog:
-    """Keeps what the scores of comfort need, instant by instant."""
+    """Keeps what the scores of comfort need, instant by instant, and works out the rest when asked."""
 
     def __init__(self) -> None:
         self._rows: list[tuple[float, ...]] = []
+        self._people: list[tuple[float, ...]] = []
 
     def add(self, truth: Truth | ImageFreeTruth) -> None:
         """Take in one instant."""
-        robot = truth.robot
-        gap_m = min((outline_gap(robot, person.position_m) for person in truth.people), default=math.inf)
-        soonest_s = min((_time_to_collision(truth, person) for person in truth.people), default=math.inf)
-        self._rows.append((truth.time_s, robot.x, robot.y, robot.heading, gap_m, soonest_s))
+        robot, (speed, _), people = truth.robot, truth.robot_velocity, truth.people
+        self._rows.append((truth.time_s, robot.x, robot.y, robot.heading, speed, len(people)))
+        self._people += [(*person.position_m, *person.velocity_m_s) for person in people]
 
     def score(self) -> ComfortScore:
         """Score what happened so far."""
         table = np.array(self._rows, dtype=np.float64)
+        row = np.repeat(np.arange(len(table)), table[:, 5].astype(np.int64))
+        people = np.array(self._people, dtype=np.float64).reshape(-1, 4)
+        gap_m, soonest_s = np.full((2, len(table)), np.inf)
+        np.minimum.at(gap_m, row, self._gaps(row))
+        np.minimum.at(soonest_s, row, _times_to_collision(table[row], people))
         return score_comfort(
             ComfortRun(
                 time_s=table[:, 0],
                 robot=table[:, 1:4],
-                gap_m=table[:, 4],
-                time_to_collision_s=table[:, 5],
+                gap_m=gap_m,
+                time_to_collision_s=soonest_s,
             )
         )
 
+    def _gaps(self, row: NDArray[np.int64]) -> list[float]:
+        """Distances [m] of people on the floor from the robot's outline."""
+        robots = [Planar(x, y, heading) for _, x, y, heading, _, _ in self._rows]
+        return [
+            outline_gap(robots[number], (x, y))
+            for number, (x, y, _, _) in zip(row.tolist(), self._people, strict=True)
+        ]
 
-def _time_to_collision(truth: Truth | ImageFreeTruth, person: PersonTruth | Bystander) -> float:
-    robot, (speed, _) = truth.robot, truth.robot_velocity
-    (x, y), (vx, vy) = person.position_m, person.velocity_m_s
-    gap = np.array((x - robot.x, y - robot.y))
-    own_x, own_y = speed * math.cos(robot.heading), speed * math.sin(robot.heading)
-    return time_to_collision(gap, np.array((vx - own_x, vy - own_y)), RADIUS_M + _BODY_M)
+
+def _times_to_collision(robots: NDArray[np.float64], people: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Times [s] (Q,) of robots, rows of `ComfortLog`, and people, rows x, y, vx, vy."""
+    headings, speeds = robots[:, 3].tolist(), robots[:, 4]
+    own_x = speeds * [math.cos(heading) for heading in headings]
+    own_y = speeds * [math.sin(heading) for heading in headings]
+    velocity = people[:, 2:] - np.stack([own_x, own_y], axis=1)
+    return times_to_collision(people[:, :2] - robots[:, 1:3], velocity, RADIUS_M + _BODY_M)

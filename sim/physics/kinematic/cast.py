@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import Point, cross, dot, minus
 from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids
-from peopleboy.sim.physics.solid_boxes import MARGIN_M, meets
+from peopleboy.sim.physics.solid_boxes import MARGIN_M, entered_at
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shapes import ShapeKind
 
@@ -65,7 +65,7 @@ def cast_into(
             if not _share(around[block], box, MARGIN_M):
                 continue
             for ray in range(block * _BLOCK, min((block + 1) * _BLOCK, len(starts))):
-                if meets(starts[ray], ends[ray], box):
+                if entered_at(starts[ray], ends[ray], box) < fraction[ray]:
                     t = _hit(starts[ray], ends[ray], solids, k)
                     if t < fraction[ray]:
                         fraction[ray], part[ray] = t, solids.table.part[k]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.scores.by_tracker import ScoredRun
-from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortRun, score_comfort, time_to_collision
+from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortRun, score_comfort, times_to_collision
 from peopleboy.scenarios.scores.comfort.comfort_of_runs import comfort_by_tracker
 from peopleboy.tracker.evaluation.evaluate import evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
@@ -53,6 +53,10 @@ def test_jerk_is_that_of_the_forward_speed_and_felt_only_by_who_is_near():
 def test_the_least_time_to_collision_is_told_unless_it_is_far_off():
     assert score_comfort(run([2.0] * 3, soonest=[math.inf, 2.5, 4.0])).min_time_to_collision_s == 2.5
     assert math.isnan(score_comfort(run([2.0] * 3, soonest=[math.inf, 31.0, 90.0])).min_time_to_collision_s)
+
+
+def time_to_collision(gap, velocity, reach_m):
+    return float(times_to_collision(gap[None], velocity[None], reach_m)[0])
 
 
 def test_head_on_the_time_is_that_of_the_gap_between_the_discs():
