@@ -96,6 +96,7 @@ def drive_worlds(
             met[:] = False
             _roll(joined, world, vehicle, bodies, solids, dt_s, met)
             touched[first:end] |= met
+        bodies.stale[joined.own[world]] = True
         _count(robots, row, joined.motion.angles[world])
         _put_people(people, world, bodies)
 
@@ -149,7 +150,10 @@ def _roll(
     dt_s: float,
     met: NDArray[np.bool_],
 ) -> None:
-    """Let a vehicle roll for one physics step; see `Kinematic.step`."""
+    """Let a vehicle roll for one physics step; see `Kinematic.step`.
+
+    Its own parts stay behind until the last one, as it passes through itself.
+    """
     motion, own = joined.motion, joined.own[world]
     pose, speeds = motion.pose[world], motion.speeds[world]
     x, y, heading = pose[0], pose[1], pose[2]
@@ -165,7 +169,6 @@ def _roll(
         place[:] = 0.0
         place[0], place[1] = pose[0], pose[1]
         place[5], place[6] = math.sin(pose[2] / 2.0), math.cos(pose[2] / 2.0)
-        bodies.stale[own] = True
 
 
 @njit(cache=True)

@@ -52,11 +52,12 @@ def cast_into(
     part: NDArray[np.int64],
 ) -> None:
     """Do as `cast`, where fraction is 1 and part -1 at first; there must be a ray."""
-    whole = _box_of(starts, ends, 0, len(starts))
+    whole = np.empty((2, 3))
+    _surround(starts, ends, 0, len(starts), whole)
     blocks = (len(starts) + _BLOCK - 1) // _BLOCK
     around = np.empty((blocks, 2, 3))
     for block in range(blocks):
-        around[block] = _box_of(starts, ends, block * _BLOCK, min((block + 1) * _BLOCK, len(starts)))
+        _surround(starts, ends, block * _BLOCK, min((block + 1) * _BLOCK, len(starts)), around[block])
     for k in range(len(solids.boxes)):
         body, box = bodies.of_part[solids.table.part[k]], solids.boxes[k]
         if body == passed or bodies.hidden[body] or not _share(whole, box, 0.0):
@@ -72,16 +73,14 @@ def cast_into(
 
 
 @njit(cache=True)
-def _box_of(starts: Array, ends: Array, first: int, stop: int) -> Array:
-    """(2, 3) least and greatest corner of the upright box around some rays."""
-    box = np.empty((2, 3))
+def _surround(starts: Array, ends: Array, first: int, stop: int, box: Array) -> None:
+    """Write (2, 3) least and greatest corner of the upright box around some rays."""
     for axis in range(3):
         low, high = np.inf, -np.inf
         for ray in range(first, stop):
             low = min(low, starts[ray, axis], ends[ray, axis])
             high = max(high, starts[ray, axis], ends[ray, axis])
         box[0, axis], box[1, axis] = low, high
-    return box
 
 
 @njit(cache=True)
