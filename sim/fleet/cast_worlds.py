@@ -11,28 +11,42 @@ from peopleboy.sim.physics.kinematic.solids import Array, refresh
 
 
 @njit(cache=True, nogil=True)
-def cast_worlds(going: Numbers, joined: Joined, starts: Array, ends: Array, fraction: Array) -> None:
-    """Do as `cast` in some of the worlds, for rays that pass through their robots.
+def hear_worlds(
+    going: Numbers, joined: Joined, starts: Array, ends: Array, reach_m: Array, nearest_m: Array
+) -> None:
+    """Find the nearest solid in the cones of sonars in some of the worlds, as `SonarRing.read` does in one.
 
     Args:
         going: (G,) numbers of the worlds.
         joined: is brought up to date in them.
-        starts: (G, R, 3) [m] world frame.
-        ends: (G, R, 3) [m].
-        fraction: (G, R) 1 at first, gets the share of its way at which a ray hits something.
+        starts: (G, S, 3) [m] of the sonars, world frame.
+        ends: (G, S * N, 3) [m] of their rays, one sonar's after the other's.
+        reach_m: (S, N) lengths of the rays.
+        nearest_m: (G, S) gets the distances, inf for nothing.
     """
-    part = np.empty(starts.shape[1], np.int64)
+    sonars, rays = reach_m.shape
+    begin, part = np.empty((sonars * rays, 3)), np.empty(sonars * rays, np.int64)
+    fraction = np.empty(sonars * rays)
     for row in range(len(going)):
         bodies, solids = world_in(joined, going[row])
         refresh(bodies, solids)
-        cast_into(starts[row], ends[row], bodies, solids, joined.own[going[row]], fraction[row], part)
+        for ray in range(sonars * rays):
+            begin[ray] = starts[row, ray // rays]
+        fraction[:] = 1.0
+        cast_into(begin, ends[row], bodies, solids, joined.own[going[row]], fraction, part)
+        for sonar in range(sonars):
+            nearest_m[row, sonar] = np.inf
+            for k in range(rays):
+                share = fraction[sonar * rays + k]
+                if share < 1.0:
+                    nearest_m[row, sonar] = min(nearest_m[row, sonar], share * reach_m[sonar, k])
 
 
 @njit(cache=True, nogil=True)
 def cast_eyes(
     looked: Numbers, world: Numbers, joined: Joined, eyes: Array, points: Array, fraction: Array
 ) -> None:
-    """Do the same from one eye to several points for each of Q people.
+    """Do as `cast` from one eye to several points for each of Q people, through robots.
 
     Args:
         looked: numbers of the people who are looked for.
@@ -40,7 +54,7 @@ def cast_eyes(
         joined: up to date.
         eyes: (Q, 3) [m] world frame.
         points: (Q, N, 3) [m].
-        fraction: (Q, N) as in `cast_worlds`.
+        fraction: (Q, N) 1 at first, gets the share of its way at which a ray hits something.
     """
     count = points.shape[1]
     starts, part = np.empty((count, 3)), np.empty(count, np.int64)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.kinds import flat_geometry
-from peopleboy.sim.fleet.cast_worlds import cast_eyes, cast_worlds
+from peopleboy.sim.fleet.cast_worlds import cast_eyes, hear_worlds
 from peopleboy.sim.fleet.drive_worlds import Capsules, Robots, drive_worlds
 from peopleboy.sim.fleet.instant import Instant
 from peopleboy.sim.fleet.side_by_side import lay_side_by_side
@@ -171,11 +171,12 @@ class Fleet:
         """(G, 16) [m] readings of the sonars."""
         ring = self._ring
         turns, shifts = poses[:, :3, :3].transpose(0, 2, 1), poses[:, None, :3, 3]
-        fraction = np.ones((len(going), len(ring.starts)))
-        cast_worlds(going, self._joined, ring.starts @ turns + shifts, ring.ends @ turns + shifts, fraction)
+        starts, ends = ring.starts @ turns + shifts, ring.ends @ turns + shifts
+        nearest_m = np.empty((len(going), len(ring.starts)))
+        hear_worlds(going, self._joined, starts, ends, ring.reach, nearest_m)
         drawn = [self._worlds[number].robot.ring.draw_noise() for number in going.tolist()]
         noise_m, is_lost = (np.array(each) for each in zip(*drawn, strict=True))
-        return read_echoes(fraction.reshape(-1, *ring.reach.shape), ring.reach, noise_m, is_lost, ring.config)
+        return read_echoes(nearest_m, noise_m, is_lost, ring.config)
 
     def _see(
         self, going: NDArray[np.int64], poses: Matrix, robots: Sequence[Planar]

@@ -34,6 +34,12 @@ class SonarRing:
     Each reads the distance to the nearest solid along 15 rays in its cone, the floor aside. Mirror-like
     reflection off walls at a slant, and echoes between sonars, are not modelled; drop-outs stand in for lost
     echoes.
+
+    Attributes:
+        config: as given.
+        starts: (16, 3) [m] of the sonars, robot frame.
+        ends: (240, 3) [m] of their rays, one sonar's after the other's.
+        reach: (16, 15) [m] lengths of the rays.
     """
 
     def __init__(self, physics: Physics, config: SonarConfig, rng: np.random.Generator, owner: str) -> None:
@@ -43,12 +49,11 @@ class SonarRing:
         self._owner = owner
         rays = cone_rays(config.cone_rad)
         middles = np.concatenate([SONAR_POSITION_M, np.full((_SONARS, 1), config.height_m)], axis=1)
-        starts = middles[:, None, :].repeat(rays.shape[1], axis=1)
         with np.errstate(divide="ignore"):
             to_floor = (config.height_m - _CLEAR_OF_FLOOR_M) / np.maximum(-rays[..., 2], 0.0)
         self.reach = np.minimum(config.farthest_m, to_floor)
-        self.starts = starts.reshape(-1, 3)
-        self.ends = (starts + rays * self.reach[..., None]).reshape(-1, 3)
+        self.starts = middles
+        self.ends = (middles[:, None, :] + rays * self.reach[..., None]).reshape(-1, 3)
 
     def read(self, world_from_robot: Matrix) -> NDArray[np.float64]:
         """Read all sonars once.
@@ -60,8 +65,10 @@ class SonarRing:
             (16,) [m] within nearest..farthest; farthest where nothing answers.
         """
         starts, ends = (transform(world_from_robot, points) for points in (self.starts, self.ends))
+        starts = starts.repeat(self.reach.shape[1], axis=0)
         fraction = self._physics.cast_rays(starts, ends, ignore=self._owner)[0].reshape(self.reach.shape)
-        return read_echoes(fraction, self.reach, *self.draw_noise(), self.config)
+        nearest_m = np.where(fraction < 1.0, fraction * self.reach, np.inf).min(axis=1)
+        return read_echoes(nearest_m, *self.draw_noise(), self.config)
 
     def draw_noise(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """(16,) [m] errors of the next readings, and (16,) which of them are lost."""
@@ -70,13 +77,11 @@ class SonarRing:
 
 
 def read_echoes(
-    fraction: NDArray[np.float64],
-    reach_m: NDArray[np.float64],
+    nearest_m: NDArray[np.float64],
     noise_m: NDArray[np.float64],
     is_lost: NDArray[np.bool_],
     config: SonarConfig,
 ) -> NDArray[np.float64]:
-    """Make readings (..., 16) [m] of the shares (..., 16, 15) of their reach at which rays hit, else 1."""
-    nearest = np.where(fraction < 1.0, fraction * reach_m, np.inf).min(axis=-1)
-    reading = np.where(is_lost, np.inf, nearest + noise_m)
+    """Make readings (..., 16) [m] of how far the nearest is in each cone, inf for nothing."""
+    reading = np.where(is_lost, np.inf, nearest_m + noise_m)
     return np.clip(reading, config.nearest_m, config.farthest_m)
