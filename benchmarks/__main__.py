@@ -22,11 +22,11 @@ from benchmarks.environments import (
     vector_rate,
     way_off_mm,
 )
-from benchmarks.many_worlds import PIXELS, TRUTH, many_rates
 from benchmarks.memory import long_run
 from benchmarks.speed.bench_figures import BenchFigure, Goal, nested, read_figures, reasons, table_of
 from benchmarks.speed.closed_loop import loop_speed, peak_memory_mb, run_speed
 from benchmarks.speed.filter_step import step_time_ms
+from benchmarks.speed.many_worlds import PIXELS, TRUTH, many_rates
 from benchmarks.speed.render import render_times
 from benchmarks.speed.whole_tracker import WholeTracker, whole_tracker
 from peopleboy.bad_input import BadInput
@@ -118,7 +118,7 @@ def _environments() -> Iterator[BenchFigure]:
         yield BenchFigure((of, name, "one process"), vector_rate(case, physics), "{:.0f} steps/s")
     for case, worlds, least, reason in (
         (TRUTH, 64, 20, "observations, rewards and figures of episodes are made world by world"),
-        (PIXELS, MANY, 10, "images are drawn world by world, and three quarters of that is Python"),
+        (PIXELS, MANY, 10, "images are drawn world by world, and most of that is Python"),
     ):
         ratio = many_rates(case, (worlds,))[worlds].ratio
         name = f"{case.name}, {worlds} worlds, kinematic"

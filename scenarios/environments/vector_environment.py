@@ -24,7 +24,8 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
     """B worlds, each with a robot of its own, stepped together.
 
     Actions are (B, 2); an observation has the arrays of `PeopleBoyEnv` with B before their shape, such as
-    `thermal` (B, H, W, 1), each of its own and never written again. World i gives to the byte what a single
+    `thermal` (B, H, W, 1), each of its own and never written again. Kinematic worlds go through kernels
+    together, see `peopleboy.sim.fleet.fleet.Fleet`. World i gives to the byte what a single
     environment with its seed and actions gives. The step after an episode's end begins the next episode in
     that world, whatever its action, with reward 0 (`AutoresetMode.NEXT_STEP`); `infos` has the arrays that
     gymnasium makes of B infos.
