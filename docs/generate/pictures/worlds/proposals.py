@@ -16,7 +16,7 @@ from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.pyramid import levels
 
-WORLDS = (3, 20, 27)
+WORLDS = (3, 24, 28)
 """Seeds of worlds; of each that image is shown in which most people are plain to see."""
 
 _STEP = 24  # of greys, so that the file is small
@@ -28,7 +28,7 @@ def proposals() -> Figure:
     figure, axes = panels(
         [f"world {seed}" for seed in WORLDS]
         + [f"{name} in world {WORLDS[0]}" for name in _CHANNELS.values()],
-        4.8,
+        4.2,
         3,
     )
     for seed, channel, panel, below in zip(WORLDS, _CHANNELS, axes[:3], axes[3:], strict=True):
