@@ -41,7 +41,8 @@ class DelayUnit(Showing):
         rng = stream(self.repeat, "reproduce.delay")
         waiting: list[tuple[int, Tracker]] = []
         needed: list[int] = []
-        for number, frame in enumerate(frames_of(shot), 1):
+        cameras = self.setting.make(rng).cameras
+        for number, frame in enumerate(frames_of(shot, cameras), 1):
             if number in starts:
                 waiting.append((number, self.setting.make(rng)))
             for start, tracker in list(waiting):

@@ -120,7 +120,7 @@ def track_film(shot: Film, tracker: Tracker) -> TrackBoxes:
     """Let a tracker see a film; who is only tentative is not yet claimed."""
     rows = [
         (number, track.id, box, track.confidence)
-        for number, frame in enumerate(frames_of(shot), 1)
+        for number, frame in enumerate(frames_of(shot, tracker.cameras), 1)
         for track, box in confirmed(tracker.update(frame), THERMAL)
     ]
     frame, identity, box, confidence = zip(*rows, strict=True) if rows else ((), (), (), ())
@@ -144,5 +144,5 @@ def restored(kind: type[Record], data: dict[str, Any]) -> Record:
 
 
 def _rate_hz(shot: Film) -> float:
-    times = [frame.time_s for frame in islice(frames_of(shot), 2)]
+    times = [frame.time_s for frame in islice(frames_of(shot, ()), 2)]
     return 1.0 / (times[1] - times[0]) if len(times) == 2 else 15.0
