@@ -152,6 +152,11 @@ def train_distance(
 )
 @workers_options
 @click.option("--list", "lists", is_flag=True, help="List tables and figures, and do nothing.")
+@click.option(
+    "--so-far",
+    is_flag=True,
+    help="Do no work: write the page of what the folder has, each part with as many repeats as it has.",
+)
 def reproduce(
     names: Sequence[str],
     paper: str | None,
@@ -162,6 +167,7 @@ def reproduce(
     workers: int | None,
     scheduler: str | None,
     lists: bool,
+    so_far: bool,
 ) -> None:
     """Measure every table and figure of the sources again, print them, and write one page about it.
 
@@ -180,7 +186,8 @@ def reproduce(
         amount = None if quick else repeats or REPEATS
         folder = out if out is not None else Path("runs") / ("reproduce-quick" if quick else "reproduce")
         who = chosen_workers(workers, scheduler)
-        click.echo(reproduce_named(names, paper, folder, films, who, repeats=amount))
+        page = reproduce_named(names, paper, folder, films, who, repeats=amount, works=not so_far)
+        click.echo(page)
 
 
 @click.command()

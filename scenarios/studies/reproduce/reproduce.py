@@ -8,12 +8,14 @@ import os
 import platform
 import time
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.store import Store
+from peopleboy.scenarios.running.engine.task import Failure, TasksFailed
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.reproduce.experiments.catalogue import paper_of
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Outcome
@@ -46,7 +48,8 @@ class Means:
 def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tuple[Path, list[Section]]:
     """Do what is missing, and write the page, and the means of all figures beside it.
 
-    Whoever is killed begins again with the same folder: results that are there are taken from there.
+    Whoever is killed begins again with the same folder: results that are there are taken from there. What
+    cannot be finished, since work failed, is left off the page.
 
     Returns:
         The page, and what is on it.
@@ -57,14 +60,50 @@ def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tu
     """
     start = time.monotonic()
     store = open_store(means.out / RESULTS)
-    while wanted := unique_units(experiments, plan, store):
-        run_units(wanted, store, means.workers)
-    outcomes = [Outcome.of(one, plan, store) for one in experiments]
-    sections = [section(one) for one in outcomes]
+    failures = work_off(experiments, plan, store, means.workers)
+    shown = _write(experiments, plan, means, store, time.monotonic() - start)
+    if failures:
+        raise TasksFailed("reproduce", failures, len(store) + len(failures))
+    return shown
+
+
+def show_so_far(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tuple[Path, list[Section]]:
+    """Write the page of what the folder has, each part with as many repeats as it has, and do no work.
+
+    Raises:
+        BadInput: nothing is finished there.
+    """
+    return _write(experiments, plan, means, open_store(means.out / RESULTS), 0.0)
+
+
+def work_off(experiments: Sequence[Experiment], plan: Plan, store: Store, workers: Workers) -> list[Failure]:
+    """Do what is missing, and what that makes possible; what fails stops nothing that does without it.
+
+    Raises:
+        BadInput: the cluster cannot be used.
+    """
+    failures: dict[str, Failure] = {}
+    while wanted := [unit for unit in unique_units(experiments, plan, store) if unit.key not in failures]:
+        try:
+            run_units(wanted, store, workers)
+        except TasksFailed as failed:
+            failures |= {one.name: one for one in failed.failures}
+    return list(failures.values())
+
+
+def _write(
+    experiments: Sequence[Experiment], plan: Plan, means: Means, store: Store, seconds: float
+) -> tuple[Path, list[Section]]:
+    found = [Outcome.so_far(one, plan, store) for one in experiments]
+    outcomes = [one for one in found if one is not None]
+    if not outcomes:
+        raise BadInput(f"{means.out / RESULTS}: no table or figure is finished there; leave out --so-far")
     (means.out / MEANS).write_text(json.dumps(_means(outcomes), indent=1) + "\n", encoding="utf-8")
-    page = means.out / PAGE
-    papers = {paper_of(one.id) for one in experiments}
-    write_page(page, sections, _about(plan, papers, means, store, time.monotonic() - start))
+    sections, page = [section(one) for one in outcomes], means.out / PAGE
+    missing = [one.id for one, outcome in zip(experiments, found, strict=True) if outcome is None]
+    facts = {"Not finished": ", ".join(missing)} if missing else {}
+    head = _about(plan, outcomes, means, store, seconds)
+    write_page(page, sections, replace(head, facts={**facts, **head.facts}))
     return page, sections
 
 
@@ -86,7 +125,9 @@ def unique_units(experiments: Sequence[Experiment], plan: Plan, store: Store) ->
     return list(units.values())
 
 
-def _about(plan: Plan, papers: Set[str], means: Means, store: Store, seconds: float) -> PageHead:
+def _about(plan: Plan, outcomes: Sequence[Outcome], means: Means, store: Store, seconds: float) -> PageHead:
+    papers = {paper_of(one.experiment.id) for one in outcomes}
+    repeats = {one.repeats for one in outcomes if one.repeats is not None}
     spent = sum(store.spent_s(key) for key in store)
     facts: Mapping[str, str] = {
         "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
@@ -99,7 +140,9 @@ def _about(plan: Plan, papers: Set[str], means: Means, store: Store, seconds: fl
         "those of earlier calls included",
         "Results": f"{len(store)} units of work in {RESULTS}, beside this page",
     }
-    return PageHead(command=means.command, is_quick=plan.is_quick, amount=_amount(plan, papers), facts=facts)
+    return PageHead(
+        command=means.command, is_quick=plan.is_quick, amount=_amount(plan, papers, repeats), facts=facts
+    )
 
 
 def _share(plan: Plan) -> str:
@@ -111,7 +154,7 @@ def _share(plan: Plan) -> str:
     return f"{seen:.0f} of {there:.0f} s"
 
 
-def _amount(plan: Plan, papers: Set[str]) -> str:
+def _amount(plan: Plan, papers: Set[str], repeats: Set[int]) -> str:
     runs = {name: len(plays) for name, plays in plan.suites.items()}
     if plan.is_quick:
         return (
@@ -133,4 +176,5 @@ def _amount(plan: Plan, papers: Set[str]) -> str:
             f"{plan.follows} of followers."
         )
     total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
-    return f"{plan.repeats} repeats of everything with other random numbers in the trackers. {total}."
+    count = f"{min(repeats)} to {max(repeats)}, as each part says," if len(repeats) > 1 else f"{plan.repeats}"
+    return f"{count} repeats of everything with other random numbers in the trackers. {total}."

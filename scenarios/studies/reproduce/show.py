@@ -12,7 +12,7 @@ from rich.table import Table
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.reproduce.experiments.catalogue import choose
 from peopleboy.scenarios.studies.reproduce.measuring.workload import REPEATS, full_plan, quick_plan
-from peopleboy.scenarios.studies.reproduce.reproduce import Means, reproduce
+from peopleboy.scenarios.studies.reproduce.reproduce import Means, reproduce, show_so_far
 from peopleboy.scenarios.studies.reproduce.showing.print_sections import print_sections
 from peopleboy.scenarios.studies.reproduce.showing.source import source_tables
 
@@ -27,7 +27,14 @@ def list_experiments(names: Sequence[str], paper: str | None) -> None:
 
 
 def reproduce_named(
-    names: Sequence[str], paper: str | None, out: Path, films: Path, workers: Workers, *, repeats: int | None
+    names: Sequence[str],
+    paper: str | None,
+    out: Path,
+    films: Path,
+    workers: Workers,
+    *,
+    repeats: int | None,
+    works: bool = True,
 ) -> Path:
     """Reproduce what is called so in a source, or in all, print it, and return the page.
 
@@ -38,6 +45,7 @@ def reproduce_named(
         films: folder of rendered frames.
         workers: who does the work.
         repeats: of everything; None for a quick run.
+        works: whether what is missing is done; otherwise what is there is shown.
 
     Raises:
         BadInput: an unknown name, or a folder or cluster that cannot be used.
@@ -48,7 +56,7 @@ def reproduce_named(
     cache = films.resolve()
     plan = quick_plan(cache) if repeats is None else full_plan(cache, repeats)
     means = Means(out=out, workers=workers, command=_command(names, paper, repeats))
-    page, sections = reproduce(experiments, plan, means)
+    page, sections = (reproduce if works else show_so_far)(experiments, plan, means)
     print_sections(sections)
     return page
 

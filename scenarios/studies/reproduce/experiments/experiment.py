@@ -130,6 +130,7 @@ class Outcome:
         picture: address of a picture of its own; None for none.
         left_out: groups of a full run that this one has not.
         effort: what it took; None if that is not known.
+        repeats: how many of everything it has; None if that is not known.
     """
 
     experiment: Experiment
@@ -137,13 +138,14 @@ class Outcome:
     picture: str | None = None
     left_out: tuple[str, ...] = ()
     effort: Effort | None = None
+    repeats: int | None = None
 
     @classmethod
-    def of(cls, experiment: Experiment, plan: Plan, store: Store) -> Outcome:
-        """Ask an experiment for all that it has, once all is done."""
+    def of(cls, experiment: Experiment, plan: Plan, store: Store) -> Outcome | None:
+        """Ask an experiment for all that it has; None if some of its work is missing."""
         done = Touched(store)
-        for _ in experiment.wants(plan, done):
-            raise AssertionError(f"{experiment.id} is not done")
+        if any(True for _ in experiment.wants(plan, done)):
+            return None
         samples = experiment.samples(plan, done)
         picture = experiment.picture(plan, done) if isinstance(experiment, Depicted) else None
         groups = experiment.groups if isinstance(experiment, Grouped) else ()
@@ -154,7 +156,15 @@ class Outcome:
             picture,
             tuple(dict.fromkeys(group for group in groups if group not in there)),
             Effort(len(done.keys_asked), sum(store.spent_s(key) for key in done.keys_asked)),
+            plan.repeats,
         )
+
+    @classmethod
+    def so_far(cls, experiment: Experiment, plan: Plan, store: Store) -> Outcome | None:
+        """Ask it with as many repeats, up to the plan's, as all of its work is done for; None for none."""
+        fewer = [] if plan.is_quick else range(plan.repeats - 1, 0, -1)
+        plans = [plan, *(plan.repeated(count) for count in fewer)]
+        return next((found for one in plans if (found := cls.of(experiment, one, store))), None)
 
 
 def missing(units: Iterable[Unit], done: Done) -> list[Unit]:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Result, Store, code_digest
-from peopleboy.scenarios.running.engine.task import Task, Tell
+from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.depth_drives.drive_sets import SETS, TURNS
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
@@ -76,9 +76,15 @@ def run_units(units: Sequence[Unit], store: Store, workers: Workers) -> None:
     """
     missing = {unit.key: unit for unit in units if unit.key not in store}
     keep = partial(_keep, store)
+    failures: list[Failure] = []
     for is_timing, who in ((False, workers), (True, Workers(1))):
         tasks = [UnitTask(unit) for unit in missing.values() if unit.is_timing == is_timing]
-        work_through(tasks, who, "reproduce", keep)
+        try:
+            work_through(tasks, who, "reproduce", keep)
+        except TasksFailed as failed:
+            failures += failed.failures
+    if failures:
+        raise TasksFailed("reproduce", failures, len(missing))
 
 
 def _keep(store: Store, task: Task[tuple[Result, float]], found: tuple[Result, float]) -> None:

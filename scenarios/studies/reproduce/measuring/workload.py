@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
@@ -58,6 +58,20 @@ class Plan:
     absences: int = 10
     follows: int = 20
 
+    def repeated(self, repeats: int) -> Plan:
+        """Give a full plan with as many repeats; what is smaller than the sources' ten stays as small."""
+        return replace(
+            self,
+            repeats=repeats,
+            pair_seeds=repeats,
+            walks=repeats,
+            drives=min(repeats, 5),
+            ablated=min(repeats, 2),
+            scene_seeds=min(repeats, 5),
+            absences=repeats,
+            follows=2 * repeats,
+        )
+
 
 QUICK_S = 20.0
 
@@ -67,22 +81,9 @@ REPEATS = 10
 
 
 def full_plan(cache: Path, repeats: int = REPEATS) -> Plan:
-    """Everything, as the sources did it, with as many repeats, or as many seeds where those are repeated.
-
-    What is smaller than the sources' ten stays as small.
-    """
-    return Plan(
-        cache=cache,
-        suites={name: tuple(runs_of(load_suite(name))) for name in DATASETS},
-        repeats=repeats,
-        pair_seeds=repeats,
-        walks=repeats,
-        drives=min(repeats, 5),
-        ablated=min(repeats, 2),
-        scene_seeds=min(repeats, 5),
-        absences=repeats,
-        follows=2 * repeats,
-    )
+    """Everything, as the sources did it, with as many repeats, or as many seeds where those are repeated."""
+    suites = {name: tuple(runs_of(load_suite(name))) for name in DATASETS}
+    return Plan(cache=cache, suites=suites).repeated(repeats)
 
 
 def quick_plan(cache: Path) -> Plan:

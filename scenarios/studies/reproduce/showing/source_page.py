@@ -93,6 +93,7 @@ class Section:
     why: str
     left_out: tuple[str, ...] = ()
     effort: Effort | None = None
+    repeats: int | None = None
 
     def summary(self, main: str) -> str:
         """How the source's claims fare with a main tracker, in a few words."""
@@ -167,6 +168,7 @@ def section(outcome: Outcome) -> Section:
         why=_notes()["why"].get(experiment.id, ""),
         left_out=outcome.left_out,
         effort=outcome.effort,
+        repeats=outcome.repeats,
     )
 
 
