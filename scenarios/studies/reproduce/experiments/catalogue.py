@@ -19,7 +19,9 @@ from peopleboy.scenarios.studies.reproduce.experiments.scene_models import SCENE
 from peopleboy.scenarios.studies.reproduce.experiments.timing import ATTENTION_TIMES, TIMINGS
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, TrackerTrial, Tracking
 from peopleboy.scenarios.studies.reproduce.experiments.webcams import Angles, Webcams
+from peopleboy.scenarios.studies.reproduce.measuring.readings import AS_READ, READINGS
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting, Value
+from peopleboy.scenarios.studies.reproduce.measuring.workload import TRAINING
 from peopleboy.tracker.evaluation.uncounted import Rule
 from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
 
@@ -226,6 +228,18 @@ def _paper_figure_5() -> Tracking:
     return Tracking("paper-figure-5", PAPER, (*several, *one), "bars", PAPER)
 
 
+def _readings() -> Tracking:
+    """Undo each reading of what the thesis leaves open: one person, where they were chosen and where not."""
+    trials = (
+        TrackerTrial(Line(name, who), Setting("thesis-single", changes), (suite,), is_quick=name in _FEW)
+        for name, changes in READINGS.items()
+        for who, suite in ((LITERAL, SINGLE[0]), (f"{LITERAL}, {TRAINING}", TRAINING))
+    )
+    return Tracking("section-4.2", ("OC", "CR", "CP", "AA"), tuple(trials), "none")
+
+
+_FEW = (AS_READ, "contrast in full", "points 2 px from the contour")
+
 _TABLE_7_1 = (Way("thermal", THERMAL), Way("colour", COLOUR), Way("both"))
 _TABLE_7_2 = (Way("single", most=1), Way("weighted pairs"), Way("weighted triplets", most=3))
 _TABLE_7_3 = tuple(Way(name, (name,), 1) for name in FEATURES)
@@ -234,6 +248,7 @@ _ALL: tuple[Experiment, ...] = (
     Contents(),
     Depiction("figure-3.4"),
     Depiction("figure-3.5"),
+    _readings(),
     Depiction("figure-4.4"),
     _per_suite("figure-4.8", SINGLE, "thesis-single"),
     *_SWEEPS[:2],

@@ -72,7 +72,7 @@ class Tracking:
             FilmUnit(play, plan.cache)
             for trial in self._trials(plan)
             for name in trial.suites
-            for play in plan.suites[name]
+            for play in plan.plays(name)
         ]
         return missing(films, done) or missing(self._units(plan), done)
 
@@ -101,7 +101,7 @@ def units_of(trial: TrackerTrial, plan: Plan, repeat: int) -> list[TrackUnit]:
     return [
         TrackUnit(play, plan.cache, trial.setting_in(plan), repeat)
         for name in trial.suites
-        for play in plan.suites[name]
+        for play in plan.plays(name)
     ]
 
 

@@ -10,6 +10,9 @@ from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
 from peopleboy.scenarios.studies.scene_films.scene_sets import PRESETS, SEQUENCES
 
 DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
+TRAINING = "training films"
+"""Of the scenario of dataset1, with other seeds: by these the literal tracker's readings were chosen."""
+_TRAINING_SEEDS = (100, 101)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -19,6 +22,7 @@ class Plan:
     Attributes:
         cache: where rendered frames are kept.
         suites: runs by the name of their data set.
+        training: runs apart from those, by which readings were chosen.
         repeats: random streams per tracker.
         is_quick: whether sweeps take fewer values, too.
         pair_seeds: seeds per scenario from which examples of overlapping people are taken.
@@ -40,6 +44,7 @@ class Plan:
 
     cache: Path
     suites: Mapping[str, Sequence[SuiteRun]] = field(default_factory=dict)
+    training: Sequence[SuiteRun] = ()
     repeats: int = 10
     is_quick: bool = False
     pair_seeds: int = 10
@@ -57,6 +62,10 @@ class Plan:
     presets: tuple[str, ...] = PRESETS
     absences: int = 10
     follows: int = 20
+
+    def plays(self, name: str) -> Sequence[SuiteRun]:
+        """Give the runs of a data set, or those of training."""
+        return self.training if name == TRAINING else self.suites[name]
 
     def repeated(self, repeats: int) -> Plan:
         """Give a full plan with as many repeats; what is smaller than the sources' ten stays as small."""
@@ -83,7 +92,7 @@ REPEATS = 10
 def full_plan(cache: Path, repeats: int = REPEATS) -> Plan:
     """Everything, as the sources did it, with as many repeats, or as many seeds where those are repeated."""
     suites = {name: tuple(runs_of(load_suite(name))) for name in DATASETS}
-    return Plan(cache=cache, suites=suites).repeated(repeats)
+    return Plan(cache=cache, suites=suites, training=_training(suites)).repeated(repeats)
 
 
 def quick_plan(cache: Path) -> Plan:
@@ -92,6 +101,7 @@ def quick_plan(cache: Path) -> Plan:
     return Plan(
         cache=cache,
         suites=suites,
+        training=_training(suites),
         repeats=3,
         is_quick=True,
         pair_seeds=1,
@@ -110,6 +120,11 @@ def quick_plan(cache: Path) -> Plan:
         absences=1,
         follows=1,
     )
+
+
+def _training(suites: Mapping[str, Sequence[SuiteRun]]) -> tuple[SuiteRun, ...]:
+    scenario = suites[DATASETS[0]][0].scenario
+    return tuple(SuiteRun(scenario, seed) for seed in _TRAINING_SEEDS)
 
 
 def _middle_run(name: str) -> SuiteRun:
