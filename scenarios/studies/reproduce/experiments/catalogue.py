@@ -21,15 +21,20 @@ from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, TH
 from peopleboy.scenarios.studies.reproduce.experiments.webcams import Angles, Webcams
 from peopleboy.scenarios.studies.reproduce.measuring.readings import AS_READ, READINGS
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting, Value
+from peopleboy.scenarios.studies.reproduce.measuring.units import Count
 from peopleboy.scenarios.studies.reproduce.measuring.workload import TRAINING
-from peopleboy.tracker.evaluation.uncounted import Rule
 from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
 
 LITERAL, OURS = "literal", "default"
 """The source's tracker, and ours."""
 
-RULES: dict[str, Rule] = {"": "ignore", ", strict": "absent"}
-"""Ways to count, by what they add to a tracker's name: strictly, boxes on uncounted people are false."""
+RULES: dict[str, Count] = {
+    "": "ignore",
+    ", strict": "absent",
+    ", strict, own range": "own range",
+    ", half in view": "half in view",
+}
+"""Ways to count, by what they add to a tracker's name."""
 
 SINGLE = ("dataset1", "dataset2")
 SEVERAL = ("dataset3", "dataset4")
@@ -39,13 +44,13 @@ BOTH, ONE = "both", "one person"
 def _per_suite(number: str, suites: tuple[str, ...], literal: str, *, beside_one: bool = False) -> Tracking:
     """Give figures of each data set and of both together, by both rules; beside those of one person."""
     parts = {suite: (suite,) for suite in suites} | {BOTH: suites}
-    trials = [trial for name, part in parts.items() for trial in _by_both_rules(name, part, literal)]
+    trials = [trial for name, part in parts.items() for trial in _by_all_rules(name, part, literal)]
     if beside_one:
-        trials += _by_both_rules(ONE, SINGLE, "thesis-single")
+        trials += _by_all_rules(ONE, SINGLE, "thesis-single")
     return Tracking(number, THESIS, tuple(trials), "bars", THESIS)
 
 
-def _by_both_rules(group: str, suites: tuple[str, ...], literal: str) -> Iterator[TrackerTrial]:
+def _by_all_rules(group: str, suites: tuple[str, ...], literal: str) -> Iterator[TrackerTrial]:
     for who, base in ((LITERAL, literal), (OURS, "peopleboy")):
         for strictly, rule in RULES.items():
             yield TrackerTrial(Line(group, who + strictly), Setting(base), suites, rule)
@@ -181,6 +186,22 @@ def _ours(step: str) -> str:
     return "peopleboy" if step == "occlusion" else f"peopleboy-{step}"
 
 
+def _frontier() -> Tracking:
+    """Let the default be more or less sure before it tells of somebody, with thermal images alone and all."""
+    values = (0.3, 0.45, 0.6, 0.75, 0.9)
+    trials = (
+        TrackerTrial(
+            Line(f"{value:g}", who),
+            Setting(base, (("life.birth_confidence", value),)),
+            SEVERAL,
+            is_quick=value >= values[2],
+        )
+        for value in values
+        for who, base in ((f"{OURS}, thermal", "peopleboy-thermal"), (OURS, "peopleboy"))
+    )
+    return Tracking("section-7.5", THESIS, tuple(trials), "lines", ("AA",))
+
+
 def _colours(
     number: str, kinds: dict[str, Changes | None], slow: tuple[str, ...], quick_changes: Changes = ()
 ) -> Tracking:
@@ -223,8 +244,8 @@ _SPACES: dict[str, Changes | None] = {
 
 
 def _paper_figure_5() -> Tracking:
-    several = _by_both_rules("several persons", SEVERAL, "paper-several")
-    one = _by_both_rules(ONE, SINGLE, "paper-single")
+    several = _by_all_rules("several persons", SEVERAL, "paper-several")
+    one = _by_all_rules(ONE, SINGLE, "paper-single")
     return Tracking("paper-figure-5", PAPER, (*several, *one), "bars", PAPER)
 
 
@@ -270,6 +291,7 @@ _ALL: tuple[Experiment, ...] = (
     Learning("table-7.3", _TABLE_7_3),
     BestClassifiers(),
     _chapters("figure-7.3", _STEPS),
+    _frontier(),
     *_SWEEPS[6:],
     Depiction("paper-figure-4"),
     _paper_figure_5(),

@@ -11,9 +11,15 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting
-from peopleboy.scenarios.studies.reproduce.measuring.units import RECORDS, FilmUnit, TrackUnit, Unit, restored
+from peopleboy.scenarios.studies.reproduce.measuring.units import (
+    RECORDS,
+    Count,
+    FilmUnit,
+    TrackUnit,
+    Unit,
+    restored,
+)
 from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
-from peopleboy.tracker.evaluation.uncounted import Rule
 
 THESIS = ("CR", "CP", "CA", "AR", "AP", "AA")
 PAPER = ("OC", "DC", "OCR", "OCP", "OCA", "OAR", "BAP", "ADC")
@@ -35,7 +41,7 @@ class TrackerTrial:
     line: Line
     setting: Setting
     suites: tuple[str, ...]
-    rule: Rule = "ignore"
+    rule: Count = "ignore"
     is_quick: bool = True
     quick_changes: Changes = ()
 

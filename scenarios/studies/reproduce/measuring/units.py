@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass, fields, is_dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Any, Protocol, TypeVar, get_type_hints
+from typing import Any, Final, Literal, Protocol, TypeVar, get_type_hints
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Result
@@ -15,17 +17,25 @@ from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.scenarios.scores.suite_table import count
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.truth.truth import is_counted
 from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
 from peopleboy.tracker.evaluation.metrics.sums import Sums
 from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.evaluation.uncounted import Rule
-from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.track import confirmed
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.track import Track, confirmed
 from peopleboy.tracker.trackers import Tracker
 
-RULES: tuple[Rule, ...] = ("ignore", "absent")
+Count = Literal["ignore", "absent", "own range", "half in view"]
+"""Ways to deal with people whom the sources do not count.
+
+The first two are rules of the evaluation. "own range": they are absent, and the tracker tells of nobody whom
+it places itself where they are. "half in view": ignored, and so is who is less than half in view.
+"""
+
+_HALF: Final = 0.5
 RECORDS: dict[str, type[Sums]] = {"counts": Counts, "thesis": ThesisMetrics, "paper": PaperMetrics}
 
 Record = TypeVar("Record", bound=Sums)
@@ -103,11 +113,17 @@ class TrackUnit(Showing):
     def run(self) -> Result:
         """Track, and score by both rules for people who are not counted."""
         shot = film(self.play.scenario, self.play.seed, self.cache)
-        found = track_film(shot, self.setting.make(stream(self.repeat, "reproduce.tracker")))
+        found, is_in_range = track_film(shot, self.setting.make(stream(self.repeat, "reproduce.tracker")))
+        ways: dict[Count, tuple[TrackBoxes, Rule, float]] = {
+            "ignore": (found, "ignore", 0.0),
+            "absent": (found, "absent", 0.0),
+            "own range": (found.take(is_in_range), "absent", 0.0),
+            "half in view": (found, "ignore", _HALF),
+        }
         result: Result = {"frames": shot.frames}
-        for rule in RULES:
-            scores = evaluate(shot.truth(), found, frames=shot.frames, uncounted=rule)
-            result[rule] = {name: asdict(getattr(scores, name)) for name in RECORDS}
+        for name, (tracks, rule, visible) in ways.items():
+            scores = evaluate(shot.truth(), tracks, frames=shot.frames, uncounted=rule, min_visible=visible)
+            result[name] = {record: asdict(getattr(scores, record)) for record in RECORDS}
         return result
 
 
@@ -116,20 +132,32 @@ def play_key(play: SuiteRun) -> str:
     return f"{play.name} {play.scenario.duration_s:g}s"
 
 
-def track_film(shot: Film, tracker: Tracker) -> TrackBoxes:
-    """Let a tracker see a film; who is only tentative is not yet claimed."""
+def track_film(shot: Film, tracker: Tracker) -> tuple[TrackBoxes, NDArray[np.bool_]]:
+    """Let a tracker see a film; who is only tentative is not yet claimed.
+
+    Returns:
+        What it found, and (N,) whether the tracker itself places it where the sources count people.
+    """
     rows = [
-        (number, track.id, box, track.confidence)
+        (number, track.id, box, track.confidence, _is_in_range(track, frame))
         for number, frame in enumerate(frames_of(shot, tracker.cameras), 1)
         for track, box in confirmed(tracker.update(frame), THERMAL)
     ]
-    frame, identity, box, confidence = zip(*rows, strict=True) if rows else ((), (), (), ())
-    return TrackBoxes(
+    frame, identity, box, confidence, is_in_range = zip(*rows, strict=True) if rows else ((), (), (), (), ())
+    found = TrackBoxes(
         frame=np.array(frame, dtype=np.int64),
         id=np.array(identity, dtype=np.int64),
         box=np.array(box, dtype=np.float64).reshape(-1, 4),
         confidence=np.array(confidence, dtype=np.float64),
     )
+    return found, np.array(is_in_range, dtype=np.bool_)
+
+
+def _is_in_range(track: Track, frame: Frame) -> bool:
+    if track.place is None:
+        return True
+    x, y, _ = frame.calibrations[THERMAL].position_m
+    return is_counted(math.hypot(track.place.position_m[0] - x, track.place.position_m[1] - y))
 
 
 def restored(kind: type[Record], data: dict[str, Any]) -> Record:

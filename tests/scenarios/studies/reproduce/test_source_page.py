@@ -75,7 +75,7 @@ ALL = {
     *(f"paper-{number}" for number in PAPER),
     *(f"panoramic-{name}" for name in PANORAMIC),
     *(f"situation-{name}" for name in SITUATION),
-    *("section-4.2", "section-4.4", "section-5.2", "section-5.3"),
+    *("section-4.2", "section-4.4", "section-5.2", "section-5.3", "section-7.5"),
 }
 
 
