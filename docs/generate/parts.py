@@ -15,6 +15,8 @@ from docs.generate.random_worlds import bearings, distribution
 from docs.generate.results import results
 from docs.generate.scenario_keys import scenario_keys
 from docs.generate.settings import settings
+from docs.generate.sources.source_pages import PAGE, overview, whole_page
+from docs.generate.sources.source_run import FOLDER, SourceRun
 from docs.generate.trackers import trackers
 
 DOCS = Path(__file__).parents[1]
@@ -35,6 +37,7 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "metrics floor": partial(metrics, "floor"),
     "metrics counts": partial(metrics, "counts"),
     "metrics comfort": comfort,
+    "sources": lambda: overview(SourceRun.read()),
     **{f"results {name}": partial(results, table) for name, table in read_tables().tables.items()},
 }
 
@@ -48,6 +51,9 @@ def outdated_pages() -> Iterator[tuple[Path, str]]:
         new = fill_in(text)
         if new != text:
             yield path, new
+    shipped, whole = FOLDER / PAGE, whole_page(SourceRun.read())
+    if shipped.read_text(encoding="utf-8") != whole:
+        yield shipped, whole
 
 
 def fill_in(markdown: str) -> str:

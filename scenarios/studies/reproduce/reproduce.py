@@ -4,26 +4,22 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import platform
-import time
-from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.task import Failure, TasksFailed
 from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.scenarios.studies.reproduce.experiments.catalogue import paper_of
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experiment, Outcome
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
 from peopleboy.scenarios.studies.reproduce.measuring.units import Unit
-from peopleboy.scenarios.studies.reproduce.measuring.workload import QUICK_S, Plan, full_plan
+from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
 from peopleboy.scenarios.studies.reproduce.showing.against_source import mean_and_spread
-from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, Section, section, write_page
+from peopleboy.scenarios.studies.reproduce.showing.page_head import head_of
+from peopleboy.scenarios.studies.reproduce.showing.source_page import Section, section, write_page
 
 PAGE = "index.html"
 RESULTS = "units.jsonl"
@@ -58,10 +54,9 @@ def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tu
         BadInput: the folder or the cluster cannot be used.
         TasksFailed: some of it failed, after all else was done.
     """
-    start = time.monotonic()
     store = open_store(means.out / RESULTS)
     failures = work_off(experiments, plan, store, means.workers)
-    shown = _write(experiments, plan, means, store, time.monotonic() - start)
+    shown = _write(experiments, plan, means, store)
     if failures:
         raise TasksFailed("reproduce", failures, len(store) + len(failures))
     return shown
@@ -73,7 +68,7 @@ def show_so_far(experiments: Sequence[Experiment], plan: Plan, means: Means) -> 
     Raises:
         BadInput: nothing is finished there.
     """
-    return _write(experiments, plan, means, open_store(means.out / RESULTS), 0.0)
+    return _write(experiments, plan, means, open_store(means.out / RESULTS))
 
 
 def work_off(experiments: Sequence[Experiment], plan: Plan, store: Store, workers: Workers) -> list[Failure]:
@@ -91,19 +86,26 @@ def work_off(experiments: Sequence[Experiment], plan: Plan, store: Store, worker
     return list(failures.values())
 
 
-def _write(
-    experiments: Sequence[Experiment], plan: Plan, means: Means, store: Store, seconds: float
-) -> tuple[Path, list[Section]]:
-    found = [Outcome.so_far(one, plan, store) for one in experiments]
-    outcomes = [one for one in found if one is not None]
+def finished(experiments: Sequence[Experiment], plan: Plan, store: Store) -> tuple[list[Outcome], list[str]]:
+    """Give what has come out, each part with as many repeats as it has, and the ids of what is not finished.
+
+    Raises:
+        BadInput: nothing is finished.
+    """
+    found = {one.id: Outcome.so_far(one, plan, store) for one in experiments}
+    outcomes = [one for one in found.values() if one is not None]
     if not outcomes:
-        raise BadInput(f"{means.out / RESULTS}: no table or figure is finished there; leave out --so-far")
+        raise BadInput(f"{store.path}: no table or figure is finished there")
+    return outcomes, [number for number, one in found.items() if one is None]
+
+
+def _write(
+    experiments: Sequence[Experiment], plan: Plan, means: Means, store: Store
+) -> tuple[Path, list[Section]]:
+    outcomes, missing = finished(experiments, plan, store)
     (means.out / MEANS).write_text(json.dumps(_means(outcomes), indent=1) + "\n", encoding="utf-8")
     sections, page = [section(one) for one in outcomes], means.out / PAGE
-    missing = [one.id for one, outcome in zip(experiments, found, strict=True) if outcome is None]
-    facts = {"Not finished": ", ".join(missing)} if missing else {}
-    head = _about(plan, outcomes, means, store, seconds)
-    write_page(page, sections, replace(head, facts={**facts, **head.facts}))
+    write_page(page, sections, head_of(plan, outcomes, store, command=means.command, missing=missing))
     return page, sections
 
 
@@ -123,58 +125,3 @@ def unique_units(experiments: Sequence[Experiment], plan: Plan, store: Store) ->
     """List the work that can be begun now; what several experiments need is done once."""
     units = {unit.key: unit for one in experiments for unit in one.wants(plan, store)}
     return list(units.values())
-
-
-def _about(plan: Plan, outcomes: Sequence[Outcome], means: Means, store: Store, seconds: float) -> PageHead:
-    papers = {paper_of(one.experiment.id) for one in outcomes}
-    repeats = {one.repeats for one in outcomes if one.repeats is not None}
-    spent = sum(store.spent_s(key) for key in store)
-    facts: Mapping[str, str] = {
-        "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
-        "Python": platform.python_version(),
-        "Seeds": f"random streams of the trackers, and webcams, 0 to {plan.repeats - 1}; people before a "
-        f"panoramic camera 0 to {plan.walks - 1}; drives with a depth camera 0 to {plan.drives - 1}; "
-        "data sets as in their files",
-        "Machine": f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}",
-        "Time": f"{seconds / 60:.1f} min for this call; {spent / 3600:.2f} core-hours for all results, "
-        "those of earlier calls included",
-        "Results": f"{len(store)} units of work in {RESULTS}, beside this page",
-    }
-    return PageHead(
-        command=means.command, is_quick=plan.is_quick, amount=_amount(plan, papers, repeats), facts=facts
-    )
-
-
-def _share(plan: Plan) -> str:
-    """Say how much of the data sets a quick run sees."""
-    seen, there = (
-        sum(play.scenario.duration_s for plays in suites.values() for play in plays)
-        for suites in (plan.suites, full_plan(plan.cache).suites)
-    )
-    return f"{seen:.0f} of {there:.0f} s"
-
-
-def _amount(plan: Plan, papers: Set[str], repeats: Set[int]) -> str:
-    runs = {name: len(plays) for name, plays in plan.suites.items()}
-    if plan.is_quick:
-        return (
-            f"One run per data set and of it {QUICK_S:g} s at most ({_share(plan)}), {plan.repeats} repeats "
-            "instead of 10, fewer values of each parameter (each section says which are left out), "
-            "figure 6.6 with 200 samples instead of 1000, pairs of people "
-            f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room, "
-            f"{plan.drive_s:g} s of {len(plan.sets)} of the 12 drives with a depth camera, "
-            f"{len(plan.scenes)} of the 17 films of things that are moved."
-        )
-    if papers == {"panoramic"}:
-        return f"{plan.walks} films of each room, and {plan.repeats} by webcams."
-    if papers == {"situation"}:
-        return (
-            f"{plan.drives} runs of each of {len(plan.sets)} drives, {plan.ablated} where trackers differ in "
-            f"one thing or the noise is varied, {2 * plan.drives} where odometry is left out; "
-            f"{plan.scene_seeds} of each of {len(plan.scenes)} films of moved things, by {len(plan.presets)} "
-            f"depth cameras. {plan.drives} runs of each film of attention, {plan.absences} of each absence, "
-            f"{plan.follows} of followers."
-        )
-    total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
-    count = f"{min(repeats)} to {max(repeats)}, as each part says," if len(repeats) > 1 else f"{plan.repeats}"
-    return f"{count} repeats of everything with other random numbers in the trackers. {total}."

@@ -25,6 +25,9 @@ from peopleboy.scenarios.studies.reproduce.measuring.units import Count
 from peopleboy.scenarios.studies.reproduce.measuring.workload import TRAINING
 from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
 
+_SOONER = Setting("peopleboy", (("life.birth_confidence", 0.5), ("life.birth_frames", 2)))
+"""The default, told to be less sure before it tells of somebody, and for a shorter time."""
+
 LITERAL, OURS = "literal", "default"
 """The source's tracker, and ours."""
 
@@ -278,7 +281,9 @@ _ALL: tuple[Experiment, ...] = (
     _SWEEPS[2],
     _per_suite("figure-5.4", SEVERAL, "thesis-thermal", beside_one=True),
     *_SWEEPS[3:6],
-    Delay(SINGLE, {LITERAL: Setting("thesis-single"), OURS: Setting("peopleboy")}),
+    Delay(
+        SINGLE, {LITERAL: Setting("thesis-single"), OURS: Setting("peopleboy"), f"{OURS}, sooner": _SOONER}
+    ),
     TIMINGS[2],
     _chapters("figure-6.4", list(_STEPS)[:2]),
     _colours("figure-6.5", _REPRESENTATIONS, ("histogram",)),

@@ -130,7 +130,6 @@ class Outcome:
         picture: address of a picture of its own; None for none.
         left_out: groups of a full run that this one has not.
         effort: what it took; None if that is not known.
-        repeats: how many of everything it has; None if that is not known.
     """
 
     experiment: Experiment
@@ -138,7 +137,17 @@ class Outcome:
     picture: str | None = None
     left_out: tuple[str, ...] = ()
     effort: Effort | None = None
-    repeats: int | None = None
+
+    @property
+    def repeats(self) -> int | None:
+        """How many values each figure is of: repeats, splits or turns; None where there are none."""
+        sizes = [
+            values.size
+            for figures in self.samples.values()
+            for values in figures.values()
+            if isinstance(values, np.ndarray)
+        ]
+        return max(sizes, default=None)
 
     @classmethod
     def of(cls, experiment: Experiment, plan: Plan, store: Store) -> Outcome | None:
@@ -156,7 +165,6 @@ class Outcome:
             picture,
             tuple(dict.fromkeys(group for group in groups if group not in there)),
             Effort(len(done.keys_asked), sum(store.spent_s(key) for key in done.keys_asked)),
-            plan.repeats,
         )
 
     @classmethod

@@ -126,6 +126,12 @@ class PageHead:
 
 def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None:
     """Write the page."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(page_text(sections, about), encoding="utf-8")
+
+
+def page_text(sections: Sequence[Section], about: PageHead) -> str:
+    """Give the page as HTML."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE),
         autoescape=True,
@@ -137,7 +143,7 @@ def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None
     environment.filters["span"] = span
     notes = _notes()
     papers = {paper_of(part.id) for part in sections}
-    text = environment.get_template("page.html.jinja").render(
+    return environment.get_template("page.html.jinja").render(
         sections=sections,
         about=about,
         general=notes["general"],
@@ -146,8 +152,6 @@ def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None
         contents={name: items for name, items in source_contents().items() if name in papers},
         there={part.id for part in sections},
     )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
 
 
 def section(outcome: Outcome) -> Section:

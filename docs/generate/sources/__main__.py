@@ -1,0 +1,70 @@
+"""`python -m docs.generate.sources RUN`: ship what a run of `peopleboy reproduce` has on people tracking.
+
+Results of any code count, as long as all are of the same: the page says of which.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import click
+
+from docs.generate.sources.source_pages import PAGE, whole_page
+from docs.generate.sources.source_run import FOLDER, SourceRun
+from peopleboy.scenarios.running.engine.store import Store
+from peopleboy.scenarios.studies.reproduce.experiments.catalogue import of_paper
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Outcome
+from peopleboy.scenarios.studies.reproduce.measuring.workload import full_plan
+from peopleboy.scenarios.studies.reproduce.reproduce import RESULTS, finished
+from peopleboy.scenarios.studies.reproduce.showing.experiment_plots import draw
+from peopleboy.scenarios.studies.reproduce.showing.page_head import head_of
+from peopleboy.scenarios.studies.reproduce.showing.source import source_tables
+
+_COMMAND = "peopleboy reproduce --paper thesis; peopleboy reproduce --paper 2005"
+
+
+@click.command()
+@click.argument("run", type=click.Path(path_type=Path, exists=True, file_okay=False))
+@click.option("--machine", required=True, help="On which it ran, in words.")
+def main(run: Path, machine: str) -> None:
+    """Put the figures, the pictures and the page of a run into docs/sources."""
+    results = run / RESULTS
+    code = _newest_code(results)
+    plan, store = full_plan(run / "films"), Store(results, code)
+    outcomes, missing = finished([*of_paper("thesis").values(), *of_paper("2005").values()], plan, store)
+    head = head_of(plan, outcomes, store, command=_COMMAND, missing=missing)
+    recorded = datetime.fromtimestamp(results.stat().st_mtime, UTC).date().isoformat()
+    facts = {"Recorded": recorded, **head.facts, "Machine": machine, "Code": code}
+    for old in FOLDER.glob("*.[sp][vn]g"):
+        old.unlink()
+    shipped = SourceRun(replace(head, facts=facts), tuple(_with_file(one) for one in outcomes))
+    shipped.write()
+    # As it is read: figures are cut to a few digits.
+    (FOLDER / PAGE).write_text(whole_page(SourceRun.read()), encoding="utf-8")
+    click.echo(FOLDER / PAGE)
+
+
+def _newest_code(results: Path) -> str:
+    *_, last = results.read_text(encoding="utf-8").splitlines()
+    code: str = json.loads(last)["code"]
+    return code
+
+
+def _with_file(outcome: Outcome) -> Outcome:
+    """Put its picture, or its plot, into a file of its own."""
+    number = outcome.experiment.id
+    address = outcome.picture or draw(outcome.experiment, outcome.samples, source_tables()[number])
+    if address is None:
+        return outcome
+    kind, _, content = address.partition(";base64,")
+    name = f"{number}.{'svg' if 'svg' in kind else 'png'}"
+    (FOLDER / name).write_bytes(base64.b64decode(content))
+    return replace(outcome, picture=name)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,34 @@
+"""The page of a run, and a table of it for the documentation."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from docs.generate.markdown import table
+from docs.generate.sources.source_run import SourceRun
+from peopleboy.scenarios.studies.reproduce.showing.source_page import page_text, section
+
+PAGE: Final = "page.html"
+_WHO: Final = ("literal", "default")
+
+
+def whole_page(run: SourceRun) -> str:
+    """Give the page as `peopleboy reproduce` writes it, its pictures in files beside it."""
+    return page_text([section(one) for one in run.outcomes], run.head)
+
+
+def overview(run: SourceRun) -> str:
+    """Say how each table and figure fares, with a link to the whole of it."""
+    rows = [
+        (
+            f"[{part.id}]({PAGE}#{part.id})",
+            part.table.title,
+            "" if part.repeats is None else str(part.repeats),
+            *(part.summary(who) for who in _WHO),
+            *(part.standings(who) for who in _WHO),
+        )
+        for part in map(section, run.outcomes)
+    ]
+    head = ("", "what", "repeats", *(f"{what}, {who}" for what in ("claims", "figures") for who in _WHO))
+    facts = table(("about", "the run"), [*run.head.facts.items(), ("How much", run.head.amount)])
+    return f"{facts}\n{table(head, rows)}"

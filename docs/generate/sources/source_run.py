@@ -1,0 +1,93 @@
+"""What a run of `peopleboy reproduce` came to, as a file small enough to be shipped."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from peopleboy.scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import (
+    Effort,
+    Figures,
+    Line,
+    Outcome,
+    Samples,
+)
+from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead
+
+FOLDER: Final = Path(__file__).parents[2] / "sources"
+RUN: Final = "run.json"
+_DIGITS: Final = 6  # significant ones of each figure
+
+
+@dataclass(frozen=True, slots=True)
+class SourceRun:
+    """A run.
+
+    Attributes:
+        head: what was done, with what, and when.
+        outcomes: of each table and figure; their pictures are names of files beside the page.
+    """
+
+    head: PageHead
+    outcomes: tuple[Outcome, ...]
+
+    @classmethod
+    def read(cls, folder: Path = FOLDER) -> SourceRun:
+        """Read the run that is shipped."""
+        data = json.loads((folder / RUN).read_text(encoding="utf-8"))
+        return cls(
+            PageHead(**data["head"]), tuple(_outcome(number, one) for number, one in data["parts"].items())
+        )
+
+    def write(self, folder: Path = FOLDER) -> None:
+        """Keep it."""
+        parts = {one.experiment.id: _plain(one) for one in self.outcomes}
+        lines = (f"  {json.dumps(number)}: {json.dumps(one)}" for number, one in parts.items())
+        text = ",\n".join(lines)
+        head = json.dumps(asdict(self.head), indent=1, ensure_ascii=False)
+        (folder / RUN).write_text(f'{{"head": {head},\n "parts": {{\n{text}\n}}}}\n', encoding="utf-8")
+
+
+def _plain(outcome: Outcome) -> dict[str, Any]:
+    return {
+        "picture": outcome.picture,
+        "left_out": outcome.left_out,
+        "effort": None if outcome.effort is None else asdict(outcome.effort),
+        "samples": [
+            [
+                line.group,
+                line.who,
+                {name: _short(values) for name, values in figures.items()},
+            ]
+            for line, figures in outcome.samples.items()
+        ],
+    }
+
+
+def _outcome(number: str, plain: Mapping[str, Any]) -> Outcome:
+    samples: Samples = {
+        Line(group, who): {
+            name: np.array([math.nan if value is None else value for value in values])
+            for name, values in figures.items()
+        }
+        for group, who, figures in plain["samples"]
+    }
+    return Outcome(
+        EXPERIMENTS[number],
+        samples,
+        plain["picture"],
+        tuple(plain["left_out"]),
+        None if plain["effort"] is None else Effort(**plain["effort"]),
+    )
+
+
+def _short(values: Figures) -> list[float | None]:
+    """Cut figures to a few digits; None for NaN."""
+    return [None if math.isnan(one) else float(f"{one:.{_DIGITS}g}") for one in np.asarray(values).tolist()]
