@@ -52,10 +52,31 @@ UNDONE: Final[Mapping[str, Changes]] = {
 }
 """One line each: the literal tracker for one person, but for one reading, with all else as it is."""
 
+_GROWING: Final = _of_both("sharpness", 20.0)
+_KEPT: Final = (
+    *_of_both("limits.ratio_wh", (0.22, 0.62)),
+    *_of_both("limits.ratio_dw", (-0.5, 0.5)),
+    *_of_both("limits.y", (0.1, 0.8)),
+    ("detector.limits.h", (0.05, 0.5)),
+    ("detector.limits.y_below_horizon", (-0.1, 0.9)),
+    ("person.limits.h", (0.03, 0.5)),
+)
+"""Limits of the default: proportions and sizes that people have, and feet on a level floor for who is new."""
+_BEST: Final = (
+    *_of_both("estimate_share", 0.3),
+    ("detector.estimate_reach", 0.7),
+    ("person.resamples_core", True),
+)
+_NEW: Final = (("detector.fresh_share", 0.5), ("person.fresh_share", 0.0), ("person.resized_share", 0.2))
+
 NOT_PRINTED: Final[Mapping[str, Changes]] = {
     "not printed: 5000 samples": _of_both("count", 5000),
     "not printed: uncertainty left out": (("life.uncertainty_px2", 1e9),),
-    "not printed: weights that grow with the fit": _of_both("sharpness", 20.0),
+    "not printed: weights that grow with the fit": _GROWING,
+    "not printed: limits as people keep them": _KEPT,
+    "not printed: both of these": _KEPT + _GROWING,
+    "not printed: these, and the best 30 % tell": _KEPT + _GROWING + _BEST,
+    "not printed: these, and new samples as the default's": _KEPT + _GROWING + _BEST + _NEW,
 }
 """What the thesis says otherwise, to see what its figures would take here."""
 

@@ -6,6 +6,7 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.occlusion_learning.example_splits import (
+    learn_split,
     random_split,
     share_right,
     split_by_scenario,
@@ -82,6 +83,20 @@ def test_no_pair_and_no_scenario_is_both_learned_from_and_tested_on():
     assert len(learned) == 3
     assert not learned & tested
     assert len(by_scenario.learned) + len(by_scenario.tested) == 300
+
+
+def test_however_uneven_scenarios_are_one_is_left_to_test_with():
+    few, many = examples(8, 0), [replace(one, scenario="most") for one in examples(60, 1)]
+    for seed in range(10):
+        split = split_by_scenario([*few, *many], np.random.default_rng(seed))
+        assert split.tested
+        assert split.learned
+
+
+def test_a_feature_that_tells_nothing_is_right_in_half_of_all_answers():
+    given = [replace(one, features=one.features * [1, 1, 1, 1, 0, 1]) for one in examples(60, 0)]
+    found = learn_split(given, ("colour_o",), 1, 4, np.random.default_rng(0))
+    assert (found.held_out, found.unseen, found.table.classifiers) == (50.0, 50.0, ())
 
 
 def test_as_many_examples_are_positive_as_negative():
