@@ -13,11 +13,10 @@ from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y, twin_of
 
 ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
 UNKNOWN: Final = 1e-4  # share of a section's weight that is none
+LANES: Final = 32  # samples that are measured side by side, a few vectors of any processor
 
-_Mix = tuple[Floats, Floats, Floats, Floats, Floats, Floats, Floats]
 
-
-@njit(cache=True, fastmath={"contract"}, nogil=True)
+@njit(cache=True, nogil=True)
 def measure_sections(
     image: NDArray[np.uint8],
     state: Floats,
@@ -43,47 +42,127 @@ def measure_sections(
             point on people in front.
         feet_gain: factor on the response of the feet, which counts up to 1; 0 leaves it as it is.
     """
-    pairs = first[SECTIONS]
-    grey, counts, at = image.reshape(-1), response.reshape(-1), np.empty(2 * pairs, dtype=np.int32)
-    inner, outer = at[:pairs], at[pairs:]
     result = np.empty((len(state), SECTIONS), dtype=np.float32)
     known = np.empty((len(state), SECTIONS), dtype=np.float32)
-    elsewhere, unseen_share = np.float32(missing[0]), np.float32(missing[1])
-    covered, covered_share = np.float32(missing[2]), np.float32(missing[3])
-    unseen, covered = unseen_share * elsewhere, covered_share * covered
-    unseen_lacks, covered_lacks = np.float32(1) - unseen_share, np.float32(1) - covered_share
-    rows = mix[0], mix[1], mix[2], mix[3], mix[4], mix[5], mix[6]
+    everybody, bodies = np.arange(len(state)), np.empty(len(state), dtype=np.int64)
+    twin, count = np.empty(len(state), dtype=np.int64), 0
     for i in range(len(state)):
-        _locate(at, state[i], rows, image.shape[1], image.shape[0])
-        twin = twin_of(state, i)
-        sections = SECTIONS if twin < 0 else SHOULDER_LEFT
-        for j in range(sections, SECTIONS):
-            result[i, j], known[i, j] = result[twin, j], known[twin, j]
-        for j in range(sections):
-            count, even = np.float32(first[j + 1] - first[j]), np.int64(j * (2 * GREYS - 1) + GREYS - 1)
-            total, left = np.float32(0), np.float32(1)
-            # Unsigned, as numba would ask of every other number whether it counts from the end.
-            for p in range(np.uint64(first[j]), np.uint64(first[j + 1])):
-                one, other = inner[p], outer[p]
-                if (one | other) < 0:
-                    if one == ELSEWHERE or other == ELSEWHERE:
-                        total += elsewhere
-                    else:
-                        total += unseen
-                        left -= unseen_lacks / count
-                    continue
-                inside, outside = np.int64(grey[np.uint64(one)]), np.int64(grey[np.uint64(other)])
-                if inside == covered_grey or outside == covered_grey:
-                    total += covered
-                    left -= covered_lacks / count
-                else:
-                    total += counts[np.uint64(even + inside - outside)]
-            if count > 0 and left > UNKNOWN:
-                total /= count * left
-            if j == FEET and feet_gain > 0:
-                total = min(np.float32(1), np.float32(feet_gain) * total)
-            result[i, j], known[i, j] = total, left
+        twin[i] = twin_of(state, i)
+        if twin[i] < 0:
+            bodies[count] = i
+            count += 1
+    marks = covered_grey, missing, feet_gain
+    _measure(result, known, image, state, everybody, mix, first, response, marks, 0, SHOULDER_LEFT)
+    _measure(result, known, image, state, bodies[:count], mix, first, response, marks, SHOULDER_LEFT, SECTIONS)
+    for i in range(len(state)):
+        if twin[i] >= 0:
+            for j in range(SHOULDER_LEFT, SECTIONS):
+                result[i, j], known[i, j] = result[twin[i], j], known[twin[i], j]
     return result, known
+
+
+# Without numpy's rules a kernel would test every division.
+@njit(cache=True, nogil=True, error_model="numpy")
+def _measure(
+    result: Floats,
+    known: Floats,
+    image: NDArray[np.uint8],
+    state: Floats,
+    rows: NDArray[np.int64],
+    mix: Floats,
+    first: NDArray[np.int64],
+    response: Floats,
+    marks: tuple[int, tuple[float, float, float, float], float],
+    begin: int,
+    end: int,
+) -> None:
+    """Measure some sections of the samples in some rows, many samples at a time, as `measure_sections` says."""
+    pairs, (height, width) = first[SECTIONS], image.shape
+    covered_grey, missing, feet_gain = marks
+    grey, counts = image.reshape(-1), response.reshape(-1)
+    lanes, at = np.empty((5, LANES), dtype=np.float32), np.empty((2 * pairs, LANES), dtype=np.int32)
+    total, left = np.empty(LANES, dtype=np.float32), np.empty(LANES, dtype=np.float32)
+    for start in range(0, len(rows), LANES):
+        _load(lanes, state, rows, start)
+        _locate(at, lanes, mix, first[begin], first[end], width, height)
+        _locate(at, lanes, mix, pairs + first[begin], pairs + first[end], width, height)
+        for j in range(begin, end):
+            even = j * (2 * GREYS - 1) + GREYS - 1
+            _add_up(total, left, at, grey, counts, first[j], first[j + 1], even, covered_grey, missing)
+            count, gain = np.float32(first[j + 1] - first[j]), np.float32(feet_gain if j == FEET else 0)
+            for k in range(LANES):
+                total[k] /= count * left[k] if (count > 0) & (left[k] > UNKNOWN) else np.float32(1)
+                total[k] = min(np.float32(1), gain * total[k]) if gain > 0 else total[k]
+            for k in range(min(LANES, len(rows) - start)):
+                result[rows[start + k], j], known[rows[start + k], j] = total[k], left[k]
+
+
+@njit(cache=True, nogil=True)
+def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64], start: int) -> None:
+    """Write x, y, d, w and h of samples from the start-th row on into lanes (5, K), the last one again and again.
+
+    Pixels begin half a pixel before their centres.
+    """
+    half = np.float32(0.5)
+    for k in range(LANES):
+        i = rows[min(start + k, len(rows) - 1)]
+        lanes[0, k], lanes[1, k] = state[i, X] + half, state[i, Y] + half
+        lanes[2, k], lanes[3, k], lanes[4, k] = state[i, D], state[i, W], state[i, H]
+
+
+@njit(cache=True, nogil=True)
+def _locate(
+    at: NDArray[np.int32], lanes: Floats, mix: Floats, begin: int, end: int, width: int, height: int
+) -> None:
+    """Write the pixels (2 P, K) of some points of samples (5, K), without branches."""
+    columns, right, bottom = np.int32(width), np.float32(width), np.float32(height)
+    for q in range(np.uint64(begin), np.uint64(end)):
+        du, wu, hu, u0, wv, hv, v0 = mix[0, q], mix[1, q], mix[2, q], mix[3, q], mix[4, q], mix[5, q], mix[6, q]
+        # Unsigned, as numba would ask of every other number whether it counts from the end.
+        for k in range(np.uint64(LANES)):
+            u = lanes[0, k] + du * lanes[2, k] + wu * lanes[3, k] + hu * lanes[4, k] + u0
+            v = lanes[1, k] + wv * lanes[3, k] + hv * lanes[4, k] + v0
+            is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
+            outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
+            at[q, k] = np.int32(v) * columns + np.int32(u) if is_inside else outside
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _add_up(
+    total: Floats,
+    left: Floats,
+    at: NDArray[np.int32],
+    grey: NDArray[np.uint8],
+    counts: Floats,
+    begin: int,
+    end: int,
+    even: int,
+    covered_grey: int,
+    missing: tuple[float, float, float, float],
+) -> None:
+    """Sum up what one section's pairs count (K,), and what share (K,) of its weight they keep."""
+    pairs, count = np.uint64(len(at) // 2), np.float32(end - begin)
+    elsewhere, unseen_share = np.float32(missing[0]), np.float32(missing[1])
+    covered_share = np.float32(missing[3])
+    unseen, covered = unseen_share * elsewhere, covered_share * np.float32(missing[2])
+    unseen_lacks, covered_lacks = np.float32(1) - unseen_share, np.float32(1) - covered_share
+    total[:], left[:] = 0, 1
+    for p in range(np.uint64(begin), np.uint64(end)):
+        for k in range(np.uint64(LANES)):
+            one, other = at[p, k], at[p + pairs, k]
+            if (one | other) < 0:
+                if one == ELSEWHERE or other == ELSEWHERE:
+                    total[k] += elsewhere
+                else:
+                    total[k] += unseen
+                    left[k] -= unseen_lacks / count
+                continue
+            inside, outside = np.int64(grey[np.uint64(one)]), np.int64(grey[np.uint64(other)])
+            if inside == covered_grey or outside == covered_grey:
+                total[k] += covered
+                left[k] -= covered_lacks / count
+            else:
+                total[k] += counts[np.uint64(even + inside - outside)]
 
 
 @njit(cache=True, nogil=True)
@@ -139,7 +218,7 @@ def count_differences(image: NDArray[np.uint8], apart: int, stride: int) -> NDAr
     return both
 
 
-@njit(cache=True, fastmath={"contract"}, nogil=True)
+@njit(cache=True, nogil=True)
 def share_in_view(
     image: NDArray[np.uint8], sample: Floats, mix: Floats, first: NDArray[np.int64], covered_grey: int
 ) -> NDArray[np.float64]:
@@ -158,21 +237,10 @@ def share_in_view(
     return shares
 
 
-@njit(cache=True, fastmath={"contract"}, nogil=True)
+@njit(cache=True, nogil=True)
 def locate_points(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, height: int) -> None:
     """Write the pixels of `pixels_under` a contour (9,) into (2 P,)."""
-    _locate(at, sample, (mix[0], mix[1], mix[2], mix[3], mix[4], mix[5], mix[6]), width, height)
-
-
-@njit(cache=True, fastmath={"contract"}, nogil=True)
-def _locate(at: NDArray[np.int32], sample: Floats, mix: _Mix, width: int, height: int) -> None:
-    """Locate points as `locate_points` does, without branches, many at a time."""
-    half, columns, right, bottom = np.float32(0.5), np.int32(width), np.float32(width), np.float32(height)
-    x, y, d, w, h = sample[X] + half, sample[Y] + half, sample[D], sample[W], sample[H]
-    du, wu, hu, u0, wv, hv, v0 = mix
-    for q in range(len(at)):
-        u = x + du[q] * d + wu[q] * w + hu[q] * h + u0[q]
-        v = y + wv[q] * w + hv[q] * h + v0[q]
-        is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
-        outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
-        at[q] = np.int32(v) * columns + np.int32(u) if is_inside else outside
+    lanes, pixels = np.empty((5, LANES), dtype=np.float32), np.empty((len(at), LANES), dtype=np.int32)
+    _load(lanes, sample.reshape(1, -1), np.zeros(1, dtype=np.int64), 0)
+    _locate(pixels, lanes, mix, 0, len(at), width, height)
+    at[:] = pixels[:, 0]
