@@ -318,6 +318,18 @@ def twin_of(state: Floats, i: int) -> int:
 
 
 @njit(cache=True, nogil=True)
+def bodies_of(state: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find the twins (N,) of samples (N, 9) by `twin_of`, and the rows (M,) of those that have none."""
+    twin, rows, count = np.empty(len(state), dtype=np.int64), np.empty(len(state), dtype=np.int64), 0
+    for i in range(len(state)):
+        twin[i] = twin_of(state, i)
+        if twin[i] < 0:
+            rows[count] = i
+            count += 1
+    return twin, rows[:count]
+
+
+@njit(cache=True, nogil=True)
 def systematic_rows(weight: Floats, count: int, offset: float) -> NDArray[np.int64]:
     """Find the rows (count,) under `count` evenly spaced marks on the cumulated weights; offset in [0, 1)."""
     rows = np.empty(count, dtype=np.int64)

@@ -14,7 +14,7 @@ from peopleboy.tracker.thermal.appearance.part_means import write_part_means
 from peopleboy.tracker.thermal.appearance.regions import PARTS, part_rectangle
 from peopleboy.tracker.thermal.colour_config import SAME_VIEW, ColourConfig
 from peopleboy.tracker.thermal.config import AppearanceConfig
-from peopleboy.tracker.thermal.particles import Floats
+from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y
 from peopleboy.tracker.thermal.whereabouts import Regions
 
 # By how much the mean colours, 0..1, of one person's head, torso and legs differ from frame to frame after
@@ -75,8 +75,9 @@ def visible(features: Floats, state: Floats, hiding: Regions) -> Floats:
 def _blank_hidden(features: Floats, state: Floats, hiding: Regions) -> None:
     least, share = np.float32(1e-6), np.float32(HIDDEN_PART)
     for i in range(len(state)):
+        x, y, w, h, d = state[i, X], state[i, Y], state[i, W], state[i, H], state[i, D]
         for part in range(PARTS):
-            left, top, right, bottom = part_rectangle(state[i], part)
+            left, top, right, bottom = part_rectangle(x, y, w, h, d, part)
             hidden = share * max((right - left) * (bottom - top), least)
             for j in range(len(hiding)):
                 across = min(right, hiding[j, 0] + hiding[j, 2]) - max(left, hiding[j, 0])

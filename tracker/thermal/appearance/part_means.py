@@ -12,17 +12,16 @@ from peopleboy.tracker.thermal.appearance.alignment import align
 from peopleboy.tracker.thermal.appearance.regions import (
     HEAD,
     PARTS,
-    Rectangle,
+    TORSO,
     first_pixel_after,
     part_rectangle,
 )
-from peopleboy.tracker.thermal.particles import Floats, H, twin_of
+from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y, bodies_of
 
 WHITE: Final = 255.0
 
 
-# Without numpy's rules a kernel would test every division.
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True)
 def write_part_means(
     means: Floats,
     column: int,
@@ -47,30 +46,37 @@ def write_part_means(
         least_seen: share of the part's area that must lie in the image.
     """
     height, width, channels, degree = integral.shape
-    height, width, sums, step = height - 1, width - 1, integral.reshape(-1), channels * degree
+    sums, step = integral.reshape(-1), channels * degree
+    twin, bodies = bodies_of(state)
+    corners, share = np.empty((4, len(state)), dtype=np.int32), np.empty(len(state))
+    for first, end, rows in ((HEAD, TORSO, np.arange(len(state))), (TORSO, PARTS, bodies)):
+        shape = _columns(state, rows)
+        for part in range(first, end):
+            _locate(corners, share, shape, part, alignment, width - 1, height - 1, least_seen)
+            for n in range(np.uint64(len(rows))):
+                found, factor = means[rows[n], part, column:], scale[part, column:]
+                plus, minus = (corners[0, n], corners[1, n]), (corners[2, n], corners[3, n])
+                for c in range(np.uint64(channels)):
+                    at = np.int64(c) * degree
+                    total = _sum_at(sums, plus[0] * step + at) + _sum_at(sums, plus[1] * step + at)
+                    total -= _sum_at(sums, minus[0] * step + at) + _sum_at(sums, minus[1] * step + at)
+                    found[c] = np.float32(total * share[n] / WHITE) * factor[c]
     for i in range(len(state)):
-        twin = twin_of(state, i)
-        for part in range(PARTS):
-            if twin >= 0 and part != HEAD:  # nothing else lies elsewhere for another d
-                means[i, part, column : column + channels] = means[twin, part, column : column + channels]
-                continue
-            rectangle = align(alignment, part_rectangle(state[i], part), state[i, H])
-            left, top, right, bottom = _within(rectangle, width, height)
-            pixels = (right - left) * (bottom - top)
-            if pixels == 0 or pixels < least_seen * _area(rectangle):
-                for c in range(channels):
-                    means[i, part, column + c] = np.nan
-                continue
-            share, above, below = 1.0 / pixels, top * (width + 1), bottom * (width + 1)
-            for c in range(channels):
-                total = (
-                    _sum_at(sums, (below + right) * step + c * degree)
-                    + _sum_at(sums, (above + left) * step + c * degree)
-                    - _sum_at(sums, (above + right) * step + c * degree)
-                    - _sum_at(sums, (below + left) * step + c * degree)
-                )
-                mean = np.float32(total * share / WHITE)
-                means[i, part, column + c] = mean * scale[part, column + c]
+        if twin[i] >= 0:  # nothing but the head lies elsewhere for another d
+            for part in range(TORSO, PARTS):
+                for c in range(column, column + channels):
+                    means[i, part, c] = means[twin[i], part, c]
+
+
+@njit(cache=True, nogil=True)
+def _columns(state: Floats, rows: NDArray[np.int64]) -> Floats:
+    """Give x, y, w, h and d (5, M) of the samples (N, 9) in some rows."""
+    shape = np.empty((5, len(rows)), dtype=np.float32)
+    for n in range(len(rows)):
+        i = rows[n]
+        shape[0, n], shape[1, n], shape[2, n] = state[i, X], state[i, Y], state[i, W]
+        shape[3, n], shape[4, n] = state[i, H], state[i, D]
+    return shape
 
 
 @njit(cache=True, nogil=True)
@@ -79,23 +85,43 @@ def _sum_at(sums: NDArray[np.integer[Any]], at: int) -> int:
     return int(sums[np.uint64(at)])
 
 
-@njit(cache=True, nogil=True)
-def _within(rectangle: Rectangle, width: int, height: int) -> tuple[int, int, int, int]:
-    """Cut the pixels of a rectangle down to an image; none are left of one outside."""
-    left, right = _clamped(rectangle[0], width), _clamped(rectangle[2], width)
-    top, bottom = _clamped(rectangle[1], height), _clamped(rectangle[3], height)
-    return left, top, max(left, right), max(top, bottom)
+# Without numpy's rules a kernel would test every division.
+@njit(cache=True, nogil=True, error_model="numpy")
+def _locate(
+    corners: NDArray[np.int32],
+    share: NDArray[np.float64],
+    shape: Floats,
+    part: int,
+    alignment: Floats,
+    width: int,
+    height: int,
+    least_seen: float,
+) -> None:
+    """Find one part of people in an image of that size, for many at a time and without branches.
 
-
-@njit(cache=True, nogil=True)
-def _clamped(edge: np.float32, last: int) -> int:
-    return min(max(int(first_pixel_after(edge)), 0), last)
-
-
-@njit(cache=True, nogil=True)
-def _area(rectangle: Rectangle) -> int:
-    """Count the pixels of a rectangle, also those outside of the image."""
-    left, top, right, bottom = rectangle
-    wide = int(first_pixel_after(right)) - int(first_pixel_after(left))
-    tall = int(first_pixel_after(bottom)) - int(first_pixel_after(top))
-    return max(wide, 0) * max(tall, 0)
+    Args:
+        corners: takes (4, M) pixels of the integral image: the lower right and upper left one, which count,
+            and the upper right and lower left one, which are taken off.
+        share: takes (M,) one pixel's share of the part's mean; NaN where too little of it is in the image.
+        shape: (5, M) of `_columns`.
+        part: which.
+        alignment: (2, 4) from the thermal image to this one.
+        width: of the image.
+        height: of the image.
+        least_seen: share of the part's area that must lie in the image.
+    """
+    none, most_right, most_down = np.int32(0), np.int32(width), np.int32(height)
+    columns = np.int32(width + 1)
+    # Unsigned, as numba would ask of every other number whether it counts from the end.
+    for n in range(np.uint64(shape.shape[1])):
+        x, y, w, h, d = shape[0, n], shape[1, n], shape[2, n], shape[3, n], shape[4, n]
+        edges = align(alignment, part_rectangle(x, y, w, h, d, part), h)
+        left, top = first_pixel_after(edges[0]), first_pixel_after(edges[1])
+        right, bottom = first_pixel_after(edges[2]), first_pixel_after(edges[3])
+        area = np.float64(max(right - left, none)) * np.float64(max(bottom - top, none))
+        left, top = min(max(left, none), most_right), min(max(top, none), most_down)
+        right, bottom = max(left, min(right, most_right)), max(top, min(bottom, most_down))
+        pixels = (right - left) * (bottom - top)
+        share[n] = 1.0 / pixels if (pixels > 0) & (pixels >= least_seen * area) else np.nan
+        corners[0, n], corners[1, n] = bottom * columns + right, top * columns + left
+        corners[2, n], corners[3, n] = top * columns + right, bottom * columns + left

@@ -30,15 +30,17 @@ Rectangle = tuple[np.float32, np.float32, np.float32, np.float32]
 
 
 @njit(cache=True, nogil=True)
-def part_rectangle(sample: Floats, part: int) -> Rectangle:
-    """Lay out one part of a person (9,); right and bottom are never less than left and top.
+def part_rectangle(
+    x: np.float32, y: np.float32, w: np.float32, h: np.float32, d: np.float32, part: int
+) -> Rectangle:
+    """Lay out one part of a person; right and bottom are never less than left and top.
 
     Source: thesis, section 6.1.2 and figure 6.2 b.
     """
-    w, h = max(sample[W], np.float32(0)), max(sample[H], np.float32(0))
-    middle = sample[X] + _LAYOUT[part, 0] * sample[D]
+    w, h = max(w, np.float32(0)), max(h, np.float32(0))
+    middle = x + _LAYOUT[part, 0] * d
     half = _LAYOUT[part, 1] * w + _LAYOUT[part, 2] * h
-    top, bottom = sample[Y] + _LAYOUT[part, 3] * h, sample[Y] + _LAYOUT[part, 4] * h
+    top, bottom = y + _LAYOUT[part, 3] * h, y + _LAYOUT[part, 4] * h
     return middle - half, top, middle + half, bottom
 
 
@@ -48,7 +50,9 @@ def part_rectangles(state: Floats) -> Floats:
     result = np.empty((len(state), PARTS, 4), dtype=np.float32)
     for i in range(len(state)):
         for part in range(PARTS):
-            result[i, part] = part_rectangle(state[i], part)
+            result[i, part] = part_rectangle(
+                state[i, X], state[i, Y], state[i, W], state[i, H], state[i, D], part
+            )
     return result
 
 

@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.contour.contour import FEET, GREYS, SECTIONS, SHOULDER_LEFT
-from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y, twin_of
+from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y, bodies_of
 
 ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
 UNKNOWN: Final = 1e-4  # share of a section's weight that is none
@@ -44,16 +44,10 @@ def measure_sections(
     """
     result = np.empty((len(state), SECTIONS), dtype=np.float32)
     known = np.empty((len(state), SECTIONS), dtype=np.float32)
-    everybody, bodies = np.arange(len(state)), np.empty(len(state), dtype=np.int64)
-    twin, count = np.empty(len(state), dtype=np.int64), 0
-    for i in range(len(state)):
-        twin[i] = twin_of(state, i)
-        if twin[i] < 0:
-            bodies[count] = i
-            count += 1
-    marks = covered_grey, missing, feet_gain
+    twin, bodies = bodies_of(state)
+    everybody, marks = np.arange(len(state)), (covered_grey, missing, feet_gain)
     _measure(result, known, image, state, everybody, mix, first, response, marks, 0, SHOULDER_LEFT)
-    _measure(result, known, image, state, bodies[:count], mix, first, response, marks, SHOULDER_LEFT, SECTIONS)
+    _measure(result, known, image, state, bodies, mix, first, response, marks, SHOULDER_LEFT, SECTIONS)
     for i in range(len(state)):
         if twin[i] >= 0:
             for j in range(SHOULDER_LEFT, SECTIONS):
