@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.tracker.elementary import exponential, normals
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.thermal.appearance.appearance_model import AppearanceView, visible
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
@@ -33,17 +34,14 @@ from peopleboy.tracker.thermal.particles import (
     W,
     X,
     Y,
-    core_rows,
     draw_prior,
+    estimated,
     floor_rows,
-    mean_state,
-    normalised,
     predict,
     resample,
-    select,
     turned,
-    uncertainty_px2,
 )
+from peopleboy.tracker.thermal.weights import NOTHING, shared_out, sharp_weights
 from peopleboy.tracker.thermal.whereabouts import Regions
 
 Ends = tuple[float, float]
@@ -164,61 +162,39 @@ def weigh(
     inside = is_within(state, view.image.shape[0], filter_config.limits)
     if likeness is not None and filter_config.sharpness == 0:
         factor = likeness if factor is None else likeness * factor
-    counted = _floored(fit, likeness, filter_config)
-    weight = sample_weights(counted, chance, inside, config.likelihood.model, filter_config)
-    if factor is not None:
-        weight = normalised(weight * factor)
+    weight = sample_weights(fit, chance, inside, config.likelihood.model, filter_config, factor, likeness)
     particles = Particles(state, weight)
-    rows = core_rows(particles, filter_config.estimate_share, filter_config.estimate_reach)
-    core = select(particles, rows)
-    return Belief(
-        particles=particles,
-        core=core,
-        estimate=mean_state(core),
-        # A sample outside the limits is no person, however well it fits.
-        confidence=float(core.weight @ np.where(inside.take(rows), chance.take(rows), np.float32(0))),
-        uncertainty_px2=uncertainty_px2(core),
+    core, estimate, confidence, uncertainty_px2 = estimated(
+        particles, np.where(inside, chance, np.float32(0)), filter_config
     )
-
-
-def _floored(fit: Floats, likeness: Floats | None, config: FilterConfig) -> Floats:
-    """Give the fitness (N,) of contour and looks together, but not less than the floor.
-
-    The floor stands for a person hidden by something unknown, of whom neither would be seen.
-    """
-    if config.sharpness > 0 and likeness is not None:
-        logarithm: Floats = np.log(np.maximum(likeness, np.float32(1e-30)))
-        fit = fit + logarithm / np.float32(config.sharpness)
-    floored: Floats = np.maximum(fit, np.float32(config.floor))
-    return floored
+    return Belief(particles, core, estimate, confidence, uncertainty_px2)
 
 
 def sample_weights(
-    fit: Floats, chance: Floats, is_inside: NDArray[np.bool_], model: str, config: FilterConfig
+    fit: Floats,
+    chance: Floats,
+    is_inside: NDArray[np.bool_],
+    model: str,
+    config: FilterConfig,
+    factor: Floats | None = None,
+    likeness: Floats | None = None,
 ) -> Floats:
     """Weigh the samples (N,), to sum to 1.
 
     The thesis weighs with the probability, which is flat once the fitness is well above the threshold; with a
-    sharpness, the weight goes on growing with the fitness. The paper weighs with the fitness itself.
+    sharpness, the weight goes on growing with the fitness, to which the logarithm of the likeness adds. The
+    paper weighs with the fitness itself.
 
     Source: thesis, equation 4.5; paper, equation 3.
     """
     if config.sharpness > 0:
-        weight = np.exp(config.sharpness * (fit - fit.max()))
+        weight = sharp_weights(fit, NOTHING if likeness is None else likeness, config.sharpness, config.floor)
     elif model == "paper":
-        weight = np.maximum(fit, 1e-6)
+        weight = np.maximum(np.maximum(fit, np.float32(config.floor)), np.float32(1e-6))
     else:
         weight = chance
-    return normalised(_discounted(weight, is_inside))
-
-
-@njit(cache=True, nogil=True)
-def _discounted(weight: Floats, is_inside: NDArray[np.bool_]) -> Floats:
-    """Copy weights (N,), those of samples outside the limits made very low."""
-    result = np.empty(len(weight), dtype=np.float32)
-    for i in range(len(weight)):
-        result[i] = weight[i] if is_inside[i] else np.float32(OUTSIDE_WEIGHT) * weight[i]
-    return result
+    weighed: Floats = shared_out(weight, is_inside, NOTHING if factor is None else factor, OUTSIDE_WEIGHT)
+    return weighed
 
 
 def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np.bool_]:
@@ -320,17 +296,18 @@ def _resize(state: Floats, share: float, rng: np.random.Generator) -> None:
     for a whole person is found out that way.
     """
     tried = state[:: round(1 / share)]
-    _scale(tried, np.exp(RESIZING * rng.standard_normal(len(tried), dtype=np.float32)))
+    _scale(tried, normals(len(tried), rng))
 
 
 @njit(cache=True, nogil=True)
-def _scale(state: Floats, factor: Floats) -> None:
-    """Scale samples (N, 9) by factors (N,), in place, as `_resize` says."""
+def _scale(state: Floats, chance: Floats) -> None:
+    """Scale samples (N, 9) by chance (N,), normal, in place, as `_resize` says."""
     for i in range(len(state)):
+        factor = exponential(np.float32(RESIZING) * chance[i])
         kept = np.float32(-CROWN) if i % 2 == 0 else np.float32(FOOT)
-        state[i, Y] -= kept * (factor[i] - np.float32(1)) * state[i, H]
-        state[i, W] *= factor[i]
-        state[i, H] *= factor[i]
+        state[i, Y] -= kept * (factor - np.float32(1)) * state[i, H]
+        state[i, W] *= factor
+        state[i, H] *= factor
 
 
 def begin(

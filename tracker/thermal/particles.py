@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.tracker.elementary import exponentials, normals
 from peopleboy.tracker.thermal.config import (
     REFERENCE_HEIGHT_PX,
     FilterConfig,
@@ -17,6 +18,7 @@ from peopleboy.tracker.thermal.config import (
     MotionConfig,
     TrackerConfig,
 )
+from peopleboy.tracker.thermal.weights import scale_to_one
 
 X: Final = 0
 Y: Final = 1
@@ -76,7 +78,7 @@ def draw_prior(
     height, width = shape
     limits = filter_config.limits
     chance = rng.random((count, 5), dtype=np.float32)
-    velocity = rng.standard_normal((count, 4), dtype=np.float32)
+    velocity = normals((count, 4), rng)
     state = np.empty((count, STATE_SIZE), dtype=np.float32)
     state[:, X] = width * chance[:, 0]
     state[:, H] = height * _heights(limits.h, chance[:, 2], filter_config.log_uniform_h)
@@ -93,7 +95,7 @@ def _heights(limits: tuple[float, float], chance: Floats, is_log_uniform: bool) 
     """Draw h in image heights; log-uniform, small and far people are as many as large and near ones."""
     if not is_log_uniform:
         return _between(limits, chance)
-    h: Floats = np.exp(_between((math.log(limits[0]), math.log(limits[1])), chance))
+    h: Floats = exponentials(_between((math.log(limits[0]), math.log(limits[1])), chance))
     return h
 
 
@@ -132,10 +134,11 @@ def draw_around(
     """
     left, top, width, height = box
     limits, count = config.person.limits, config.person.count
-    h = height / config.box.height_per_h * np.exp(BOX_SPREAD * rng.standard_normal(count))
+    spread = exponentials(np.float32(BOX_SPREAD) * normals(count, rng))
+    h = height / config.box.height_per_h * spread
     state = np.zeros((count, STATE_SIZE), dtype=np.float32)
     state[:, H] = h
-    state[:, X] = left + width / 2 + BOX_SPREAD * width * rng.standard_normal(count)
+    state[:, X] = left + width / 2 + BOX_SPREAD * width * normals(count, rng)
     state[:, Y] = top + (CROWN + config.box.hair_per_h) * h
     state[:, W] = h * rng.uniform(*limits.ratio_wh, count)
     state[:, D] = state[:, W] * rng.uniform(*limits.ratio_dw, count)
@@ -158,7 +161,7 @@ def predict(
 
     Source: thesis, equations 4.7 and 4.8.
     """
-    noise = rng.standard_normal((len(state), 5), dtype=np.float32)
+    noise = normals((len(state), 5), rng)
     amplitude = noise_per_step(dt_s, size, config)
     memory = np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
     moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, memory)
@@ -193,10 +196,9 @@ def equally_weighted(state: Floats) -> Particles:
 
 def normalised(weight: Floats) -> Floats:
     """Scale (N,) non-negative weights to sum to 1; equal weights where none is positive."""
-    total = float(np.add.reduce(weight, dtype=np.float64))
-    if not total > 0:
-        return np.full(len(weight), 1 / len(weight), dtype=np.float32)
-    return (weight / total).astype(np.float32, copy=False)
+    scaled = weight.astype(np.float32)
+    scale_to_one(scaled)
+    return scaled
 
 
 def resample(particles: Particles, count: int, rng: np.random.Generator) -> Floats:
@@ -214,7 +216,8 @@ def mean_state(particles: Particles) -> NDArray[np.float64]:
 
     Source: thesis, equation 4.2; its extra 1/N is a slip once the weights are normalised.
     """
-    return particles.weight.astype(np.float64) @ particles.state.astype(np.float64)
+    mean: NDArray[np.float64] = _mean(particles.state, particles.weight)
+    return mean
 
 
 def uncertainty_px2(particles: Particles) -> float:
@@ -223,19 +226,12 @@ def uncertainty_px2(particles: Particles) -> float:
     Source: thesis, equation 4.6; read over the position alone, since the sources' threshold of 400 counts
     pixels.
     """
-    weight = particles.weight.astype(np.float64)
-    away = particles.state[:, :2].astype(np.float64)
-    away -= weight @ away
-    squares = away * away
-    return float(weight @ (squares[:, 0] + squares[:, 1]))
+    return float(_spread(particles.state, particles.weight, _mean(particles.state, particles.weight)))
 
 
-def select(particles: Particles, rows: NDArray[np.int64]) -> Particles:
-    """Keep some of the particles, their weights scaled to sum to 1."""
-    return Particles(particles.state.take(rows, axis=0), normalised(particles.weight.take(rows)))
-
-
-def core_rows(particles: Particles, share: float, reach: float) -> NDArray[np.int64]:
+def estimated(
+    particles: Particles, chance: Floats, config: FilterConfig
+) -> tuple[Particles, NDArray[np.float64], float, float]:
     """Choose the particles that make the estimate: of the best ones, those near the very best.
 
     With several people in view the mean over all particles lies between them (thesis, figure 4.5); the mean
@@ -243,14 +239,20 @@ def core_rows(particles: Particles, share: float, reach: float) -> NDArray[np.in
 
     Args:
         particles: the weighted samples.
-        share: the ceil(share N) heaviest particles are kept, and their equals (paper: the best 30 %).
-        reach: largest distance from the heaviest one, in its semi-axes; infinite for all.
+        chance: (N,) that they are a person.
+        config: its `estimate_share` N heaviest particles are kept, rounded up, and their equals (paper: the
+            best 30 %), if they are no farther than `estimate_reach` from the heaviest, in its semi-axes.
+
+    Returns:
+        Those particles, with `mean_state`, mean chance and `uncertainty_px2` of them.
     """
-    count = math.ceil(share * len(particles))
+    count = math.ceil(config.estimate_share * len(particles))
     # The count-th heaviest weight: those equal to it stay, so that no sorting order decides.
     least = np.partition(particles.weight, len(particles) - count)[len(particles) - count]
-    rows: NDArray[np.int64] = _near_and_heavy(particles.state, particles.weight, least, reach)
-    return rows
+    state, weight, mean, confidence, spread = _core(
+        particles.state, particles.weight, chance, least, config.estimate_reach
+    )
+    return Particles(state, weight), mean, confidence, spread
 
 
 @njit(cache=True, nogil=True)
@@ -286,17 +288,47 @@ def _turned(x: Columns, tangent: float, focal_px: float, centre_px: float) -> Co
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _near_and_heavy(state: Floats, weight: Floats, least: np.float32, reach: float) -> NDArray[np.int64]:
-    """Find the rows of the samples of `core_rows`, from the least weight that is heavy enough."""
+def _core(
+    state: Floats, weight: Floats, chance: Floats, least: np.float32, reach: float
+) -> tuple[Floats, Floats, NDArray[np.float64], float, float]:
+    """Choose and sum up the samples of `estimated`, from the least weight that is heavy enough."""
     best, farthest = state[np.argmax(weight)], np.float32(reach * reach)
-    rows, count = np.empty(len(state), dtype=np.int64), 0
+    core, heavy, sure = np.empty_like(state), np.empty_like(weight), np.empty_like(chance)
+    count = 0
     for i in range(len(state)):
         if weight[i] >= least:
             across, down = (state[i, X] - best[X]) / best[W], (state[i, Y] - best[Y]) / best[H]
             if np.isinf(reach) or across * across + down * down <= farthest:
-                rows[count] = i
+                for k in range(STATE_SIZE):
+                    core[count, k] = state[i, k]
+                heavy[count], sure[count] = weight[i], chance[i]
                 count += 1
-    return rows[:count]
+    core, heavy = core[:count].copy(), heavy[:count].copy()
+    scale_to_one(heavy)
+    mean, confidence = _mean(core, heavy), 0.0
+    for i in range(count):
+        confidence += heavy[i] * np.float64(sure[i])
+    return core, heavy, mean, confidence, _spread(core, heavy, mean)
+
+
+@njit(cache=True, nogil=True)
+def _mean(state: Floats, weight: Floats) -> NDArray[np.float64]:
+    """Average states (N, 9) by weight (N,)."""
+    mean = np.zeros(STATE_SIZE)
+    for i in range(len(state)):
+        for k in range(STATE_SIZE):
+            mean[k] += np.float64(weight[i]) * state[i, k]
+    return mean
+
+
+@njit(cache=True, nogil=True)
+def _spread(state: Floats, weight: Floats, mean: NDArray[np.float64]) -> float:
+    """Average the squared distance of x and y (N, 9) from their mean (9,) by weight (N,)."""
+    spread = 0.0
+    for i in range(len(state)):
+        across, down = state[i, X] - mean[X], state[i, Y] - mean[Y]
+        spread += weight[i] * (across * across + down * down)
+    return spread
 
 
 @njit(cache=True, nogil=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, PinholeCalibration
-from peopleboy.tracker.thermal.appearance.appearance_model import are_unseen, likelihood
+from peopleboy.tracker.thermal.appearance.appearance_model import likelihood
 from peopleboy.tracker.thermal.config import FilterConfig, TrackerConfig
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel, clutter_of, settled_clutter
 from peopleboy.tracker.thermal.ellipse import ellipse_of
@@ -35,7 +36,7 @@ from peopleboy.tracker.thermal.particle_filter import (
     view_frame,
     weigh,
 )
-from peopleboy.tracker.thermal.particles import Floats, H, draw_around
+from peopleboy.tracker.thermal.particles import Floats, draw_around
 from peopleboy.tracker.thermal.tracked_person import FORGET_S, TrackedPerson, is_born, newborn
 from peopleboy.tracker.thermal.whereabouts import (
     Regions,
@@ -46,6 +47,7 @@ from peopleboy.tracker.thermal.whereabouts import (
     person_factor,
     places_on_floor,
     regions_of,
+    size_factor,
 )
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
@@ -337,8 +339,7 @@ def _carried_on(
 
 def _height_kept(person: TrackedPerson, state: Floats, spread: float) -> Floats:
     """Penalise samples (N,) that have not the height that the person had of late when seen whole."""
-    growth = np.log(np.maximum(state[:, H], np.float32(1)) / np.float32(max(person.size[1], 1.0)))
-    factor: Floats = np.exp(np.float32(-0.5 / spread**2) * growth * growth)
+    factor: Floats = size_factor(state, max(float(person.size[1]), 1.0), spread)
     return factor
 
 
@@ -352,8 +353,5 @@ def _likeness(
     features = view.describe(state, surroundings.hiding if removes else None)
     if features is None:
         return None
-    likeness = likelihood(features, person.looks, config.colour)
-    if removes:
-        # Who is not seen at all looks as a person usually does: one spread off in every feature.
-        likeness[are_unseen(features)] = np.exp(-config.colour.sharpness * features.shape[1])
-    return likeness
+    # Who is not seen at all looks as a person usually does: one spread off in every feature.
+    return likelihood(features, person.looks, config.colour, 1.0 if removes else math.nan)

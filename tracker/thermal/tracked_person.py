@@ -110,6 +110,8 @@ def newborn(
 
 def approached(person: TrackedPerson, view: FrameView) -> TrackedPerson:
     """Let what is kept of a standing person grow as the camera comes nearer."""
+    if view.advance_m == 0:
+        return person
     distance_m = view.mount.focal_px * PERSON_M / (HEIGHT * max(float(person.size[1]), 1.0))
     growth = distance_m / max(distance_m - view.advance_m, 0.5 * distance_m)
     horizon = view.mount.horizon_px

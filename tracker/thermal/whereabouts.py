@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.tracker.elementary import exponential, logarithm
 from peopleboy.tracker.frame import Calibration
 from peopleboy.tracker.thermal.config import BoxConfig, InteractionConfig, TrackerConfig
 from peopleboy.tracker.thermal.particles import CROWN, Floats, H, W, X, Y
@@ -107,7 +108,7 @@ def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
     """
     if shares.shape[1] == 0:
         return np.ones(len(shares), dtype=np.float32)
-    factor: Floats = np.exp(-_largest_costs(shares, strength.astype(np.float32)))
+    factor: Floats = _dearest_factor(shares, strength.astype(np.float32))
     return factor
 
 
@@ -206,14 +207,25 @@ def _regions(state: Floats, width_per_w: float, height_per_h: float, top_per_h: 
 
 
 @njit(cache=True, nogil=True)
-def _largest_costs(shares: Floats, strength: Floats) -> Floats:
-    """Give the largest (N,) of shares (N, M) times strengths (M,)."""
-    costs = np.empty(len(shares), dtype=np.float32)
+def _dearest_factor(shares: Floats, strength: Floats) -> Floats:
+    """Give the exponential (N,) of minus the largest of shares (N, M) times strengths (M,)."""
+    factor = np.empty(len(shares), dtype=np.float32)
     for i in range(len(shares)):
-        costs[i] = shares[i, 0] * strength[0]
+        cost = shares[i, 0] * strength[0]
         for j in range(1, shares.shape[1]):
-            costs[i] = max(costs[i], shares[i, j] * strength[j])
-    return costs
+            cost = max(cost, shares[i, j] * strength[j])
+        factor[i] = exponential(-cost)
+    return factor
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def size_factor(state: Floats, height: float, spread: float) -> Floats:
+    """Penalise samples (N, 9) by how far, as a logarithm, their h [px] is from a known one, (N,)."""
+    factor, known, sharp = np.empty(len(state), np.float32), np.float32(height), np.float32(-0.5 / spread**2)
+    for i in range(len(state)):
+        growth = logarithm(max(state[i, H], np.float32(1)) / known)
+        factor[i] = exponential(sharp * growth * growth)
+    return factor
 
 
 @njit(cache=True, nogil=True)

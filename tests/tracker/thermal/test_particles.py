@@ -1,12 +1,14 @@
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from peopleboy.tracker.thermal.config import FilterConfig
 from peopleboy.tracker.thermal.particles import (
     Particles,
-    core_rows,
     equally_weighted,
+    estimated,
     mean_state,
     normalised,
     resample,
@@ -66,9 +68,15 @@ def test_weights_that_are_all_zero_become_equal():
     assert np.allclose(normalised(np.zeros(8, dtype=np.float32)), 1 / 8)
 
 
-def test_the_core_is_the_best_share_of_the_particles():
-    particles = cloud(100)
-    assert sorted(core_rows(particles, 0.3, np.inf)) == sorted(np.argsort(particles.weight)[-30:])
+def test_the_core_is_the_best_share_of_the_particles_and_the_estimate_its_mean():
+    particles, chance = cloud(100), np.random.default_rng(1).random(100, dtype=np.float32)
+    core, mean, confidence, spread = estimated(particles, chance, FilterConfig(estimate_share=0.3))
+    best = np.sort(np.argsort(particles.weight)[-30:])
+    assert np.array_equal(core.state, particles.state[best])
+    assert np.allclose(core.weight, normalised(particles.weight[best]))
+    assert np.array_equal(mean, mean_state(core))
+    assert confidence == pytest.approx(np.average(chance[best], weights=core.weight), rel=1e-6)
+    assert spread == uncertainty_px2(core)
 
 
 def test_the_core_leaves_out_particles_on_another_person():
@@ -76,4 +84,7 @@ def test_the_core_leaves_out_particles_on_another_person():
     state[10:, 0] = 200
     weight = np.full(20, 0.05, dtype=np.float32)
     weight[3] = 0.1
-    assert list(core_rows(Particles(state, normalised(weight)), 1.0, 0.7)) == list(range(10))
+    config = FilterConfig(estimate_share=1.0, estimate_reach=0.7)
+    core, mean, *_ = estimated(Particles(state, normalised(weight)), weight, config)
+    assert len(core) == 10
+    assert mean[0] == pytest.approx(100)

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.panoramic.foreground.elementary import exponential
+from peopleboy.tracker.elementary import exponential
 
 Linear = NDArray[np.float32]
 Places = NDArray[np.int64]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.tracker.elementary import exponential
 from peopleboy.tracker.thermal.appearance.alignment import alignment
 from peopleboy.tracker.thermal.appearance.colour_view import LEAST_SEEN, ColourView, PowerSums
 from peopleboy.tracker.thermal.appearance.part_means import write_part_means
@@ -146,30 +148,53 @@ def squared_distances(features: Floats, model: ColourModel) -> Floats:
     return distances
 
 
-def likelihood(features: Floats, model: ColourModel, config: ColourConfig) -> Floats:
+def likelihood(
+    features: Floats, model: ColourModel, config: ColourConfig, unseen_spread: float = math.nan
+) -> Floats:
     """Tell how likely people (N,) with these features (N, F) are the person of the model.
 
     Whoever cannot be compared at all is as likely as the others are on average, or 1 where nobody can.
 
+    Args:
+        features: of the people.
+        model: of the person.
+        config: how sharply they are compared.
+        unseen_spread: how far off in every feature people are taken to be of whom nothing is seen; NaN to
+            treat them as those who cannot be compared.
+
     Source: thesis, equation 6.4.
     """
-    chance: Floats = np.exp(np.float32(-config.sharpness) * squared_distances(features, model))
-    is_unseen = np.isnan(chance)
-    if is_unseen.any():
-        chance[is_unseen] = 1.0 if is_unseen.all() else chance[~is_unseen].mean()
+    unseen = features.shape[1] * unseen_spread**2
+    chance: Floats = _likelihood(features, model.mean, config.sharpness, unseen)
+    return chance
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _likelihood(features: Floats, mean: Floats, sharpness: float, unseen: float) -> Floats:
+    """Turn distances into likelihoods (N,); `unseen` is the squared distance of those who are not seen."""
+    chance, sharp = _squared_distances(features, mean), np.float32(-sharpness)
+    total, known = 0.0, 0
+    for i in range(len(chance)):
+        chance[i] = exponential(sharp * chance[i])
+        if not np.isnan(chance[i]):
+            total += chance[i]
+            known += 1
+    if known < len(chance):
+        usual = np.float32(total / known if known > 0 else 1.0)
+        none = usual if np.isnan(unseen) else exponential(np.float32(-sharpness * unseen))
+        for i in range(len(chance)):
+            if np.isnan(chance[i]):
+                chance[i] = none if _is_unseen(features[i]) else usual
     return chance
 
 
 @njit(cache=True, nogil=True)
-def are_unseen(features: Floats) -> NDArray[np.bool_]:
-    """Tell of whom (N,) not one feature (N, F) is seen."""
-    unseen = np.ones(len(features), dtype=np.bool_)
-    for i in range(len(features)):
-        for j in range(features.shape[1]):
-            if not np.isnan(features[i, j]):
-                unseen[i] = False
-                break
-    return unseen
+def _is_unseen(features: Floats) -> bool:
+    """Tell whether not one feature (F,) is seen."""
+    for j in range(len(features)):
+        if not np.isnan(features[j]):
+            return False
+    return True
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -30,10 +30,10 @@ from peopleboy.tracker.thermal.contour.measure_sections import (
     count_differences,
     fill_unknown,
     locate_points,
+    logistic,
     measure_sections,
-    negative_log_odds,
-    pull_to_weakest,
     share_in_view,
+    weighted_sums,
 )
 from peopleboy.tracker.thermal.particles import FOOT, HEAD_DIVISOR, D, Floats, H, W, X, Y
 
@@ -163,9 +163,7 @@ def fitness(differences: Floats, weights: NDArray[np.float64], config: Likelihoo
     number of sections here, so that both fitnesses are grey levels and share one threshold.
     """
     if config.model == "thesis":
-        total: Floats = differences @ weights.astype(np.float32)
-        if config.weakest_share > 0:
-            pull_to_weakest(total, differences, config.weakest_share)
+        total: Floats = weighted_sums(differences, weights, config.weakest_share)
         return total
     strong = (differences >= config.section_threshold) @ weights.astype(np.float32)
     used = int((weights > 0).sum())
@@ -178,10 +176,8 @@ def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
 
     Source: thesis, equation 4.4, which equals the logistic function of 2 kappa (f - theta).
     """
-    odds = negative_log_odds(fit, config.slope, config.threshold, _EXTREME)
-    np.exp(odds, out=odds)
-    odds += 1
-    return np.divide(np.float32(1), odds, out=odds)
+    chance: Floats = logistic(fit, config.slope, config.threshold, _EXTREME)
+    return chance
 
 
 def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np.uint8]:

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.tracker.elementary import exponential
 from peopleboy.tracker.thermal.contour.contour import FEET, GREYS, SECTIONS, SHOULDER_LEFT
 from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y, bodies_of
 
@@ -46,8 +47,8 @@ def measure_sections(
     known = np.empty((len(state), SECTIONS), dtype=np.float32)
     twin, bodies = bodies_of(state)
     everybody, marks = np.arange(len(state)), (covered_grey, missing, feet_gain)
-    _measure(result, known, image, state, everybody, mix, first, response, marks, 0, SHOULDER_LEFT)
-    _measure(result, known, image, state, bodies, mix, first, response, marks, SHOULDER_LEFT, SECTIONS)
+    _measure(result, known, image, state, everybody, mix, first, response, marks, (0, SHOULDER_LEFT))
+    _measure(result, known, image, state, bodies, mix, first, response, marks, (SHOULDER_LEFT, SECTIONS))
     for i in range(len(state)):
         if twin[i] >= 0:
             for j in range(SHOULDER_LEFT, SECTIONS):
@@ -56,7 +57,7 @@ def measure_sections(
 
 
 # Without numpy's rules a kernel would test every division.
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True)
 def _measure(
     result: Floats,
     known: Floats,
@@ -67,53 +68,94 @@ def _measure(
     first: NDArray[np.int64],
     response: Floats,
     marks: tuple[int, tuple[float, float, float, float], float],
-    begin: int,
-    end: int,
+    sections: tuple[int, int],
 ) -> None:
     """Measure some sections of the samples in some rows, many samples at a time, as `measure_sections` says."""
-    pairs, (height, width) = first[SECTIONS], image.shape
-    covered_grey, missing, feet_gain = marks
-    grey, counts = image.reshape(-1), response.reshape(-1)
-    lanes, at = np.empty((5, LANES), dtype=np.float32), np.empty((2 * pairs, LANES), dtype=np.int32)
+    lanes, at = np.empty((5, LANES), dtype=np.float32), np.empty((mix.shape[1], LANES), dtype=np.int32)
     total, left = np.empty(LANES, dtype=np.float32), np.empty(LANES, dtype=np.float32)
     for start in range(0, len(rows), LANES):
-        _load(lanes, state, rows, start)
-        _locate(at, lanes, mix, first[begin], first[end], width, height)
-        _locate(at, lanes, mix, pairs + first[begin], pairs + first[end], width, height)
-        for j in range(begin, end):
-            even = j * (2 * GREYS - 1) + GREYS - 1
-            _add_up(total, left, at, grey, counts, first[j], first[j + 1], even, covered_grey, missing)
-            count, gain = np.float32(first[j + 1] - first[j]), np.float32(feet_gain if j == FEET else 0)
-            for k in range(LANES):
-                total[k] /= count * left[k] if (count > 0) & (left[k] > UNKNOWN) else np.float32(1)
-                total[k] = min(np.float32(1), gain * total[k]) if gain > 0 else total[k]
-            for k in range(min(LANES, len(rows) - start)):
-                result[rows[start + k], j], known[rows[start + k], j] = total[k], left[k]
+        side = rows[start : start + LANES]
+        _load(lanes, state, side)
+        # A number that is known when this is compiled makes the loops quicker; a single sample is in none.
+        if len(side) > 1:
+            _block(
+                result,
+                known,
+                image,
+                side,
+                lanes,
+                at,
+                total,
+                left,
+                LANES,
+                mix,
+                first,
+                response,
+                marks,
+                sections,
+            )
+        else:
+            _block(
+                result, known, image, side, lanes, at, total, left, 1, mix, first, response, marks, sections
+            )
+
+
+@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
+def _block(result, known, image, rows, lanes, at, total, left, count, mix, first, response, marks, sections):
+    """Measure the samples in a few rows side by side."""
+    pairs, (height, width) = len(at) // 2, image.shape
+    covered_grey, missing, feet_gain = marks
+    grey, counts = image.reshape(-1), response.reshape(-1)
+    begin, end = first[sections[0]], first[sections[1]]
+    _locate(at, lanes, count, mix, begin, end, width, height)
+    _locate(at, lanes, count, mix, pairs + begin, pairs + end, width, height)
+    for j in range(sections[0], sections[1]):
+        even = j * (2 * GREYS - 1) + GREYS - 1
+        _add_up(total, left, count, at, grey, counts, first[j], first[j + 1], even, covered_grey, missing)
+        points, gain = np.float32(first[j + 1] - first[j]), np.float32(feet_gain if j == FEET else 0)
+        for k in range(len(rows)):
+            if points > 0 and left[k] > UNKNOWN:
+                total[k] /= points * left[k]
+            if gain > 0:
+                total[k] = min(np.float32(1), gain * total[k])
+            result[rows[k], j], known[rows[k], j] = total[k], left[k]
 
 
 @njit(cache=True, nogil=True)
-def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64], start: int) -> None:
-    """Write x, y, d, w and h of samples from the start-th row on into lanes (5, K), the last one again and again.
-
-    Pixels begin half a pixel before their centres.
-    """
+def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64]) -> None:
+    """Write x, y, d, w and h of the samples in K rows side by side; pixels begin half a pixel before centres."""
     half = np.float32(0.5)
     for k in range(LANES):
-        i = rows[min(start + k, len(rows) - 1)]
+        i = rows[min(k, len(rows) - 1)]
         lanes[0, k], lanes[1, k] = state[i, X] + half, state[i, Y] + half
         lanes[2, k], lanes[3, k], lanes[4, k] = state[i, D], state[i, W], state[i, H]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
 def _locate(
-    at: NDArray[np.int32], lanes: Floats, mix: Floats, begin: int, end: int, width: int, height: int
+    at: NDArray[np.int32],
+    lanes: Floats,
+    side: int,
+    mix: Floats,
+    begin: int,
+    end: int,
+    width: int,
+    height: int,
 ) -> None:
-    """Write the pixels (2 P, K) of some points of samples (5, K), without branches."""
+    """Write the pixels (2 P, K) of some points of `side` samples (5, K), without branches."""
     columns, right, bottom = np.int32(width), np.float32(width), np.float32(height)
+    # Unsigned, as numba would ask of every other number whether it counts from the end.
     for q in range(np.uint64(begin), np.uint64(end)):
-        du, wu, hu, u0, wv, hv, v0 = mix[0, q], mix[1, q], mix[2, q], mix[3, q], mix[4, q], mix[5, q], mix[6, q]
-        # Unsigned, as numba would ask of every other number whether it counts from the end.
-        for k in range(np.uint64(LANES)):
+        du, wu, hu, u0, wv, hv, v0 = (
+            mix[0, q],
+            mix[1, q],
+            mix[2, q],
+            mix[3, q],
+            mix[4, q],
+            mix[5, q],
+            mix[6, q],
+        )
+        for k in range(np.uint64(side)):
             u = lanes[0, k] + du * lanes[2, k] + wu * lanes[3, k] + hu * lanes[4, k] + u0
             v = lanes[1, k] + wv * lanes[3, k] + hv * lanes[4, k] + v0
             is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
@@ -121,10 +163,11 @@ def _locate(
             at[q, k] = np.int32(v) * columns + np.int32(u) if is_inside else outside
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 def _add_up(
     total: Floats,
     left: Floats,
+    side: int,
     at: NDArray[np.int32],
     grey: NDArray[np.uint8],
     counts: Floats,
@@ -139,22 +182,23 @@ def _add_up(
     elsewhere, unseen_share = np.float32(missing[0]), np.float32(missing[1])
     covered_share = np.float32(missing[3])
     unseen, covered = unseen_share * elsewhere, covered_share * np.float32(missing[2])
-    unseen_lacks, covered_lacks = np.float32(1) - unseen_share, np.float32(1) - covered_share
+    unseen_lacks, covered_lacks = (
+        (np.float32(1) - unseen_share) / count,
+        (np.float32(1) - covered_share) / count,
+    )
     total[:], left[:] = 0, 1
     for p in range(np.uint64(begin), np.uint64(end)):
-        for k in range(np.uint64(LANES)):
+        for k in range(np.uint64(side)):
             one, other = at[p, k], at[p + pairs, k]
             if (one | other) < 0:
-                if one == ELSEWHERE or other == ELSEWHERE:
-                    total[k] += elsewhere
-                else:
-                    total[k] += unseen
-                    left[k] -= unseen_lacks / count
+                is_elsewhere = one == ELSEWHERE or other == ELSEWHERE
+                total[k] += elsewhere if is_elsewhere else unseen
+                left[k] -= np.float32(0) if is_elsewhere else unseen_lacks
                 continue
             inside, outside = np.int64(grey[np.uint64(one)]), np.int64(grey[np.uint64(other)])
             if inside == covered_grey or outside == covered_grey:
                 total[k] += covered
-                left[k] -= covered_lacks / count
+                left[k] -= covered_lacks
             else:
                 total[k] += counts[np.uint64(even + inside - outside)]
 
@@ -174,24 +218,26 @@ def fill_unknown(differences: Floats, known: Floats, weights: Floats) -> None:
 
 
 @njit(cache=True, nogil=True)
-def pull_to_weakest(fit: Floats, differences: Floats, share: float) -> None:
-    """Move fitnesses (N,), in place, by a share towards the weakest of their sections (N, 8) but the feet."""
-    part = np.float32(share)
+def weighted_sums(differences: Floats, weights: NDArray[np.float64], weakest_share: float) -> Floats:
+    """Add up (N,) sections (N, 8) by weight, and go a share of the way to the weakest but the feet."""
+    fit, part = np.empty(len(differences), dtype=np.float32), np.float32(weakest_share)
     for i in range(len(fit)):
-        weakest = differences[i, 0]
-        for j in range(1, FEET):
-            weakest = min(weakest, differences[i, j])
-        fit[i] += part * (weakest - fit[i])
+        total, weakest = np.float32(0), differences[i, 0]
+        for j in range(SECTIONS):
+            total += np.float32(weights[j]) * differences[i, j]
+            weakest = min(weakest, differences[i, j]) if j < FEET else weakest
+        fit[i] = total + part * (weakest - total)
+    return fit
 
 
-@njit(cache=True, nogil=True)
-def negative_log_odds(fit: Floats, slope: float, threshold: float, most: float) -> Floats:
-    """Give minus the logarithm of the odds (N,) of fitnesses (N,), within -most..most (equation 4.4)."""
-    steep, middle, end = np.float32(2 * slope), np.float32(threshold), np.float32(most)
-    result = np.empty_like(fit)
+@njit(cache=True, nogil=True, error_model="numpy")
+def logistic(fit: Floats, slope: float, threshold: float, most: float) -> Floats:
+    """Give the probability (N,) of fitnesses (N,), whose log odds end at -most and most (equation 4.4)."""
+    steep, middle, end, one = np.float32(2 * slope), np.float32(threshold), np.float32(most), np.float32(1)
+    chance = np.empty_like(fit)
     for i in range(len(fit)):
-        result[i] = -min(max(steep * (fit[i] - middle), -end), end)
-    return result
+        chance[i] = one / (one + exponential(-min(max(steep * (fit[i] - middle), -end), end)))
+    return chance
 
 
 @njit(cache=True, nogil=True)
@@ -235,6 +281,6 @@ def share_in_view(
 def locate_points(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, height: int) -> None:
     """Write the pixels of `pixels_under` a contour (9,) into (2 P,)."""
     lanes, pixels = np.empty((5, LANES), dtype=np.float32), np.empty((len(at), LANES), dtype=np.int32)
-    _load(lanes, sample.reshape(1, -1), np.zeros(1, dtype=np.int64), 0)
-    _locate(pixels, lanes, mix, 0, len(at), width, height)
+    _load(lanes, sample.reshape(1, -1), np.zeros(1, dtype=np.int64))
+    _locate(pixels, lanes, 1, mix, 0, len(at), width, height)
     at[:] = pixels[:, 0]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.tracker.elementary import normals
 from peopleboy.tracker.thermal.appearance.appearance_model import squared_distances
 from peopleboy.tracker.thermal.config import MotionConfig, TrackerConfig, WalkOnConfig
 from peopleboy.tracker.thermal.contour.likelihood import body_share, head_share, probability, seen_shares
@@ -232,6 +233,6 @@ def _walking_on(person: TrackedPerson, rng: np.random.Generator) -> TrackedPerso
     spread = np.zeros(9)
     spread[[X, Y, W, H, D]] = 0.15 * size, 0.05 * size, 0.03 * size, 0.05 * size, 0.05 * size
     spread[[VX, VY]] = 0.25 * float(np.hypot(*person.velocity)) + 0.3 * size, 0.1 * size
-    chance = rng.standard_normal((len(person.belief.particles), 9))
+    chance = normals((len(person.belief.particles), 9), rng)
     cloud = equally_weighted((shown + spread * chance).astype(np.float32))
     return replace(person, belief=replace(person.belief, particles=cloud), shown=shown)

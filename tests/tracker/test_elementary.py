@@ -1,0 +1,50 @@
+import numpy as np
+from numba import njit
+from scipy.special import ndtri
+
+from peopleboy.tracker.elementary import exponential, exponentials, logarithm, normals, write_quantiles
+
+
+@njit
+def logarithms(x):
+    result = np.empty_like(x)
+    for i in range(len(x)):
+        result[i] = logarithm(x[i])
+    return result
+
+
+def test_the_logarithm_is_numpys_from_the_smallest_to_the_largest_numbers_and_0_of_1() -> None:
+    numbers = np.exp(np.linspace(-87.0, 88.0, 500_001)).astype(np.float32)
+    np.testing.assert_allclose(logarithms(numbers), np.log(numbers.astype(float)), rtol=3e-7, atol=1e-7)
+    assert logarithm(np.float32(1.0)) == 0.0
+
+
+def test_the_exponential_is_numpys_and_stays_finite_beyond_its_limits() -> None:
+    numbers = np.linspace(-87.0, 87.0, 500_001).astype(np.float32)
+    np.testing.assert_allclose(exponentials(numbers), np.exp(numbers.astype(float)), rtol=1.5e-7)
+    assert exponential(np.float32(0.0)) == 1.0
+    assert exponential(np.float32(200.0)) == exponential(np.float32(87.0))
+    assert exponential(np.float32(-200.0)) == exponential(np.float32(-87.0))
+    assert np.isnan(exponential(np.float32(np.nan)))
+
+
+def test_what_is_worked_out_side_by_side_has_the_bits_of_each_alone() -> None:
+    numbers = np.linspace(-30.0, 3.0, 101).astype(np.float32)
+    assert np.array_equal(exponentials(numbers), [exponential(x) for x in numbers])
+    positive = exponentials(numbers)
+    assert np.array_equal(logarithms(positive), [logarithm(x) for x in positive])
+
+
+def test_each_even_number_becomes_the_normal_quantile_half_a_step_above() -> None:
+    steps = np.concatenate([np.arange(1 << 12), np.arange(1 << 12, 1 << 24, 997), [(1 << 24) - 1]])
+    drawn = (steps / 2.0**24).astype(np.float32)
+    write_quantiles(drawn)
+    np.testing.assert_allclose(drawn, ndtri((steps + 0.5) / 2.0**24), rtol=1e-6, atol=2e-7)
+
+
+def test_normal_numbers_are_the_quantiles_of_what_the_generator_draws() -> None:
+    drawn, even = (
+        normals((40, 5), np.random.default_rng(3)),
+        np.random.default_rng(3).random((40, 5), np.float32),
+    )
+    np.testing.assert_allclose(drawn, ndtri(even + 2.0**-25), rtol=1e-4, atol=1e-5)

@@ -1,0 +1,72 @@
+"""What the evidence makes of the weights of samples: kernels over all of a filter at once."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.elementary import exponential, logarithm
+
+Floats = NDArray[np.float32]
+
+NOTHING: Final[Floats] = np.empty(0, dtype=np.float32)
+"""In place of a factor, or a likeness, that does not count."""
+_LEAST: Final = np.float32(1e-30)  # likeness, whose logarithm is taken
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def sharp_weights(fit: Floats, likeness: Floats, sharpness: float, floor: float) -> Floats:
+    """Weigh (N,) by the exponential of contour and looks together; the best has 1.
+
+    The floor stands for a person hidden by something unknown, of whom neither would be seen.
+
+    Args:
+        fit: (N,) of the contour.
+        likeness: (N,) of the looks, or `NOTHING`.
+        sharpness: by which the sum is multiplied.
+        floor: least sum that counts.
+    """
+    weight, sharp, least = np.empty(len(fit), dtype=np.float32), np.float32(sharpness), np.float32(floor)
+    if len(likeness) > 0:
+        for i in range(len(fit)):
+            weight[i] = max(fit[i] + logarithm(max(likeness[i], _LEAST)) / sharp, least)
+    else:
+        for i in range(len(fit)):
+            weight[i] = max(fit[i], least)
+    best = weight.max()
+    for i in range(len(fit)):
+        weight[i] = exponential(sharp * (weight[i] - best))
+    return weight
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def shared_out(weight: Floats, is_inside: NDArray[np.bool_], factor: Floats, outside: float) -> Floats:
+    """Give weights (N,) that sum to 1: times their factors, and very low outside the limits.
+
+    Args:
+        weight: (N,) non-negative.
+        is_inside: (N,) whether a sample is within the limits.
+        factor: (N,) on the weights, or `NOTHING`.
+        outside: factor on those outside the limits.
+    """
+    shared, few = np.empty(len(weight), dtype=np.float32), np.float32(outside)
+    for i in range(len(weight)):
+        shared[i] = weight[i] if is_inside[i] else few * weight[i]
+    if len(factor) > 0:
+        for i in range(len(weight)):
+            shared[i] *= factor[i]
+    scale_to_one(shared)
+    return shared
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def scale_to_one(weight: Floats) -> None:
+    """Scale (N,) non-negative weights, in place, to sum to 1; equal weights where none is positive."""
+    total = 0.0
+    for i in range(len(weight)):
+        total += weight[i]
+    for i in range(len(weight)):
+        weight[i] = np.float32(weight[i] / total) if total > 0 else np.float32(1 / len(weight))
