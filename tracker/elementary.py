@@ -90,9 +90,9 @@ def normals(shape: int | tuple[int, int], rng: np.random.Generator) -> NDArray[n
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def write_quantiles(chance: NDArray[np.float32]) -> None:
-    """Put in place of chances (N,), whole multiples of 2^-24 in [0, 1), the normal quantiles half a step above.
+    """Put normal quantiles in place of chances (N,), to 1e-6 of them.
 
-    To 1e-6 of them and 2e-7.
+    Chances are whole multiples of 2^-24 in [0, 1); the quantile is that of half such a step above.
 
     Source: Giles, Approximating the erfinv function, GPU Computing Gems, 2011, its single-precision form.
     """

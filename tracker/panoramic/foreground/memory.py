@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.elementary import logarithm
+from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows
 from peopleboy.tracker.panoramic.foreground.layers import BLOCK
 

@@ -184,17 +184,8 @@ def _likelihood(features: Floats, mean: Floats, sharpness: float, unseen: float)
         none = usual if np.isnan(unseen) else exponential(np.float32(-sharpness * unseen))
         for i in range(len(chance)):
             if np.isnan(chance[i]):
-                chance[i] = none if _is_unseen(features[i]) else usual
+                chance[i] = none if np.isnan(features[i]).all() else usual
     return chance
-
-
-@njit(cache=True, nogil=True)
-def _is_unseen(features: Floats) -> bool:
-    """Tell whether not one feature (F,) is seen."""
-    for j in range(len(features)):
-        if not np.isnan(features[j]):
-            return False
-    return True
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

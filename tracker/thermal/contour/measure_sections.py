@@ -14,7 +14,7 @@ from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y, bodies_of
 
 ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
 UNKNOWN: Final = 1e-4  # share of a section's weight that is none
-LANES: Final = 32  # samples that are measured side by side, a few vectors of any processor
+LANES: Final = 16  # samples that are measured side by side, a few vectors of any processor
 
 
 @njit(cache=True, nogil=True)
@@ -45,10 +45,21 @@ def measure_sections(
     """
     result = np.empty((len(state), SECTIONS), dtype=np.float32)
     known = np.empty((len(state), SECTIONS), dtype=np.float32)
+    lanes, at = np.empty((5, LANES), dtype=np.float32), np.empty((mix.shape[1], LANES), dtype=np.int32)
+    total, left = np.empty(LANES, dtype=np.float32), np.empty(LANES, dtype=np.float32)
+    grey, counts = image.reshape(-1), response.reshape(-1)
     twin, bodies = bodies_of(state)
-    everybody, marks = np.arange(len(state)), (covered_grey, missing, feet_gain)
-    _measure(result, known, image, state, everybody, mix, first, response, marks, (0, SHOULDER_LEFT))
-    _measure(result, known, image, state, bodies, mix, first, response, marks, (SHOULDER_LEFT, SECTIONS))
+    for begin, end, rows in ((0, SHOULDER_LEFT, np.arange(len(state))), (SHOULDER_LEFT, SECTIONS, bodies)):
+        for start in range(0, len(rows), LANES):
+            some = rows[start : start + LANES]
+            _load(lanes, state, some)
+            _locate(at, lanes, mix, first[begin], first[end], image.shape)
+            for j in range(begin, end):
+                _add_up(total[: len(some)], left, at, grey, counts, (j, first[j], first[j + 1]), covered_grey, missing)
+                for k in range(len(some)):
+                    value = min(np.float32(1), np.float32(feet_gain) * total[k])
+                    result[some[k], j] = value if j == FEET and feet_gain > 0 else total[k]
+                    known[some[k], j] = left[k]
     for i in range(len(state)):
         if twin[i] >= 0:
             for j in range(SHOULDER_LEFT, SECTIONS):
@@ -56,74 +67,12 @@ def measure_sections(
     return result, known
 
 
-# Without numpy's rules a kernel would test every division.
-@njit(cache=True, nogil=True)
-def _measure(
-    result: Floats,
-    known: Floats,
-    image: NDArray[np.uint8],
-    state: Floats,
-    rows: NDArray[np.int64],
-    mix: Floats,
-    first: NDArray[np.int64],
-    response: Floats,
-    marks: tuple[int, tuple[float, float, float, float], float],
-    sections: tuple[int, int],
-) -> None:
-    """Measure some sections of the samples in some rows, many samples at a time, as `measure_sections` says."""
-    lanes, at = np.empty((5, LANES), dtype=np.float32), np.empty((mix.shape[1], LANES), dtype=np.int32)
-    total, left = np.empty(LANES, dtype=np.float32), np.empty(LANES, dtype=np.float32)
-    for start in range(0, len(rows), LANES):
-        side = rows[start : start + LANES]
-        _load(lanes, state, side)
-        # A number that is known when this is compiled makes the loops quicker; a single sample is in none.
-        if len(side) > 1:
-            _block(
-                result,
-                known,
-                image,
-                side,
-                lanes,
-                at,
-                total,
-                left,
-                LANES,
-                mix,
-                first,
-                response,
-                marks,
-                sections,
-            )
-        else:
-            _block(
-                result, known, image, side, lanes, at, total, left, 1, mix, first, response, marks, sections
-            )
-
-
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
-def _block(result, known, image, rows, lanes, at, total, left, count, mix, first, response, marks, sections):
-    """Measure the samples in a few rows side by side."""
-    pairs, (height, width) = len(at) // 2, image.shape
-    covered_grey, missing, feet_gain = marks
-    grey, counts = image.reshape(-1), response.reshape(-1)
-    begin, end = first[sections[0]], first[sections[1]]
-    _locate(at, lanes, count, mix, begin, end, width, height)
-    _locate(at, lanes, count, mix, pairs + begin, pairs + end, width, height)
-    for j in range(sections[0], sections[1]):
-        even = j * (2 * GREYS - 1) + GREYS - 1
-        _add_up(total, left, count, at, grey, counts, first[j], first[j + 1], even, covered_grey, missing)
-        points, gain = np.float32(first[j + 1] - first[j]), np.float32(feet_gain if j == FEET else 0)
-        for k in range(len(rows)):
-            if points > 0 and left[k] > UNKNOWN:
-                total[k] /= points * left[k]
-            if gain > 0:
-                total[k] = min(np.float32(1), gain * total[k])
-            result[rows[k], j], known[rows[k], j] = total[k], left[k]
-
-
 @njit(cache=True, nogil=True)
 def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64]) -> None:
-    """Write x, y, d, w and h of the samples in K rows side by side; pixels begin half a pixel before centres."""
+    """Write x, y, d, w and h of the samples in some rows side by side, the last one until all lanes are full.
+
+    Pixels begin half a pixel before their centres.
+    """
     half = np.float32(0.5)
     for k in range(LANES):
         i = rows[min(k, len(rows) - 1)]
@@ -131,76 +80,68 @@ def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64]) -> None:
         lanes[2, k], lanes[3, k], lanes[4, k] = state[i, D], state[i, W], state[i, H]
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(cache=True, nogil=True)
 def _locate(
-    at: NDArray[np.int32],
-    lanes: Floats,
-    side: int,
-    mix: Floats,
-    begin: int,
-    end: int,
-    width: int,
-    height: int,
+    at: NDArray[np.int32], lanes: Floats, mix: Floats, begin: int, end: int, shape: tuple[int, int]
 ) -> None:
-    """Write the pixels (2 P, K) of some points of `side` samples (5, K), without branches."""
-    columns, right, bottom = np.int32(width), np.float32(width), np.float32(height)
-    # Unsigned, as numba would ask of every other number whether it counts from the end.
-    for q in range(np.uint64(begin), np.uint64(end)):
-        du, wu, hu, u0, wv, hv, v0 = (
-            mix[0, q],
-            mix[1, q],
-            mix[2, q],
-            mix[3, q],
-            mix[4, q],
-            mix[5, q],
-            mix[6, q],
-        )
-        for k in range(np.uint64(side)):
-            u = lanes[0, k] + du * lanes[2, k] + wu * lanes[3, k] + hu * lanes[4, k] + u0
-            v = lanes[1, k] + wv * lanes[3, k] + hv * lanes[4, k] + v0
-            is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
-            outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
-            at[q, k] = np.int32(v) * columns + np.int32(u) if is_inside else outside
+    """Write the pixels (2 P, K) of some pairs of points of the samples side by side, without branches."""
+    columns, right, bottom = np.int32(shape[1]), np.float32(shape[1]), np.float32(shape[0])
+    pairs = len(at) // 2
+    for side in (0, pairs):
+        # Unsigned, as numba would ask of every other number whether it counts from the end.
+        for q in range(np.uint64(side + begin), np.uint64(side + end)):
+            du, wu, hu, u0 = mix[0, q], mix[1, q], mix[2, q], mix[3, q]
+            wv, hv, v0 = mix[4, q], mix[5, q], mix[6, q]
+            for k in range(np.uint64(LANES)):
+                u = lanes[0, k] + du * lanes[2, k] + wu * lanes[3, k] + hu * lanes[4, k] + u0
+                v = lanes[1, k] + wv * lanes[3, k] + hv * lanes[4, k] + v0
+                is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
+                outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
+                at[q, k] = np.int32(v) * columns + np.int32(u) if is_inside else outside
 
 
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
+# Without numpy's rules a kernel would test every division.
+@njit(cache=True, nogil=True, error_model="numpy")
 def _add_up(
     total: Floats,
     left: Floats,
-    side: int,
     at: NDArray[np.int32],
     grey: NDArray[np.uint8],
     counts: Floats,
-    begin: int,
-    end: int,
-    even: int,
+    section: tuple[int, int, int],
     covered_grey: int,
     missing: tuple[float, float, float, float],
 ) -> None:
-    """Sum up what one section's pairs count (K,), and what share (K,) of its weight they keep."""
-    pairs, count = np.uint64(len(at) // 2), np.float32(end - begin)
+    """Average what a section's pairs count (K,), and tell what share (K,) of its weight they keep.
+
+    The section is its number, its first pair, and the first one of the next.
+    """
+    j, begin, end = section
+    even, pairs, count = j * (2 * GREYS - 1) + GREYS - 1, np.uint64(len(at) // 2), np.float32(end - begin)
     elsewhere, unseen_share = np.float32(missing[0]), np.float32(missing[1])
     covered_share = np.float32(missing[3])
     unseen, covered = unseen_share * elsewhere, covered_share * np.float32(missing[2])
-    unseen_lacks, covered_lacks = (
-        (np.float32(1) - unseen_share) / count,
-        (np.float32(1) - covered_share) / count,
-    )
+    unseen_lacks, covered_lacks = np.float32(1) - unseen_share, np.float32(1) - covered_share
     total[:], left[:] = 0, 1
     for p in range(np.uint64(begin), np.uint64(end)):
-        for k in range(np.uint64(side)):
+        for k in range(np.uint64(len(total))):
             one, other = at[p, k], at[p + pairs, k]
             if (one | other) < 0:
-                is_elsewhere = one == ELSEWHERE or other == ELSEWHERE
-                total[k] += elsewhere if is_elsewhere else unseen
-                left[k] -= np.float32(0) if is_elsewhere else unseen_lacks
+                if one == ELSEWHERE or other == ELSEWHERE:
+                    total[k] += elsewhere
+                else:
+                    total[k] += unseen
+                    left[k] -= unseen_lacks / count
                 continue
             inside, outside = np.int64(grey[np.uint64(one)]), np.int64(grey[np.uint64(other)])
             if inside == covered_grey or outside == covered_grey:
                 total[k] += covered
-                left[k] -= covered_lacks
+                left[k] -= covered_lacks / count
             else:
                 total[k] += counts[np.uint64(even + inside - outside)]
+    for k in range(len(total)):
+        if count > 0 and left[k] > UNKNOWN:
+            total[k] /= count * left[k]
 
 
 @njit(cache=True, nogil=True)
@@ -282,5 +223,5 @@ def locate_points(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int
     """Write the pixels of `pixels_under` a contour (9,) into (2 P,)."""
     lanes, pixels = np.empty((5, LANES), dtype=np.float32), np.empty((len(at), LANES), dtype=np.int32)
     _load(lanes, sample.reshape(1, -1), np.zeros(1, dtype=np.int64))
-    _locate(pixels, lanes, 1, mix, 0, len(at), width, height)
+    _locate(pixels, lanes, mix, 0, len(at) // 2, (height, width))
     at[:] = pixels[:, 0]
