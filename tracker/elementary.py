@@ -1,4 +1,4 @@
-"""Logarithm, exponential and normal draws, the same on every processor, worked out for many at once.
+"""Logarithm, exponential and normal quantile, the same on every processor, worked out for many at once.
 
 Those of numpy and of the C library take other roads on other processors, and their last bits differ. These
 are sums and products of float32 in an order that is written down; no product is joined with a sum.
@@ -69,7 +69,8 @@ def exponential(x: np.float32) -> np.float32:
     series = np.float32(1 / 120) + f * (np.float32(1 / 720) + f * np.float32(1 / 5040))
     series = np.float32(1 / 6) + f * (np.float32(1 / 24) + f * series)
     series = np.float32(1.0) + f * (np.float32(1.0) + f * (np.float32(1 / 2) + f * series))
-    return series * np.int32((np.int32(n) + _BIAS) << _FRACTION_BITS).view(np.float32)
+    two_to_n: np.float32 = np.int32((np.int32(n) + _BIAS) << _FRACTION_BITS).view(np.float32)
+    return series * two_to_n
 
 
 @njit(cache=True, nogil=True)
@@ -79,13 +80,6 @@ def exponentials(x: NDArray[np.float32]) -> NDArray[np.float32]:
     for i in range(len(x)):
         result[i] = exponential(x[i])
     return result
-
-
-def normals(shape: int | tuple[int, int], rng: np.random.Generator) -> NDArray[np.float32]:
-    """Draw standard normal numbers, each from one even one, within 5.4 standard deviations."""
-    drawn: NDArray[np.float32] = rng.random(shape, dtype=np.float32)
-    write_quantiles(drawn.reshape(-1))
-    return drawn
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -2,7 +2,8 @@ import numpy as np
 from numba import njit
 from scipy.special import ndtri
 
-from peopleboy.tracker.elementary import exponential, exponentials, logarithm, normals, write_quantiles
+from peopleboy.tracker.elementary import exponential, exponentials, logarithm, write_quantiles
+from peopleboy.tracker.thermal.particles import normals
 
 
 @njit

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.elementary import exponential, normals
+from peopleboy.tracker.elementary import exponential
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.thermal.appearance.appearance_model import AppearanceView, visible
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
@@ -37,6 +37,7 @@ from peopleboy.tracker.thermal.particles import (
     draw_prior,
     estimated,
     floor_rows,
+    normals,
     predict,
     resample,
     turned,

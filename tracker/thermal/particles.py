@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.elementary import exponentials, normals
+from peopleboy.tracker.elementary import exponentials, write_quantiles
 from peopleboy.tracker.thermal.config import (
     REFERENCE_HEIGHT_PX,
     FilterConfig,
@@ -187,6 +187,13 @@ def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
         [config.noise_d * dt_s, config.noise_x, config.noise_y, config.noise_w, config.noise_h]
     )
     return (size * amplitude).astype(np.float32)
+
+
+def normals(shape: int | tuple[int, int], rng: np.random.Generator) -> Floats:
+    """Draw standard normal numbers, each from one even one, within 5.4 standard deviations."""
+    drawn = rng.random(shape, dtype=np.float32)
+    write_quantiles(drawn.reshape(-1))
+    return drawn
 
 
 def equally_weighted(state: Floats) -> Particles:

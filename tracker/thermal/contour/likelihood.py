@@ -165,7 +165,7 @@ def fitness(differences: Floats, weights: NDArray[np.float64], config: Likelihoo
     if config.model == "thesis":
         total: Floats = weighted_sums(differences, weights, config.weakest_share)
         return total
-    strong = (differences >= config.section_threshold) @ weights.astype(np.float32)
+    strong = weighted_sums((differences >= config.section_threshold).astype(np.float32), weights, 0.0)
     used = int((weights > 0).sum())
     product: Floats = strong * (differences.sum(axis=1) / np.float32(used))
     return product

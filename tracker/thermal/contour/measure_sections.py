@@ -55,7 +55,16 @@ def measure_sections(
             _load(lanes, state, some)
             _locate(at, lanes, mix, first[begin], first[end], image.shape)
             for j in range(begin, end):
-                _add_up(total[: len(some)], left, at, grey, counts, (j, first[j], first[j + 1]), covered_grey, missing)
+                _add_up(
+                    total[: len(some)],
+                    left,
+                    at,
+                    grey,
+                    counts,
+                    (j, first[j], first[j + 1]),
+                    covered_grey,
+                    missing,
+                )
                 for k in range(len(some)):
                     value = min(np.float32(1), np.float32(feet_gain) * total[k])
                     result[some[k], j] = value if j == FEET and feet_gain > 0 else total[k]

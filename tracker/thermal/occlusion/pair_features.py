@@ -66,7 +66,7 @@ def pair_features(
 def _strength(people: Floats, view: FrameView) -> Features:
     """Measure the mean gradient (M,) along the contours, f of equation 4.3."""
     differences = view.model.differences(view.image, people)
-    return differences.astype(np.float64) @ view.model.weights
+    return np.asarray(np.add.reduce(differences * view.model.weights, axis=1), np.float64)
 
 
 def _ends(people: Floats, view: FrameView) -> tuple[Features, Features]:

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.elementary import normals
 from peopleboy.tracker.thermal.appearance.appearance_model import squared_distances
 from peopleboy.tracker.thermal.config import MotionConfig, TrackerConfig, WalkOnConfig
 from peopleboy.tracker.thermal.contour.likelihood import body_share, head_share, probability, seen_shares
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
-from peopleboy.tracker.thermal.particles import FOOT, VW, VX, VY, D, H, W, X, Y, equally_weighted
+from peopleboy.tracker.thermal.particles import FOOT, VW, VX, VY, D, H, W, X, Y, equally_weighted, normals
 from peopleboy.tracker.thermal.reidentification import least_mismatch
 from peopleboy.tracker.thermal.tracked_person import (
     FORGET_S,
@@ -207,7 +206,7 @@ def look_at(
         shares = seen_shares(surroundings.image, belief.estimate, view.model.probes)
         head, body, covered = head_share(shares), body_share(shares), 0.0
     differences = view.model.differences(surroundings.image, rows, covered, covered_share=0.0)
-    fit = differences[0] @ view.model.weights
+    fit = np.add.reduce(differences[0] * view.model.weights)
     chance = float(probability(np.array([fit], dtype=np.float32), config.likelihood)[0])
     features, away = view.describe(rows, surroundings.hiding), np.nan
     if person.looks is not None and features is not None:

@@ -1,0 +1,95 @@
+"""`python -m benchmarks.processors`: whether trackers tell the same on a processor of 2008 as on this one.
+
+The same frames are shown to each tracker in two processes: one as it is, and one in which numpy, OpenCV,
+OpenBLAS, the C library and numba use nothing that an Intel Nehalem does not have: no AVX, and no product joined
+with a sum.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from hashlib import sha256
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import click
+
+from benchmarks.speed.whole_tracker import SCENARIO, shoot
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.track import Track
+from peopleboy.tracker.trackers import make_tracker
+
+TRACKERS = ("peopleboy", "learned", "thesis", "colour", "thermal", "paper")
+# numpy refuses names that it does not know, and those that it was built for.
+OLD = {
+    "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL",
+    "OPENCV_CPU_DISABLE": "AVX512-SKX,AVX2,FMA3,FP16,AVX",
+    "OPENBLAS_CORETYPE": "Nehalem",
+    "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F,-AVX2,-AVX,-FMA",
+    "NUMBA_CPU_NAME": "nehalem",
+    "NUMBA_CPU_FEATURES": "",
+}
+
+
+def first_difference(film: Path, tracker: str, folder: Path) -> tuple[int | None, int]:
+    """Track a film on both: the first frame whose tracks differ, None if none does, and how many tracks."""
+    here, old = _told(film, tracker, {}), _told(film, tracker, {**OLD, "NUMBA_CACHE_DIR": str(folder)})
+    differing = [number for number, pair in enumerate(zip(here, old, strict=True)) if pair[0] != pair[1]]
+    return (differing[0] if differing else None), sum(count for count, _ in here)
+
+
+def _told(film: Path, tracker: str, environment: dict[str, str]) -> list[list[object]]:
+    """Track a film in a process of its own: how many tracks each frame has, and the digest of them."""
+    command = [sys.executable, "-m", "benchmarks.processors", "--film", str(film), "--trackers", tracker]
+    done = subprocess.run(
+        command, env={**os.environ, **environment}, check=True, stdout=subprocess.PIPE, text=True
+    )
+    told: list[list[object]] = json.loads(done.stdout)
+    return told
+
+
+def _track(frames: Sequence[Frame], name: str) -> list[tuple[int, str]]:
+    tracker = make_tracker(name, stream(0, "tracker"))
+    tracks = [tracker.update(frame) for frame in frames]
+    rows = [[_row(track) for track in each] for each in tracks]
+    return [(len(each), sha256(repr(each).encode()).hexdigest()) for each in rows]
+
+
+def _row(track: Track) -> tuple[object, ...]:
+    return track.id, track.boxes, track.confidence, track.status, track.occluder, track.age_s
+
+
+@click.command()
+@click.option("--trackers", default=",".join(TRACKERS), show_default=True, help="Which, by name.")
+@click.option("--film", type=click.Path(path_type=Path), hidden=True)
+def main(trackers: str, film: Path | None) -> None:
+    """Tell whether tracks are the same, but for their places on the floor; exit with 1 if not."""
+    if film is not None:
+        click.echo(json.dumps(_track(pickle.loads(film.read_bytes()), trackers)))
+        return
+    is_same = True
+    with TemporaryDirectory() as folder:
+        shot = Path(folder, "film.pickle")
+        shot.write_bytes(pickle.dumps([_kept(frame) for frame in shoot(SCENARIO)]))
+        for name in trackers.split(","):
+            first, count = first_difference(shot, name, Path(folder, "kernels"))
+            is_same = is_same and first is None
+            told = "the same" if first is None else f"others from frame {first} on"
+            click.echo(f"{name}: {told}, {count} tracks in all frames")
+    sys.exit(0 if is_same else 1)
+
+
+def _kept(frame: Frame) -> Frame:
+    """Make the images now, as their maker cannot be kept."""
+    return replace(frame, images=dict(frame.images))
+
+
+if __name__ == "__main__":
+    main()
