@@ -1,8 +1,8 @@
 """`python -m benchmarks.processors`: whether trackers tell the same on a processor of 2008 as on this one.
 
 The same frames are shown to each tracker in two processes: one as it is, and one in which numpy, OpenCV,
-OpenBLAS, the C library and numba use nothing that an Intel Nehalem does not have: no AVX, and no product joined
-with a sum.
+OpenBLAS, the C library and numba use nothing that an Intel Nehalem does not have: no AVX, and no product
+joined with a sum.
 """
 
 from __future__ import annotations

@@ -70,7 +70,8 @@ def exponential(x: np.float32) -> np.float32:
     series = np.float32(1 / 6) + f * (np.float32(1 / 24) + f * series)
     series = np.float32(1.0) + f * (np.float32(1.0) + f * (np.float32(1 / 2) + f * series))
     two_to_n: np.float32 = np.int32((np.int32(n) + _BIAS) << _FRACTION_BITS).view(np.float32)
-    return series * two_to_n
+    result: np.float32 = series * two_to_n
+    return result
 
 
 @njit(cache=True, nogil=True)
