@@ -1,7 +1,8 @@
 """Logarithm, exponential and normal quantile, the same on every processor, worked out for many at once.
 
 Those of numpy and of the C library take other roads on other processors, and their last bits differ. These
-are sums and products of float32 in an order that is written down; no product is joined with a sum.
+are sums and products of float32 in an order that is written down; no product is joined with a sum. numba has to
+be told so (`fastmath=False`), or a kernel inherits such liberties from the one that happens to call it first.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ _FAR: Final = tuple(
 )  # fmt: skip
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
 def logarithm(x: np.float32) -> np.float32:
     """Give the natural logarithm of a positive number, not subnormal, to 3e-7 of it and 1e-7.
 
@@ -57,7 +58,7 @@ def logarithm(x: np.float32) -> np.float32:
     return e * _LN2 + np.float32(2.0) * s * series
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
 def exponential(x: np.float32) -> np.float32:
     """Give e**x to a relative 1.5e-7, for x from -87 to 87; beyond, that of the nearer limit.
 
@@ -74,7 +75,7 @@ def exponential(x: np.float32) -> np.float32:
     return result
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath=False)
 def exponentials(x: NDArray[np.float32]) -> NDArray[np.float32]:
     """Give the exponential (N,) of each number (N,)."""
     result = np.empty_like(x)
@@ -83,7 +84,7 @@ def exponentials(x: NDArray[np.float32]) -> NDArray[np.float32]:
     return result
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
 def write_quantiles(chance: NDArray[np.float32]) -> None:
     """Put normal quantiles in place of chances (N,), to 1e-6 of them.
 

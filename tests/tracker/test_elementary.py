@@ -29,6 +29,19 @@ def test_the_exponential_is_numpys_and_stays_finite_beyond_its_limits() -> None:
     assert np.isnan(exponential(np.float32(np.nan)))
 
 
+@njit(fastmath=True)
+def freely(x):
+    return exponential(x) + logarithm(x)
+
+
+def test_a_caller_that_may_reorder_sums_does_not_pass_it_on() -> None:
+    freely(np.float32(2.0))
+    for kernel in (logarithm, exponential, exponentials, write_quantiles):
+        kernel(np.ones(8, np.float32) if kernel in (exponentials, write_quantiles) else np.float32(2.0))
+        assert not any("vfmadd" in text for text in kernel.inspect_asm().values())
+        assert kernel.targetoptions["fastmath"] is False
+
+
 def test_what_is_worked_out_side_by_side_has_the_bits_of_each_alone() -> None:
     numbers = np.linspace(-30.0, 3.0, 101).astype(np.float32)
     assert np.array_equal(exponentials(numbers), [exponential(x) for x in numbers])

@@ -55,8 +55,10 @@ class AppearanceView:
 
     def describe(self, state: Floats) -> Floats:
         """Describe people (N, 9) by the colours and the grey of each part, (N, 12); NaN outside."""
-        means = np.full((len(state), PARTS, 4), np.nan, dtype=np.float32)
-        if self.colour is not None:
+        means = np.empty((len(state), PARTS, 4), dtype=np.float32)
+        if self.colour is None:
+            means[..., :3] = np.nan
+        else:
             self._write(means, 0, state, self.colour)
         self._write(means, 3, state, self.thermal)
         return means.reshape(len(state), -1)

@@ -106,10 +106,10 @@ class WalkOn:
     ) -> TrackedPerson:
         """Judge by what is in view; who is hidden walks on, and is seen again once most of it is."""
         person = approached(person, view)
-        visibility = look_at(person, belief, surroundings, view, self._config)
         front = surroundings.occluder(belief.estimate, self._config)
         occluder = None if front is None else front.id
         if person.is_hidden:
+            visibility = look_at(person, belief, surroundings, view, self._config)
             if visibility.is_clear and visibility.confidence > self._config.life.birth_confidence:
                 return self._seen(person, belief, occluder, view)
             missing = person.missing + (visibility.head > CLEAR)
@@ -123,7 +123,8 @@ class WalkOn:
                 is_behind=_is_behind(shown, surroundings, view),
             )
         after = self._seen(person, belief, occluder, view)
-        is_covered = visibility.head <= 1 - HEAD_COVERED and visibility.body < HIDDEN_BODY
+        head, body = _in_view(belief, surroundings, view)
+        is_covered = head <= 1 - HEAD_COVERED and body < HIDDEN_BODY
         is_lost = self._hiding.remembers_lost and after.missing >= LOST_FRAMES
         if (surroundings.front and is_covered) or (is_lost and person.is_settled):
             return _walking_on(replace(hidden(after, view), occluder=occluder), rng)
@@ -201,10 +202,8 @@ def look_at(
 ) -> Visibility:
     """Judge a person by what is in view of it alone."""
     rows = belief.estimate.astype(np.float32)[None]
-    head, body, covered = 1.0, 1.0, None
-    if surroundings.front:
-        shares = seen_shares(surroundings.image, belief.estimate, view.model.probes)
-        head, body, covered = head_share(shares), body_share(shares), 0.0
+    head, body = _in_view(belief, surroundings, view)
+    covered = 0.0 if surroundings.front else None
     differences = view.model.differences(surroundings.image, rows, covered, covered_share=0.0)
     fit = np.add.reduce(differences[0] * view.model.weights)
     chance = float(probability(np.array([fit], dtype=np.float32), config.likelihood)[0])
@@ -215,6 +214,14 @@ def look_at(
     is_alike = growth < SIZE_GATE and not away > LOOKS_GATE
     is_free = not (overlap_shares(rows, surroundings.rivals, config) > CLAIMED).any()
     return Visibility(head, body, chance, is_free, is_alike)
+
+
+def _in_view(belief: Belief, surroundings: Surroundings, view: FrameView) -> tuple[float, float]:
+    """Tell which share of a person's head, and of all of it, those in front leave in view."""
+    if not surroundings.front:
+        return 1.0, 1.0
+    shares = seen_shares(surroundings.image, belief.estimate, view.model.probes)
+    return head_share(shares), body_share(shares)
 
 
 def _is_behind(state: NDArray[np.float64], surroundings: Surroundings, view: FrameView) -> bool:
