@@ -1,8 +1,8 @@
 """Logarithm, exponential and normal quantile, the same on every processor, worked out for many at once.
 
 Those of numpy and of the C library take other roads on other processors, and their last bits differ. These
-are sums and products of float32 in an order that is written down; no product is joined with a sum. numba has to
-be told so (`fastmath=False`), or a kernel inherits such liberties from the one that happens to call it first.
+are sums and products of float32 in an order that is written down; no product is joined with a sum. numba has
+to be told so (`fastmath=False`), or a kernel inherits such liberties from the one that first calls it.
 """
 
 from __future__ import annotations
