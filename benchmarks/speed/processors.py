@@ -1,4 +1,4 @@
-"""`python -m benchmarks.processors`: whether trackers tell the same on a processor of 2008 as on this one.
+"""`python -m benchmarks.speed.processors`: whether trackers tell the same on a processor of 2008 as here.
 
 The same frames are shown to each tracker in two processes: one as it is, and one in which numpy, OpenCV,
 OpenBLAS, the C library and numba use nothing that an Intel Nehalem does not have: no AVX, and no product
@@ -47,7 +47,8 @@ def first_difference(film: Path, tracker: str, folder: Path) -> tuple[int | None
 
 def _told(film: Path, tracker: str, environment: dict[str, str]) -> list[list[object]]:
     """Track a film in a process of its own: how many tracks each frame has, and the digest of them."""
-    command = [sys.executable, "-m", "benchmarks.processors", "--film", str(film), "--trackers", tracker]
+    module = "benchmarks.speed.processors"
+    command = [sys.executable, "-m", module, "--film", str(film), "--trackers", tracker]
     done = subprocess.run(
         command, env={**os.environ, **environment}, check=True, stdout=subprocess.PIPE, text=True
     )
