@@ -37,7 +37,6 @@ from peopleboy.tracker.thermal.particles import (
     draw_prior,
     estimated,
     floor_rows,
-    normals,
     predict,
     resample,
     turned,
@@ -297,7 +296,7 @@ def _resize(state: Floats, share: float, rng: np.random.Generator) -> None:
     for a whole person is found out that way.
     """
     tried = state[:: round(1 / share)]
-    _scale(tried, normals(len(tried), rng))
+    _scale(tried, rng.standard_normal(len(tried), dtype=np.float32))
 
 
 @njit(cache=True, nogil=True)

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.elementary import exponentials, write_quantiles
+from peopleboy.tracker.elementary import exponentials
 from peopleboy.tracker.thermal.config import (
     REFERENCE_HEIGHT_PX,
     FilterConfig,
@@ -78,7 +78,7 @@ def draw_prior(
     height, width = shape
     limits = filter_config.limits
     chance = rng.random((count, 5), dtype=np.float32)
-    velocity = normals((count, 4), rng)
+    velocity = rng.standard_normal((count, 4), dtype=np.float32)
     state = np.empty((count, STATE_SIZE), dtype=np.float32)
     state[:, X] = width * chance[:, 0]
     state[:, H] = height * _heights(limits.h, chance[:, 2], filter_config.log_uniform_h)
@@ -134,11 +134,11 @@ def draw_around(
     """
     left, top, width, height = box
     limits, count = config.person.limits, config.person.count
-    spread = exponentials(np.float32(BOX_SPREAD) * normals(count, rng))
+    spread = exponentials((BOX_SPREAD * rng.standard_normal(count)).astype(np.float32))
     h = height / config.box.height_per_h * spread
     state = np.zeros((count, STATE_SIZE), dtype=np.float32)
     state[:, H] = h
-    state[:, X] = left + width / 2 + BOX_SPREAD * width * normals(count, rng)
+    state[:, X] = left + width / 2 + BOX_SPREAD * width * rng.standard_normal(count)
     state[:, Y] = top + (CROWN + config.box.hair_per_h) * h
     state[:, W] = h * rng.uniform(*limits.ratio_wh, count)
     state[:, D] = state[:, W] * rng.uniform(*limits.ratio_dw, count)
@@ -161,7 +161,7 @@ def predict(
 
     Source: thesis, equations 4.7 and 4.8.
     """
-    noise = normals((len(state), 5), rng)
+    noise = rng.standard_normal((len(state), 5), dtype=np.float32)
     amplitude = noise_per_step(dt_s, size, config)
     memory = np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
     moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, memory)
@@ -187,13 +187,6 @@ def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
         [config.noise_d * dt_s, config.noise_x, config.noise_y, config.noise_w, config.noise_h]
     )
     return (size * amplitude).astype(np.float32)
-
-
-def normals(shape: int | tuple[int, int], rng: np.random.Generator) -> Floats:
-    """Draw standard normal numbers, each from one even one, within 5.4 standard deviations."""
-    drawn = rng.random(shape, dtype=np.float32)
-    write_quantiles(drawn.reshape(-1))
-    return drawn
 
 
 def equally_weighted(state: Floats) -> Particles:

@@ -13,7 +13,7 @@ from peopleboy.tracker.thermal.config import MotionConfig, TrackerConfig, WalkOn
 from peopleboy.tracker.thermal.contour.likelihood import body_share, head_share, probability, seen_shares
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
-from peopleboy.tracker.thermal.particles import FOOT, VW, VX, VY, D, H, W, X, Y, equally_weighted, normals
+from peopleboy.tracker.thermal.particles import FOOT, VW, VX, VY, D, H, W, X, Y, equally_weighted
 from peopleboy.tracker.thermal.reidentification import least_mismatch
 from peopleboy.tracker.thermal.tracked_person import (
     FORGET_S,
@@ -239,6 +239,6 @@ def _walking_on(person: TrackedPerson, rng: np.random.Generator) -> TrackedPerso
     spread = np.zeros(9)
     spread[[X, Y, W, H, D]] = 0.15 * size, 0.05 * size, 0.03 * size, 0.05 * size, 0.05 * size
     spread[[VX, VY]] = 0.25 * float(np.hypot(*person.velocity)) + 0.3 * size, 0.1 * size
-    chance = normals((len(person.belief.particles), 9), rng)
+    chance = rng.standard_normal((len(person.belief.particles), 9))
     cloud = equally_weighted((shown + spread * chance).astype(np.float32))
     return replace(person, belief=replace(person.belief, particles=cloud), shown=shown)
