@@ -10,8 +10,9 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constr
 demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
 
+# A file's tests in one process: what they share is made, and compiled, once.
 test: $(READY)
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 # All that the README, the tutorials and the pages on tasks tell their readers to type.
 test-pages: $(READY)

@@ -132,7 +132,7 @@ def times_to_collision(gaps: Floats, velocities: Floats, reach_m: float) -> Floa
     a, b = _products(velocities, velocities), _products(gaps, velocities)
     c = _products(gaps, gaps) - reach_m**2
     inner = b * b - a * c
-    touches = (b < 0.0) & (inner >= 0.0)
+    touches = (a > 0.0) & (b < 0.0) & (inner >= 0.0)
     roots = c / (np.sqrt(np.where(touches, inner, 1.0)) - np.where(touches, b, 0.0))
     return np.where(c <= 0.0, 0.0, np.where(touches, roots, np.inf))
 
