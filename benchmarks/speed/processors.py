@@ -9,18 +9,18 @@ from __future__ import annotations
 
 import json
 import os
-import pickle
 import subprocess
 import sys
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable
 from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import click
 
-from benchmarks.speed.whole_tracker import SCENARIO, shoot
+from benchmarks.speed.whole_tracker import SCENARIO
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.frame_cache import film, frames_of, open_film
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
@@ -38,17 +38,17 @@ OLD = {
 }
 
 
-def first_difference(film: Path, tracker: str, folder: Path) -> tuple[int | None, int]:
+def first_difference(shot: Path, tracker: str, kernels: Path) -> tuple[int | None, int]:
     """Track a film on both: the first frame whose tracks differ, None if none does, and how many tracks."""
-    here, old = _told(film, tracker, {}), _told(film, tracker, {**OLD, "NUMBA_CACHE_DIR": str(folder)})
+    here, old = _told(shot, tracker, {}), _told(shot, tracker, {**OLD, "NUMBA_CACHE_DIR": str(kernels)})
     differing = [number for number, pair in enumerate(zip(here, old, strict=True)) if pair[0] != pair[1]]
     return (differing[0] if differing else None), sum(count for count, _ in here)
 
 
-def _told(film: Path, tracker: str, environment: dict[str, str]) -> list[list[object]]:
+def _told(shot: Path, tracker: str, environment: dict[str, str]) -> list[list[object]]:
     """Track a film in a process of its own: how many tracks each frame has, and the digest of them."""
     module = "benchmarks.speed.processors"
-    command = [sys.executable, "-m", module, "--film", str(film), "--trackers", tracker]
+    command = [sys.executable, "-m", module, "--film", str(shot), "--trackers", tracker]
     done = subprocess.run(
         command, env={**os.environ, **environment}, check=True, stdout=subprocess.PIPE, text=True
     )
@@ -56,7 +56,7 @@ def _told(film: Path, tracker: str, environment: dict[str, str]) -> list[list[ob
     return told
 
 
-def _track(frames: Sequence[Frame], name: str) -> list[tuple[int, str]]:
+def _track(frames: Iterable[Frame], name: str) -> list[tuple[int, str]]:
     tracker = make_tracker(name, stream(0, "tracker"))
     tracks = [tracker.update(frame) for frame in frames]
     rows = [[_row(track) for track in each] for each in tracks]
@@ -69,27 +69,21 @@ def _row(track: Track) -> tuple[object, ...]:
 
 @click.command()
 @click.option("--trackers", default=",".join(TRACKERS), show_default=True, help="Which, by name.")
-@click.option("--film", type=click.Path(path_type=Path), hidden=True)
-def main(trackers: str, film: Path | None) -> None:
+@click.option("--film", "shot", type=click.Path(path_type=Path), hidden=True)
+def main(trackers: str, shot: Path | None) -> None:
     """Tell whether tracks are the same, but for their places on the floor; exit with 1 if not."""
-    if film is not None:
-        click.echo(json.dumps(_track(pickle.loads(film.read_bytes()), trackers)))
+    if shot is not None:
+        click.echo(json.dumps(_track(frames_of(open_film(shot)), trackers)))
         return
     is_same = True
     with TemporaryDirectory() as folder:
-        shot = Path(folder, "film.pickle")
-        shot.write_bytes(pickle.dumps([_kept(frame) for frame in shoot(SCENARIO)]))
+        made = film(load_scenario(SCENARIO), 0, Path(folder))
         for name in trackers.split(","):
-            first, count = first_difference(shot, name, Path(folder, "kernels"))
+            first, count = first_difference(made.folder, name, Path(folder, "kernels"))
             is_same = is_same and first is None
             told = "the same" if first is None else f"others from frame {first} on"
             click.echo(f"{name}: {told}, {count} tracks in all frames")
     sys.exit(0 if is_same else 1)
-
-
-def _kept(frame: Frame) -> Frame:
-    """Make the images now, as their maker cannot be kept."""
-    return replace(frame, images=dict(frame.images))
 
 
 if __name__ == "__main__":
