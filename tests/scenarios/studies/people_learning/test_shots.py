@@ -98,6 +98,18 @@ def test_a_faint_shot_has_less_contrast_and_nothing_is_clipped(seed: int, shots:
     assert np.abs(gain * before.change - after.change).max() < 1.5
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_a_poorer_camera_sees_the_same_people_less_sharply(seed: int, shots: list[PeopleShot]) -> None:
+    before = replace(shots[seed], grey=np.kron([[0, 255] * 8] * 12, np.ones((10, 10))).astype(np.uint8))
+    after = before.softened(np.random.default_rng(seed))
+    assert after.grey.shape == before.grey.shape
+    assert after.box is before.box
+    # Where two greys meet they come nearer to each other; far from there they differ by noise alone.
+    beside, within = (abs(after.grey[:, k::20].astype(int) - before.grey[:, k::20]).mean() for k in (9, 5))
+    assert beside > within + 2.0
+    assert np.abs(after.grey[5::10, 5::10].astype(int) - before.grey[5::10, 5::10]).max() < 30
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_who_is_cut_off_keeps_most_of_their_height_and_their_place(
     seed: int, shots: list[PeopleShot]
