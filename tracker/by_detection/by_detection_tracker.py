@@ -27,7 +27,7 @@ from peopleboy.tracker.by_detection.paths import (
     distances,
 )
 from peopleboy.tracker.by_detection.proposed import Proposed
-from peopleboy.tracker.by_detection.target import Target
+from peopleboy.tracker.by_detection.target import Sighting, Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
 from peopleboy.tracker.thermal.whereabouts import places_on_floor
@@ -89,7 +89,8 @@ class ByDetectionTracker:
         now = _Instant(frame.time_s, self._time_step(frame.time_s), view)
         self._carry_on(now.dt_s, frame.odometry or _STANDING)
         boxes, scores = self._find(frame)
-        proposed = Proposed.of(frame, boxes, scores + self._config.existence.lasting, view)
+        existence = self._config.existence
+        proposed = Proposed.of(frame, boxes, existence.trust * scores + existence.lasting, view)
         expected = self._boxes(view)
         found = self._matched(expected, proposed, now)
         self._take_in(found, expected, proposed, now)
@@ -142,13 +143,15 @@ class ByDetectionTracker:
         front = hidden_by(expected, is_told, found)
         is_beside, common = beside(expected, is_told), shared(proposed.boxes, self._known(found))
         was_lost = np.array([self._is_lost(target, now) for target in self._targets], bool)
+        speed = np.hypot(self._paths.mean[:, 3], self._paths.mean[:, 5])
         for row, target in enumerate(self._targets):
             if row not in found:
                 hider = front[row]
                 target.miss(None if hider is None else self._targets[hider].id, now.dt_s, config)
                 continue
             seen = found[row]
-            target.see(float(proposed.scores[seen]), float(common[seen]), now.time_s, now.dt_s, config)
+            sighting = Sighting(float(proposed.scores[seen]), float(common[seen]), float(speed[row]))
+            target.see(sighting, now.time_s, now.dt_s, config)
             target.widen(proposed.ratio(seen))
             if is_beside[row]:
                 target.overlap()

@@ -86,10 +86,13 @@ class ExistenceConfig:
 
     Attributes:
         weakest: proposals of a lower score are not looked at.
-        lasting: what is added to all others: they speak for themselves, and who is proposed in one image
-            after another is somebody more often than they say.
+        trust: what a unit of the others counts, in images of cameras that the detector does not know.
+        lasting: what is added to them: who is proposed in one image after another is somebody more often than
+            single images say.
         birth: score of a proposal that may be somebody new.
-        independent_s: images so far apart speak for themselves.
+        independent_s: images so far apart speak for themselves, at the soonest.
+        still_s: the same of who stands still: what looks like somebody does so in the next image, too.
+        look_m: who has gone so far is looked at anew.
         highest_score: what one image can say at most.
         shared_doubt: what is taken off the score of somebody new whose box is all within that of another.
         highest: what all can say.
@@ -105,9 +108,12 @@ class ExistenceConfig:
     """
 
     weakest: float = -2.0
-    lasting: float = 0.5
+    trust: float = 0.8
+    lasting: float = 0.25
     birth: float = -0.5
     independent_s: float = 0.25
+    still_s: float = 4.0
+    look_m: float = 0.25
     highest_score: float = 1.5
     shared_doubt: float = 3.0
     highest: float = 8.0

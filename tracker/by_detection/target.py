@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,20 @@ _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
 _LEARNING_SOON: Final = 0.2  # the same of what is compared with it
 _OWN: Final = 0.6  # Bhattacharyya's coefficient above which it looks like itself
 _LEAST_SIGHTINGS: Final = 3
+
+
+class Sighting(NamedTuple):
+    """Somebody was found.
+
+    Attributes:
+        score: log odds of the proposal.
+        shared: how much of its box is of somebody known, too, 0 to 1.
+        speed_m_s: how fast this one goes.
+    """
+
+    score: float
+    shared: float
+    speed_m_s: float
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -60,17 +74,18 @@ class Target:
         """Whether it is believed to be a person."""
         return self.id > 0
 
-    def see(self, score: float, shared: float, time_s: float, dt_s: float, config: ExistenceConfig) -> None:
-        """Take in that it was found with a score, in a box of which so much is shared with somebody known."""
+    def see(self, seen: Sighting, time_s: float, dt_s: float, config: ExistenceConfig) -> None:
+        """Take in that it was found."""
         self.seen_s, self.occluder = time_s, None
         self.sightings += 1
         self.watched_s += dt_s
-        evidence = min(score, config.highest_score)
+        evidence = min(seen.score, config.highest_score)
         if not self.is_told:
-            evidence -= config.shared_doubt * shared
-        sum_of_both = self.log_odds + evidence * dt_s / config.independent_s
+            evidence -= config.shared_doubt * seen.shared
+        looks_s = min(1.0 / config.independent_s, 1.0 / config.still_s + seen.speed_m_s / config.look_m)
+        sum_of_both = self.log_odds + evidence * looks_s * dt_s
         self.log_odds = min(max(sum_of_both, -config.highest), config.highest)
-        self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-score)) - self.confidence)
+        self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-seen.score)) - self.confidence)
 
     def widen(self, ratio: float) -> None:
         """Take in how wide its box is, over the height."""

@@ -63,7 +63,7 @@ def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
 
 def test_what_looks_rather_unlike_a_person_is_not_told() -> None:
     assert not any(tracked([[walker(100.0)]] * 60, score=-0.6))
-    assert tracked([[walker(100.0)]] * 60, score=-0.3)[-1]
+    assert tracked([[walker(100.0)]] * 60, score=0.8)[-1]
 
 
 def test_somebody_sure_is_told_by_the_third_image() -> None:
@@ -72,7 +72,7 @@ def test_somebody_sure_is_told_by_the_third_image() -> None:
 
 def test_a_second_box_on_somebody_known_is_nobody_new() -> None:
     one, larger = walker(100.0), (80.0, 40.0, 40.0, 150.0)
-    seen = tracked([[one]] * 10 + [[one, larger]] * 20, score=0.5)
+    seen = tracked([[one]] * 10 + [[one, larger]] * 20, score=1.5)
     assert all(numbers(tracks) <= {1} for tracks in seen)
     assert numbers(seen[-1]) == {1}
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from peopleboy.tracker.by_detection.colours import FEATURES
 from peopleboy.tracker.by_detection.config import ExistenceConfig
-from peopleboy.tracker.by_detection.target import Target
+from peopleboy.tracker.by_detection.target import Sighting, Target
 
 CONFIG = ExistenceConfig()
 DT_S = 1.0 / 15.0
@@ -26,10 +28,10 @@ def known() -> Target:
     )
 
 
-def seen(target: Target, score: float, images: int, since_s: float) -> float:
+def seen(target: Target, score: float, images: int, since_s: float, speed_m_s: float = 1.5) -> float:
     for image in range(1, images + 1):
         time_s = since_s + image * DT_S
-        target.see(score, 0.0, time_s, DT_S, CONFIG)
+        target.see(Sighting(score, 0.0, speed_m_s), time_s, DT_S, CONFIG)
     return time_s
 
 
@@ -57,3 +59,29 @@ def test_who_was_never_told_fades_when_not_found() -> None:
     target.id, target.log_odds = 0, CONFIG.hopeless
     target.miss(None, DT_S, CONFIG)
     assert target.is_forgotten(DT_S, CONFIG)
+
+
+def images_until_told(score: float, speed_m_s: float) -> int:
+    target = known()
+    target.id, target.log_odds = 0, score
+    for image in range(1, 1000):
+        seen(target, score, 1, image * DT_S, speed_m_s)
+        if target.is_confirmed(CONFIG):
+            return image
+    raise AssertionError("never told")
+
+
+def test_who_stands_still_is_no_new_sight_in_every_image() -> None:
+    walks, stands = images_until_told(0.5, 1.0), images_until_told(0.5, 0.0)
+    assert walks == pytest.approx(2.0 * CONFIG.independent_s / DT_S, abs=1.0)
+    assert stands == pytest.approx(2.0 * CONFIG.still_s / DT_S, abs=1.0)
+
+
+@given(st.floats(0.0, 5.0), st.floats(0.0, 5.0))
+def test_the_faster_the_sooner_up_to_a_limit(one: float, other: float) -> None:
+    slower, faster = sorted((one, other))
+    assert images_until_told(0.9, faster) <= images_until_told(0.9, slower)
+
+
+def test_whoever_is_surely_somebody_is_told_standing_too() -> None:
+    assert images_until_told(3.0 + CONFIG.confirmed, 0.0) <= 3
