@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from docs.generate.sources.source_pages import PAGE
@@ -23,3 +24,18 @@ def test_the_page_says_when_by_which_versions_and_what_is_missing() -> None:
     assert {"Recorded", "Versions", "Seeds", "Machine", "Code"} <= facts.keys()
     page = (FOLDER / PAGE).read_text(encoding="utf-8")
     assert all(f"<dt>{name}</dt><dd>" in page for name in facts)
+
+
+def test_parts_of_a_later_run_take_their_places_and_are_said_to_be_later() -> None:
+    shipped = SourceRun.read()
+    number = "figure-5.4"
+    part = next(one for one in shipped.outcomes if one.experiment.id == number)
+    facts = {"Recorded": "2030-01-02", "Machine": "a toaster", "Code": "abc"}
+    later = SourceRun(replace(shipped.head, facts=facts), (replace(part, left_out=("both",)),))
+    joined = shipped.without([part]).with_later(later)
+    ids = [[one.experiment.id for one in run.outcomes] for run in (shipped, joined)]
+    assert ids[0] == ids[1]
+    assert [one.left_out for one in joined.outcomes if one.experiment.id == number] == [("both",)]
+    assert joined.head.facts[number] == "of a later run: recorded 2030-01-02; machine a toaster; code abc"
+    assert number not in joined.without([part]).head.facts
+    assert {**shipped.head.facts, number: joined.head.facts[number]} == joined.head.facts

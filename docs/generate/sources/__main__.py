@@ -1,6 +1,7 @@
 """`python -m docs.generate.sources RUN`: ship what a run of `peopleboy reproduce` has on people tracking.
 
-Results of any code count, as long as all are of the same: the page says of which.
+Results of any code count, as long as all are of the same: the page says of which. With `--add ID`,
+this part of a later run takes the place of the one that is shipped, or joins the rest, and the page says so.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import click
 from docs.generate.sources.source_pages import PAGE, whole_page
 from docs.generate.sources.source_run import FOLDER, SourceRun
 from peopleboy.scenarios.running.engine.store import Store
-from peopleboy.scenarios.studies.reproduce.experiments.catalogue import of_paper
+from peopleboy.scenarios.studies.reproduce.experiments.catalogue import choose, of_paper
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Outcome
 from peopleboy.scenarios.studies.reproduce.measuring.workload import full_plan
 from peopleboy.scenarios.studies.reproduce.reproduce import RESULTS, finished
@@ -30,19 +31,27 @@ _COMMAND = "peopleboy reproduce --paper thesis; peopleboy reproduce --paper 2005
 @click.command()
 @click.argument("run", type=click.Path(path_type=Path, exists=True, file_okay=False))
 @click.option("--machine", required=True, help="On which it ran, in words.")
-def main(run: Path, machine: str) -> None:
+@click.option(
+    "--add", "added", multiple=True, help="Take this part alone, and keep all others that are shipped."
+)
+def main(run: Path, machine: str, added: tuple[str, ...]) -> None:
     """Put the figures, the pictures and the page of a run into docs/sources."""
     results = run / RESULTS
     code = _newest_code(results)
     plan, store = full_plan(run / "films"), Store(results, code)
-    outcomes, missing = finished([*of_paper("thesis").values(), *of_paper("2005").values()], plan, store)
+    parts = of_paper("thesis") | of_paper("2005")
+    wanted = choose(added) if added else parts.values()
+    outcomes, missing = finished([one for one in wanted if one.id in parts], plan, store)
     head = head_of(plan, outcomes, store, command=_COMMAND, missing=missing)
     recorded = datetime.fromtimestamp(results.stat().st_mtime, UTC).date().isoformat()
     facts = {"Recorded": recorded, **head.facts, "Machine": machine, "Code": code}
+    before = SourceRun.read() if added else None
+    stays = set() if before is None else {one.picture for one in before.without(outcomes).outcomes}
     for old in FOLDER.glob("*.[sp][vn]g"):
-        old.unlink()
+        if old.name not in stays:
+            old.unlink()
     shipped = SourceRun(replace(head, facts=facts), tuple(_with_file(one) for one in outcomes))
-    shipped.write()
+    (shipped if before is None else before.with_later(shipped)).write()
     # As it is read: figures are cut to a few digits.
     (FOLDER / PAGE).write_text(whole_page(SourceRun.read()), encoding="utf-8")
     click.echo(FOLDER / PAGE)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -24,6 +24,7 @@ from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead
 FOLDER: Final = Path(__file__).parents[2] / "sources"
 RUN: Final = "run.json"
 _DIGITS: Final = 6  # significant ones of each figure
+_OF_A_PART: Final = ("Recorded", "Machine", "Code")  # what is said of a part of a later run
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,25 @@ class SourceRun:
         return cls(
             PageHead(**data["head"]), tuple(_outcome(number, one) for number, one in data["parts"].items())
         )
+
+    def without(self, others: Sequence[Outcome]) -> SourceRun:
+        """Leave out the tables and figures that others are of, and what is said of them."""
+        theirs = {one.experiment.id for one in others}
+        facts = {name: fact for name, fact in self.head.facts.items() if name not in theirs}
+        kept = tuple(one for one in self.outcomes if one.experiment.id not in theirs)
+        return SourceRun(replace(self.head, facts=facts), kept)
+
+    def with_later(self, later: SourceRun) -> SourceRun:
+        """Take in tables and figures of a later run, and say of each when and with what it was made."""
+        said = "; ".join(f"{name.lower()} {later.head.facts[name]}" for name in _OF_A_PART)
+        kept = self.without(later.outcomes)
+        facts = {
+            **kept.head.facts,
+            **{one.experiment.id: f"of a later run: {said}" for one in later.outcomes},
+        }
+        places = list(EXPERIMENTS)
+        every = sorted((*kept.outcomes, *later.outcomes), key=lambda one: places.index(one.experiment.id))
+        return SourceRun(replace(self.head, facts=facts), tuple(every))
 
     def write(self, folder: Path = FOLDER) -> None:
         """Keep it."""

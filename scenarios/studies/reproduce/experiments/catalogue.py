@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.studies.reproduce.experiments.attention import ATTENTION
 from peopleboy.scenarios.studies.reproduce.experiments.contents import Contents
-from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
 from peopleboy.scenarios.studies.reproduce.experiments.distances import DISTANCES, Correlations, FloorPath
 from peopleboy.scenarios.studies.reproduce.experiments.drive_figures import FIGURES
 from peopleboy.scenarios.studies.reproduce.experiments.drive_windows import WINDOWS
@@ -16,6 +15,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.experiment import Experim
 from peopleboy.scenarios.studies.reproduce.experiments.learning import BestClassifiers, Learning, Way
 from peopleboy.scenarios.studies.reproduce.experiments.pictures import DEPICTIONS, Depiction
 from peopleboy.scenarios.studies.reproduce.experiments.scene_models import SCENES
+from peopleboy.scenarios.studies.reproduce.experiments.shortfalls import Causes, Delay
 from peopleboy.scenarios.studies.reproduce.experiments.timing import ATTENTION_TIMES, TIMINGS
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS, TrackerTrial, Tracking
 from peopleboy.scenarios.studies.reproduce.experiments.webcams import Angles, Webcams
@@ -297,6 +297,7 @@ _ALL: tuple[Experiment, ...] = (
     BestClassifiers(),
     _chapters("figure-7.3", _STEPS),
     _frontier(),
+    Causes(OURS, Setting("peopleboy"), {"several persons": SEVERAL, ONE: SINGLE}),
     *_SWEEPS[6:],
     Depiction("paper-figure-4"),
     _paper_figure_5(),

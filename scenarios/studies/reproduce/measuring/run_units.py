@@ -27,7 +27,7 @@ _SCENARIOS = ("corner_webcams", "room_long", "room_narrow", "room_short", *SETS,
 MEASURES = (
     *(
         Path(__file__).with_name(f"{kind}units.py")
-        for kind in ("", "delay_", "distance_", "drive_", "learn_", "picture_", "window_")
+        for kind in ("", "cause_", "delay_", "distance_", "drive_", "learn_", "picture_", "window_")
     ),
     *sorted(Path(__file__).parents[1].glob("pictures/*.py")),
     *(path for study in _STUDIES for path in sorted((STUDIES / study).glob("*.py"))),

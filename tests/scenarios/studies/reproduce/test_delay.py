@@ -8,8 +8,8 @@ import numpy as np
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.frame_cache import film
-from peopleboy.scenarios.studies.reproduce.experiments.delay import Delay
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Line
+from peopleboy.scenarios.studies.reproduce.experiments.shortfalls import Delay
 from peopleboy.scenarios.studies.reproduce.measuring.delay_units import (
     EVERY,
     PATIENCE,

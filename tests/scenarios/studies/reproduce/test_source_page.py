@@ -56,7 +56,7 @@ FIGURES = (
     *("6.4", "6.5", "6.6", "7.2", "7.3"),
 )
 TABLES = ("3.1", "4.1", "5.1", "6.1", "6.2", "7.1", "7.2", "7.3", "7.4")
-PAPER = ("table-1", "table-2", "table-3", "figure-4", "figure-5")
+PAPER = ("section-4.2", "table-1", "table-2", "table-3", "figure-4", "figure-5")
 PANORAMIC = (
     *(f"figure-{number}" for number in range(1, 7)),
     *("webcams", "angle", "general", "personal", "position", "noise"),
