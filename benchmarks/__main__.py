@@ -25,6 +25,7 @@ from benchmarks.environments import (
 from benchmarks.memory import long_run
 from benchmarks.speed.bench_figures import BenchFigure, Goal, nested, read_figures, reasons, table_of
 from benchmarks.speed.closed_loop import loop_speed, peak_memory_mb, run_speed
+from benchmarks.speed.drone import drone_rates
 from benchmarks.speed.filter_step import step_time_ms
 from benchmarks.speed.many_worlds import PIXELS, TRUTH, many_rates
 from benchmarks.speed.render import render_times
@@ -71,6 +72,7 @@ def measure() -> Iterator[BenchFigure]:
     growth = long_run(MEMORY_FRAMES).bytes_per_frame
     yield BenchFigure(("memory", f"over {MEMORY_FRAMES} frames"), growth, "{:.0f} bytes a frame", FLAT)
     yield from _environments()
+    yield from _drone()
 
 
 def _rendering() -> Iterator[BenchFigure]:
@@ -131,6 +133,20 @@ def _environments() -> Iterator[BenchFigure]:
         form = "{:.0f} steps/s, PyBullet's own images twice a step"
         yield BenchFigure((of, name, "one process"), bullet_rate(size), form)
     yield BenchFigure(("memory", f"over {RESETS} resets"), reset_growth(RESETS), "{:.0f} bytes each", FLAT)
+
+
+def _drone() -> Iterator[BenchFigure]:
+    of, name, form = "environments", "a drone with vision, 64 x 48", "{:.0f} steps/s"
+    found = drone_rates()
+    reason = "16 steps of PyBullet's physics alone take over a third of the drone's whole step"
+    yield BenchFigure((of, name, "every second image"), found.drone_s, form)
+    yield BenchFigure((of, name, "every image"), found.drone_images_s, form)
+    for (physics, physics_hz), rate in found.ours_s.items():
+        ours = of, f"pixels, one camera, 64 x 48, {physics} at {physics_hz} Hz"
+        yield BenchFigure((*ours, "one process"), rate, form)
+        goal = Goal(least=10) if physics == "bullet" else None
+        ratio = found.ratios[physics, physics_hz]
+        yield BenchFigure((*ours, "a drone with vision", "ratio"), ratio, "{:.2f}", goal, reason)
 
 
 if __name__ == "__main__":

@@ -84,6 +84,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         observation: "pixels"; "tracks", what the tracker makes of the images; or "truth", what a perfect
             tracker would, for which nothing is rendered.
         image_size: width and height [px] of all images.
+        cameras: names of those whose images `pixels` has, others being left undrawn; None for all.
         tracker: name of the tracker behind "tracks", "truth" for exact boxes, or None for the scenario's.
         randomise: options of every episode for which `reset` is given none.
         render_mode: "rgb_array" for `render`; "human" to show every step in rerun's viewer, a window, or a
@@ -106,6 +107,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         task: str = "follow",
         observation: str = "tracks",
         image_size: tuple[int, int] = DEFAULT_PX,
+        cameras: Sequence[str] | None = None,
         tracker: str | None = None,
         randomise: Mapping[str, Any] | None = None,
         render_mode: str | None = None,
@@ -131,7 +133,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         replace(usual, physics_hz=self._physics_hz)  # refuses a rate that does not fit now
         self._take(first)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
-        self.observation_space = observation_space(observation, self._robot)
+        self._shown = _shown(cameras, observation, self._robot)
+        self.observation_space = observation_space(observation, self._robot, self._shown)
         self._normaliser = Normaliser(self._robot) if normalise else None
         if self._normaliser is not None:
             self.observation_space = self._normaliser.space(self.observation_space)
@@ -365,7 +368,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             return see_truth(self._scene, self._robot)
         assert isinstance(self._senses, Observation)
         if self._kind == "pixels":
-            self._images |= see_images(self._senses, self._robot)
+            self._images |= see_images(self._senses, self._robot, self._shown)
             return self._images
         assert self._tracker is not None
         self._tracks = self._tracker.update(make_frame(self._senses, self._calibrations, before))
@@ -412,6 +415,19 @@ def _check_size(size: tuple[int, int]) -> None:
         raise BadInput(
             f"image_size {size!r} must be width and height [px], {narrow} x {flat} to {wide} x {tall}"
         )
+
+
+def _shown(cameras: Sequence[str] | None, observation: str, robot: RobotConfig) -> tuple[str, ...]:
+    """Names of the cameras whose images are given."""
+    if cameras is None:
+        return tuple(robot.cameras)
+    if observation != "pixels":
+        raise BadInput(f"cameras {cameras!r}: observation {observation!r} has no images; leave them out")
+    if isinstance(cameras, str) or not cameras or len(set(cameras)) < len(cameras):
+        raise BadInput(f"cameras {cameras!r} must be one or more different names, such as ('thermal',)")
+    for name in cameras:
+        _check_word("cameras", name, tuple(robot.cameras))
+    return tuple(cameras)
 
 
 def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> list[tuple[float, float]]:

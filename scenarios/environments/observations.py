@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -43,14 +43,14 @@ _FARTHEST_M: Final = 1e4
 _FASTEST: Final = 10.0
 
 
-def observation_space(kind: str, robot: RobotConfig) -> spaces.Space[Arrays]:
+def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> spaces.Space[Arrays]:
     """Give the space of one of `KINDS`.
 
     `sonar` is (16,) [m], counted from the left to the front and round; `odometry` is (6,): x, y [m] from the
     start in its frame, cosine and sine of the heading since the start, forward speed [m/s], turn rate
-    [rad/s]. `pixels` has the newest image of each camera beside them by its name, (H, W, 1) or (H, W, 3)
-    uint8, such as `thermal` and `colour`, or of a depth camera (H, W, 1) uint16 [mm]; `tracks` and `truth`
-    have `tracks` (35,), five rows of `COLUMNS`.
+    [rad/s]. `pixels` has the newest image of each camera that is `shown` beside them by its name, (H, W, 1)
+    or (H, W, 3) uint8, such as `thermal` and `colour`, or of a depth camera (H, W, 1) uint16 [mm]; `tracks`
+    and `truth` have `tracks` (35,), five rows of `COLUMNS`.
     """
     sonar = robot.sonar
     odometry = np.array([_FARTHEST_M, _FARTHEST_M, 1.0, 1.0, _FASTEST, _FASTEST], np.float32)
@@ -59,7 +59,8 @@ def observation_space(kind: str, robot: RobotConfig) -> spaces.Space[Arrays]:
         "odometry": spaces.Box(-odometry, odometry, dtype=np.float32),
     }
     if kind == "pixels":
-        for name, camera in robot.cameras.items():
+        for name in shown:
+            camera = robot.cameras[name]
             dtype = kind_of(camera).dtype
             found[name] = spaces.Box(0, int(np.iinfo(dtype).max), _shape(camera), dtype)
     else:
@@ -82,10 +83,10 @@ def feel(senses: Senses, start: Planar) -> Arrays:
     return {"sonar": senses.sonar_m.astype(np.float32), "odometry": np.array(odometry, np.float32)}
 
 
-def see_images(observation: Observation, robot: RobotConfig) -> Arrays:
-    """Give the images of `pixels`, of the cameras that have a new one."""
-    cameras, images = robot.cameras.items(), observation.images
-    return {name: images[name].reshape(_shape(camera)) for name, camera in cameras if name in images}
+def see_images(observation: Observation, robot: RobotConfig, shown: Sequence[str]) -> Arrays:
+    """Give the images of `pixels`, of the cameras that are `shown` and have a new one."""
+    images = observation.images
+    return {name: images[name].reshape(_shape(robot.cameras[name])) for name in shown if name in images}
 
 
 def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> Arrays:

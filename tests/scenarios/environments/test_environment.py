@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -88,6 +89,20 @@ def test_the_same_seed_repeats_the_whole_sequence_of_episodes(scene: Path) -> No
     first, second = episodes(), episodes()
     assert all(np.array_equal(a, b) for a, b in zip(first, second, strict=True))
     assert not np.array_equal(first[0], first[len(first) // 3])
+
+
+@pytest.mark.parametrize("shown", ["thermal", "colour"])
+def test_images_of_one_camera_alone_are_those_of_all_cameras(shown: str, scene: Path) -> None:
+    def episode(**settings: Any) -> list[dict[str, np.ndarray]]:
+        env = PeopleBoyEnv(scene, observation="pixels", image_size=SMALL, **settings)
+        found = [env.reset(seed=1)[0], *play(env, 2)]
+        assert all(env.observation_space.contains(each) for each in found)
+        env.close()
+        return found
+
+    for every, one in zip(episode(), episode(cameras=(shown,)), strict=True):
+        assert set(every) - set(one) == {"thermal", "colour"} - {shown}
+        assert all(np.array_equal(one[name], every[name]) for name in one)
 
 
 def test_an_episode_of_a_seed_is_the_world_of_a_run_of_that_seed() -> None:
@@ -237,6 +252,10 @@ def test_wrong_options_are_refused_in_one_line(options: dict, named: tuple[str, 
         ({"observation": "sound"}, ("observation 'sound'", "pixels, tracks, truth")),
         ({"task": "dance"}, ("task 'dance'",)),
         ({"image_size": (40, 30)}, ("image_size (40, 30)",)),
+        ({"observation": "pixels", "cameras": ("sonar",)}, ("cameras 'sonar'", "thermal, colour")),
+        ({"observation": "pixels", "cameras": "thermal"}, ("cameras 'thermal'", "('thermal',)")),
+        ({"observation": "pixels", "cameras": ("colour", "colour")}, ("cameras", "different names")),
+        ({"observation": "tracks", "cameras": ("thermal",)}, ("cameras", "'tracks' has no images")),
         ({"tracker": "none"}, ("'none'", "peopleboy")),
         ({"render_mode": "ansi"}, ("render_mode", "'ansi'")),
         ({"scenario": "singel_follow"}, ("'singel_follow'", "'single_follow'")),

@@ -42,7 +42,7 @@ def test_every_entry_is_its_share_of_what_becomes_one_and_clipped_beyond() -> No
     assert rows(found)[0] == pytest.approx([1.0, -0.5, 0.3, 0.1, 0.4, 0.9, 1.0])
     assert rows(found)[1] == [1.0, 1.0, 1.0, -1.0, 1.0, 0.5, 0.0]
     assert not np.any(rows(found)[2:])
-    assert Normaliser(ROBOT).space(observation_space("tracks", ROBOT)).contains(found)
+    assert Normaliser(ROBOT).space(observation_space("tracks", ROBOT, ())).contains(found)
 
 
 def test_whoever_has_a_row_keeps_it_and_newcomers_take_the_first_that_is_free() -> None:

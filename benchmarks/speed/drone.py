@@ -1,0 +1,176 @@
+"""One camera of a robot among people beside a drone with vision in PyBullet, steps a second.
+
+The drone's world is that of gym-pybullet-drones, which no package index has, rebuilt: `HoverAviary` that
+observes images, with 48 commands a second. A drone of 27 g hovers by four propellers over a plane among a
+block, a cube, a duck and a teddy bear; physics takes 240 steps a second, and TinyRenderer draws 64 x 48
+pixels of colour, depth and segmentation with shadows, there for every second command. Its drone has a mesh
+of its own, ours a cylinder of the same size, and nothing is worked out but forces, pose and images.
+
+Source: Panerati et al., Learning to Fly, a Gym Environment with PyBullet Physics, 2021, and its code, 2.0.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from statistics import median
+from typing import Any, Final, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.environments import ACTION, QUICK_HZ, RUN_HZ, SCENARIO, WARM_UP
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.sim.physics.bullet import Bullet
+
+SIZE: Final = (64, 48)
+CONTROL_HZ: Final = 48
+COMMANDS_AN_IMAGE: Final = 2  # 24 images a second
+_MASS_KG, _ARM_M, _RADIUS_M, _HEIGHT_M = 0.027, 0.0397, 0.06, 0.025
+_START_M = (0.0, 0.0, 0.1125)
+_NEAR_M, _FAR_M, _FOV_DEG = _ARM_M, 1000.0, 60.0
+_PROPELLERS_M = tuple((x, y, 0.0) for x in (0.028, -0.028) for y in (0.028, -0.028))
+_LANDMARKS: Final = {
+    "block.urdf": (1.0, 0.0, 0.1),
+    "cube_small.urdf": (0.0, 1.0, 0.1),
+    "duck_vhacd.urdf": (-1.0, 0.0, 0.1),
+    "teddy_vhacd.urdf": (0.0, -1.0, 0.1),
+}
+CASES: Final = (("bullet", RUN_HZ), ("bullet", QUICK_HZ), ("kinematic", QUICK_HZ))
+_ROUNDS: Final = 3
+_LINK_FRAME, _BASE = 1, -1  # as PyBullet numbers them
+_CYLINDER: Final = 4
+
+
+class DroneWorld:
+    """A drone that hovers among landmarks and sees what is before it; a context manager."""
+
+    def __init__(self) -> None:
+        self._physics = Bullet(physics_hz=RUN_HZ)
+        client = self._client = self._physics._client
+        for name, position in {"plane.urdf": (0.0, 0.0, 0.0), **_LANDMARKS}.items():
+            self._physics.add_urdf(name, name, position=position, fixed=name == "plane.urdf")
+        solid = client.createCollisionShape(_CYLINDER, radius=_RADIUS_M, height=_HEIGHT_M)
+        shape = client.createVisualShape(_CYLINDER, radius=_RADIUS_M, length=_HEIGHT_M)
+        self._drone = client.createMultiBody(_MASS_KG, solid, shape, _START_M)
+        self._lift_n = (0.0, 0.0, _MASS_KG * 9.81 / len(_PROPELLERS_M))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._physics.close()
+
+    def step(self) -> None:
+        """Fly for one command."""
+        for _ in range(RUN_HZ // CONTROL_HZ):
+            for place in _PROPELLERS_M:
+                self._client.applyExternalForce(self._drone, _BASE, self._lift_n, place, _LINK_FRAME)
+            self._client.applyExternalTorque(self._drone, _BASE, (0.0, 0.0, 0.0), _LINK_FRAME)
+            self._client.stepSimulation()
+        self._client.getBaseVelocity(self._drone)
+
+    def see(self) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+        """Draw colours (48, 64, 4), depth (48, 64) and segmentation (48, 64)."""
+        client = self._client
+        place, orientation = map(np.array, client.getBasePositionAndOrientation(self._drone))
+        x, y, z, w = orientation
+        ahead = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)])
+        eye, target = place + np.array([0.0, 0.0, _ARM_M]), place + _FAR_M * ahead
+        view = client.computeViewMatrix(eye, target, (0.0, 0.0, 1.0))
+        lens = client.computeProjectionMatrixFOV(_FOV_DEG, 1.0, _NEAR_M, _FAR_M)
+        _, _, colours, depth, parts = client.getCameraImage(*SIZE, view, lens, shadow=1)
+        width, height = SIZE
+        shape = (height, width)
+        return np.reshape(colours, (*shape, 4)), np.reshape(depth, shape), np.reshape(parts, shape)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DroneRates:
+    """Environment steps a second of CPU time.
+
+    Attributes:
+        drone_s: of the drone's world, with an image for every second step, as its environment has them.
+        drone_images_s: of the drone's world, with an image for every step.
+        ours_s: ours, with an image of one camera for every step, by physics and its rate [Hz].
+        ratios: ours against `drone_s`, likewise.
+    """
+
+    drone_s: float
+    drone_images_s: float
+    ours_s: dict[tuple[str, int], float]
+    ratios: dict[tuple[str, int], float]
+
+
+def drone_rates() -> DroneRates:
+    """Measure all in turn, some times, and give the medians."""
+    drones, watchers = [], []
+    ours: dict[tuple[str, int], list[float]] = {case: [] for case in CASES}
+    for _ in range(_ROUNDS):
+        drones.append(drone_rate(COMMANDS_AN_IMAGE))
+        watchers.append(drone_rate(1))
+        for case, rates in ours.items():
+            rates.append(pixels_rate(*case))
+    return DroneRates(
+        drone_s=median(drones),
+        drone_images_s=median(watchers),
+        ours_s={case: median(rates) for case, rates in ours.items()},
+        ratios={
+            case: median(our / drone for our, drone in zip(rates, drones, strict=True))
+            for case, rates in ours.items()
+        },
+    )
+
+
+def drone_rate(commands_an_image: int, steps: int = 120) -> float:
+    """Return steps per second of CPU time of the drone's world."""
+    with DroneWorld() as world:
+
+        def step(number: int) -> None:
+            world.step()
+            if number % commands_an_image == 0:
+                world.see()
+
+        return _rate(step, steps)
+
+
+def pixels_rate(physics: str, physics_hz: int, steps: int = 200) -> float:
+    """Return the same of an environment that gives images of one camera, as small."""
+    env = PeopleBoyEnv(
+        SCENARIO,
+        observation="pixels",
+        image_size=SIZE,
+        cameras=("thermal",),
+        physics=physics,
+        physics_hz=physics_hz,
+    )
+    env.reset(seed=0)
+    rate = _rate(lambda _number: env.step(ACTION), steps)
+    env.close()
+    return rate
+
+
+def _rate(step: Callable[[int], object], steps: int) -> float:
+    for number in range(WARM_UP):
+        step(number)
+    start = time.process_time()
+    for number in range(steps):
+        step(number)
+    return steps / (time.process_time() - start)
+
+
+def main() -> None:
+    """Measure, and print a line each."""
+    found = drone_rates()
+    print(f"a drone with vision: {found.drone_s:.0f} steps/s, an image for every second")
+    print(f"a drone with vision: {found.drone_images_s:.0f} steps/s, an image for each")
+    for (physics, physics_hz), rate in found.ours_s.items():
+        ratio = found.ratios[physics, physics_hz]
+        print(
+            f"ours, one camera, {physics} at {physics_hz} Hz: {rate:.0f} steps/s, {ratio:.2f} times as many"
+        )
+
+
+if __name__ == "__main__":
+    main()
