@@ -11,6 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.elementary import exponentials
+from peopleboy.tracker.normal_draws import standard_normals
 from peopleboy.tracker.thermal.config import (
     REFERENCE_HEIGHT_PX,
     FilterConfig,
@@ -161,7 +162,7 @@ def predict(
 
     Source: thesis, equations 4.7 and 4.8.
     """
-    noise = rng.standard_normal((len(state), 5), dtype=np.float32)
+    noise = standard_normals(rng, 5 * len(state)).reshape(-1, 5)
     amplitude = noise_per_step(dt_s, size, config)
     memory = np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
     moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, memory)

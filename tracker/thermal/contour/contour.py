@@ -40,6 +40,7 @@ class Probes:
         first: (9,) int64 the first pair of each section, and one after the last.
         mix: (7, 2 P) float32 the coefficients once more, all inner points before all outer ones: those of
             u for d, w, h, 1, and those of v for w, h, 1. So many points at a time are quick to place.
+        same: (2 P,) int64 the first of these points that lies where each one does, in its own section.
     """
 
     inner: Floats
@@ -47,6 +48,7 @@ class Probes:
     section: NDArray[np.int64]
     first: NDArray[np.int64]
     mix: Floats
+    same: NDArray[np.int64]
 
 
 def section_angles(config: ContourConfig) -> dict[int, tuple[float, float]]:
@@ -99,7 +101,14 @@ def build_probes(config: ContourConfig, size: float) -> Probes:
     points = np.concatenate([inner, outer])
     mix = np.concatenate([points[:, 0], points[:, 1, 1:]], axis=1)
     first = np.searchsorted(sections, np.arange(SECTIONS + 1))
-    return Probes(inner, outer, sections, first, np.ascontiguousarray(mix.T))
+    same = _firsts(np.column_stack([mix, np.tile(sections, 2), np.repeat([0, 1], len(sections))]))
+    return Probes(inner, outer, sections, first, np.ascontiguousarray(mix.T), same)
+
+
+def _firsts(rows: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Find the first (N,) of equal rows (N, M)."""
+    _, first, group = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    return np.asarray(first[group.reshape(-1)], np.int64)
 
 
 def body_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: float) -> Floats:

@@ -247,7 +247,7 @@ def _measured(
     grey = NO_GREY if covered[0] is None else COVERED
     missing = float(unseen[0]), float(unseen[1]), float(covered[0] or 0.0), float(covered[1])
     measured: tuple[Floats, Floats] = measure_sections(
-        image, state, probes.mix, probes.first, response, grey, missing, feet_gain
+        image, state, probes.mix, probes.same, probes.first, response, grey, missing, feet_gain
     )
     return measured
 

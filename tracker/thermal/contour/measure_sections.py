@@ -14,7 +14,7 @@ from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y, bodies_of
 
 ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
 UNKNOWN: Final = 1e-4  # share of a section's weight that is none
-LANES: Final = 16  # samples that are measured side by side, a few vectors of any processor
+LANES: Final = 32  # samples that are measured side by side, a few vectors of any processor
 
 
 @njit(cache=True, nogil=True)
@@ -22,6 +22,7 @@ def measure_sections(
     image: NDArray[np.uint8],
     state: Floats,
     mix: Floats,
+    same: NDArray[np.int64],
     first: NDArray[np.int64],
     response: Floats,
     covered_grey: int,
@@ -36,6 +37,7 @@ def measure_sections(
         image: (H, W) grey.
         state: (N, 9) samples.
         mix: (7, 2 P) of `Probes`.
+        same: (2 P,) of `Probes`.
         first: (9,) of `Probes`.
         response: (8, 511) what a difference of grey counts.
         covered_grey: grey of people in front; one that no pixel has in an image without such marks.
@@ -44,69 +46,131 @@ def measure_sections(
         feet_gain: factor on the response of the feet, which counts up to 1; 0 leaves it as it is.
     """
     result = np.empty((len(state), SECTIONS), dtype=np.float32)
-    known = np.empty((len(state), SECTIONS), dtype=np.float32)
-    lanes, at = np.empty((5, LANES), dtype=np.float32), np.empty((mix.shape[1], LANES), dtype=np.int32)
+    known = np.ones((len(state), SECTIONS), dtype=np.float32)
+    lanes, at = np.empty((6, LANES), dtype=np.float32), np.empty((mix.shape[1], LANES), dtype=np.int32)
     total, left = np.empty(LANES, dtype=np.float32), np.empty(LANES, dtype=np.float32)
     grey, counts = image.reshape(-1), response.reshape(-1)
     twin, bodies = bodies_of(state)
     for begin, end, rows in ((0, SHOULDER_LEFT, np.arange(len(state))), (SHOULDER_LEFT, SECTIONS, bodies)):
         for start in range(0, len(rows), LANES):
-            some = rows[start : start + LANES]
-            _load(lanes, state, some)
-            _locate(at, lanes, mix, first[begin], first[end], image.shape)
+            _load(lanes, state, rows, start)
+            is_in_view = _locate(at, lanes, mix, same, first[begin], first[end], image.shape)
             for j in range(begin, end):
-                _add_up(
-                    total[: len(some)],
-                    left,
-                    at,
-                    grey,
-                    counts,
-                    (j, first[j], first[j + 1]),
-                    covered_grey,
-                    missing,
-                )
-                for k in range(len(some)):
-                    value = min(np.float32(1), np.float32(feet_gain) * total[k])
-                    result[some[k], j] = value if j == FEET and feet_gain > 0 else total[k]
-                    known[some[k], j] = left[k]
+                section = j, first[j], first[j + 1]
+                if is_in_view and covered_grey < 0:
+                    _add_up_in_view(total, at, same, grey, counts, section)
+                else:
+                    count = min(LANES, len(rows) - start)
+                    _add_up(total[:count], left, at, same, grey, counts, section, covered_grey, missing)
+                    _put(known, left, rows, start, j)
+                if j == FEET and feet_gain > 0:
+                    for k in range(LANES):
+                        total[k] = min(np.float32(1), np.float32(feet_gain) * total[k])
+                _put(result, total, rows, start, j)
     for i in range(len(state)):
         if twin[i] >= 0:
-            for j in range(SHOULDER_LEFT, SECTIONS):
-                result[i, j], known[i, j] = result[twin[i], j], known[twin[i], j]
+            one, other = np.uint64(i), np.uint64(twin[i])
+            for j in range(np.uint64(SHOULDER_LEFT), np.uint64(SECTIONS)):
+                result[one, j], known[one, j] = result[other, j], known[other, j]
     return result, known
 
 
 @njit(cache=True, nogil=True)
-def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64]) -> None:
-    """Write x, y, d, w and h of the samples in some rows side by side, the last one until all lanes are full.
+def _put(table: Floats, values: Floats, rows: NDArray[np.int64], start: int, j: int) -> None:
+    """Write values (K,) into a column of a table (N, 8), in the rows from `start` on."""
+    for k in range(np.uint64(min(LANES, len(rows) - start))):
+        table[np.uint64(rows[np.uint64(start) + k]), np.uint64(j)] = values[k]
 
-    Pixels begin half a pixel before their centres.
+
+@njit(cache=True, nogil=True)
+def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64], start: int) -> None:
+    """Write x, y, d, w, h and x + d of samples side by side, those of some rows from `start` on.
+
+    The last one goes on until all lanes are full. Pixels begin half a pixel before their centres.
     """
     half = np.float32(0.5)
     for k in range(LANES):
-        i = rows[min(k, len(rows) - 1)]
+        i = np.uint64(rows[np.uint64(min(start + k, len(rows) - 1))])
         lanes[0, k], lanes[1, k] = state[i, X] + half, state[i, Y] + half
         lanes[2, k], lanes[3, k], lanes[4, k] = state[i, D], state[i, W], state[i, H]
+        lanes[5, k] = lanes[0, k] + lanes[2, k]
 
 
 @njit(cache=True, nogil=True)
 def _locate(
-    at: NDArray[np.int32], lanes: Floats, mix: Floats, begin: int, end: int, shape: tuple[int, int]
-) -> None:
-    """Write the pixels (2 P, K) of some pairs of points of the samples side by side, without branches."""
+    at: NDArray[np.int32],
+    lanes: Floats,
+    mix: Floats,
+    same: NDArray[np.int64],
+    begin: int,
+    end: int,
+    shape: tuple[int, int],
+) -> np.bool_:
+    """Write the pixels (2 P, K) of some pairs of points of the samples side by side, without branches.
+
+    Rows of points that lie where an earlier one lies stay as they are. Tells whether all are in the image.
+    """
     columns, right, bottom = np.int32(shape[1]), np.float32(shape[1]), np.float32(shape[0])
-    pairs = len(at) // 2
+    pairs, zero = len(at) // 2, np.float32(0)
+    lowest = np.zeros(LANES, dtype=np.int32)
     for side in (0, pairs):
         # Unsigned, as numba would ask of every other number whether it counts from the end.
         for q in range(np.uint64(side + begin), np.uint64(side + end)):
+            if same[q] != np.int64(q):
+                continue
             du, wu, hu, u0 = mix[0, q], mix[1, q], mix[2, q], mix[3, q]
             wv, hv, v0 = mix[4, q], mix[5, q], mix[6, q]
-            for k in range(np.uint64(LANES)):
-                u = lanes[0, k] + du * lanes[2, k] + wu * lanes[3, k] + hu * lanes[4, k] + u0
-                v = lanes[1, k] + wv * lanes[3, k] + hv * lanes[4, k] + v0
-                is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
-                outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
-                at[q, k] = np.int32(v) * columns + np.int32(u) if is_inside else outside
+            # Of head and feet, or of the body: what is multiplied by nothing is left out.
+            if wu == zero and wv == zero and (du == zero or du == np.float32(1)):
+                base = np.uint64(0) if du == zero else np.uint64(5)
+                for k in range(np.uint64(LANES)):
+                    u = lanes[base, k] + hu * lanes[4, k] + u0
+                    v = lanes[1, k] + hv * lanes[4, k] + v0
+                    at[q, k] = _pixel(u, v, columns, right, bottom)
+                    lowest[k] = min(lowest[k], at[q, k])
+            else:
+                for k in range(np.uint64(LANES)):
+                    u = lanes[0, k] + du * lanes[2, k] + wu * lanes[3, k] + hu * lanes[4, k] + u0
+                    v = lanes[1, k] + wv * lanes[3, k] + hv * lanes[4, k] + v0
+                    at[q, k] = _pixel(u, v, columns, right, bottom)
+                    lowest[k] = min(lowest[k], at[q, k])
+    is_in_view: np.bool_ = lowest.min() >= 0
+    return is_in_view
+
+
+@njit(cache=True, nogil=True)
+def _pixel(
+    u: np.float32, v: np.float32, columns: np.int32, right: np.float32, bottom: np.float32
+) -> np.int32:
+    """Number of the pixel in which a point lies."""
+    is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
+    outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
+    # Cut to 32 bits at once, or all of it would be reckoned with 64.
+    number = np.int32(np.int32(v) * columns + np.int32(u))
+    return number if is_inside else outside
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _add_up_in_view(
+    total: Floats,
+    at: NDArray[np.int32],
+    same: NDArray[np.int64],
+    grey: NDArray[np.uint8],
+    counts: Floats,
+    section: tuple[int, int, int],
+) -> None:
+    """Average what a section's pairs count (K,) where all of them are in view."""
+    j, begin, end = section
+    even, pairs, count = j * (2 * GREYS - 1) + GREYS - 1, np.uint64(len(at) // 2), np.float32(end - begin)
+    total[:] = 0
+    for p in range(np.uint64(begin), np.uint64(end)):
+        one, other = np.uint64(same[p]), np.uint64(same[p + pairs])
+        for k in range(np.uint64(LANES)):
+            inside, outside = np.int64(grey[np.uint64(at[one, k])]), np.int64(grey[np.uint64(at[other, k])])
+            total[k] += counts[np.uint64(even + inside - outside)]
+    if count > 0:
+        for k in range(LANES):
+            total[k] /= count
 
 
 # Without numpy's rules a kernel would test every division.
@@ -115,6 +179,7 @@ def _add_up(
     total: Floats,
     left: Floats,
     at: NDArray[np.int32],
+    same: NDArray[np.int64],
     grey: NDArray[np.uint8],
     counts: Floats,
     section: tuple[int, int, int],
@@ -133,8 +198,9 @@ def _add_up(
     unseen_lacks, covered_lacks = np.float32(1) - unseen_share, np.float32(1) - covered_share
     total[:], left[:] = 0, 1
     for p in range(np.uint64(begin), np.uint64(end)):
+        mine, its = np.uint64(same[p]), np.uint64(same[p + pairs])
         for k in range(np.uint64(len(total))):
-            one, other = at[p, k], at[p + pairs, k]
+            one, other = at[mine, k], at[its, k]
             if (one | other) < 0:
                 if one == ELSEWHERE or other == ELSEWHERE:
                     total[k] += elsewhere
@@ -230,7 +296,7 @@ def share_in_view(
 @njit(cache=True, nogil=True)
 def locate_points(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, height: int) -> None:
     """Write the pixels of `pixels_under` a contour (9,) into (2 P,)."""
-    lanes, pixels = np.empty((5, LANES), dtype=np.float32), np.empty((len(at), LANES), dtype=np.int32)
-    _load(lanes, sample.reshape(1, -1), np.zeros(1, dtype=np.int64))
-    _locate(pixels, lanes, mix, 0, len(at) // 2, (height, width))
+    lanes, pixels = np.empty((6, LANES), dtype=np.float32), np.empty((len(at), LANES), dtype=np.int32)
+    _load(lanes, sample.reshape(1, -1), np.zeros(1, dtype=np.int64), 0)
+    _locate(pixels, lanes, mix, np.arange(len(at)), 0, len(at) // 2, (height, width))
     at[:] = pixels[:, 0]
