@@ -6,6 +6,7 @@ import json
 import shutil
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import TracebackType
@@ -16,8 +17,9 @@ import yaml
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed, in_one_line, traceback_of
 from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.behind import Behind
 from peopleboy.scenarios.run_folder.camera_truth import CameraTruth, further_cameras, gt_lines, open_text
-from peopleboy.scenarios.run_folder.image_files import make_image_folders, write_images
+from peopleboy.scenarios.run_folder.image_files import images_to_write, make_image_folders, write_png
 from peopleboy.scenarios.run_folder.out_folder import check_out, writing_to
 from peopleboy.scenarios.run_folder.tables import (
     ROBOT,
@@ -75,6 +77,7 @@ class RunFolder:
         self._further = {name: CameraTruth(path / "truth", name) for name in further_cameras(cameras)}
         self._results = {THERMAL: self._open("tracks.txt")}
         self._events = self._open("events.jsonl")
+        self._images = Behind()
 
     def __enter__(self) -> RunFolder:
         return self
@@ -82,6 +85,7 @@ class RunFolder:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._images.close()
         for file in self._texts():
             file.close()
         for camera in self._further.values():
@@ -94,7 +98,11 @@ class RunFolder:
         self._write_json("run.json", {**state, "frames": len(self._robot), **self._about})
 
     def write(self, tick: Tick, events: Sequence[Mapping[str, Any]]) -> None:
-        """Write one tick and what happened at it."""
+        """Write one tick and what happened at it; images are written behind the run, in order.
+
+        Raises:
+            BadInput: an image, of this tick or an earlier one, cannot be written.
+        """
         self._truth += truth_rows(tick)
         self._tracks += track_rows(tick)
         self._robot.append(robot_row(tick))
@@ -105,7 +113,8 @@ class RunFolder:
         self._write_boxes(tick)
         self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
         if self._writes_frames:
-            write_images(self.path, tick.frame, tick.observation, self._cameras)
+            for path, image in images_to_write(self.path, tick.frame, tick.observation, self._cameras):
+                self._images.add(partial(write_png, path, image))
 
     def complete(self, metrics: Mapping[str, Any]) -> None:
         """Write the metrics; the run is whole."""
@@ -113,7 +122,12 @@ class RunFolder:
         self._is_complete = True
 
     def flush(self) -> None:
-        """Bring all files to disk, so that the run can be scored."""
+        """Bring all files to disk, so that the run can be scored.
+
+        Raises:
+            BadInput: an image cannot be written.
+        """
+        self._images.flush()
         self._write_tables()
         for file in self._texts():
             file.flush()

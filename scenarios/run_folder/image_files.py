@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import cv2
@@ -27,9 +27,17 @@ def write_images(folder: Path, frame: int, senses: Observation, cameras: Mapping
     Raises:
         BadInput: one cannot be written.
     """
+    for path, image in images_to_write(folder, frame, senses, cameras):
+        write_png(path, image)
+
+
+def images_to_write(
+    folder: Path, frame: int, senses: Observation, cameras: Mapping[str, CameraConfig]
+) -> Iterator[tuple[Path, Stored]]:
+    """Give a frame's images as they are stored, and where."""
     for name, image, layer in image_folders(cameras):
         if image in senses.images:
-            write_png(folder / name / image_file(frame), layer.encode(senses.images[image]))
+            yield folder / name / image_file(frame), layer.encode(senses.images[image])
 
 
 def image_file(frame: int) -> str:

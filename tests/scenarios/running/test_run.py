@@ -5,6 +5,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import pyarrow.parquet as pq
 import pytest
 import yaml
@@ -148,6 +149,23 @@ def test_nobody_is_a_sensible_run(tmp_path: Path) -> None:
     path = write_scene(tmp_path / "tiny.yaml", people=[], duration_s=0.4)
     assert run_cli("run", path, "--out", tmp_path / "run", "--no-rrd") == 0
     assert (tmp_path / "run" / "truth" / "gt.txt").read_text() == ""
+
+
+def test_a_run_whose_images_cannot_be_written_fails_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cv2, "imwrite", lambda path, *_: not path.endswith("thermal16/000003.png"))
+    ticks: list[int] = []
+    with refused("thermal16/000003.png", "is the disk full?"):
+        run(
+            parse_scenario(scene(), source="tiny", folder=tmp_path),
+            RunOptions(seed=0, out=tmp_path / "run", frames=True, record=False),
+            lambda tick, _: ticks.append(tick.frame),
+        )
+    assert len(ticks) < 30  # frames of the scenario
+    about = json.loads((tmp_path / "run" / "run.json").read_text())
+    assert about["status"] == "failed"
+    assert "is the disk full?" in about["error"]["message"]
 
 
 def test_an_interrupted_run_says_so_and_stays_readable(tmp_path: Path) -> None:
