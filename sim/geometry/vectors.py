@@ -49,7 +49,7 @@ def compose(a: Array, b: Array, product: Array) -> None:
         product[i, 3] += a[i, 3]
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=False)
 def map_point(pose: Array, x: float, y: float, z: float) -> Point:
     """Map one point by a pose."""
     return (

@@ -67,7 +67,7 @@ def light_on_floor(lens: Lens, world_from_camera: Array, prints: Array) -> NDArr
     return light
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=False)
 def _reached(row: Array, lens: Lens, pose: Array) -> Rectangle:
     """Every fourth pixel, in row and column, that may see what a footprint (9,) takes light from."""
     reach = row[6] + REACH_M

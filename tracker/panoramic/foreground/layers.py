@@ -230,19 +230,19 @@ def _unmix(sums: Linear, units: Linear, biases: Linear, dilation: int, grown: Li
                 new3[u] = old3[u] + max(odd + np.float32(4.0) * odd2 + sum5[u] + bias, zero)
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=False)
 def _first_row(block: int, dilation: int) -> int:
     """Tell in which row of the units a block begins."""
     return _BORDER + block // dilation * _HIGH * dilation + block % dilation
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=False)
 def _bordered(number: int, rows: int, columns: int) -> Linear:
     whole = _HIGH * _BORDER
     return np.empty((number, -(-rows // whole) * whole + 2 * _BORDER, columns + 2 * _BORDER), np.float32)
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=False)
 def _close(units: Linear, rows: int) -> None:
     """Empty the rows above and below the image, and carry those of the image on over the seam."""
     columns = units.shape[2] - 2 * _BORDER

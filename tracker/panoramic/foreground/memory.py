@@ -170,7 +170,7 @@ def _split(line: NDArray[np.uint8], colours: Linear) -> None:
         red[u], green[u], blue[u] = pixels[at], pixels[at + one], pixels[at + one + one]
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=False)
 def _close(line: Linear, ring: Linear) -> None:
     """Copy a line (W,) and the pixel beyond each of its ends (W + 2,)."""
     width = len(line)

@@ -1,0 +1,83 @@
+"""`python -m benchmarks.speed.against OTHER_CHECKOUT`: how much faster runs are here than in another checkout.
+
+Both take turns on this machine, each in a process and with caches of its own, so that other work slows both.
+The other one may be older than the package's present layout; its first turn compiles, and is not counted.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+from typing import Final
+
+import click
+
+HERE: Final = Path(__file__).parents[2]
+SCENARIO: Final = "crossing_pair"
+_CODE: Final = f"""
+import json
+try:
+    from benchmarks.speed.closed_loop import loop_speed, run_speed
+except ImportError:
+    from benchmarks.closed_loop import loop_speed, run_speed
+print(json.dumps([loop_speed("{SCENARIO}"), run_speed("{SCENARIO}")]))
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Gain:
+    """How many times as fast two people are run here as there, in CPU time.
+
+    Attributes:
+        loop: the closed loop: world, images, truth, tracker and behaviour.
+        run: the same with tables, contact sheet and recording written.
+    """
+
+    loop: float
+    run: float
+
+
+def gain_over(other: Path, rounds: int) -> Gain:
+    """Measure both in turn, and give the medians of what came of each turn."""
+    _speeds(other)
+    turns = [(_speeds(HERE), _speeds(other)) for _ in range(rounds)]
+    loop, run = (median(here[which] / there[which] for here, there in turns) for which in (0, 1))
+    return Gain(loop, run)
+
+
+def _speeds(checkout: Path) -> list[float]:
+    """Run a checkout's own measurement of loop and run, in multiples of real time."""
+    where = os.pathsep.join((str(checkout / "src"), str(checkout)))
+    done = subprocess.run(
+        [sys.executable, "-c", _CODE],
+        cwd=checkout,
+        env={**os.environ, "PYTHONPATH": where},
+        stdout=subprocess.PIPE,
+        check=True,
+        text=True,
+    )
+    loop, run = json.loads(done.stdout.splitlines()[-1])
+    return [float(loop), float(run)]
+
+
+@click.command()
+@click.argument(
+    "other",
+    type=click.Path(exists=True, file_okay=False, path_type=Path, resolve_path=True),
+    metavar="OTHER_CHECKOUT",
+)
+@click.option("--rounds", default=3, show_default=True, help="How often both are timed.")
+def main(other: Path, rounds: int) -> None:
+    """Tell how many times as fast as in OTHER_CHECKOUT two people are run here."""
+    gain = gain_over(other, rounds)
+    print(f"closed loop, two people: {gain.loop:.2f} times as fast")
+    print(f"with tables, contact sheet and recording: {gain.run:.2f} times as fast")
+
+
+if __name__ == "__main__":
+    main()
