@@ -1,4 +1,4 @@
-"""`python -m benchmarks.speed.against OTHER_CHECKOUT`: how much faster runs are here than in another checkout.
+"""`python -m benchmarks.speed.against OTHER_CHECKOUT`: how much faster runs are here than in another one.
 
 Both take turns on this machine, each in a process and with caches of its own, so that other work slows both.
 The other one may be older than the package's present layout; its first turn compiles, and is not counted.
