@@ -46,7 +46,7 @@ def write_part_means(
         least_seen: share of the part's area that must lie in the image.
     """
     height, width, channels, degree = integral.shape
-    sums, step = integral.reshape(-1), channels * degree
+    sums, step, first_column = integral.reshape(-1), channels * degree, np.uint64(column)
     twin, bodies = bodies_of(state)
     corners, share = np.empty((4, len(state)), dtype=np.int32), np.empty(len(state))
     for first, end, rows in ((HEAD, TORSO, np.arange(len(state))), (TORSO, PARTS, bodies)):
@@ -54,13 +54,14 @@ def write_part_means(
         for part in range(first, end):
             _locate(corners, share, shape, part, alignment, width - 1, height - 1, least_seen)
             for n in range(np.uint64(len(rows))):
-                found, factor = means[rows[n], part, column:], scale[part, column:]
+                row = np.uint64(rows[n])
                 plus, minus = (corners[0, n], corners[1, n]), (corners[2, n], corners[3, n])
                 for c in range(np.uint64(channels)):
                     at = np.int64(c) * degree
                     total = _sum_at(sums, plus[0] * step + at) + _sum_at(sums, plus[1] * step + at)
                     total -= _sum_at(sums, minus[0] * step + at) + _sum_at(sums, minus[1] * step + at)
-                    found[c] = np.float32(total * share[n] / WHITE) * factor[c]
+                    mean = np.float32(total * share[n] / WHITE)
+                    means[row, part, first_column + c] = mean * scale[part, first_column + c]
     for i in range(len(state)):
         if twin[i] >= 0:  # nothing but the head lies elsewhere for another d
             for part in range(TORSO, PARTS):
@@ -118,10 +119,13 @@ def _locate(
         edges = align(alignment, part_rectangle(x, y, w, h, d, part), h)
         left, top = first_pixel_after(edges[0]), first_pixel_after(edges[1])
         right, bottom = first_pixel_after(edges[2]), first_pixel_after(edges[3])
-        area = np.float64(max(right - left, none)) * np.float64(max(bottom - top, none))
+        wide, tall = np.int32(right - left), np.int32(bottom - top)
+        area = np.float64(max(wide, none)) * np.float64(max(tall, none))
         left, top = min(max(left, none), most_right), min(max(top, none), most_down)
         right, bottom = max(left, min(right, most_right)), max(top, min(bottom, most_down))
-        pixels = (right - left) * (bottom - top)
+        # Cut to 32 bits at once, or numba would reckon with 64.
+        pixels = np.int32((right - left) * (bottom - top))
         share[n] = 1.0 / pixels if (pixels > 0) & (pixels >= least_seen * area) else np.nan
-        corners[0, n], corners[1, n] = bottom * columns + right, top * columns + left
-        corners[2, n], corners[3, n] = top * columns + right, bottom * columns + left
+        upper, lower = np.int32(top * columns), np.int32(bottom * columns)
+        corners[0, n], corners[1, n] = np.int32(lower + right), np.int32(upper + left)
+        corners[2, n], corners[3, n] = np.int32(upper + right), np.int32(lower + left)
