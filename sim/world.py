@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from functools import partial
 from types import TracebackType
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
 from peopleboy.sim.cameras.sensors import Glimpse
-from peopleboy.sim.cameras.surfaces import make_material_table
+from peopleboy.sim.cameras.surfaces import MaterialTable, make_material_table
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Pinhole
@@ -34,7 +36,7 @@ from peopleboy.sim.robot.robot_body import NAME as ROBOT
 from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.robot.robot_materials import robot_material
 from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.shapes.shape_table import make_shape_table
+from peopleboy.sim.shapes.shape_table import ShapeTable, make_shape_table
 from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.bystanders import bystanders
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
@@ -107,6 +109,25 @@ class World:
         return self._physics
 
     @property
+    def table(self) -> ShapeTable:
+        """All that cameras see; there must be images."""
+        return self._table
+
+    @property
+    def looks(self) -> MaterialTable:
+        """How its parts look."""
+        return self._materials
+
+    def due(self) -> tuple[str, ...]:
+        """Names of the cameras that take an image now; there must be images."""
+        return self._rig.due(self._tick)
+
+    @property
+    def rig(self) -> Rig:
+        """The robot's cameras; there must be images."""
+        return self._rig
+
+    @property
     def touching(self) -> tuple[str, ...]:
         """Names of what the robot touches, the floor aside."""
         return tuple(sorted(self._touching)) if self._touching else ()
@@ -128,11 +149,13 @@ class World:
         self._check_sight()
         return self.with_images(self.sense())
 
-    def with_images(self, senses: Senses) -> Observation:
-        """Add the images of this instant, which are made when they are asked for, to the other senses."""
+    def with_images(
+        self, senses: Senses, images: Mapping[str, NDArray[Any]] | None = None
+    ) -> Observation:
+        """Add the images of this instant to the other senses; None for those made here when asked for."""
         return Observation(
             time_s=senses.time_s,
-            images=self._rig.read(self._tick),
+            images=self._rig.read(self._tick) if images is None else images,
             sonar_m=senses.sonar_m,
             odometry=senses.odometry,
             wheel_speeds_m_s=senses.wheel_speeds_m_s,

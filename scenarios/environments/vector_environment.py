@@ -14,6 +14,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv, check_actions
 from peopleboy.scenarios.environments.join_infos import Infos, join_infos
 from peopleboy.scenarios.environments.observations import Arrays
+from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.together import Together
 
 Flags = NDArray[np.bool_]
@@ -32,6 +33,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
 
     Args:
         num_envs: B.
+        threads: that draw images; None for as many as there are processors. They change no byte.
         settings: as for `PeopleBoyEnv`, but `render_mode`.
 
     Raises:
@@ -42,12 +44,15 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         "render_modes": [], "render_fps": 15, "autoreset_mode": AutoresetMode.NEXT_STEP
     }  # fmt: skip
 
-    def __init__(self, num_envs: int = 1, **settings: Any) -> None:
+    def __init__(self, num_envs: int = 1, *, threads: int | None = None, **settings: Any) -> None:
         if num_envs < 1:
             raise BadInput(f"num_envs {num_envs}: must be 1 or more")
         if settings.get("render_mode") is not None:
             raise BadInput("render_mode: many worlds draw no pictures; leave it out, or take one environment")
+        if threads is not None and threads < 1:
+            raise BadInput(f"threads {threads}: must be 1 or more, or None for as many as there are processors")
         self.num_envs = num_envs
+        self._crew = Crew(threads)
         self._envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))
         self.single_action_space = self._envs[0].action_space
         self.single_observation_space = self._envs[0].observation_space
@@ -123,13 +128,14 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         """Free all worlds."""
         for env in self._envs:
             env.close()
+        self._crew.close()
 
     def _step_together(self, actions: Sequence[tuple[float, float]]) -> dict[int, Result]:
         """Step the worlds whose episodes are under way; gives what each environment says, by its number."""
         going = {number: env for number, env in enumerate(self._envs) if not self._is_over[number]}
         commands = {number: env.begin_step(actions[number]) for number, env in going.items()}
         if self._together is None:
-            self._together = Together([env.world for env in self._envs])
+            self._together = Together([env.world for env in self._envs], self._crew)
         instants = self._together.step(
             {number: (command.linear_m_s, command.angular_rad_s) for number, command in commands.items()}
         )

@@ -36,17 +36,17 @@ def rotation_blur(image: Image, camera: Pinhole, turned_rad: float) -> Image:
     Returns:
         An image of the same shape, each pixel the mean over its sweep, which is centred on the pixel.
     """
-    sweep = _sweep_of_one_rad(camera) * abs(turned_rad)
+    sweep = sweep_of_one_rad(camera) * abs(turned_rad)
     if sweep.max() < 0.05:
         return image
     lines = image.reshape(image.shape[0], -1)
     channels = lines.shape[1] // camera.width
-    weights = np.repeat(_sweep_weights(sweep), channels, axis=1)
-    return _weighted_sum(lines, weights, channels).reshape(image.shape)
+    weights = np.repeat(sweep_weights(sweep), channels, axis=1)
+    return weighted_sum(lines, weights, channels).reshape(image.shape)
 
 
 @lru_cache(maxsize=16)
-def _sweep_of_one_rad(camera: Pinhole) -> NDArray[np.float64]:
+def sweep_of_one_rad(camera: Pinhole) -> NDArray[np.float64]:
     """(W,) [px] that each column would sweep if the camera turned by 1 rad at this rate."""
     x = (np.arange(camera.width) - camera.centre_px[0]) / camera.focal_px
     sweep: NDArray[np.float64] = camera.focal_px * (1.0 + x * x)
@@ -55,7 +55,7 @@ def _sweep_of_one_rad(camera: Pinhole) -> NDArray[np.float64]:
 
 
 @njit(cache=True)
-def _sweep_weights(sweep: NDArray[np.float64]) -> Image:
+def sweep_weights(sweep: NDArray[np.float64]) -> Image:
     """(2 K + 1, W) weight of the pixels -K..K columns away in the mean of each column over its sweep [px].
 
     Between pixels the image is taken as linear, so a weight is the mean of a hat function over the sweep.
@@ -82,7 +82,7 @@ def hat_integral(end: float) -> float:
 
 
 @njit(cache=True, fastmath=True)
-def _weighted_sum(lines: Image, weights: Image, channels: int) -> Image:
+def weighted_sum(lines: Image, weights: Image, channels: int) -> Image:
     """Sum each value of the (H, W C) lines and its neighbours, weighted by (2 K + 1, W C)."""
     height, length = lines.shape
     farthest = weights.shape[0] // 2

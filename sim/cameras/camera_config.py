@@ -147,6 +147,13 @@ class ThermalConfig(CameraConfig):
         """Whether an automatic gain follows the images, or a shutter stops them."""
         return self.shutter_every_s > 0.0 or (self.gain != "fixed" and self.gain_follows_s > 0.0)
 
+    @property
+    def is_simple(self) -> bool:
+        """Whether an image is its scene, its noise and a fixed gain, and nothing else."""
+        changes = self.offset_drift_k_per_min, self.column_noise_k, self.shutter_every_s, self.sharpening
+        has_changes = any(value > 0.0 for value in (*changes, self.coring_k))
+        return self.gain == "fixed" and self.jpeg_quality is None and not has_changes
+
     def resized(self, width: int, height: int) -> Self:
         """The same camera with images of another size [px], of the same height of view and as sharp."""
         camera, larger = replace(self.camera, width=width, height=height), height / self.camera.height

@@ -138,7 +138,7 @@ def _light_row(
 
 
 @njit(cache=True, fastmath=True)
-def _radiance_image(
+def light_image(
     part: NDArray[np.int32],
     depth: NDArray[np.float32],
     normal: NDArray[np.float32],
@@ -196,7 +196,7 @@ def _gamma_table() -> NDArray[np.uint8]:
     return np.rint(coded * 255.0).astype(np.uint8)
 
 
-_GAMMA = _gamma_table()
+GAMMA = _gamma_table()
 
 
 def colour_image(
@@ -228,7 +228,7 @@ def colour_image(
     level, camera = light_level * config.gain, config.camera
 
     def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
-        return _radiance_image(
+        return light_image(
             one.part, one.depth, one.normal, matrices,
             materials.colour, materials.kind, materials.period, materials.phase,
             materials.finish, materials.texels, materials.paint, materials.paint_texels, LIGHT, level,
@@ -248,11 +248,11 @@ def colour_image(
 def expose(linear: NDArray[np.float32], config: LightConfig, rng: np.random.Generator) -> NDArray[np.uint8]:
     """Add read and shot noise to an (H, W, 3) linear image and encode it as 8-bit sRGB."""
     noise = gaussian(linear.shape, rng)
-    return _encode(linear, noise, _GAMMA, np.float32(config.read_noise), np.float32(config.shot_noise))
+    return encode(linear, noise, GAMMA, np.float32(config.read_noise), np.float32(config.shot_noise))
 
 
 @njit(cache=True, fastmath=True)
-def _encode(
+def encode(
     linear: NDArray[np.float32],
     noise: NDArray[np.float32],
     gamma: NDArray[np.uint8],

@@ -18,7 +18,7 @@ def _quantiles() -> NDArray[np.float32]:
     return np.asarray(values / values.std(), np.float32)
 
 
-_QUANTILES = _quantiles()
+QUANTILES = _quantiles()
 
 
 def gaussian(shape: tuple[int, ...], rng: np.random.Generator) -> NDArray[np.float32]:
@@ -28,7 +28,7 @@ def gaussian(shape: tuple[int, ...], rng: np.random.Generator) -> NDArray[np.flo
     exact draws, and no detector's picture shows the difference.
     """
     noise = np.empty(math.prod(shape), np.float32)
-    _look_up(_QUANTILES, _words(shape, rng), noise)
+    look_up(QUANTILES, random_words(shape, rng), noise)
     return noise.reshape(shape)
 
 
@@ -50,16 +50,16 @@ def skip_smooth_gaussian(shape: tuple[int, int], patch_px: int, rng: np.random.G
 
 def skip_gaussian(shape: tuple[int, ...], rng: np.random.Generator) -> None:
     """Leave the generator as `gaussian` would."""
-    _words(shape, rng)
+    random_words(shape, rng)
 
 
-def _words(shape: tuple[int, ...], rng: np.random.Generator) -> NDArray[np.uint64]:
+def random_words(shape: tuple[int, ...], rng: np.random.Generator) -> NDArray[np.uint64]:
     """Draw 16 random bits for each value of an image, four values to a word."""
     return rng.integers(0, 2**64, -(-math.prod(shape) // 4), dtype=np.uint64)
 
 
 @njit(cache=True)
-def _look_up(quantiles: NDArray[np.float32], words: NDArray[np.uint64], noise: NDArray[np.float32]) -> None:
+def look_up(quantiles: NDArray[np.float32], words: NDArray[np.uint64], noise: NDArray[np.float32]) -> None:
     """Fill the noise from quarters of random words."""
     for i in range(noise.shape[0]):
         quarter = words[i >> 2] >> np.uint64(16 * (i & 3))

@@ -8,7 +8,7 @@ from functools import partial
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import image_names, kind_of, name_images
-from peopleboy.sim.cameras.sensors import Glimpse, Image
+from peopleboy.sim.cameras.sensors import Glimpse, Image, Sensor
 from peopleboy.sim.on_demand import OnDemand
 
 
@@ -62,6 +62,14 @@ class Rig:
         owner = {image: name for name in due for image in image_names(name, self._cameras[name])}
         return OnDemand(owner, lambda image: shots[owner[image]][image])
 
+    def take_over(self, name: str) -> Sensor:
+        """Give the sensor of a camera to who takes its image of this instant now."""
+        sensor = self._sensors[name]
+        for _ in range(self._unread[name] - 1):
+            sensor.skip()
+        self._unread[name] = 0
+        return sensor
+
     def forget(self) -> None:
         """Let nobody ask any more for images of the last reading."""
         self._reading += 1
@@ -72,8 +80,5 @@ class Rig:
                 f"camera {name!r}: the image of an instant that is over was not asked for while it lasted; "
                 "read it before the next step or observation"
             )
-        sensor, config = self._sensors[name], self._cameras[name]
-        for _ in range(self._unread[name] - 1):
-            sensor.skip()
-        self._unread[name] = 0
-        return name_images(name, config, sensor.take(self._look(config)))
+        config = self._cameras[name]
+        return name_images(name, config, self.take_over(name).take(self._look(config)))

@@ -24,10 +24,10 @@ from peopleboy.sim.cameras.depth_image import to_millimetres
 from peopleboy.sim.cameras.electronics.drift import Drift
 from peopleboy.sim.cameras.electronics.gain import Gain
 from peopleboy.sim.cameras.electronics.output import compress, sharpen
-from peopleboy.sim.cameras.noise import skip_gaussian
+from peopleboy.sim.cameras.noise import random_words, skip_gaussian
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.surfaces import MaterialTable
-from peopleboy.sim.cameras.thermal import detect, make_detector, surface_image
+from peopleboy.sim.cameras.thermal import Detector, detect, make_detector, surface_image
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
@@ -93,6 +93,15 @@ class ThermalSensor:
         self._gain = Gain(config)
         self._last: tuple[Image, ...] = ()
 
+    @property
+    def detector(self) -> Detector:
+        """What it does wrong in the same way all through a run."""
+        return self._detector
+
+    def draw_noise(self) -> NDArray[np.uint64]:
+        """Random words of the noise of one image."""
+        return random_words(self._detector.dead.shape, self._noise)
+
     def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
         """Take the (H, W) images of an instant: uint8, float32."""
         if not self._last or not self._drift.is_closed(glimpse.time_s):
@@ -125,6 +134,11 @@ class ColourSensor:
     def __init__(self, config: ColourConfig, name: str, seed: int) -> None:
         self._config = config
         self._noise = stream(seed, f"{name}.noise")
+
+    def draw_noise(self) -> NDArray[np.uint64]:
+        """Random words of the noise of one image."""
+        camera = self._config.camera
+        return random_words((camera.height, camera.width, 3), self._noise)
 
     def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
         """Take the (H, W, 3) uint8 image of an instant."""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.paintings import make_paint_table
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.geometry.products import multiply
 from peopleboy.sim.shapes.finishes import TEXEL_STEP, Finish
 from peopleboy.sim.shapes.materials import Material, PatternKind
 from peopleboy.sim.shapes.paintings import Painting
@@ -120,16 +121,30 @@ def part_from_pixel(camera: Pinhole, world_from_camera: Matrix, world_from_part:
     Returns:
         (P, 3, 4): the point of part p at pixel (u, v) and depth z is M[:, :3] @ (u z, v z, z) + M[:, 3].
     """
-    rotation = np.swapaxes(world_from_part[:, :3, :3], 1, 2)
-    matrices = np.empty((len(world_from_part), 3, 4))
-    matrices[:, :, :3] = rotation @ (world_from_camera[:3, :3] @ _rays(camera))
-    offset = world_from_camera[:3, 3] - world_from_part[:, :3, 3]
-    matrices[:, :, 3] = np.einsum("pij,pj->pi", rotation, offset)
+    matrices: Matrix = combine(rays_through(camera), world_from_camera, world_from_part)
+    return matrices
+
+
+@njit(cache=True, nogil=True)
+def combine(rays: Matrix, world_from_camera: Matrix, world_from_part: Matrix) -> Matrix:
+    """Do the same, by the camera's `rays_through`."""
+    matrices, world_from_pixel = np.empty((len(world_from_part), 3, 4)), np.empty((3, 3))
+    multiply(world_from_camera[:3, :3], rays, world_from_pixel)
+    for part in range(len(world_from_part)):
+        pose, matrix = world_from_part[part], matrices[part]
+        multiply(pose[:3, :3].T, world_from_pixel, matrix[:, :3])
+        x, y, z = (
+            world_from_camera[0, 3] - pose[0, 3],
+            world_from_camera[1, 3] - pose[1, 3],
+            world_from_camera[2, 3] - pose[2, 3],
+        )
+        for i in range(3):
+            matrix[i, 3] = pose[0, i] * x + pose[1, i] * y + pose[2, i] * z
     return matrices
 
 
 @lru_cache(maxsize=16)
-def _rays(camera: Pinhole) -> Matrix:
+def rays_through(camera: Pinhole) -> Matrix:
     """(3, 3): the ray through pixel (u, v) in the optical frame is this @ (u, v, 1)."""
     rays = np.asarray(np.linalg.inv(camera.intrinsics), np.float64)
     rays.setflags(write=False)

@@ -33,7 +33,7 @@ from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.finishes import TEXEL_STEP
 
 _CONTRAST = 2.0  # [W / (m2 sr)] about three kelvin: behind the blur fainter edges show no stairs
-_LOWEST_C, _HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
+LOWEST_C, HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
 
 
 def band_radiance(temperature_c: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -54,22 +54,22 @@ def band_radiance(temperature_c: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _tables() -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
     """Return radiance by temperature, temperature by radiance, and the span of that radiance."""
-    temperature = np.arange(_LOWEST_C, _HIGHEST_C + _STEP_K, _STEP_K)
+    temperature = np.arange(LOWEST_C, HIGHEST_C + _STEP_K, _STEP_K)
     radiance = band_radiance(temperature)
     grid = np.linspace(radiance[0], radiance[-1], 16384)
     return radiance, np.interp(grid, radiance, temperature), float(radiance[0]), float(radiance[-1])
 
 
-_RADIANCE, _TEMPERATURE, _DIMMEST, _BRIGHTEST = _tables()
+RADIANCE, TEMPERATURE, DIMMEST, BRIGHTEST = _tables()
 
 
-_MIDDLE_C, _HALF_K = (_LOWEST_C + _HIGHEST_C) / 2.0, (_HIGHEST_C - _LOWEST_C) / 2.0
+_MIDDLE_C, _HALF_K = (LOWEST_C + HIGHEST_C) / 2.0, (HIGHEST_C - LOWEST_C) / 2.0
 
 
 def _polynomial() -> list[np.float32]:
     """Coefficients of radiance by the temperature, as -1..1 between the coldest and the hottest."""
-    x = np.linspace(-1.0, 1.0, len(_RADIANCE))
-    fitted = np.polynomial.Chebyshev.fit(x, _RADIANCE, 6).convert(kind=np.polynomial.Polynomial)
+    x = np.linspace(-1.0, 1.0, len(RADIANCE))
+    fitted = np.polynomial.Chebyshev.fit(x, RADIANCE, 6).convert(kind=np.polynomial.Polynomial)
     return [np.float32(value) for value in fitted.coef]
 
 
@@ -77,7 +77,7 @@ _B0, _B1, _B2, _B3, _B4, _B5, _B6 = _polynomial()
 
 
 @lru_cache(maxsize=16)
-def _mirrored(surroundings_c: float) -> float:
+def mirrored(surroundings_c: float) -> float:
     """Band radiance of the surroundings, the same in every image of a run."""
     return float(band_radiance(np.array([surroundings_c]))[0])
 
@@ -164,7 +164,7 @@ def _radiate_row(
 
 
 @njit(cache=True, fastmath=True)
-def _radiance_image(
+def radiance_image(
     part: NDArray[np.int32],
     depth: NDArray[np.float32],
     matrices: NDArray[np.float64],
@@ -190,24 +190,59 @@ def _radiance_image(
                 texels, paint, paint_texels, surroundings,
             )  # fmt: skip
         return image
+    temperatures = np.empty(width)
     for v in range(height):
-        for u in range(width):
-            p = part[v, u]
-            if p < 0:
-                image[v, u] = surroundings
-                continue
-            temperature = thermal[p, 0]
-            if thermal[p, 2] != 0.0 or thermal[p, 4] != 0.0:
-                x, y, z = surface_point(matrices, p, u, v, depth[v, u])
-                temperature += thermal[p, 2] * smooth_variation(x, y, z, thermal[p, 3], phase, p)
-                temperature += thermal[p, 4] * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
-            emitted = _look_up(table, span[0], span[1], temperature)
-            image[v, u] = thermal[p, 1] * emitted + (1.0 - thermal[p, 1]) * surroundings
+        _radiate_plain_row(
+            image[v], temperatures, v, part[v], depth[v], matrices, thermal, kind, period, phase, table,
+            surroundings, span,
+        )  # fmt: skip
     return image
 
 
 @njit(cache=True, fastmath=True)
-def _apparent_c(radiance: NDArray[np.float32], table: NDArray[np.float64], low: float, high: float) -> None:
+def _radiate_plain_row(
+    image: NDArray[np.float32],
+    temperatures: NDArray[np.float64],
+    v: int,
+    part: NDArray[np.int32],
+    depths: NDArray[np.float32],
+    matrices: NDArray[np.float64],
+    thermal: NDArray[np.float64],
+    kind: NDArray[np.int64],
+    period: NDArray[np.float64],
+    phase: NDArray[np.float64],
+    table: NDArray[np.float64],
+    surroundings: float,
+    span: tuple[float, float],
+) -> None:
+    """Fill a row (W,) in plain detail, neighbouring pixels of one part together; `temperatures` is space."""
+    width, end = len(part), 0
+    while end < width:
+        first, p = end, part[end]
+        while end < width and part[end] == p:
+            end += 1
+        if p < 0:
+            image[first:end] = np.float32(surroundings)
+            continue
+        base, varies, waves, contrast = thermal[p, 0], thermal[p, 2], thermal[p, 3], thermal[p, 4]
+        if varies == 0.0 and contrast == 0.0:
+            emitted = thermal[p, 1] * _look_up(table, span[0], span[1], base)
+            image[first:end] = np.float32(emitted + (1.0 - thermal[p, 1]) * surroundings)
+            continue
+        for u in range(first, end):
+            x, y, z = surface_point(matrices, p, u, v, depths[u])
+            temperatures[u] = base + varies * smooth_variation(x, y, z, waves, phase, p)
+        if contrast != 0.0:
+            for u in range(first, end):
+                x, y, z = surface_point(matrices, p, u, v, depths[u])
+                temperatures[u] += contrast * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
+        for u in range(first, end):
+            emitted = _look_up(table, span[0], span[1], temperatures[u])
+            image[u] = thermal[p, 1] * emitted + (1.0 - thermal[p, 1]) * surroundings
+
+
+@njit(cache=True, fastmath=True)
+def to_apparent_c(radiance: NDArray[np.float32], table: NDArray[np.float64], low: float, high: float) -> None:
     """Replace radiance by the temperature of a black body that gives as much, in place."""
     flat = radiance.reshape(-1)
     for i in range(flat.shape[0]):
@@ -272,13 +307,13 @@ def surface_image(
     Returns:
         (H, W) [degC].
     """
-    surroundings = _mirrored(surroundings_c)
+    surroundings = mirrored(surroundings_c)
 
     def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
-        return _radiance_image(
+        return radiance_image(
             one.part, one.depth, matrices, materials.thermal, materials.kind, materials.period,
             materials.phase, materials.finish, materials.texels, materials.paint, materials.paint_texels,
-            _RADIANCE, surroundings, (_LOWEST_C, _HIGHEST_C),
+            RADIANCE, surroundings, (LOWEST_C, HIGHEST_C),
         )  # fmt: skip
 
     radiance = draw(view, part_from_pixel(config.camera, world_from_camera, world_from_part))
@@ -291,7 +326,7 @@ def surface_image(
         full_detail.smooth(radiance[..., None], _CONTRAST)
     radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)
     radiance = np.ascontiguousarray(radiance)
-    _apparent_c(radiance, _TEMPERATURE, _DIMMEST, _BRIGHTEST)
+    to_apparent_c(radiance, TEMPERATURE, DIMMEST, BRIGHTEST)
     return radiance
 
 

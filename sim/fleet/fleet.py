@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.fleet.cast_worlds import cast_eyes, hear_worlds
+from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.drive_worlds import Capsules, Robots, drive_worlds
+from peopleboy.sim.fleet.eyes import Eyes, Pictures, cameras_of
 from peopleboy.sim.fleet.instant import Instant
 from peopleboy.sim.fleet.side_by_side import lay_side_by_side
 from peopleboy.sim.fleet.walk_worlds import Walks
@@ -41,9 +43,10 @@ class Fleet:
     Args:
         worlds: kinematic, and of one kind, see `kind_of_fleet`. A world is in one fleet at a time, the last
             that it was put into.
+        crew: makes images while Python goes on.
     """
 
-    def __init__(self, worlds: Sequence[World]) -> None:
+    def __init__(self, worlds: Sequence[World], crew: Crew) -> None:
         self._worlds = tuple(worlds)
         physics = [_kinematic(world) for world in worlds]
         states = [each.state() for each in physics]
@@ -61,6 +64,9 @@ class Fleet:
         self._walks = Walks(worlds)
         self._is_scripted = self._walks.is_scripted.tolist()
         self._know_people(physics)
+        wheels = self._joined.firsts.part[:-1, None] + np.array([each.wheels for each in physics])
+        makes_images = cameras_of(worlds[0]) is not None
+        self._eyes = Eyes(worlds, self._joined, wheels, crew) if makes_images else None
 
     def step(self, commands: Mapping[int, Command]) -> None:
         """Step some of the worlds, as `World.step` does.
@@ -68,6 +74,8 @@ class Fleet:
         Args:
             commands: speeds [m/s, rad/s] by the number of the world.
         """
+        if self._eyes is not None:
+            self._eyes.finish()
         going = np.array(list(commands), np.int64)
         before = self._walks.places()
         self._begin(going, commands)
@@ -117,9 +125,10 @@ class Fleet:
             for x, y, sine, cosine in poses[:, (0, 1, 1, 0), (3, 3, 0, 0)].tolist()
         ]
         sonar = self._hear(going, poses)
+        speeds = self._speeds(going, poses)
+        pictures = self._look_around(going, poses, speeds)
         people = self._see(going, poses, robots)
         rims = (self._joined.motion.speeds[going] * WHEEL_RADIUS_M).tolist()
-        speeds = self._speeds(going, poses)
         found = []
         for row, number in enumerate(numbers):
             world, robot = self._worlds[number], robots[row]
@@ -128,12 +137,22 @@ class Fleet:
                 time_s=world.time_s, sonar_m=sonar[row], odometry=world.robot.odometry,
                 wheel_speeds_m_s=(left, right),
             )  # fmt: skip
+            if world.has_images:
+                senses = world.with_images(senses, None if pictures is None else pictures[row])
             scene = ImageFreeTruth(
                 time_s=world.time_s, robot=robot, robot_velocity=speeds[row], contacts=world.touching,
                 people=people[row],
             )  # fmt: skip
-            found.append(Instant(world.with_images(senses) if world.has_images else senses, scene))
+            found.append(Instant(senses, scene))
         return found
+
+    def _look_around(
+        self, going: NDArray[np.int64], poses: Matrix, speeds: Sequence[tuple[float, float]]
+    ) -> list[Pictures] | None:
+        """Begin with images, if these are worlds whose images are made together."""
+        if self._eyes is None:
+            return None
+        return self._eyes.look(going, poses, np.array([turn for _, turn in speeds]))
 
     def _know_people(self, physics: Sequence[Kinematic]) -> None:
         """Keep of everybody what never changes."""
@@ -224,7 +243,7 @@ def kind_of_fleet(world: World) -> tuple[object, ...] | None:
     if config.physics != "kinematic":
         return None
     camera = flat_geometry(config.robot.cameras, "thermal")
-    return config.physics_hz, config.control_hz, config.robot.sonar, camera
+    return config.physics_hz, config.control_hz, config.robot.sonar, camera, cameras_of(world)
 
 
 def _kinematic(world: World) -> Kinematic:

@@ -97,6 +97,7 @@ def world_in(joined: Joined, number: int) -> tuple[Placements, Solids]:
         table.triangle_range[s:s_end],
         table.triangles[t:t_end],
         table.extent[s:s_end],
+        table.reach[s:s_end],
         table.first_surface[s:s_end],
         table.surface_part[:0],
         table.surface_shape[:0],

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
+from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.fleet import Command, Fleet, kind_of_fleet
 from peopleboy.sim.fleet.instant import Instant
 from peopleboy.sim.world import World
@@ -13,13 +14,13 @@ from peopleboy.sim.world import World
 class Together:
     """Worlds by number: kinematic ones in a fleet for each kind, others each by itself."""
 
-    def __init__(self, worlds: Sequence[World]) -> None:
+    def __init__(self, worlds: Sequence[World], crew: Crew) -> None:
         self._worlds = tuple(worlds)
         kinds: dict[object, list[int]] = defaultdict(list)
         for number, world in enumerate(worlds):
             kinds[kind_of_fleet(world)].append(number)
         self._alone = kinds.pop(None, [])
-        self._fleets = [(Fleet([worlds[number] for number in group]), group) for group in kinds.values()]
+        self._fleets = [(Fleet([worlds[number] for number in group], crew), group) for group in kinds.values()]
 
     def step(self, commands: Mapping[int, Command]) -> dict[int, Instant]:
         """Step some of the worlds, and perceive what is in them then.

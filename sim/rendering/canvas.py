@@ -125,9 +125,11 @@ def fill_polygon(
             continue
         base = g[1] * y + g[2] - lens.centre_u * slope
         nearness, surfaces, cover = canvas.nearness[v], canvas.surface[v], canvas.cover[v]
-        for u in range(math.ceil(low), math.floor(high) + 1):
+        first, end = math.ceil(low), math.floor(high) + 1
+        if bit != 0:
+            cover[first:end] |= bit
+        for u in range(first, end):
             here = slope * u + base
-            cover[u] |= bit
             if here > nearness[u]:
                 nearness[u] = here
                 surfaces[u] = surface
@@ -221,26 +223,63 @@ def shade(
         depth: (H, W) gets the depths [m], inf where nothing is.
         normal: (H, W, 3) gets the unit normals, world frame, 0 where nothing is.
     """
+    normals = normal.reshape(lens.height, 3 * lens.width)
     for v in range(lens.height):
-        y = (v - lens.centre_v) / lens.focal
-        for u in range(lens.width):
-            nearness = canvas.nearness[v, u]
-            if nearness == 0.0:
-                part[v, u], depth[v, u] = -1, np.inf
-                normal[v, u, 0] = normal[v, u, 1] = normal[v, u, 2] = 0.0
-                continue
-            surface, z = canvas.surface[v, u], 1.0 / nearness
-            part[v, u], depth[v, u] = surface_part[surface], z
-            nx, ny, nz = _normal(canvas.shading[surface], (u - lens.centre_u) / lens.focal * z, y * z, z)
-            for i in range(3):
-                normal[v, u, i] = rotation[i, 0] * nx + rotation[i, 1] * ny + rotation[i, 2] * nz
+        _shade_row(surface_part, lens, v, canvas, rotation, part[v], depth[v], normals[v])
 
 
 @njit(cache=True, error_model="numpy")
-def _normal(shading: Array, x: float, y: float, z: float) -> Point:
-    """Unit normal at a point of a surface, optical frame."""
-    if shading[6] == 0.0:
-        return shading[0], shading[1], shading[2]
+def _shade_row(
+    surface_part: NDArray[np.int32],
+    lens: Lens,
+    v: int,
+    canvas: Canvas,
+    rotation: Array,
+    part: NDArray[np.int32],
+    depth: NDArray[np.float32],
+    normal: NDArray[np.float32],
+) -> None:
+    """Do the same for a row (W,), neighbouring pixels of one surface together; normals are (3 W,)."""
+    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
+    y, nearness, surfaces, end = (v - lens.centre_v) / lens.focal, canvas.nearness[v], canvas.surface[v], 0
+    while end < lens.width:
+        first, surface = end, surfaces[end]
+        if nearness[first] == 0.0:
+            part[first], depth[first], normal[3 * first : 3 * first + 3] = -1, np.inf, 0.0
+            end += 1
+            continue
+        while end < lens.width and surfaces[end] == surface and nearness[end] != 0.0:
+            end += 1
+        shading = canvas.shading[surface]
+        part[first:end] = surface_part[surface]
+        for u in range(np.uint64(first), np.uint64(end)):
+            depth[u] = 1.0 / nearness[u]
+        if shading[6] == 0.0:
+            nx, ny, nz = _turned(rotation, (shading[0], shading[1], shading[2]))
+            for u in range(np.uint64(first), np.uint64(end)):
+                i = three * u
+                normal[i], normal[i + one], normal[i + two] = nx, ny, nz
+            continue
+        for u in range(np.uint64(first), np.uint64(end)):
+            i, z = three * u, 1.0 / nearness[u]
+            own = _round_normal(shading, (np.float64(u) - lens.centre_u) / lens.focal * z, y * z, z)
+            normal[i], normal[i + one], normal[i + two] = _turned(rotation, own)
+
+
+@njit(cache=True, error_model="numpy")
+def _turned(rotation: Array, vector: Point) -> Point:
+    """A vector in the frame that a rotation (3, 3) leads to."""
+    x, y, z = vector
+    return (
+        rotation[0, 0] * x + rotation[0, 1] * y + rotation[0, 2] * z,
+        rotation[1, 0] * x + rotation[1, 1] * y + rotation[1, 2] * z,
+        rotation[2, 0] * x + rotation[2, 1] * y + rotation[2, 2] * z,
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _round_normal(shading: Array, x: float, y: float, z: float) -> Point:
+    """Unit normal at a point of a quadric, optical frame."""
     along = x * shading[0] + y * shading[1] + z * shading[2]
     return (
         (x - along * shading[0] + shading[3]) * shading[6],

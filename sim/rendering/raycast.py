@@ -28,6 +28,8 @@ from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 Array = NDArray[np.float64]
+Border = tuple[float, float]
+Borders = tuple[Border, Border, Border, Border]
 
 _SPHERE = int(ShapeKind.SPHERE)
 _CAPSULE = int(ShapeKind.CAPSULE)
@@ -58,15 +60,51 @@ def draw(
         lens: where pixels look.
         canvas: what to draw on.
     """
+    borders = _borders(lens)
     for shape in range(len(table.kind)):
         part = table.part[shape]
-        if skip[part]:
+        if skip[part] or _is_outside(table, shape, camera_from_part[part], lens.focal, borders):
             continue
         compose(camera_from_part[part], table.part_from_shape[shape], canvas.pose)
         bounds = quick_bounds(table, shape, canvas.pose)
         area = pixels(lens, bounds)
         if area[0] <= area[2] and area[1] <= area[3]:
             draw_shape(table, shape, bits[part], lens, area, canvas)
+
+
+@njit(cache=True, error_model="numpy")
+def _borders(lens: Lens) -> Borders:
+    """The planes through the borders of an image that is a pixel larger on every side: left, right, up, down.
+
+    Each as (slope, length): beside a border lies (x, z) if f x - slope z is beyond 0 by more than 0, and a
+    disc of radius r if by more than r times the length.
+    """
+    left, right = -1.0 - lens.centre_u, lens.width - lens.centre_u
+    up, down = -1.0 - lens.centre_v, lens.height - lens.centre_v
+    square = lens.focal * lens.focal
+    return (
+        (left, math.sqrt(square + left * left)),
+        (right, math.sqrt(square + right * right)),
+        (up, math.sqrt(square + up * up)),
+        (down, math.sqrt(square + down * down)),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _is_outside(
+    table: ShapeTable, shape: int, camera_from_part: Array, focal: float, borders: Borders
+) -> bool:
+    """Whether a ball around a shape lies wholly outside the image or behind the camera."""
+    origin, reach = table.part_from_shape[shape], table.reach[shape]
+    x, y, z = map_point(camera_from_part, origin[0, 3], origin[1, 3], origin[2, 3])
+    left, right, up, down = borders
+    return (
+        (z < -reach)
+        | (focal * x - left[0] * z < -reach * left[1])
+        | (focal * x - right[0] * z > reach * right[1])
+        | (focal * y - up[0] * z < -reach * up[1])
+        | (focal * y - down[0] * z > reach * down[1])
+    )
 
 
 @njit(cache=True, error_model="numpy")

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
+from peopleboy.sim.geometry.products import from_each
 from peopleboy.sim.physics.physics import Physics, Rasteriser
 from peopleboy.sim.rendering.canvas import Lens, make_canvas, shade
 from peopleboy.sim.rendering.depth_normals import normals_from_depth
@@ -82,7 +83,7 @@ def cast_window(
     inside out then.
     """
     canvas = make_canvas(lens, len(table.surface_part))
-    camera_from_part = invert_pose(world_from_camera) @ world_from_part
+    camera_from_part = from_each(invert_pose(world_from_camera), world_from_part)
     draw(table, camera_from_part, hidden, person_bits(person_of_part), lens, canvas)
     shape = (lens.height, lens.width)
     part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)

@@ -79,6 +79,20 @@ def shape_bounds(kind: int, size: Array, pose: Array, triangles: Array) -> Bound
 @njit(cache=True)
 def box_bounds(pose: Array, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float) -> Bounds:
     """Bounds of the box between two corners of its own frame."""
+    bounds, is_cut = EMPTY, False
+    for i in range(8):
+        corner = map_point(pose, x1 if i & 1 else x0, y1 if i & 2 else y0, z1 if i & 4 else z0)
+        if corner[2] < NEAR_M:
+            is_cut = True
+            break
+        x, y = corner[0] / corner[2], corner[1] / corner[2]
+        bounds = min(bounds[0], x), min(bounds[1], y), max(bounds[2], x), max(bounds[3], y)
+    return _cut_box_bounds(pose, x0, y0, z0, x1, y1, z1) if is_cut else bounds
+
+
+@njit(cache=True)
+def _cut_box_bounds(pose: Array, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float) -> Bounds:
+    """Bounds of a box that reaches through the near plane: those of its edges."""
     bounds = EMPTY
     for i in range(4):
         u, v = i & 1, i >> 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -52,6 +53,7 @@ class ShapeTable(NamedTuple):
         triangle_range: (S, 2) first and one after the last triangle of a mesh, 0 and 0 for other shapes.
         triangles: (T, 3, 3) [m] corners, in the part's frame.
         extent: (S, 2, 3) [m] least and greatest corner of a mesh, in the part's frame; 0 for other shapes.
+        reach: (S,) [m] how far a shape reaches from the origin of its frame at most, inf for a plane.
         first_surface: (S,) number of the shape's first surface.
         surface_part: (M,) number of the part that a surface belongs to.
         surface_shape: (M,) number of the shape that a surface belongs to.
@@ -64,6 +66,7 @@ class ShapeTable(NamedTuple):
     triangle_range: NDArray[np.int64]
     triangles: NDArray[np.float64]
     extent: NDArray[np.float64]
+    reach: NDArray[np.float64]
     first_surface: NDArray[np.int64]
     surface_part: NDArray[np.int32]
     surface_shape: NDArray[np.int32]
@@ -80,6 +83,7 @@ def make_shape_table(shapes: Sequence[VisualShape]) -> ShapeTable:
     counts = [_SURFACES.get(shape.kind, len(mesh)) for shape, mesh in zip(shapes, meshes, strict=True)]
     part = np.array([shape.part for shape in shapes], np.int64)
     poses = [np.eye(4) if shape.kind == ShapeKind.MESH else shape.part_from_shape for shape in shapes]
+    extent = np.array([_extent(mesh) for mesh in meshes], np.float64).reshape(-1, 2, 3)
     table = ShapeTable(
         kind=np.array([shape.kind for shape in shapes], np.int64),
         size=np.array([shape.size for shape in shapes], np.float64).reshape(-1, 3),
@@ -87,7 +91,8 @@ def make_shape_table(shapes: Sequence[VisualShape]) -> ShapeTable:
         part_from_shape=np.array(poses, np.float64).reshape(-1, 4, 4),
         triangle_range=np.stack([ends[:-1], ends[1:]], axis=1).astype(np.int64),
         triangles=np.concatenate([np.zeros((0, 3, 3)), *meshes]),
-        extent=np.array([_extent(mesh) for mesh in meshes], np.float64).reshape(-1, 2, 3),
+        extent=extent,
+        reach=np.array([_reach(shape, own) for shape, own in zip(shapes, extent, strict=True)], np.float64),
         first_surface=np.cumsum([0, *counts])[:-1].astype(np.int64),
         surface_part=np.repeat(part, counts).astype(np.int32),
         surface_shape=np.repeat(np.arange(len(shapes)), counts).astype(np.int32),
@@ -108,3 +113,15 @@ def _extent(triangles: NDArray[np.float64]) -> NDArray[np.float64]:
     if len(triangles) == 0:
         return np.zeros((2, 3))
     return np.stack([triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))])
+
+
+def _reach(shape: VisualShape, extent: NDArray[np.float64]) -> float:
+    """How far [m] a shape reaches from its frame's origin at most; a mesh of some extent (2, 3)."""
+    length, radius, _ = shape.size
+    if shape.kind == ShapeKind.SPHERE:
+        return length
+    if shape.kind in (ShapeKind.CAPSULE, ShapeKind.CYLINDER):
+        return length / 2.0 + radius
+    if shape.kind == ShapeKind.BOX:
+        return float(np.linalg.norm(shape.size)) / 2.0
+    return math.inf if shape.kind == ShapeKind.PLANE else float(np.linalg.norm(np.abs(extent).max(axis=0)))

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.geometry.products import multiply
 from peopleboy.sim.physics.bodies import PartKey
 from peopleboy.sim.physics.kinematic.cast import cast
 from peopleboy.sim.physics.kinematic.drive import push_out, roll
@@ -207,10 +209,14 @@ class Kinematic:
         bodies, _ = self._up_to_date()
         poses = bodies.poses.copy()
         if self._rolling is not None:
-            for wheel, angle in zip(self._rolling.wheels, self._rolling.angles.tolist(), strict=True):
-                cos, sin = math.cos(angle), math.sin(angle)
-                poses[wheel, :3, :3] @= np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+            turn_wheels(poses, np.array(self._rolling.wheels, np.int64), self._rolling.angles)
         return poses
+
+    @property
+    def wheels(self) -> tuple[int, int]:
+        """Numbers of the parts that are the vehicle's left and right wheel; there must be one."""
+        assert self._rolling is not None
+        return self._rolling.wheels
 
     def visual_shapes(self) -> list[VisualShape]:
         """Every shape that a renderer should draw, in the order of the parts."""
@@ -329,6 +335,17 @@ class Kinematic:
                 known = ", ".join(rolling.joints)
                 raise BadInput(f"body {name!r} has no wheel on a joint {joint!r}; it has: {known}")
         return rolling
+
+
+@njit(cache=True, nogil=True)
+def turn_wheels(poses: Matrix, wheels: NDArray[np.int64], angles: Matrix) -> None:
+    """Turn some parts (W,) among poses (P, 4, 4) about their y axes by angles (W,) [rad], in place."""
+    turn, before = np.zeros((3, 3)), np.empty((3, 3))
+    for k in range(len(wheels)):
+        cos, sin = math.cos(angles[k]), math.sin(angles[k])
+        turn[0, 0], turn[0, 2], turn[1, 1], turn[2, 0], turn[2, 2] = cos, sin, 1.0, -sin, cos
+        before[:] = poses[wheels[k], :3, :3]
+        multiply(before, turn, poses[wheels[k], :3, :3])
 
 
 def _as_given(shape: Shape, part: int) -> VisualShape:

@@ -1,0 +1,148 @@
+"""What makes the images of one camera of many worlds, some worlds at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.sim.cameras.blur import optics_blur, sweep_of_one_rad
+from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.colour import GAMMA, LIGHT
+from peopleboy.sim.cameras.noise import QUANTILES
+from peopleboy.sim.cameras.sensors import ColourSensor, ThermalSensor
+from peopleboy.sim.cameras.surfaces import rays_through
+from peopleboy.sim.cameras.thermal import (
+    BRIGHTEST,
+    DIMMEST,
+    HIGHEST_C,
+    LOWEST_C,
+    RADIANCE,
+    TEMPERATURE,
+    mirrored,
+)
+from peopleboy.sim.fleet.draw_worlds import (
+    Detectors,
+    Eye,
+    Film,
+    Poses,
+    Radiators,
+    detect_worlds,
+    expose_worlds,
+    radiate_worlds,
+)
+from peopleboy.sim.fleet.scenery import Scenery
+from peopleboy.sim.fleet.side_by_side import Numbers
+from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.rendering.canvas import Lens
+from peopleboy.sim.world import World, light_level
+
+Images = tuple[NDArray[Any], ...]
+Shoot = Callable[[int, int], None]  # fills the rows from one to before another
+
+_TABLES = Radiators(RADIANCE, (LOWEST_C, HIGHEST_C), TEMPERATURE, (DIMMEST, BRIGHTEST))
+
+
+class Studio(Protocol):
+    """One camera, the same in B worlds."""
+
+    def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
+        """Give space for what the sensors of worlds of some numbers (G,) take now, and what fills it."""
+        ...
+
+
+class ThermalStudio:
+    """Does as `ThermalSensor` of a simple camera."""
+
+    def __init__(self, name: str, config: ThermalConfig, scenery: Scenery, worlds: Sequence[World]) -> None:
+        self._name, self._config, self._scenery, self._worlds = name, config, scenery, tuple(worlds)
+        self._eye = _eye(config.camera)
+        self._surroundings = np.array([mirrored(world.config.place.surroundings_c) for world in worlds])
+        detectors = [_thermal(world, name).detector for world in worlds]
+        self._detectors = Detectors(
+            offset_k=np.stack([each.offset_k for each in detectors]),
+            dead=np.stack([each.dead for each in detectors]),
+            dead_c=np.float32(detectors[0].dead_c),
+            netd_k=np.float32(config.netd_k),
+            lowest_c=np.float32(config.lowest_c),
+            grey_per_k=np.float32(255.0 / (config.highest_c - config.lowest_c)),
+        )
+
+    def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
+        """See `Studio.shoot`; of greys and temperatures [degC], (G, H, W)."""
+        shape = (len(worlds), self._config.camera.height, self._config.camera.width)
+        radiance, temperature_c = np.empty(shape, np.float32), np.empty(shape, np.float32)
+        grey, surroundings = np.empty(shape, np.uint8), self._surroundings[worlds]
+        sensors = [_thermal(self._worlds[number], self._name) for number in worlds.tolist()]
+        eye, scenery = self._eye, self._scenery
+
+        def fill(first: int, end: int) -> None:
+            words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
+            radiate_worlds(first, end, worlds, scenery, poses, eye, _TABLES, surroundings, radiance)
+            for row in range(first, end):
+                radiance[row] = optics_blur(radiance[row], self._config.blur_px)
+            detect_worlds(
+                first, end, worlds, radiance, eye, poses.turned, _TABLES, self._detectors, QUANTILES, words,
+                temperature_c, grey,
+            )  # fmt: skip
+
+        return (grey, temperature_c), fill
+
+
+class ColourStudio:
+    """Does as `ColourSensor`."""
+
+    def __init__(self, name: str, config: ColourConfig, scenery: Scenery, worlds: Sequence[World]) -> None:
+        self._name, self._config, self._scenery, self._worlds = name, config, scenery, tuple(worlds)
+        self._eye = _eye(config.camera)
+        self._film = Film(np.float32(config.read_noise), np.float32(config.shot_noise), LIGHT, GAMMA)
+
+    def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
+        """See `Studio.shoot`; of (G, H, W, 3) sRGB."""
+        image = np.empty((len(worlds), self._config.camera.height, self._config.camera.width, 3), np.uint8)
+        own = [self._worlds[number] for number in worlds.tolist()]
+        sensors = [_colour(world, self._name) for world in own]
+        level = np.array([light_level(each.config.place, each.time_s) * self._config.gain for each in own])
+
+        def fill(first: int, end: int) -> None:
+            words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
+            expose_worlds(
+                first, end, worlds, self._scenery, poses, self._eye, self._film, level, QUANTILES, words,
+                image,
+            )  # fmt: skip
+
+        return (image,), fill
+
+
+def open_studio(name: str, config: CameraConfig, scenery: Scenery, worlds: Sequence[World]) -> Studio:
+    """Prepare for the images of a camera for which there `is_studio`."""
+    if isinstance(config, ThermalConfig):
+        return ThermalStudio(name, config, scenery, worlds)
+    assert isinstance(config, ColourConfig)
+    return ColourStudio(name, config, scenery, worlds)
+
+
+def is_simple(config: CameraConfig) -> bool:
+    """Whether there is a studio for a camera's images."""
+    if not isinstance(config.camera, Pinhole):
+        return False
+    return isinstance(config, ColourConfig) or (isinstance(config, ThermalConfig) and config.is_simple)
+
+
+def _eye(camera: Pinhole) -> Eye:
+    lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
+    return Eye(lens, rays_through(camera), sweep_of_one_rad(camera))
+
+
+def _thermal(world: World, name: str) -> ThermalSensor:
+    sensor = world.rig.take_over(name)
+    assert isinstance(sensor, ThermalSensor)
+    return sensor
+
+
+def _colour(world: World, name: str) -> ColourSensor:
+    sensor = world.rig.take_over(name)
+    assert isinstance(sensor, ColourSensor)
+    return sensor
