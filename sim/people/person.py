@@ -22,14 +22,16 @@ from peopleboy.sim.people.body.body_shapes import (
     sole_points,
 )
 from peopleboy.sim.people.body.clothes import dress
-from peopleboy.sim.people.body.gait import Gait, lowest_sole
+from peopleboy.sim.people.body.gait import Gait
 from peopleboy.sim.people.body.gaze import Gaze
 from peopleboy.sim.people.body.joints import joint_points
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
-from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations, wave
+from peopleboy.sim.people.body.placing import carry, put_on_floor
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.body.reaching import arm_length, least_stoop, stoop, turn_arm
-from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, joint_offsets, place_bones
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets
+from peopleboy.sim.people.body.stance import POSTURES, STANCE, Bodies, Stances, hold, move_limbs
 from peopleboy.sim.people.looks.finish_person import Finisher
 from peopleboy.sim.people.person_config import Arms, PersonConfig
 from peopleboy.sim.people.reacting.encounter import Situation
@@ -37,7 +39,7 @@ from peopleboy.sim.people.reacting.mind import Mind
 from peopleboy.sim.people.timetable import timetable
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.surroundings import Surroundings
-from peopleboy.sim.people.walking.walk import RISE_S, Walker
+from peopleboy.sim.people.walking.walk import Walker
 from peopleboy.sim.people.walking.waypoint import Waypoint
 from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
 from peopleboy.sim.shapes.materials import Material
@@ -60,16 +62,11 @@ _ARM_POSTURES: dict[Arms, Posture | None] = {
 }
 _BAG_LOOK = Material(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
 _BAG_HAND = "right"
-_BAG_SWING = 0.25
-_HELD_SWING = 0.2  # of what free arms swing
 _ARM = ("upper_arm", "forearm", "hand")
 _FREE = 0.3  # share up to which the other hand may still take over, as who has just come yet turns
 _AHEAD_M = 0.1  # so far to the left the right hand reaches as well
-_SWAY_RAD, _SWAY_HZ = 0.006, 0.23
-_LOOK_RATIO = 0.57  # how often one looks about, to how often one sways
-# Who turns on the spot takes small steps: as if the feet went round a circle, and so many cycles a turn.
+# Who turns on the spot takes small steps: as if the feet went round a circle.
 _TURNING_RADIUS_M = 0.04
-_CYCLES_PER_RAD = 0.4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,6 +86,7 @@ class Person:
         name: as configured.
         parts: what it is made of, fixed for life; `poses` is in their order.
         present: whether it is in the world now.
+        stance: (1,) records STANCE, how it holds itself now.
     """
 
     def __init__(
@@ -110,18 +108,14 @@ class Person:
         self._soles = sole_points(config.height_m)
         self._manner = USUAL if finisher is None else finisher.manner
         self._gait = Gait(self._offsets, config.height_m, self._manner)
-        self._held, self._is_held = held_arms(self._manner.holds)
         self._walker = Walker(config.path, config.yields, self.radius_m)
         self._mind = Mind([waypoint.at_m for waypoint in config.path], config.reacts, config.leads)
         self._wish = AS_PLANNED
         self._gaze = Gaze()
-        self._phase = float(rng.uniform())
-        self._sway_phase = float(rng.uniform())
-        self._time_s = 0.0
-        self._speed = 0.0
-        self._blend = dict.fromkeys(Posture, 0.0)
-        self._blend[self._walker.posture] = 1.0
-        self._arms = _ARM_POSTURES[config.arms]
+        self.stance = np.zeros(1, STANCE)
+        self.stance["phase"], self.stance["sway_phase"] = rng.uniform(), rng.uniform()
+        self.stance["blend"][0, POSTURES[self._walker.posture]] = 1.0
+        self._bodies: Bodies | None = None
         self._bones: Array | None = None
         self._grasp: _Grasp | None = None
 
@@ -182,9 +176,10 @@ class Person:
         """
         config = self.config
         was_present = self.present
-        self._time_s = time_s + dt_s
-        has_left = config.leave_s is not None and self._time_s > config.leave_s - 1e-9
-        self.present = config.enter_s <= self._time_s + 1e-9 and not has_left
+        now_s = time_s + dt_s
+        self.stance["time_s"] = now_s
+        has_left = config.leave_s is not None and now_s > config.leave_s - 1e-9
+        self.present = config.enter_s <= now_s + 1e-9 and not has_left
         around = Surroundings(others=others, robot=robot, walls=walls)
         if self.present and was_present:
             self._wish = self._make_up_mind(dt_s, around, company)
@@ -220,6 +215,7 @@ class Person:
             x, y = target - self.position
             bearing = math.atan2(y, x) - self.heading
         self._gaze.update(dt_s, bearing)
+        self.stance["gaze_rad"] = self._gaze.left_rad
 
     def reach_for(self, point: Array, share: float, halfway: Array) -> None:
         """Have a hand at a point (3,) [m] of the world; by less than a share of 1, on the way there.
@@ -251,23 +247,40 @@ class Person:
     def _move_limbs(self, dt_s: float) -> None:
         """Advance gait and postures by a time step."""
         walker = self._walker
-        speed = math.hypot(*walker.velocity, _TURNING_RADIUS_M * walker.turn_rate)
-        change = 3.0 * dt_s
-        self._speed += min(max(speed - self._speed, -change), change)
-        amplitude = self._gait.amplitude(self._speed)
-        walking_hz = self._speed / self._gait.stride_m(amplitude) if amplitude > 1e-3 else 0.0
-        turning_hz = 0.0 if walker.is_walking else _CYCLES_PER_RAD * abs(walker.turn_rate)
-        self._phase = (self._phase + max(walking_hz, turning_hz) * dt_s) % 1.0
-        for posture in Posture:
-            wanted = float(posture is self.posture)
-            step = dt_s / RISE_S
-            self._blend[posture] += min(max(wanted - self._blend[posture], -step), step)
+        pace = pace_m_s(*walker.velocity.tolist(), walker.turn_rate)
+        posture, gait = POSTURES[self.posture], self._gait
+        move_limbs(
+            self.stance, 0, gait.unit_stride_m, gait.root_scale, pace, walker.turn_rate, walker.is_walking,
+            posture, dt_s,
+        )  # fmt: skip
         self._bones = None
+
+    @property
+    def bodies(self) -> Bodies:
+        """What never changes of its body."""
+        if self._bodies is None:
+            self._bodies = self._know_body()
+        return self._bodies
+
+    def _know_body(self) -> Bodies:
+        held, is_held = held_arms(self._manner.holds)
+        (rotations, sway), arms = self._gait.tables, _ARM_POSTURES[self.config.arms]
+        return Bodies(
+            rotations=rotations[None],
+            sway=sway[None],
+            root_scale=np.array([self._gait.root_scale]),
+            height_m=np.array([self.config.height_m]),
+            held=held[None],
+            is_held=is_held[None],
+            arms=np.array([-1 if arms is None else POSTURES[arms]], np.int64),
+            has_bag=np.array([self.config.bag]),
+            looks_about_rad=np.array([self._manner.looks_about_rad], np.float64),
+        )
 
     def poses(self) -> Array:
         """(P, 4, 4) world from part, in the order of `parts`."""
-        poses = self._world_bones()[self._part_bone]
-        poses[:, :3, 3] += np.einsum("pij,pj->pi", poses[:, :3, :3], self._part_offset)
+        poses = np.empty((len(self.parts), 4, 4))
+        carry(self._world_bones(), self._part_bone, self._part_offset, poses)
         return poses
 
     def joints(self) -> Array:
@@ -290,17 +303,10 @@ class Person:
         return self._on_the_floor(rotations, shift)
 
     def _on_the_floor(self, rotations: Array, shift: tuple[float, float]) -> Array:
-        offsets = self._offsets.copy()
-        offsets[0] = *shift, 0.0
-        bones = place_bones(rotations, offsets)
-        bones[:, 2, 3] -= lowest_sole(bones, self._soles)
-        heading = self._walker.heading
-        cos, sin = math.cos(heading), math.sin(heading)
-        world = np.eye(4)
-        world[:2, :2] = [[cos, -sin], [sin, cos]]
-        world[:2, 3] = self._walker.position
-        placed: Array = world @ bones
-        return placed
+        bones = np.empty((len(BONES), 4, 4))
+        x, y = self._walker.position.tolist()
+        put_on_floor(rotations, self._offsets, self._soles, shift, (x, y, self._walker.heading), bones)
+        return bones
 
     def _reach(
         self, grasp: _Grasp, rotations: Array, shift: tuple[float, float]
@@ -316,7 +322,8 @@ class Person:
             return float(np.linalg.norm(self._on_the_floor(*bent(share))[shoulder, :3, 3] - grasp.point))
 
         bend = 0.0
-        if self._blend[Posture.BENDING] == self._blend[Posture.SITTING] == 0.0:
+        blend = self.stance["blend"][0]
+        if blend[POSTURES[Posture.BENDING]] == blend[POSTURES[Posture.SITTING]] == 0.0:
             bend = grasp.share * least_stoop(gap_m, arm_length(self.config.height_m))
         bowed, shift = bent(bend)
         bones = self._on_the_floor(bowed, shift)
@@ -328,50 +335,14 @@ class Person:
 
     def _pose(self) -> tuple[Array, tuple[float, float]]:
         """(17, 3) [rad] rotation vectors and the pelvis' offset [m] to the front and to the left."""
-        amplitude = self._gait.amplitude(self._speed)
-        rotations, sway = self._gait.pose(self._phase, amplitude)
-        standing = _POSTURES[Posture.STANDING]
-        weights = {posture: _ease(share) for posture, share in self._blend.items()}
-        arms = sum(weights[p] for p in Posture if p is not Posture.STANDING)
-        if self._arms is not None:
-            weights[self._arms] = max(weights[self._arms], 1.0 - arms)
-            arms = 1.0
-        steady = self._held + _HELD_SWING * (rotations - standing)
-        rotations[self._is_held] = steady[self._is_held]
-        rotations[ARM_BONES] += min(arms, 1.0) * (standing - rotations)[ARM_BONES]
-        if self.config.bag:
-            self._steady_bag_arm(rotations, standing)
-        front = float(sway[0])
-        for posture, weight in weights.items():
-            if weight > 0.0 and posture is not Posture.STANDING:
-                rotations += weight * (_POSTURES[posture] - standing)
-                front += weight * pelvis_shift(posture) * self.config.height_m
-        self._sway(rotations)
-        if weights[Posture.CALLING] > 0.0:
-            rotations[BONE_INDEX["left_forearm"], 0] += weights[Posture.CALLING] * wave(self._time_s)
-        self._gaze.turn(rotations)
-        return rotations, (front, float(sway[1]))
-
-    def _steady_bag_arm(self, rotations: Array, standing: Array) -> None:
-        arm = [BONE_INDEX[f"{_BAG_HAND}_{bone}"] for bone in _ARM]
-        rotations[arm] = standing[arm] + _BAG_SWING * (rotations - standing)[arm]
-
-    def _sway(self, rotations: Array) -> None:
-        """Lean a little about the ankles, as nobody stands quite still."""
-        angle = 2.0 * math.pi * (_SWAY_HZ * self._time_s + self._sway_phase)
-        lean = _SWAY_RAD * np.array([math.sin(angle), math.cos(0.71 * angle), 0.0])
-        rotations[BONE_INDEX["pelvis"]] += lean
-        rotations[BONE_INDEX["head"], 2] += self._manner.looks_about_rad * math.sin(_LOOK_RATIO * angle)
-        for side in ("left", "right"):
-            rotations[BONE_INDEX[f"{side}_foot"]] -= lean
+        rotations = np.empty((len(BONES), 3))
+        shift: tuple[float, float] = hold(self.bodies, self.stance, 0, rotations)
+        return rotations, shift
 
 
-_POSTURES = {posture: posture_rotations(posture) for posture in Posture}  # (17, 3) each
-
-
-def _ease(share: float) -> float:
-    """Smooth a share that runs from 0 to 1 in time."""
-    return share * share * (3.0 - 2.0 * share)
+def pace_m_s(x_m_s: float, y_m_s: float, turn_rad_s: float) -> float:
+    """How fast feet move over the floor, at a velocity and a rate of turning."""
+    return math.hypot(x_m_s, y_m_s, _TURNING_RADIUS_M * turn_rad_s)
 
 
 def _geometry(config: PersonConfig, size: BodySize, outfit: Outfit) -> dict[str, PartGeometry]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.people.body.body_shapes import SIDES, sole_points
+from peopleboy.sim.people.body.gait_tables import AMPLITUDES, PHASES, gait_pose
 from peopleboy.sim.people.body.manner import USUAL, Manner, bearing
 from peopleboy.sim.people.body.motion_capture import CLIP_LEG_M, fourier_basis, load_walking_clip
 from peopleboy.sim.people.body.postures import standing_rotations
@@ -17,9 +18,6 @@ from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lat
 
 Array = NDArray[np.float64]
 
-_PHASES = 48
-_AMPLITUDES = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.0, 1.2, 1.4])
-_FULL_SPEED_M_S = 1.1  # a stride as long as the clip's, for a leg as long as the clip's
 # The left foot of the clip is on the floor between these phases [cycles].
 _HEEL_STRIKE, _TOE_OFF = 0.485, 1.085
 _FLAT_RAD = math.radians(3.0)
@@ -50,14 +48,8 @@ class Gait:
         self._soles = sole_points(stature_m)
         leg = -offsets[BONE_INDEX["left_shin"], 2] - offsets[BONE_INDEX["left_foot"], 2]
         self._scale = leg / CLIP_LEG_M
+        self.root_scale = math.sqrt(self._scale)
         self.unit_stride_m = load_walking_clip().stride_m * self._scale * manner.stride
-
-    def amplitude(self, speed_m_s: float) -> float:
-        """Length of the stride against the clip's at a walking speed.
-
-        It grows with the root of speed, as cadence does.
-        """
-        return min(math.sqrt(abs(speed_m_s) / (_FULL_SPEED_M_S * math.sqrt(self._scale))), 1.4)
 
     def stride_m(self, amplitude: float) -> float:
         """Travel [m] in a cycle."""
@@ -70,32 +62,19 @@ class Gait:
             (17, 3) [rad] rotation vectors of the bones, and (2,) [m] the pelvis' offset from the person's
             steadily moving position, to the front and to the left.
         """
-        row = float(np.interp(amplitude, _AMPLITUDES, np.arange(len(_AMPLITUDES))))
-        column = (phase % 1.0) * _PHASES
-        i, j = min(int(row), len(_AMPLITUDES) - 2), int(column) % _PHASES
-        di, dj, following = row - i, column - int(column), (j + 1) % _PHASES
-        corners = (
-            (i, j, (1.0 - di) * (1.0 - dj)),
-            (i, following, (1.0 - di) * dj),
-            (i + 1, j, di * (1.0 - dj)),
-            (i + 1, following, di * dj),
-        )
-        all_rotations, all_sway = self._tables
-        rotations, sway = np.zeros((len(BONES), 3)), np.zeros(3)
-        for row_index, column_index, weight in corners:
-            rotations += weight * all_rotations[row_index, column_index]
-            sway += weight * all_sway[row_index, column_index]
-        return rotations, sway[:2]
+        turns = np.empty((len(BONES), 3))
+        rotations, sway = self.tables
+        return turns, np.array(gait_pose(rotations, sway, phase, amplitude, turns))
 
     @cached_property
-    def _tables(self) -> tuple[Array, Array]:
+    def tables(self) -> tuple[Array, Array]:
         """(A, P, 17, 3) and (A, P, 3) tables of all amplitudes, made for those who are looked at."""
-        tables = [self._make_table(float(a)) for a in _AMPLITUDES]
+        tables = [self._make_table(float(a)) for a in AMPLITUDES]
         return np.stack([rotations for rotations, _ in tables]), np.stack([sway for _, sway in tables])
 
     def _make_table(self, amplitude: float) -> tuple[Array, Array]:
         """Compute (P, 17, 3) rotation vectors and (P, 3) pelvis offsets at every phase, for one amplitude."""
-        phases = np.arange(_PHASES) / _PHASES
+        phases = np.arange(PHASES) / PHASES
         rotations = self._clip_rotations(phases, amplitude)
         sway = fourier_basis(phases) @ load_walking_clip().sway * self._scale * min(amplitude, 1.0)
         sway[:, 1] += max(1.0 - amplitude / 0.5, 0.0) * self._manner.leans * _HIP_SHIFT * self._stature_m
@@ -197,7 +176,7 @@ class Gait:
             gap = feet[side][0] - hips - sway * [1.0, 1.0, 0.0]
             limits.append(gap[:, 2] + np.sqrt(reach**2 - gap[:, 0] ** 2 - gap[:, 1] ** 2))
         limit = np.min(limits, axis=0)
-        twice_a_cycle = fourier_basis(np.arange(_PHASES) / _PHASES)[:, [0, 3, 4]]
+        twice_a_cycle = fourier_basis(np.arange(PHASES) / PHASES)[:, [0, 3, 4]]
         curve = twice_a_cycle @ (np.linalg.lstsq(twice_a_cycle, limit, rcond=None)[0] * [1.0, _BOB, _BOB])
         height: Array = curve - np.max(curve - limit)
         return height
@@ -227,9 +206,3 @@ class Gait:
         rotations[:, BONE_INDEX[f"{side}_thigh"]] = (hip_turn.inv() * thigh_turn).as_rotvec()
         rotations[:, BONE_INDEX[f"{side}_shin"]] = shin_turn.as_rotvec()
         rotations[:, BONE_INDEX[f"{side}_foot"]] = ((thigh_turn * shin_turn).inv() * foot).as_rotvec()
-
-
-def lowest_sole(poses: Array, soles: Array) -> float:
-    """Height [m] of the lowest point of both soles, from (17, 4, 4) poses and (3, 3) points of a foot."""
-    feet = poses[[BONE_INDEX["left_foot"], BONE_INDEX["right_foot"]]]
-    return float((feet[:, 2, :3] @ soles.T + feet[:, 2, 3:]).min())

@@ -71,8 +71,9 @@ _CHANGES: dict[Posture, dict[str, Vector]] = {
         "right_forearm": point_along((0.16, 0.05, -1.0)),
     },
 }
+RISE_S = 0.6  # the time that it takes to sit down, to rise, or to change any other posture
 # Who calls waves so; the left arm, as bags are carried in the right hand.
-_WAVE_RAD, _WAVE_HZ = math.radians(20.0), 1.2
+WAVE_RAD, WAVE_HZ = math.radians(20.0), 1.2
 # [fractions of stature] how far pelvis and trunk move to the front, so that the body stays above its feet.
 _PELVIS_SHIFT = {Posture.SITTING: -0.13, Posture.BENDING: -0.075}
 
@@ -111,11 +112,6 @@ def _cross_forearms(rotations: Array) -> None:
         upper = Rotation.from_rotvec(rotations[BONE_INDEX[f"{side}_upper_arm"]])
         in_arm = upper.inv().apply(np.array(direction))
         rotations[BONE_INDEX[f"{side}_forearm"]] = point_along((in_arm[0], in_arm[1], in_arm[2]))
-
-
-def wave(time_s: float) -> float:
-    """How far [rad] the left forearm of one who calls is swung to the side at a time [s]."""
-    return _WAVE_RAD * math.sin(2.0 * math.pi * _WAVE_HZ * time_s)
 
 
 def pelvis_shift(posture: Posture) -> float:

@@ -37,7 +37,7 @@ PARENTS: dict[str, str | None] = {
 BONES = tuple(PARENTS)
 BONE_INDEX = {name: i for i, name in enumerate(BONES)}
 ARM_BONES = [i for name, i in BONE_INDEX.items() if name.endswith(("upper_arm", "forearm", "hand"))]
-_PARENT_INDEX = np.array([-1 if parent is None else BONE_INDEX[parent] for parent in PARENTS.values()])
+PARENT_INDEX = np.array([-1 if parent is None else BONE_INDEX[parent] for parent in PARENTS.values()])
 
 # Where we cut the trunk, as fractions of stature.
 LUMBAR_HEIGHT = 0.585
@@ -121,7 +121,7 @@ def _rotation(vector: Array, out: Array) -> None:
 
 
 @numba.njit(cache=True)
-def _chain(rotations: Array, offsets: Array, parents: NDArray[np.int64]) -> Array:
+def chain(rotations: Array, offsets: Array, parents: NDArray[np.int64]) -> Array:
     """Multiply the joints' rotations down the tree: (B, 4, 4) body from bone."""
     poses = np.zeros((len(parents), 4, 4))
     local = np.empty((3, 3))
@@ -152,5 +152,5 @@ def place_bones(rotations: Array, offsets: Array) -> Array:
     Returns:
         (17, 4, 4) poses of the bones in the frame in which the pelvis' offset is given.
     """
-    poses: Array = _chain(rotations, offsets, _PARENT_INDEX)
+    poses: Array = chain(rotations, offsets, PARENT_INDEX)
     return poses

@@ -11,13 +11,13 @@ from typing import Any
 from numba import njit
 
 from peopleboy.sim.geometry.angles import remainder
+from peopleboy.sim.people.body.postures import RISE_S
 from peopleboy.sim.people.scripted.script import NOTHING, POINT, Records, Scripts
 from peopleboy.sim.people.walking.walk import (
     ACCELERATION_M_S2,
     BRAKE_M_S2,
     KEEP_CLEAR_M,
     LONGEST_STEP_S,
-    RISE_S,
     START_WITHIN_RAD,
     STEER_GAIN,
     TURN_RATE_RAD_S,

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.body.postures import RISE_S, Posture
 from peopleboy.sim.people.walking.path import PathPiece, is_about_turn, route, turn_between
 from peopleboy.sim.people.walking.social_force import (
     KEEP_RIGHT_RAD,
@@ -25,7 +25,6 @@ Array = NDArray[np.float64]
 
 ACCELERATION_M_S2 = 1.0
 TURN_RATE_RAD_S = math.radians(150.0)
-RISE_S = 0.6  # the time that it takes to sit down, to rise, or to change any other posture
 LONGEST_STEP_S = 1.0 / 60.0
 BRAKE_M_S2 = 2.0
 KEEP_CLEAR_M = 0.25  # of the robot, where a person that waits for it comes to stand

@@ -5,6 +5,7 @@ from peopleboy.sim.people.body.anthropometry import measure
 from peopleboy.sim.people.body.body_shapes import sole_points
 from peopleboy.sim.people.body.gait import Gait
 from peopleboy.sim.people.body.joints import JOINT_NAMES
+from peopleboy.sim.people.body.gait_tables import amplitude_of
 from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, joint_offsets, mirror, place_bones
 from peopleboy.sim.people.looks.finish_person import Finisher
@@ -71,7 +72,7 @@ def test_a_stride_times_the_cadence_is_the_speed(seed: int) -> None:
     strikes = np.flatnonzero((heel[1:] < 0.02) & (heel[:-1] >= 0.02)) / 120
     strikes = strikes[np.diff(strikes, prepend=-1.0) > 0.5]
     own = gait(manner_of(seed, person.config))
-    assert own.stride_m(own.amplitude(1.3)) / np.diff(strikes).mean() == pytest.approx(1.3, rel=0.02)
+    assert own.stride_m(amplitude_of(1.3, own.root_scale)) / np.diff(strikes).mean() == pytest.approx(1.3, rel=0.02)
 
 
 def manner_of(seed: int, config: PersonConfig) -> Manner:
@@ -82,7 +83,7 @@ def test_steps_and_knees_are_those_of_walking_people() -> None:
     steps, knees = [], []
     for manner in manners(12):
         own = gait(manner)
-        amplitude = own.amplitude(1.3)
+        amplitude = amplitude_of(1.3, own.root_scale)
         turns = [own.pose(phase, amplitude)[0][BONE_INDEX["left_shin"]] for phase in np.linspace(0, 1, 48)]
         steps.append(own.stride_m(amplitude) / 2.0 / 1.75)
         knees.append(np.degrees(np.linalg.norm(turns, axis=1).max()))

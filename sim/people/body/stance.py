@@ -1,0 +1,176 @@
+"""How people hold themselves from instant to instant, as arrays for kernels."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.people.body.gait_tables import amplitude_of, gait_pose
+from peopleboy.sim.people.body.gaze import SHARES as GAZE_SHARES
+from peopleboy.sim.people.body.postures import (
+    RISE_S,
+    WAVE_HZ,
+    WAVE_RAD,
+    Posture,
+    pelvis_shift,
+    posture_rotations,
+)
+from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES
+
+Array = NDArray[np.float64]
+Stances = NDArray[Any]
+
+POSTURES: Final = {posture: number for number, posture in enumerate(Posture)}
+STANCE: Final = np.dtype(
+    [
+        ("phase", np.float64),  # [cycles]
+        ("speed", np.float64),  # [m/s] of the legs
+        ("blend", np.float64, len(POSTURES)),  # how far in each posture, without easing
+        ("time_s", np.float64),
+        ("sway_phase", np.float64),  # [cycles]
+        ("gaze_rad", np.float64),  # to the left
+    ]
+)
+"""What changes of one person from instant to instant, its place and heading aside."""
+
+_STANDING, _CALLING = POSTURES[Posture.STANDING], POSTURES[Posture.CALLING]
+_ROTATIONS = np.array([posture_rotations(posture) for posture in Posture])
+_SHIFTS = np.array([pelvis_shift(posture) for posture in Posture])
+_ARMS = np.array(ARM_BONES, np.int64)
+_BAG_ARM = np.array([BONE_INDEX[f"right_{bone}"] for bone in ("upper_arm", "forearm", "hand")], np.int64)
+_FEET = np.array([BONE_INDEX["left_foot"], BONE_INDEX["right_foot"]], np.int64)
+_LOOKING = np.array([BONE_INDEX[bone] for bone in GAZE_SHARES], np.int64)
+_LOOKING_SHARES = np.array(list(GAZE_SHARES.values()))
+_PELVIS, _HEAD, _WAVING = BONE_INDEX["pelvis"], BONE_INDEX["head"], BONE_INDEX["left_forearm"]
+_BONES = len(BONES)
+
+_BAG_SWING = 0.25
+_HELD_SWING = 0.2  # of what free arms swing
+_SWAY_RAD, _SWAY_HZ = 0.006, 0.23
+_LOOK_RATIO = 0.57  # how often one looks about, to how often one sways
+_CYCLES_PER_RAD = 0.4  # steps of who turns on the spot
+_SPEED_CHANGE_M_S2 = 3.0
+
+
+class Bodies(NamedTuple):
+    """What never changes of Q people.
+
+    Attributes:
+        rotations, sway: (Q, A, P, 17, 3) [rad] and (Q, A, P, 3) [m] their gaits by amplitude and phase.
+        root_scale: (Q,) of the gaits, see `Gait`.
+        height_m: (Q,).
+        held, is_held: (Q, 17, 3) [rad] and (Q, 17) arms that hold something.
+        arms: (Q,) number of the posture in which they always have their arms, -1 for none.
+        has_bag: (Q,).
+        looks_about_rad: (Q,).
+    """
+
+    rotations: Array
+    sway: Array
+    root_scale: Array
+    height_m: Array
+    held: Array
+    is_held: NDArray[np.bool_]
+    arms: NDArray[np.int64]
+    has_bag: NDArray[np.bool_]
+    looks_about_rad: Array
+
+
+@njit(cache=True, nogil=True)
+def move_limbs(
+    stances: Stances,
+    q: int,
+    unit_stride_m: float,
+    root_scale: float,
+    pace_m_s: float,
+    turn_rad_s: float,
+    is_walking: bool,
+    posture: int,
+    dt_s: float,
+) -> None:
+    """Advance gait and postures of one of Q people by a time step.
+
+    Args:
+        stances: (Q,) records STANCE; that of the person is changed.
+        q: number of the person.
+        unit_stride_m: see `Gait`.
+        root_scale: likewise.
+        pace_m_s: at which the feet move over the floor.
+        turn_rad_s: at which the person turns.
+        is_walking: whether it is on its way.
+        posture: number of the posture to take up, see `POSTURES`.
+        dt_s: [s].
+    """
+    stance, change = stances[q], _SPEED_CHANGE_M_S2 * dt_s
+    stance.speed += min(max(pace_m_s - stance.speed, -change), change)
+    amplitude = amplitude_of(stance.speed, root_scale)
+    walking_hz = stance.speed / (unit_stride_m * amplitude) if amplitude > 1e-3 else 0.0
+    turning_hz = 0.0 if is_walking else _CYCLES_PER_RAD * abs(turn_rad_s)
+    stance.phase = (stance.phase + max(walking_hz, turning_hz) * dt_s) % 1.0
+    step = dt_s / RISE_S
+    for k in range(len(stance.blend)):
+        wanted = 1.0 if k == posture else 0.0
+        stance.blend[k] += min(max(wanted - stance.blend[k], -step), step)
+
+
+@njit(cache=True, nogil=True)
+def hold(bodies: Bodies, stances: Stances, q: int, turns: Array) -> tuple[float, float]:
+    """Tell how one of Q people holds itself: gait, postures, arms, gaze, and that nobody stands quite still.
+
+    Returns:
+        The pelvis' offset [m] to the front and to the left; `turns` (17, 3) gets the rotation vectors [rad].
+    """
+    stance = stances[q]
+    amplitude = amplitude_of(stance.speed, bodies.root_scale[q])
+    front, left = gait_pose(bodies.rotations[q], bodies.sway[q], stance.phase, amplitude, turns)
+    weights, arms = np.empty(len(stance.blend)), 0.0
+    for k in range(len(weights)):
+        weights[k] = stance.blend[k] * stance.blend[k] * (3.0 - 2.0 * stance.blend[k])
+        arms += weights[k] if k != _STANDING else 0.0
+    own = bodies.arms[q]
+    if own >= 0:
+        weights[own] = max(weights[own], 1.0 - arms)
+        arms = 1.0
+    _keep_arms(bodies, q, min(arms, 1.0), turns)
+    for k in range(len(weights)):
+        if weights[k] > 0.0 and k != _STANDING:
+            turns += weights[k] * (_ROTATIONS[k] - _ROTATIONS[_STANDING])
+            front += weights[k] * _SHIFTS[k] * bodies.height_m[q]
+    _sway(stance.time_s, stance.sway_phase, bodies.looks_about_rad[q], turns)
+    if weights[_CALLING] > 0.0:
+        swung = WAVE_RAD * math.sin(2.0 * math.pi * WAVE_HZ * stance.time_s)
+        turns[_WAVING, 0] += weights[_CALLING] * swung
+    if stance.gaze_rad != 0.0:
+        for k in range(len(_LOOKING)):
+            turns[_LOOKING[k], 2] += _LOOKING_SHARES[k] * stance.gaze_rad
+    return front, left
+
+
+@njit(cache=True)
+def _keep_arms(bodies: Bodies, q: int, share: float, turns: Array) -> None:
+    """Let arms hold what they hold, hang as far as a posture asks for it, and swing little with a bag."""
+    standing = _ROTATIONS[_STANDING]
+    for bone in range(_BONES):
+        if bodies.is_held[q, bone]:
+            turns[bone] = bodies.held[q, bone] + _HELD_SWING * (turns[bone] - standing[bone])
+    for bone in _ARMS:
+        turns[bone] += share * (standing[bone] - turns[bone])
+    if bodies.has_bag[q]:
+        for bone in _BAG_ARM:
+            turns[bone] = standing[bone] + _BAG_SWING * (turns[bone] - standing[bone])
+
+
+@njit(cache=True)
+def _sway(time_s: float, sway_phase: float, looks_about_rad: float, turns: Array) -> None:
+    """Lean a little about the ankles."""
+    angle = 2.0 * math.pi * (_SWAY_HZ * time_s + sway_phase)
+    lean = np.zeros(3)
+    lean[0], lean[1] = _SWAY_RAD * math.sin(angle), _SWAY_RAD * math.cos(0.71 * angle)
+    turns[_PELVIS] += lean
+    turns[_HEAD, 2] += looks_about_rad * math.sin(_LOOK_RATIO * angle)
+    for foot in _FEET:
+        turns[foot] -= lean
