@@ -262,12 +262,13 @@ class World:
 
         Args:
             touched: names of the bodies that the robot touched.
-            are_placed: whether people's capsules are already where people are now.
+            are_placed: whether people are already where they are now, by capsule and, where seen, by limbs.
         """
         self._tick += 1
         self._touching = {name.split("/")[0] for name in touched} - {"floor"}
-        is_settled = are_placed and self._crowd.stays and not self.config.place.movers
-        if not (is_settled and self.config.renderer == BLIND):
+        if are_placed and self._crowd.stays and not self.config.place.movers:
+            self._forget()
+        else:
             self._settle()
 
     def _robot_state(self) -> PlanarState:
@@ -321,18 +322,29 @@ class World:
         """Take over the poses of a new instant; what was seen before is forgotten."""
         self._handling.show(self.time_s)
         self._crowd.show(self._robot.gap_to)
+        self._forget()
+
+    def _forget(self) -> None:
+        """Forget what was seen at the last instant."""
         if self.config.renderer == BLIND:
             return
-        self._scene = Scene(
-            renderer=self.config.renderer,
-            physics=self._physics,
-            table=self._table,
-            world_from_part=self._physics.part_poses(),
-            person_of_part=self._truth_maker.person_of_part,
-            hidden=self._physics.hidden_parts(),
-        )
+        self._scene_now: Scene | None = None
         self._seen: dict[tuple[Sight, CameraGeometry], Seen] = {}
         self._rig.forget()
+
+    @property
+    def _scene(self) -> Scene:
+        """All that is to be seen at this instant, put together when first asked for."""
+        if self._scene_now is None:
+            self._scene_now = Scene(
+                renderer=self.config.renderer,
+                physics=self._physics,
+                table=self._table,
+                world_from_part=self._physics.part_poses(),
+                person_of_part=self._truth_maker.person_of_part,
+                hidden=self._physics.hidden_parts(),
+            )
+        return self._scene_now
 
     def _check_sight(self) -> None:
         if self.config.renderer == BLIND:

@@ -14,6 +14,7 @@ from peopleboy.sim.fleet.cast_worlds import cast_eyes, hear_worlds
 from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.drive_worlds import Capsules, Robots, drive_worlds
 from peopleboy.sim.fleet.eyes import Eyes, Pictures, cameras_of
+from peopleboy.sim.fleet.hold_people import Limbs
 from peopleboy.sim.fleet.instant import Instant
 from peopleboy.sim.fleet.side_by_side import lay_side_by_side
 from peopleboy.sim.fleet.walk_worlds import Walks
@@ -64,6 +65,8 @@ class Fleet:
         self._walks = Walks(worlds)
         self._is_scripted = self._walks.is_scripted.tolist()
         self._know_people(physics)
+        shows = worlds[0].has_images and any(world.crowd.people for world in worlds)
+        self._limbs = Limbs(worlds, self._walks, self._joined) if shows else None
         wheels = self._joined.firsts.part[:-1, None] + np.array([each.wheels for each in physics])
         makes_images = cameras_of(worlds[0]) is not None
         self._eyes = Eyes(worlds, self._joined, wheels, crew) if makes_images else None
@@ -88,6 +91,8 @@ class Fleet:
             before=before,
             after=self._walks.places(),
         )
+        if self._limbs is not None:
+            self._limbs.place(going)
         touched = np.zeros(len(self._joined.bodies.places), np.bool_)
         drive_worlds(going, self._joined, self._vehicle, robots, capsules, self._dt_s, self._steps, touched)
         firsts, any_touched = self._joined.firsts.body, bool(touched.any())
@@ -110,6 +115,8 @@ class Fleet:
                 world.begin_step(linear_m_s, angular_rad_s)
         times_s = [self._worlds[number].time_s for number in commands]
         self._walks.step(going, times_s, self._control_s, places)
+        if self._limbs is not None:
+            self._limbs.move(going, times_s, self._control_s)
 
     def look(self, numbers: Sequence[int]) -> list[Instant]:
         """Sense and tell the truth in some of the worlds, as `World.sense` and `World.scene` do.
@@ -243,7 +250,8 @@ def kind_of_fleet(world: World) -> tuple[object, ...] | None:
     if config.physics != "kinematic":
         return None
     camera = flat_geometry(config.robot.cameras, "thermal")
-    return config.physics_hz, config.control_hz, config.robot.sonar, camera, cameras_of(world)
+    views = world.has_images, cameras_of(world)
+    return config.physics_hz, config.control_hz, config.robot.sonar, camera, views
 
 
 def _kinematic(world: World) -> Kinematic:

@@ -24,6 +24,7 @@ class Walks:
     Attributes:
         first: (B + 1,) where the people of each world begin.
         is_scripted: (B,) in which worlds all are.
+        records: (Q,) WALK of everybody; of no meaning in the other worlds.
     """
 
     def __init__(self, worlds: Sequence[World]) -> None:
@@ -38,10 +39,10 @@ class Walks:
             scripts += [_NO_SCRIPT] * count if each is None else each.scripts
             records.append(np.zeros(count, WALK) if each is None else each.records)
         self._scripts = join_scripts(scripts)
-        self._records = np.concatenate([np.zeros(0, WALK), *records])
+        self.records = np.concatenate([np.zeros(0, WALK), *records])
         for crowd, each, first, end in zip(self._crowds, own, self.first, self.first[1:], strict=False):
             if each is not None:
-                crowd.lay_into(self._records[first:end])
+                crowd.lay_into(self.records[first:end])
 
     def step(self, going: NDArray[np.int64], times_s: list[float], dt_s: float, robots: Array) -> None:
         """Let all walk on who are guided by scripts.
@@ -53,18 +54,22 @@ class Walks:
             robots: (G, 2) [m] where their robots are.
         """
         _walk_worlds(
-            going, self.is_scripted, self.first, self._records, self._scripts, np.array(times_s), dt_s,
+            going, self.is_scripted, self.first, self.records, self._scripts, np.array(times_s), dt_s,
             robots, _TWO,
         )  # fmt: skip
-        headings, present = self._records["heading"].tolist(), self._records["is_present"].tolist()
+        records = self.records
+        headings, present = records["heading"].tolist(), records["is_present"].tolist()
+        postures = records["posture"].tolist()
         ends = self.first.tolist()
         for number in going[self.is_scripted[going]].tolist():
             first, end = ends[number], ends[number + 1]
-            self._crowds[number].take_over(headings[first:end], present[first:end])
+            self._crowds[number].take_over(
+                headings[first:end], present[first:end], postures[first:end]
+            )
 
     def places(self) -> Array:
         """(Q, 2) [m] where everybody is, a copy."""
-        found = self._records["position"].copy()
+        found = self.records["position"].copy()
         for number in np.flatnonzero(~self.is_scripted).tolist():
             people = self._crowds[number].people
             if people:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.poses import quaternions
+from peopleboy.sim.people.body.stance import POSTURES
 from peopleboy.sim.people.looks.finish_person import Finisher, looks_stream
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig
@@ -28,6 +29,8 @@ from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
 
 # What robots bump into and sonars hear: an upright capsule, which no camera sees.
 _SOLID = "solid"
+
+_POSTURES = tuple(POSTURES)
 
 
 class Crowd:
@@ -63,12 +66,12 @@ class Crowd:
             self._add(person)
 
     def follow_scripts(self, *, has_begun: bool) -> ScriptedWalk | None:
-        """Walk by records from now on, where nobody looks and scripts and the robot alone guide everybody.
+        """Walk by records from now on, where scripts and the robot alone guide everybody.
 
         Args:
             has_begun: whether anybody has walked otherwise before; then they go on as they did.
         """
-        is_alone = not self._is_visible and all(is_scripted(person.config) for person in self.people)
+        is_alone = all(is_scripted(person.config) for person in self.people)
         if self._walk is None and is_alone and not has_begun:
             records = np.zeros(len(self.people), WALK)
             for person, record in zip(self.people, records, strict=True):
@@ -86,10 +89,18 @@ class Crowd:
         ):
             person.walker.position, person.walker.velocity = position, velocity
 
-    def take_over(self, headings: Sequence[float], are_present: Sequence[bool]) -> None:
-        """Face and be there as the records say by which people have just walked on."""
-        for person, heading, is_present in zip(self.people, headings, are_present, strict=True):
-            person.walker.heading, person.present = heading, is_present
+    def take_over(
+        self, headings: Sequence[float], are_present: Sequence[bool], postures: Sequence[int]
+    ) -> None:
+        """Face, be there and hold themselves as the records say by which people have just walked on."""
+        rows = zip(self.people, headings, are_present, postures, strict=True)
+        for person, heading, is_present, posture in rows:
+            person.take_over(heading, _POSTURES[posture], is_present=is_present)
+
+    @property
+    def are_shown(self) -> bool:
+        """Whether cameras see them."""
+        return self._is_visible
 
     def step(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
         """Let everybody walk on for dt_s from time_s, knowing where the others and the robot are now."""

@@ -27,7 +27,7 @@ from peopleboy.sim.people.body.gaze import Gaze
 from peopleboy.sim.people.body.joints import joint_points
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
-from peopleboy.sim.people.body.placing import carry, put_on_floor
+from peopleboy.sim.people.body.placing import Frame, carry, put_on_floor
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.body.reaching import arm_length, least_stoop, stoop, turn_arm
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets
@@ -190,6 +190,11 @@ class Person:
             self._walker.enter(around)
             self._bones = None
 
+    def take_over(self, heading: float, posture: Posture, *, is_present: bool) -> None:
+        """Be as somebody else has moved it, whose are the place, the velocity and the stance already."""
+        self._walker.heading, self._walker.posture, self.present = heading, posture, is_present
+        self._bones = None
+
     def _make_up_mind(self, dt_s: float, around: Surroundings, company: Iterable[float]) -> Wish:
         """Decide how to change the script, if at all."""
         walker, now = self._walker, None
@@ -256,11 +261,31 @@ class Person:
         self._bones = None
 
     @property
+    def gait(self) -> Gait:
+        """How it walks."""
+        return self._gait
+
+    @property
+    def frame(self) -> Frame:
+        """How its parts hang together."""
+        return Frame(self._offsets, self._soles, self._part_bone, self._part_offset)
+
+    @property
+    def is_handling(self) -> bool:
+        """Whether a hand is at something, or on the way there or back."""
+        return self._grasp is not None
+
+    @property
     def bodies(self) -> Bodies:
         """What never changes of its body."""
         if self._bodies is None:
             self._bodies = self._know_body()
         return self._bodies
+
+    def lay_into(self, stance: Stances, bodies: Bodies) -> None:
+        """Keep its stance and its body in other arrays from now on, which hold the same already."""
+        self.stance, self._bodies = stance, bodies
+        self._gait.lay_into(bodies.rotations[0], bodies.sway[0])
 
     def _know_body(self) -> Bodies:
         held, is_held = held_arms(self._manner.holds)

@@ -66,6 +66,10 @@ class Gait:
         rotations, sway = self.tables
         return turns, np.array(gait_pose(rotations, sway, phase, amplitude, turns))
 
+    def lay_into(self, rotations: Array, sway: Array) -> None:
+        """Keep the tables in other arrays from now on, which hold the same already."""
+        self.tables = rotations, sway
+
     @cached_property
     def tables(self) -> tuple[Array, Array]:
         """(A, P, 17, 3) and (A, P, 3) tables of all amplitudes, made for those who are looked at."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -12,6 +13,24 @@ from peopleboy.sim.geometry.products import fma, multiply
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, PARENT_INDEX, chain
 
 Array = NDArray[np.float64]
+
+
+
+class Frame(NamedTuple):
+    """How one person's parts hang together.
+
+    Attributes:
+        offsets: (17, 3) [m] from joint to joint.
+        soles: (3, 3) [m] points of a sole, in the foot's frame.
+        bone: (P,) that carries each part.
+        part_offset: (P, 3) [m] from that bone's joint to the part's frame.
+    """
+
+    offsets: Array
+    soles: Array
+    bone: NDArray[np.int64]
+    part_offset: Array
+
 
 _FEET = (BONE_INDEX["left_foot"], BONE_INDEX["right_foot"])
 

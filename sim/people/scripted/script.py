@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.body.stance import POSTURES
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.path import PathPiece, route
 from peopleboy.sim.people.walking.walk import Walker
@@ -21,7 +22,7 @@ WAYPOINT: Final = np.dtype(
         ("at", np.float64, 2),  # [m]
         ("pause_s", np.float64),  # inf at the last one
         ("has_pause", np.bool_),
-        ("is_standing", np.bool_),  # the posture there
+        ("posture", np.int64),  # there, its number in `POSTURES`
         ("faces", np.int64),
         ("face", np.float64, 2),  # [m]
         ("first_piece", np.int64),  # of the way on from here to the next stop
@@ -55,8 +56,10 @@ WALK: Final = np.dtype(
         ("reached", np.int64),
         ("piece", np.int64),  # under way on it; -1 in a pause
         ("end_piece", np.int64),
-        ("is_standing", np.bool_),
+        ("turn_rate", np.float64),  # [rad/s]
+        ("posture", np.int64),  # the one to take up, its number in `POSTURES`
         ("is_present", np.bool_),
+        ("has_moved", np.bool_),  # in the last step, there before and after it
         ("enter_s", np.float64),
         ("leave_s", np.float64),  # inf for never
         ("radius_m", np.float64),
@@ -102,7 +105,7 @@ def write_script(config: PersonConfig, walker: Walker) -> Script:
     for index, (waypoint, row) in enumerate(zip(path, waypoints, strict=True)):
         row["at"], row["pause_s"] = waypoint.at_m, walker.pause_of(index)
         row["has_pause"] = walker.has_pause(index)
-        row["is_standing"] = Posture(waypoint.posture) is Posture.STANDING
+        row["posture"] = POSTURES[Posture(waypoint.posture)]
         if waypoint.face is not None:
             row["faces"] = ROBOT if isinstance(waypoint.face, str) else POINT
             row["face"] = (0.0, 0.0) if isinstance(waypoint.face, str) else waypoint.face
@@ -125,7 +128,7 @@ def start_walk(config: PersonConfig, walker: Walker, radius_m: float, walk: np.v
     """Fill the record WALK of a person who has not moved yet."""
     walk["position"], walk["heading"] = walker.position, walker.heading
     walk["pause_left"], walk["piece"] = walker.pause_of(0), -1
-    walk["is_standing"] = walker.posture is Posture.STANDING
+    walk["posture"] = POSTURES[walker.posture]
     walk["is_present"] = config.enter_s <= 0.0
     walk["enter_s"] = config.enter_s
     walk["leave_s"] = np.inf if config.leave_s is None else config.leave_s

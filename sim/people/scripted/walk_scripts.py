@@ -11,7 +11,8 @@ from typing import Any
 from numba import njit
 
 from peopleboy.sim.geometry.angles import remainder
-from peopleboy.sim.people.body.postures import RISE_S
+from peopleboy.sim.people.body.postures import RISE_S, Posture
+from peopleboy.sim.people.body.stance import POSTURES
 from peopleboy.sim.people.scripted.script import NOTHING, POINT, Records, Scripts
 from peopleboy.sim.people.walking.walk import (
     ACCELERATION_M_S2,
@@ -23,6 +24,8 @@ from peopleboy.sim.people.walking.walk import (
     TURN_RATE_RAD_S,
 )
 from peopleboy.sim.robot.robot_body import RADIUS_M
+
+STANDING = POSTURES[Posture.STANDING]
 
 Record = Any  # a row of records
 
@@ -55,10 +58,12 @@ def walk_on(
     for q in range(first, end):
         walk = walks[q]
         was_present = walk.is_present
+        walk.has_moved = False
         walk.is_present = walk.enter_s <= now_s + 1e-9 and not now_s > walk.leave_s - 1e-9
         if not walk.is_present:
             continue
         if was_present:
+            walk.has_moved = True
             for _ in range(count):
                 if walk.piece >= 0:
                     _follow(walk, scripts, q, dt_s / count, robot, two)
@@ -79,8 +84,8 @@ def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: tuple[flo
     if walk.pause_left > 1e-9:
         _turn(walk, dt_s, walk.heading if waypoint.faces == NOTHING else _faced(walk, waypoint, robot))
         return
-    if not walk.is_standing:
-        walk.is_standing = True
+    if walk.posture != STANDING:
+        walk.posture = STANDING
         walk.on_feet_in = RISE_S
     walk.on_feet_in -= dt_s
     following = scripts.waypoints[scripts.first_waypoint[q] + walk.reached + 1]
@@ -139,7 +144,7 @@ def _arrive(walk: Record, scripts: Scripts, q: int, goal: int) -> None:
     walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
     walk.pause_left, walk.reached, walk.piece = waypoint.pause_s, goal, -1
     if waypoint.has_pause:
-        walk.is_standing = waypoint.is_standing
+        walk.posture = waypoint.posture
 
 
 @njit(cache=True)
@@ -196,4 +201,5 @@ def _turn(walk: Record, dt_s: float, wanted: float) -> None:
     """See `Walker._turn`."""
     turn = remainder(wanted - walk.heading) * min(STEER_GAIN * dt_s, 1.0)
     turn = min(max(turn, -TURN_RATE_RAD_S * dt_s), TURN_RATE_RAD_S * dt_s)
+    walk.turn_rate = turn / dt_s
     walk.heading = remainder(walk.heading + turn)

@@ -1,0 +1,161 @@
+"""The bodies of all people who are seen in many worlds, held and placed together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import accumulate
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.fleet.side_by_side import Joined, Numbers
+from peopleboy.sim.fleet.walk_worlds import Walks
+from peopleboy.sim.geometry.poses import quaternions
+from peopleboy.sim.people.body.placing import carry, put_on_floor
+from peopleboy.sim.people.body.stance import STANCE, Bodies, Stances, hold, move_limbs
+from peopleboy.sim.people.person import Person, pace_m_s
+from peopleboy.sim.people.scripted.script import Records
+from peopleboy.sim.physics.kinematic.kinematic import Kinematic
+from peopleboy.sim.physics.kinematic.solids import Array
+from peopleboy.sim.world import World
+
+
+class Parts(NamedTuple):
+    """What Q people are made of, one after the other.
+
+    Attributes:
+        offsets, soles: (Q, 17, 3) and (Q, 3, 3) [m] as in `Frame`.
+        first: (Q + 1,) where each one's parts begin.
+        bone, part_offset: of all parts, as in `Frame`.
+        body: (P,) number of the body that is a part, among those of all worlds.
+    """
+
+    offsets: Array
+    soles: Array
+    first: Numbers
+    bone: Numbers
+    part_offset: Array
+    body: Numbers
+
+
+class Limbs:
+    """Everybody in B worlds in which people are seen.
+
+    Args:
+        worlds: of a fleet.
+        walks: where everybody goes.
+        joined: where all bodies are.
+    """
+
+    def __init__(self, worlds: Sequence[World], walks: Walks, joined: Joined) -> None:
+        self._walks, self._joined = walks, joined
+        self._people = [person for world in worlds for person in world.crowd.people]
+        self._stances = np.concatenate([np.zeros(0, STANCE), *(each.stance for each in self._people)])
+        self._bodies = Bodies(*map(np.concatenate, zip(*(each.bodies for each in self._people), strict=True)))
+        for q, person in enumerate(self._people):
+            own = slice(q, q + 1)
+            person.lay_into(self._stances[own], Bodies(*(array[own] for array in self._bodies)))
+        gaits = [person.gait for person in self._people]
+        self._unit_stride_m = np.array([gait.unit_stride_m for gait in gaits])
+        self._parts = self._know_parts(worlds)
+
+    def move(self, going: Numbers, times_s: Sequence[float], dt_s: float) -> None:
+        """Advance gaits and postures of all in some worlds who walk by records, and have just walked on.
+
+        Args:
+            going: (G,) numbers of the worlds.
+            times_s: [s] in each of them at the start of the step.
+            dt_s: [s] length of the step.
+        """
+        walks = self._walks
+        records = walks.records
+        velocities, turns = records["velocity"].tolist(), records["turn_rate"].tolist()
+        paces = [pace_m_s(x, y, turn) for (x, y), turn in zip(velocities, turns, strict=True)]
+        _move(
+            going[walks.is_scripted[going]], walks.first, records, self._stances, self._unit_stride_m,
+            self._bodies.root_scale, np.array(paces), np.array(times_s)[walks.is_scripted[going]], dt_s,
+        )  # fmt: skip
+
+    def place(self, going: Numbers) -> None:
+        """Put the parts of all who are in some worlds where they are now, but those of who handles a thing."""
+        ends = self._walks.first.tolist()
+        who = [
+            q
+            for number in going.tolist()
+            for q in range(ends[number], ends[number + 1])
+            if self._people[q].present and not self._people[q].is_handling
+        ]
+        headings = np.array([self._people[q].heading for q in who])
+        places = np.column_stack([self._walks.places()[who], headings])
+        _place(np.array(who, np.int64), places, self._bodies, self._stances, self._parts, self._joined)
+
+    def _know_parts(self, worlds: Sequence[World]) -> Parts:
+        frames = [person.frame for person in self._people]
+        counts = [len(frame.bone) for frame in frames]
+        return Parts(
+            offsets=np.stack([frame.offsets for frame in frames]),
+            soles=np.stack([frame.soles for frame in frames]),
+            first=np.array(list(accumulate(counts, initial=0)), np.int64),
+            bone=np.concatenate([frame.bone for frame in frames]),
+            part_offset=np.concatenate([frame.part_offset for frame in frames]),
+            body=np.array(
+                [
+                    first + _number_of(world, person, part.name)
+                    for world, first in zip(worlds, self._joined.firsts.body.tolist(), strict=False)
+                    for person in world.crowd.people
+                    for part in person.parts
+                ],
+                np.int64,
+            ),
+        )
+
+
+def _number_of(world: World, person: Person, part: str) -> int:
+    assert isinstance(world.physics, Kinematic)
+    return world.physics.number_of(f"{person.name}/{part}")
+
+
+@njit(cache=True, nogil=True)
+def _move(
+    going: Numbers,
+    first: Numbers,
+    walks: Records,
+    stances: Stances,
+    unit_stride_m: Array,
+    root_scale: Array,
+    paces: Array,
+    times_s: Array,
+    dt_s: float,
+) -> None:
+    for row in range(len(going)):
+        for q in range(first[going[row]], first[going[row] + 1]):
+            walk = walks[q]
+            stances[q].time_s = times_s[row] + dt_s
+            if walk.has_moved and walk.is_present:
+                move_limbs(
+                    stances, q, unit_stride_m[q], root_scale[q], paces[q], walk.turn_rate, walk.piece >= 0,
+                    walk.posture, dt_s,
+                )  # fmt: skip
+
+
+@njit(cache=True, nogil=True)
+def _place(
+    who: Numbers, places: Array, people: Bodies, stances: Stances, parts: Parts, joined: Joined
+) -> None:
+    bones, turns = np.empty((parts.offsets.shape[1], 4, 4)), np.empty((parts.offsets.shape[1], 3))
+    bodies = joined.bodies
+    for k in range(len(who)):
+        q, place = who[k], (places[k, 0], places[k, 1], places[k, 2])
+        shift = hold(people, stances, q, turns)
+        put_on_floor(turns, parts.offsets[q], parts.soles[q], shift, place, bones)
+        first, end = parts.first[q], parts.first[q + 1]
+        poses = np.empty((end - first, 4, 4))
+        carry(bones, parts.bone[first:end], parts.part_offset[first:end], poses)
+        turned = quaternions(poses)
+        for p in range(first, end):
+            body = parts.body[p]
+            bodies.places[body, :3] = poses[p - first, :3, 3]
+            bodies.places[body, 3:] = turned[p - first]
+            bodies.stale[body] = True
