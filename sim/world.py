@@ -118,9 +118,9 @@ class World:
         """How its parts look."""
         return self._materials
 
-    def due(self) -> tuple[str, ...]:
-        """Names of the cameras that take an image now; there must be images."""
-        return self._rig.due(self._tick)
+    def await_images(self) -> tuple[str, ...]:
+        """Names of the cameras whose images of this instant are made elsewhere; there must be images."""
+        return self._rig.expect(self._tick)
 
     @property
     def rig(self) -> Rig:

@@ -172,14 +172,15 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._keep_m = following.keep_m
         self._episode = Episode(plan, self._dt_s, may_lose=self._task != "corridor")
         self._figures = EpisodeFigures(plan, following)
-        self._start: Planar | None = None
+        self._start = Planar(0.0, 0.0, 0.0)
         self._tracks: tuple[Track, ...] = ()
         self._images: Arrays = {}
         self._is_over = False
         if self._normaliser is not None:
             self._normaliser.begin()
-        observation = self._observe(perceive(self._world))
+        self._start = self._perceive(perceive(self._world)).odometry
         self._episode.judge(self._scene)
+        observation = self.observation()
         if self.render_mode == "human":
             self._show_first()
         return observation, self._info(dict.fromkeys(TERMS, 0.0))
@@ -206,7 +207,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """
         command = self.begin_step(check_actions(action, (2,))[0])
         self.world.step(command.linear_m_s, command.angular_rad_s)
-        return self.end_step(perceive(self.world))
+        result = self.end_step(perceive(self.world))
+        return self.observation(), *result
 
     def begin_step(self, shares: tuple[float, float]) -> Command:
         """Give the command for an action, as checked, by which the world is to be stepped now; see `step`.
@@ -224,10 +226,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._frame += 1
         return command
 
-    def end_step(self, instant: Instant) -> tuple[Arrays, SupportsFloat, bool, bool, dict[str, Any]]:
-        """Judge the instant to which the world has been stepped; see `step`."""
+    def end_step(self, instant: Instant) -> tuple[SupportsFloat, bool, bool, dict[str, Any]]:
+        """Judge the instant to which the world has been stepped; see `step`. `observation` is for later."""
         shares, limits = self._shares, self._limits
-        observation = self._observe(instant)
+        self._perceive(instant)
         situation = self._episode.judge(self._scene)
         terms = reward_terms(
             self._task, situation, dt_s=self._dt_s, keep_m=self._keep_m,
@@ -240,7 +242,12 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         reward = math.fsum(terms.values())
         if self._viewer is not None:
             self._viewer.go_on(self._draw(), reward, self._dt_s)
-        return observation, reward, terminated, truncated, self._info(terms)
+        return reward, terminated, truncated, self._info(terms)
+
+    def observation(self) -> Arrays:
+        """Tell what the controller is told of the instant that was judged last."""
+        found = feel(self._senses, self._start) | self._see()
+        return found if self._normaliser is None else self._normaliser(found)
 
     @property
     def world(self) -> World:
@@ -349,30 +356,28 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         config = replace(config, robot=self._robot, physics_hz=self._physics_hz, renderer=renderer)
         return vary(config, options, stream(self._seed, "environment.options"))
 
-    def _observe(self, instant: Instant) -> Arrays:
-        """Put what is sensed into the form that was asked for."""
+    def _perceive(self, instant: Instant) -> Senses:
+        """Take in an instant; a tracker looks at it now, for the figures."""
         world = self._running()
-        before = self._start if self._start is None else self._senses.odometry
+        before = self._senses.odometry if self._frame > 0 else None
         self._senses: Senses = instant.senses
         self._scene: ImageFreeTruth = instant.scene
-        if self._start is None:
-            self._start = self._senses.odometry
-        found = feel(self._senses, self._start) | self._see(before)
+        if self._tracker is not None:
+            assert isinstance(self._senses, Observation)
+            self._tracks = self._tracker.update(make_frame(self._senses, self._calibrations, before))
         if self._frame < self._frames:
             self._note(world)
-        return found if self._normaliser is None else self._normaliser(found)
+        return self._senses
 
-    def _see(self, before: Planar | None) -> Arrays:
+    def _see(self) -> Arrays:
         """Give what the chosen eyes tell."""
         if self._kind == "truth":
             return see_truth(self._scene, self._robot)
+        if self._kind == "tracks":
+            return see_tracks(self._tracks, self._robot)
         assert isinstance(self._senses, Observation)
-        if self._kind == "pixels":
-            self._images |= see_images(self._senses, self._robot, self._shown)
-            return self._images
-        assert self._tracker is not None
-        self._tracks = self._tracker.update(make_frame(self._senses, self._calibrations, before))
-        return see_tracks(self._tracks, self._robot)
+        self._images |= see_images(self._senses, self._robot, self._shown)
+        return self._images
 
     def _note(self, world: World) -> None:
         """Keep this instant for the figures."""

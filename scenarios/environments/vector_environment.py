@@ -18,7 +18,7 @@ from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.together import Together
 
 Flags = NDArray[np.bool_]
-Result = tuple[Arrays, SupportsFloat, bool, bool, dict[str, Any]]  # of a single environment's step
+Result = tuple[SupportsFloat, bool, bool, dict[str, Any]]  # of a single environment's step
 
 
 class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
@@ -99,21 +99,23 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             BadInput: the actions are not (B, 2) finite numbers, or there are no episodes under way.
         """
         results = self._step_together(check_actions(actions, (self.num_envs, 2)))
-        found = self._empty()
+        found, begun = self._empty(), dict[int, Arrays]()
         infos: list[Infos] = []
         rewards = np.zeros(self.num_envs)
         terminations, truncations = np.zeros((2, self.num_envs), np.bool_)
         for number, env in enumerate(self._envs):
             if self._is_over[number]:
-                observation, info = env.reset()
+                begun[number], info = env.reset()
                 self._together = None
             else:
-                observation, reward, ended, cut, info = results[number]
+                reward, ended, cut, info = results[number]
                 rewards[number], terminations[number], truncations[number] = float(reward), ended, cut
-            _put(found, number, observation)
             infos.append(info)
+        joined = join_infos(infos)
+        for number, env in enumerate(self._envs):
+            _put(found, number, begun[number] if number in begun else env.observation())
         self._is_over = terminations | truncations
-        return found, rewards, terminations, truncations, join_infos(infos)
+        return found, rewards, terminations, truncations, joined
 
     def vary_by(self, options: dict[str, Any]) -> None:
         """Vary every world's episodes from its next one on, as for a single environment.

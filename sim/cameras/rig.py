@@ -51,16 +51,21 @@ class Rig:
         Raises:
             BadInput: when one is asked for later.
         """
-        self.forget()
-        due = self.due(tick)
-        for name in due:
-            self._unread[name] += 1
+        due = self.expect(tick)
         shots = OnDemand(due, partial(self._shoot, self._reading))
         for name in due:
             if self._cameras[name].remembers:
                 shots[name]
         owner = {image: name for name in due for image in image_names(name, self._cameras[name])}
         return OnDemand(owner, lambda image: shots[owner[image]][image])
+
+    def expect(self, tick: int) -> tuple[str, ...]:
+        """Name the cameras that are due, of which somebody may take the image until the next call."""
+        self.forget()
+        due = self.due(tick)
+        for name in due:
+            self._unread[name] += 1
+        return due
 
     def take_over(self, name: str) -> Sensor:
         """Give the sensor of a camera to who takes its image of this instant now."""

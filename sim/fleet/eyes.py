@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.kinds import image_names, name_images
-from peopleboy.sim.fleet.crew import Crew, Task, Work
+from peopleboy.sim.cameras.kinds import image_names
+from peopleboy.sim.fleet.crew import Crew, Work
 from peopleboy.sim.fleet.draw_worlds import Poses
 from peopleboy.sim.fleet.scenery import Array, join_scenery
+from peopleboy.sim.fleet.shots import Pictures, Shot, Shots
 from peopleboy.sim.fleet.side_by_side import Joined, Numbers
 from peopleboy.sim.fleet.studios import Images, is_simple, open_studio
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.physics.kinematic.kinematic import turn_wheels
 from peopleboy.sim.world import World
-
-Pictures = Mapping[str, NDArray[Any]]
 
 _SHARES: Final = 3  # of a camera's images for each thread, so that none waits long for the last
 
@@ -29,92 +26,76 @@ _SHARES: Final = 3  # of a camera's images for each thread, so that none waits l
 class Eyes:
     """The cameras of B worlds, see `cameras_of`; they give to the byte what each world by itself would give.
 
+    Images of a camera are made ahead, by threads while Python goes on, if somebody asked for those of the
+    instant before; all others when they are asked for.
+
     Args:
         worlds: of one kind, all of a fleet.
         joined: where all of their parts are.
         wheels: (B, 2) numbers of the wheels among the parts of all worlds.
-        crew: works while Python goes on.
+        crew: makes the images.
     """
 
     def __init__(self, worlds: Sequence[World], joined: Joined, wheels: Numbers, crew: Crew) -> None:
-        self._worlds, self._joined, self._wheels, self._crew = tuple(worlds), joined, wheels, crew
+        self._worlds, self._joined, self._crew = tuple(worlds), joined, crew
+        self._wheels = wheels.reshape(-1)
         self._cameras = dict(worlds[0].cameras)
         scenery = join_scenery([world.table for world in worlds], [world.looks for world in worlds])
         self._studios = {
             name: open_studio(name, config, scenery, worlds) for name, config in self._cameras.items()
         }
-        first_part = joined.firsts.part[:-1]
+        self._images = {name: image_names(name, config) for name, config in self._cameras.items()}
         first_body = np.repeat(joined.firsts.body[:-1], np.diff(joined.firsts.part))
         self._body_of_part = joined.bodies.of_part + first_body
-        assert len(first_part) == len(worlds)
-        self._work: Work | None = None
+        self._shots = Shots.none()
 
     def look(self, going: Numbers, robots: Array, turn_rad_s: Array) -> list[Pictures]:
-        """Begin with the images of some worlds at this instant; who asks for one waits until all are made.
+        """Take the images of some worlds at this instant.
 
         Args:
             going: (G,) numbers of the worlds.
             robots: (G, 4, 4) world from robot.
             turn_rad_s: (G,) at which they turn.
         """
+        asked_for = self._shots.asked_for()
         self.finish()
         part = self._joined.bodies.poses.copy()
-        turn_wheels(part, self._wheels.reshape(-1), self._joined.motion.angles.reshape(-1))
+        turn_wheels(part, self._wheels, self._joined.motion.angles.reshape(-1))
         hidden = self._joined.bodies.hidden[self._body_of_part]
-        due = [self._worlds[number].due() for number in going.tolist()]
-        taken: list[dict[str, tuple[Images, int]]] = [{} for _ in due]
-        tasks: list[Task] = []
+        due = [self._worlds[number].await_images() for number in going.tolist()]
+        shots = []
         for name, config in self._cameras.items():
-            rows = np.array([row for row, names in enumerate(due) if name in names], np.int64)
-            if not len(rows):
-                continue
-            assert isinstance(config.camera, Pinhole)
-            poses = Poses(
-                part=part,
-                hidden=hidden,
-                camera=robots[rows] @ config.camera.robot_from_camera,
-                turned=turn_rad_s[rows] * config.exposure_s,
-            )
-            images, fill = self._studios[name].shoot(going[rows], poses)
-            for place, row in enumerate(rows.tolist()):
-                taken[row][name] = images, place
-            tasks += [partial(fill, *share) for share in self._shares(len(rows))]
-        self._work = self._crew.start(tasks)
-        return [self._pictures(each, self._work) for each in taken]
+            rows = [row for row, names in enumerate(due) if name in names]
+            if rows:
+                assert isinstance(config.camera, Pinhole)
+                poses = Poses(
+                    part=part,
+                    hidden=hidden,
+                    camera=robots[rows] @ config.camera.robot_from_camera,
+                    turned=turn_rad_s[rows] * config.exposure_s,
+                )
+                shots.append(Shot(name, config, rows, partial(self._shoot, name, going[rows], poses)))
+        for shot in shots:
+            if shot.name in asked_for:
+                shot.begin()
+        self._shots = Shots(shots, self._images)
+        return self._shots.pictures(len(due))
 
     def finish(self) -> None:
-        """Wait until all images are made, as must be before anything in the worlds changes."""
-        if self._work is not None:
-            self._work.finish()
-            self._work = None
+        """Wait until all images are made with which somebody has begun, before anything in the worlds changes."""
+        self._shots.end()
 
-    def _shares(self, count: int) -> list[tuple[int, int]]:
-        ends = np.linspace(0, count, min(_SHARES * self._crew.threads, count) + 1).round().astype(int).tolist()
-        return list(zip(ends, ends[1:], strict=False))
-
-    def _pictures(self, taken: Mapping[str, tuple[Images, int]], work: Work) -> Pictures:
-        """What one world's cameras give, by the names of the images."""
-        owners = {
-            image: name for name in taken for image in _names(name, self._cameras[name])
-        }
-
-        def make(image: str) -> NDArray[Any]:
-            work.finish()
-            name = owners[image]
-            images, row = taken[name]
-            return name_images(name, self._cameras[name], [each[row] for each in images])[image]
-
-        return OnDemand(owners, make)
+    def _shoot(self, name: str, worlds: Numbers, poses: Poses) -> tuple[Images, Work]:
+        images, fill = self._studios[name].shoot(worlds, poses)
+        count = min(_SHARES * self._crew.threads, len(worlds))
+        ends = np.linspace(0, len(worlds), count + 1).round().astype(int).tolist()
+        return images, self._crew.start([partial(fill, *share) for share in zip(ends, ends[1:], strict=False)])
 
 
-def cameras_of(world: World) -> object | None:
+def cameras_of(world: World) -> tuple[tuple[str, CameraConfig], ...] | None:
     """What all worlds must share whose images are made together; None for a world that makes its own."""
     config = world.config
     simple = all(is_simple(camera) for camera in world.cameras.values())
     if config.renderer != "raycast" or config.detail != "plain" or not simple:
         return None
-    return tuple(sorted(world.cameras.items(), key=lambda item: item[0]))
-
-
-def _names(name: str, config: CameraConfig) -> tuple[str, ...]:
-    return image_names(name, config)
+    return tuple(world.cameras.items())

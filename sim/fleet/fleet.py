@@ -13,9 +13,10 @@ from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.fleet.cast_worlds import cast_eyes, hear_worlds
 from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.drive_worlds import Capsules, Robots, drive_worlds
-from peopleboy.sim.fleet.eyes import Eyes, Pictures, cameras_of
+from peopleboy.sim.fleet.eyes import Eyes, cameras_of
 from peopleboy.sim.fleet.hold_people import Limbs
 from peopleboy.sim.fleet.instant import Instant
+from peopleboy.sim.fleet.shots import Pictures
 from peopleboy.sim.fleet.side_by_side import lay_side_by_side
 from peopleboy.sim.fleet.walk_worlds import Walks
 from peopleboy.sim.geometry.pinhole import Matrix
