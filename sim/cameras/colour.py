@@ -29,6 +29,7 @@ LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])
 _AMBIENT = 0.55
 
 _GLASS = 0.04  # share of light that glass and varnish, of a refractive index of 1.5, mirror straight on
+_CHUNK = 640  # values that are coded together: all that can be done for several at a time is
 _CONTRAST = 0.06  # share of the light: fainter edges need no smoothing
 _ROOM = 0.4  # what is mirrored where nothing in particular is, share of the light
 
@@ -166,19 +167,55 @@ def light_image(
                 period, phase, finish, texels, paint, paint_texels, light, level,
             )  # fmt: skip
         return image
+    shades = np.empty(width)
+    rows, normals = image.reshape(height, 3 * width), normal.reshape(height, 3 * width)
     for v in range(height):
-        for u in range(width):
-            p = part[v, u]
-            if p < 0:
-                continue
-            second = 0
-            if kind[p, 1] != 0:
-                x, y, z = surface_point(matrices, p, u, v, depth[v, u])
-                second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
-            shade = shade_of(normal[v, u], light, level) + colour[p, 6]
-            for c in range(3):
-                image[v, u, c] = shade * colour[p, second + c]
+        _light_plain_row(
+            rows[v], shades, v, part[v], depth[v], normals[v], matrices, colour, kind, period, phase, light,
+            level,
+        )  # fmt: skip
     return image
+
+
+@njit(cache=True, fastmath=True)
+def _light_plain_row(
+    image: NDArray[np.float32],
+    shades: NDArray[np.float64],
+    v: int,
+    part: NDArray[np.int32],
+    depths: NDArray[np.float32],
+    normal: NDArray[np.float32],
+    matrices: NDArray[np.float64],
+    colour: NDArray[np.float64],
+    kind: NDArray[np.int64],
+    period: NDArray[np.float64],
+    phase: NDArray[np.float64],
+    light: NDArray[np.float64],
+    level: float,
+) -> None:
+    """Fill a row (3 W,) in plain detail, neighbouring pixels of one part together; `shades` is space."""
+    width, end = len(part), 0
+    one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
+    x, y, z = light[0], light[1], light[2]
+    while end < width:
+        first, p = end, part[end]
+        while end < width and part[end] == p:
+            end += 1
+        if p < 0:
+            continue
+        for u in range(np.uint64(first), np.uint64(end)):
+            i = three * u
+            facing = normal[i] * x + normal[i + one] * y + normal[i + two] * z
+            shades[u] = level * (_AMBIENT + (1.0 - _AMBIENT) * max(facing, 0.0)) + colour[p, 6]
+        red, green, blue = colour[p, 0], colour[p, 1], colour[p, 2]
+        for u in range(np.uint64(first), np.uint64(end)):
+            i, shade = three * u, shades[u]
+            image[i], image[i + one], image[i + two] = shade * red, shade * green, shade * blue
+        if kind[p, 1] != 0:
+            for u in range(first, end):
+                if _is_second(v, u, p, depths, matrices, kind, period, phase):
+                    for c in range(3):
+                        image[3 * u + c] = shades[u] * colour[p, 3 + c]
 
 
 @njit(cache=True, fastmath=True)
@@ -259,12 +296,17 @@ def encode(
     read: np.float32,
     shot: np.float32,
 ) -> NDArray[np.uint8]:
-    image = np.empty(linear.shape, np.uint8)
+    image, codes = np.empty(linear.shape, np.uint8), np.empty(_CHUNK, np.int32)
     source, random, target = linear.reshape(-1), noise.reshape(-1), image.reshape(-1)
     last = np.float32(gamma.shape[0] - 1)
     half, none, full = np.float32(0.5), np.float32(0.0), np.float32(1.0)
-    for i in range(source.shape[0]):
-        sigma = np.sqrt(read * read + shot * shot * source[i])
-        level = min(max(source[i] + sigma * random[i], none), full)
-        target[i] = gamma[np.int32(level * last + half)]
+    for first in range(0, source.shape[0], _CHUNK):
+        light, draws, coded = source[first:], random[first:], target[first:]
+        count = min(_CHUNK, len(light))
+        for i in range(count):
+            sigma = np.sqrt(read * read + shot * shot * light[i])
+            level = min(max(light[i] + sigma * draws[i], none), full)
+            codes[i] = np.int32(level * last + half)
+        for i in range(count):
+            coded[i] = gamma[codes[i]]
     return image

@@ -55,7 +55,8 @@ def skip_gaussian(shape: tuple[int, ...], rng: np.random.Generator) -> None:
 
 def random_words(shape: tuple[int, ...], rng: np.random.Generator) -> NDArray[np.uint64]:
     """Draw 16 random bits for each value of an image, four values to a word."""
-    return rng.integers(0, 2**64, -(-math.prod(shape) // 4), dtype=np.uint64)
+    words: NDArray[np.uint64] = rng.bit_generator.random_raw(-(-math.prod(shape) // 4))
+    return words
 
 
 @njit(cache=True)

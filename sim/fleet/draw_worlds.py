@@ -16,7 +16,7 @@ from peopleboy.sim.cameras.thermal import radiance_image, to_apparent_c
 from peopleboy.sim.fleet.scenery import Array, Scenery, scenery_of
 from peopleboy.sim.fleet.side_by_side import Numbers
 from peopleboy.sim.geometry.products import from_each, invert
-from peopleboy.sim.rendering.canvas import Canvas, Lens, shade
+from peopleboy.sim.rendering.canvas import Canvas, Lens, locate, shade
 from peopleboy.sim.rendering.raycast import draw
 from peopleboy.sim.shapes.shape_table import ShapeTable
 
@@ -99,7 +99,8 @@ def radiate_worlds(
     canvas, view = _space(eye.lens, scenery)
     for row in range(first, end):
         table, looks = scenery_of(scenery, worlds[row])
-        matrices = _look(worlds[row], row, table, scenery.part, poses, eye, canvas, view)
+        matrices = _look(worlds[row], row, table, scenery.part, poses, eye, canvas)
+        locate(table.surface_part, eye.lens, canvas, view.part, view.depth)
         radiance[row] = radiance_image(
             view.part, view.depth, matrices, looks.thermal, looks.kind, looks.period, looks.phase,
             looks.finish, looks.texels, looks.paint, looks.paint_texels, tables.radiance, surroundings[row],
@@ -217,7 +218,9 @@ def expose_worlds(
     noise = np.empty((eye.lens.height, eye.lens.width, 3), np.float32)
     for row in range(first, end):
         table, looks = scenery_of(scenery, worlds[row])
-        matrices = _look(worlds[row], row, table, scenery.part, poses, eye, canvas, view)
+        matrices = _look(worlds[row], row, table, scenery.part, poses, eye, canvas)
+        rotation = np.ascontiguousarray(poses.camera[row, :3, :3])
+        shade(table.surface_part, eye.lens, canvas, rotation, view.part, view.depth, view.normal)
         linear = light_image(
             view.part, view.depth, view.normal, matrices, looks.colour, looks.kind, looks.period, looks.phase,
             looks.finish, looks.texels, looks.paint, looks.paint_texels, film.light, level[row],
@@ -258,17 +261,15 @@ def _look(
     poses: Poses,
     eye: Eye,
     canvas: Canvas,
-    view: View,
 ) -> Array:
-    """See one world; gives the matrices of `part_from_pixel`."""
+    """Draw one world; gives the matrices of `part_from_pixel`."""
     first, end = first_part[world], first_part[world + 1]
     parts, camera = poses.part[first:end], poses.camera[row]
-    camera_from_world, rotation = np.empty((4, 4)), np.ascontiguousarray(camera[:3, :3])
+    camera_from_world = np.empty((4, 4))
     invert(camera, camera_from_world)
     nobody = np.zeros(end - first, np.uint64)
     canvas.nearness[:] = 0.0
     draw(table, from_each(camera_from_world, parts), poses.hidden[first:end], nobody, eye.lens, canvas)
-    shade(table.surface_part, eye.lens, canvas, rotation, view.part, view.depth, view.normal)
     return combine(eye.rays, camera, parts)
 
 

@@ -109,6 +109,7 @@ def fill_polygon(
     g: Point, edges: int, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
 ) -> None:
     """Fill the pixels inside all edges with the plane g . p = 1."""
+    edges = _edges_across(edges, lens, area, canvas)
     slope = g[0] / lens.focal
     for v in range(area[1], area[3] + 1):
         y = (v - lens.centre_v) / lens.focal
@@ -133,6 +134,21 @@ def fill_polygon(
             if here > nearness[u]:
                 nearness[u] = here
                 surfaces[u] = surface
+
+
+@njit(cache=True, error_model="numpy")
+def _edges_across(edges: int, lens: Lens, area: Rectangle, canvas: Canvas) -> int:
+    """Leave out edges beyond which no pixel of an area lies, as most of near and far ones; gives how many stay."""
+    left, right = (area[0] - lens.centre_u) / lens.focal, (area[2] - lens.centre_u) / lens.focal
+    top, bottom = (area[1] - lens.centre_v) / lens.focal, (area[3] - lens.centre_v) / lens.focal
+    kept = 0
+    for i in range(edges):
+        a, b, c = canvas.edges[i, 0], canvas.edges[i, 1], canvas.edges[i, 2]
+        least = min(a * left, a * right) + min(b * top, b * bottom) + c
+        if not least > 1e-9 * (abs(a) + abs(b) + abs(c)):
+            canvas.edges[kept, 0], canvas.edges[kept, 1], canvas.edges[kept, 2] = a, b, c
+            kept += 1
+    return kept
 
 
 @njit(cache=True, error_model="numpy")
@@ -223,37 +239,43 @@ def shade(
         depth: (H, W) gets the depths [m], inf where nothing is.
         normal: (H, W, 3) gets the unit normals, world frame, 0 where nothing is.
     """
+    locate(surface_part, lens, canvas, part, depth)
     normals = normal.reshape(lens.height, 3 * lens.width)
     for v in range(lens.height):
-        _shade_row(surface_part, lens, v, canvas, rotation, part[v], depth[v], normals[v])
+        _face_row(lens, v, canvas, rotation, normals[v])
 
 
 @njit(cache=True, error_model="numpy")
-def _shade_row(
+def locate(
     surface_part: NDArray[np.int32],
     lens: Lens,
-    v: int,
     canvas: Canvas,
-    rotation: Array,
     part: NDArray[np.int32],
     depth: NDArray[np.float32],
-    normal: NDArray[np.float32],
 ) -> None:
-    """Do the same for a row (W,), neighbouring pixels of one surface together; normals are (3 W,)."""
+    """Turn a drawn canvas into part numbers and depths alone; arguments as in `shade`."""
+    for v in range(lens.height):
+        nearness, surfaces, parts, depths = canvas.nearness[v], canvas.surface[v], part[v], depth[v]
+        for u in range(lens.width):
+            depths[u] = 1.0 / nearness[u]
+        for u in range(lens.width):
+            parts[u] = surface_part[surfaces[u]] if nearness[u] != 0.0 else -1
+
+
+@njit(cache=True, error_model="numpy")
+def _face_row(lens: Lens, v: int, canvas: Canvas, rotation: Array, normal: NDArray[np.float32]) -> None:
+    """Write the normals of a row, (3 W,), neighbouring pixels of one surface together."""
     one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
     y, nearness, surfaces, end = (v - lens.centre_v) / lens.focal, canvas.nearness[v], canvas.surface[v], 0
     while end < lens.width:
         first, surface = end, surfaces[end]
         if nearness[first] == 0.0:
-            part[first], depth[first], normal[3 * first : 3 * first + 3] = -1, np.inf, 0.0
+            normal[3 * first : 3 * first + 3] = 0.0
             end += 1
             continue
         while end < lens.width and surfaces[end] == surface and nearness[end] != 0.0:
             end += 1
         shading = canvas.shading[surface]
-        part[first:end] = surface_part[surface]
-        for u in range(np.uint64(first), np.uint64(end)):
-            depth[u] = 1.0 / nearness[u]
         if shading[6] == 0.0:
             nx, ny, nz = _turned(rotation, (shading[0], shading[1], shading[2]))
             for u in range(np.uint64(first), np.uint64(end)):
