@@ -11,6 +11,14 @@ from peopleboy.sim.physics.kinematic.solids import Array, refresh
 
 
 @njit(cache=True, nogil=True)
+def refresh_worlds(going: Numbers, joined: Joined) -> None:
+    """Bring some of the worlds up to date, as `refresh` does with one."""
+    for number in going:
+        bodies, solids = world_in(joined, number)
+        refresh(bodies, solids)
+
+
+@njit(cache=True, nogil=True)
 def hear_worlds(
     going: Numbers, joined: Joined, starts: Array, ends: Array, reach_m: Array, nearest_m: Array
 ) -> None:
@@ -18,7 +26,7 @@ def hear_worlds(
 
     Args:
         going: (G,) numbers of the worlds.
-        joined: is brought up to date in them.
+        joined: up to date.
         starts: (G, S, 3) [m] of the sonars, world frame.
         ends: (G, S * N, 3) [m] of their rays, one sonar's after the other's.
         reach_m: (S, N) lengths of the rays.
@@ -29,7 +37,6 @@ def hear_worlds(
     fraction = np.empty(sonars * rays)
     for row in range(len(going)):
         bodies, solids = world_in(joined, going[row])
-        refresh(bodies, solids)
         for ray in range(sonars * rays):
             begin[ray] = starts[row, ray // rays]
         fraction[:] = 1.0

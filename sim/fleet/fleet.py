@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.kinds import flat_geometry
-from peopleboy.sim.fleet.cast_worlds import cast_eyes, hear_worlds
+from peopleboy.sim.fleet.cast_worlds import cast_eyes, hear_worlds, refresh_worlds
 from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.drive_worlds import Capsules, Robots, drive_worlds
 from peopleboy.sim.fleet.eyes import Eyes, cameras_of
@@ -132,9 +132,10 @@ class Fleet:
             Planar(x, y, math.atan2(sine, cosine))
             for x, y, sine, cosine in poses[:, (0, 1, 1, 0), (3, 3, 0, 0)].tolist()
         ]
-        sonar = self._hear(going, poses)
+        refresh_worlds(going, self._joined)
         speeds = self._speeds(going, poses)
         pictures = self._look_around(going, poses, speeds)
+        sonar = self._hear(going, poses)
         people = self._see(going, poses, robots)
         rims = (self._joined.motion.speeds[going] * WHEEL_RADIUS_M).tolist()
         found = []
