@@ -149,9 +149,7 @@ class World:
         self._check_sight()
         return self.with_images(self.sense())
 
-    def with_images(
-        self, senses: Senses, images: Mapping[str, NDArray[Any]] | None = None
-    ) -> Observation:
+    def with_images(self, senses: Senses, images: Mapping[str, NDArray[Any]] | None = None) -> Observation:
         """Add the images of this instant to the other senses; None for those made here when asked for."""
         return Observation(
             time_s=senses.time_s,

@@ -50,7 +50,9 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         if settings.get("render_mode") is not None:
             raise BadInput("render_mode: many worlds draw no pictures; leave it out, or take one environment")
         if threads is not None and threads < 1:
-            raise BadInput(f"threads {threads}: must be 1 or more, or None for as many as there are processors")
+            raise BadInput(
+                f"threads {threads}: must be 1 or more, or None for as many as there are processors"
+            )
         self.num_envs = num_envs
         self._crew = Crew(threads)
         self._envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))

@@ -155,6 +155,11 @@ def light_image(
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
+    """Form the linear image (H, W, 3) of a `View`, whose parts look as a `MaterialTable` says.
+
+    The matrices are those of `part_from_pixel`; the light comes from a direction (3,), at a level times the
+    camera's gain.
+    """
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
     if len(finish) > 0 or paint_texels.shape[1] > 0:
@@ -296,6 +301,7 @@ def encode(
     read: np.float32,
     shot: np.float32,
 ) -> NDArray[np.uint8]:
+    """Add read and shot noise to an (H, W, 3) linear image by normal draws, and code it by `GAMMA`."""
     image, codes = np.empty(linear.shape, np.uint8), np.empty(_CHUNK, np.int32)
     source, random, target = linear.reshape(-1), noise.reshape(-1), image.reshape(-1)
     last = np.float32(gamma.shape[0] - 1)

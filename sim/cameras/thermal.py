@@ -180,6 +180,11 @@ def radiance_image(
     surroundings: float,
     span: tuple[float, float],
 ) -> NDArray[np.float32]:
+    """Form the image (H, W) of radiance of a `View`, whose parts look as a `MaterialTable` says.
+
+    The matrices are those of `part_from_pixel`; the table has the radiance over a span [degC], evenly; the
+    surroundings are told by their radiance.
+    """
     height, width = part.shape
     image = np.empty((height, width), np.float32)
     if len(finish) > 0 or paint_texels.shape[1] > 0:

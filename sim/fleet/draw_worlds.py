@@ -63,8 +63,8 @@ class Radiators(NamedTuple):
     span: tuple[float, float]
 
 
-class View(NamedTuple):
-    """Space for what one camera sees, (H, W): as in `peopleboy.sim.rendering.view.View`, but for the cover."""
+class Buffers(NamedTuple):
+    """Space for what one camera sees, (H, W), as in `peopleboy.sim.rendering.view.View`."""
 
     part: NDArray[np.int32]
     depth: Image
@@ -228,13 +228,11 @@ def expose_worlds(
         lines = linear.reshape(eye.lens.height, 3 * eye.lens.width)
         smeared = _smear(lines, eye.sweep, poses.turned[row], 3)
         look_up(quantiles, words[row - first], noise.reshape(-1))
-        image[row] = encode(
-            smeared.reshape(noise.shape), noise, film.gamma, film.read_noise, film.shot_noise
-        )
+        image[row] = encode(smeared.reshape(noise.shape), noise, film.gamma, film.read_noise, film.shot_noise)
 
 
 @njit(cache=True)
-def _space(lens: Lens, scenery: Scenery) -> tuple[Canvas, View]:
+def _space(lens: Lens, scenery: Scenery) -> tuple[Canvas, Buffers]:
     """Space for one image after the other."""
     shape, surfaces = (lens.height, lens.width), 0
     for world in range(len(scenery.surface) - 1):
@@ -247,7 +245,7 @@ def _space(lens: Lens, scenery: Scenery) -> tuple[Canvas, View]:
         np.empty((6, 3)),
         np.empty((3, 4)),
     )
-    return canvas, View(
+    return canvas, Buffers(
         np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty((*shape, 3), np.float32)
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -82,14 +83,14 @@ class Eyes:
         return self._shots.pictures(len(due))
 
     def finish(self) -> None:
-        """Wait until all images are made with which somebody has begun, before anything in the worlds changes."""
+        """Wait for all images with which somebody has begun, as must be before the worlds change."""
         self._shots.end()
 
     def _shoot(self, name: str, worlds: Numbers, poses: Poses) -> tuple[Images, Work]:
         images, fill = self._studios[name].shoot(worlds, poses)
         count = min(_SHARES * self._crew.threads, len(worlds))
         ends = np.linspace(0, len(worlds), count + 1).round().astype(int).tolist()
-        return images, self._crew.start([partial(fill, *share) for share in zip(ends, ends[1:], strict=False)])
+        return images, self._crew.start([partial(fill, *share) for share in pairwise(ends)])
 
 
 def cameras_of(world: World) -> tuple[tuple[str, CameraConfig], ...] | None:

@@ -8,13 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from peopleboy.sim.fleet.side_by_side import Joined, Numbers
 from peopleboy.sim.fleet.walk_worlds import Walks
 from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.body.placing import carry, put_on_floor
-from peopleboy.sim.people.body.stance import STANCE, Bodies, Stances, hold, move_limbs
+from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
 from peopleboy.sim.people.person import Person, pace_m_s
 from peopleboy.sim.people.scripted.script import Records
 from peopleboy.sim.physics.kinematic.kinematic import Kinematic
@@ -53,10 +52,10 @@ class Limbs:
         self._walks, self._joined = walks, joined
         self._people = [person for world in worlds for person in world.crowd.people]
         self._stances = np.concatenate([np.zeros(0, STANCE), *(each.stance for each in self._people)])
-        self._bodies = Bodies(*map(np.concatenate, zip(*(each.bodies for each in self._people), strict=True)))
+        self._builds = Builds(*map(np.concatenate, zip(*(each.build for each in self._people), strict=True)))
         for q, person in enumerate(self._people):
             own = slice(q, q + 1)
-            person.lay_into(self._stances[own], Bodies(*(array[own] for array in self._bodies)))
+            person.lay_into(self._stances[own], Builds._make(array[own] for array in self._builds))
         gaits = [person.gait for person in self._people]
         self._unit_stride_m = np.array([gait.unit_stride_m for gait in gaits])
         self._parts = self._know_parts(worlds)
@@ -72,14 +71,14 @@ class Limbs:
         walks = self._walks
         records = walks.records
         velocities, turns = records["velocity"].tolist(), records["turn_rate"].tolist()
-        paces = [pace_m_s(x, y, turn) for (x, y), turn in zip(velocities, turns, strict=True)]
+        paces = [pace_m_s(velocity, turn) for velocity, turn in zip(velocities, turns, strict=True)]
         _move(
             going[walks.is_scripted[going]], walks.first, records, self._stances, self._unit_stride_m,
-            self._bodies.root_scale, np.array(paces), np.array(times_s)[walks.is_scripted[going]], dt_s,
+            self._builds.root_scale, np.array(paces), np.array(times_s)[walks.is_scripted[going]], dt_s,
         )  # fmt: skip
 
     def place(self, going: Numbers) -> None:
-        """Put the parts of all who are in some worlds where they are now, but those of who handles a thing."""
+        """Put the parts of all who are in some worlds where they are now, but of those who handle a thing."""
         ends = self._walks.first.tolist()
         who = [
             q
@@ -89,7 +88,7 @@ class Limbs:
         ]
         headings = np.array([self._people[q].heading for q in who])
         places = np.column_stack([self._walks.places()[who], headings])
-        _place(np.array(who, np.int64), places, self._bodies, self._stances, self._parts, self._joined)
+        _place(np.array(who, np.int64), places, self._builds, self._stances, self._parts, self._joined)
 
     def _know_parts(self, worlds: Sequence[World]) -> Parts:
         frames = [person.frame for person in self._people]
@@ -142,7 +141,7 @@ def _move(
 
 @njit(cache=True, nogil=True)
 def _place(
-    who: Numbers, places: Array, people: Bodies, stances: Stances, parts: Parts, joined: Joined
+    who: Numbers, places: Array, people: Builds, stances: Stances, parts: Parts, joined: Joined
 ) -> None:
     bones, turns = np.empty((parts.offsets.shape[1], 4, 4)), np.empty((parts.offsets.shape[1], 3))
     bodies = joined.bodies

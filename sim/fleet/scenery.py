@@ -51,15 +51,10 @@ def join_scenery(tables: Sequence[ShapeTable], materials: Sequence[MaterialTable
     """Copy tables and looks of worlds of plain detail into arrays of all of them."""
     own = [(each.thermal, each.colour, each.kind, each.period, each.phase) for each in materials]
     first = materials[0]
+    without = first.finish, first.texels, first.paint, first.paint_texels
     return Scenery(
         table=ShapeTable(*map(np.concatenate, zip(*tables, strict=True))),
-        looks=Looks(
-            *map(np.concatenate, zip(*own, strict=True)),
-            first.finish,
-            first.texels,
-            first.paint,
-            first.paint_texels,
-        ),
+        looks=Looks._make([*map(np.concatenate, zip(*own, strict=True)), *without]),
         shape=_ends([len(each.kind) for each in tables]),
         surface=_ends([len(each.surface_part) for each in tables]),
         triangle=_ends([len(each.triangles) for each in tables]),

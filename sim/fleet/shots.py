@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.kinds import image_names, name_images
+from peopleboy.sim.cameras.kinds import name_images
 from peopleboy.sim.fleet.crew import Work
 from peopleboy.sim.fleet.studios import Images
 from peopleboy.sim.on_demand import OnDemand

@@ -20,7 +20,9 @@ class Together:
         for number, world in enumerate(worlds):
             kinds[kind_of_fleet(world)].append(number)
         self._alone = kinds.pop(None, [])
-        self._fleets = [(Fleet([worlds[number] for number in group], crew), group) for group in kinds.values()]
+        self._fleets = [
+            (Fleet([worlds[number] for number in group], crew), group) for group in kinds.values()
+        ]
 
     def step(self, commands: Mapping[int, Command]) -> dict[int, Instant]:
         """Step some of the worlds, and perceive what is in them then.

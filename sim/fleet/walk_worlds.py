@@ -63,9 +63,7 @@ class Walks:
         ends = self.first.tolist()
         for number in going[self.is_scripted[going]].tolist():
             first, end = ends[number], ends[number + 1]
-            self._crowds[number].take_over(
-                headings[first:end], present[first:end], postures[first:end]
-            )
+            self._crowds[number].take_over(headings[first:end], present[first:end], postures[first:end])
 
     def places(self) -> Array:
         """(Q, 2) [m] where everybody is, a copy."""

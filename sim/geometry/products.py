@@ -6,7 +6,8 @@ images are the same to the byte whether the poses of one world or of many are mu
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, cast
 
 import numpy as np
 from numba import njit, types
@@ -16,14 +17,15 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-@intrinsic  # type: ignore[misc]  # numba's decorator has no types
-def fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:  # noqa: ARG001  # numba's own signature
-    """a * b + c, rounded once."""
-
+def _fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:  # noqa: ARG001  # numba's own signature
     def build(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:  # noqa: ARG001
         return builder.fma(*numbers)
 
     return types.float64(types.float64, types.float64, types.float64), build
+
+
+fma = cast(Callable[[float, float, float], float], intrinsic(_fma))
+"""a * b + c, rounded once; for kernels."""
 
 
 @njit(cache=True, nogil=True)

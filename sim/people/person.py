@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,7 +31,7 @@ from peopleboy.sim.people.body.placing import Frame, carry, put_on_floor
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.body.reaching import arm_length, least_stoop, stoop, turn_arm
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets
-from peopleboy.sim.people.body.stance import POSTURES, STANCE, Bodies, Stances, hold, move_limbs
+from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Stances, hold, move_limbs
 from peopleboy.sim.people.looks.finish_person import Finisher
 from peopleboy.sim.people.person_config import Arms, PersonConfig
 from peopleboy.sim.people.reacting.encounter import Situation
@@ -115,7 +115,7 @@ class Person:
         self.stance = np.zeros(1, STANCE)
         self.stance["phase"], self.stance["sway_phase"] = rng.uniform(), rng.uniform()
         self.stance["blend"][0, POSTURES[self._walker.posture]] = 1.0
-        self._bodies: Bodies | None = None
+        self._build: Builds | None = None
         self._bones: Array | None = None
         self._grasp: _Grasp | None = None
 
@@ -252,7 +252,7 @@ class Person:
     def _move_limbs(self, dt_s: float) -> None:
         """Advance gait and postures by a time step."""
         walker = self._walker
-        pace = pace_m_s(*walker.velocity.tolist(), walker.turn_rate)
+        pace = pace_m_s(walker.velocity.tolist(), walker.turn_rate)
         posture, gait = POSTURES[self.posture], self._gait
         move_limbs(
             self.stance, 0, gait.unit_stride_m, gait.root_scale, pace, walker.turn_rate, walker.is_walking,
@@ -276,21 +276,21 @@ class Person:
         return self._grasp is not None
 
     @property
-    def bodies(self) -> Bodies:
-        """What never changes of its body."""
-        if self._bodies is None:
-            self._bodies = self._know_body()
-        return self._bodies
+    def build(self) -> Builds:
+        """What never changes of it."""
+        if self._build is None:
+            self._build = self._know_build()
+        return self._build
 
-    def lay_into(self, stance: Stances, bodies: Bodies) -> None:
-        """Keep its stance and its body in other arrays from now on, which hold the same already."""
-        self.stance, self._bodies = stance, bodies
-        self._gait.lay_into(bodies.rotations[0], bodies.sway[0])
+    def lay_into(self, stance: Stances, builds: Builds) -> None:
+        """Keep its stance and its build in other arrays from now on, which hold the same already."""
+        self.stance, self._build = stance, builds
+        self._gait.lay_into(builds.rotations[0], builds.sway[0])
 
-    def _know_body(self) -> Bodies:
+    def _know_build(self) -> Builds:
         held, is_held = held_arms(self._manner.holds)
         (rotations, sway), arms = self._gait.tables, _ARM_POSTURES[self.config.arms]
-        return Bodies(
+        return Builds(
             rotations=rotations[None],
             sway=sway[None],
             root_scale=np.array([self._gait.root_scale]),
@@ -361,13 +361,13 @@ class Person:
     def _pose(self) -> tuple[Array, tuple[float, float]]:
         """(17, 3) [rad] rotation vectors and the pelvis' offset [m] to the front and to the left."""
         rotations = np.empty((len(BONES), 3))
-        shift: tuple[float, float] = hold(self.bodies, self.stance, 0, rotations)
+        shift: tuple[float, float] = hold(self.build, self.stance, 0, rotations)
         return rotations, shift
 
 
-def pace_m_s(x_m_s: float, y_m_s: float, turn_rad_s: float) -> float:
-    """How fast feet move over the floor, at a velocity and a rate of turning."""
-    return math.hypot(x_m_s, y_m_s, _TURNING_RADIUS_M * turn_rad_s)
+def pace_m_s(velocity: Sequence[float], turn_rad_s: float) -> float:
+    """How fast feet move over the floor, at a velocity x, y [m/s] and a rate of turning [rad/s]."""
+    return math.hypot(*velocity, _TURNING_RADIUS_M * turn_rad_s)
 
 
 def _geometry(config: PersonConfig, size: BodySize, outfit: Outfit) -> dict[str, PartGeometry]:

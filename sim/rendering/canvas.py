@@ -138,7 +138,7 @@ def fill_polygon(
 
 @njit(cache=True, error_model="numpy")
 def _edges_across(edges: int, lens: Lens, area: Rectangle, canvas: Canvas) -> int:
-    """Leave out edges beyond which no pixel of an area lies, as most of near and far ones; gives how many stay."""
+    """Leave out edges that have all pixels of an area within, as most near and far ones; count the rest."""
     left, right = (area[0] - lens.centre_u) / lens.focal, (area[2] - lens.centre_u) / lens.focal
     top, bottom = (area[1] - lens.centre_v) / lens.focal, (area[3] - lens.centre_v) / lens.focal
     kept = 0
@@ -237,7 +237,7 @@ def shade(
         rotation: (3, 3) world from camera.
         part: (H, W) gets the part numbers, -1 where nothing is.
         depth: (H, W) gets the depths [m], inf where nothing is.
-        normal: (H, W, 3) gets the unit normals, world frame, 0 where nothing is.
+        normal: (H, W, 3), contiguous, gets the unit normals, world frame, 0 where nothing is.
     """
     locate(surface_part, lens, canvas, part, depth)
     normals = normal.reshape(lens.height, 3 * lens.width)

@@ -76,8 +76,7 @@ def draw(
 def _borders(lens: Lens) -> Borders:
     """The planes through the borders of an image that is a pixel larger on every side: left, right, up, down.
 
-    Each as (slope, length): beside a border lies (x, z) if f x - slope z is beyond 0 by more than 0, and a
-    disc of radius r if by more than r times the length.
+    Each as (slope, length): f x - slope z is the length times the distance of a point (x, z) from the plane.
     """
     left, right = -1.0 - lens.centre_u, lens.width - lens.centre_u
     up, down = -1.0 - lens.centre_v, lens.height - lens.centre_v
@@ -98,13 +97,14 @@ def _is_outside(
     origin, reach = table.part_from_shape[shape], table.reach[shape]
     x, y, z = map_point(camera_from_part, origin[0, 3], origin[1, 3], origin[2, 3])
     left, right, up, down = borders
-    return (
+    is_outside: bool = (
         (z < -reach)
         | (focal * x - left[0] * z < -reach * left[1])
         | (focal * x - right[0] * z > reach * right[1])
         | (focal * y - up[0] * z < -reach * up[1])
         | (focal * y - down[0] * z > reach * down[1])
     )
+    return is_outside
 
 
 @njit(cache=True, error_model="numpy")

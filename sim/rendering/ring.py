@@ -186,7 +186,7 @@ def draw_ring(
         depth: (H, W) gets the depths [m] along the axis of the column's camera, inf where nothing is.
         normal: (H, W, 3) gets the unit normals, world frame, 0 where nothing is.
     """
-    pieces = _before(table, ring_from_part, skip, ring)
+    pieces, column = _before(table, ring_from_part, skip, ring), np.empty((1, len(normal), 3), np.float32)
     for u in range(len(drawing.nearness)):
         canvas = _canvas(drawing, u, shading)
         _draw_column(table, bits, ring, u, pieces, canvas)
@@ -196,8 +196,9 @@ def draw_ring(
                 turned[i, j] = 0.0
                 for k in range(3):
                     turned[i, j] += rotation[i, k] * ring.column_from_ring[u, j, k]
-        row, upright = slice(u, u + 1), normal.transpose(1, 0, 2)
-        shade(table.surface_part, ring.lens, canvas, turned, part.T[row], depth.T[row], upright[row])
+        row = slice(u, u + 1)
+        shade(table.surface_part, ring.lens, canvas, turned, part.T[row], depth.T[row], column)
+        normal[:, u] = column[0]
 
 
 @njit(cache=True, error_model="numpy")

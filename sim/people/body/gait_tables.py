@@ -26,7 +26,9 @@ def amplitude_of(speed_m_s: float, root_scale: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def gait_pose(rotations: Array, sway: Array, phase: float, amplitude: float, turns: Array) -> tuple[float, float]:
+def gait_pose(
+    rotations: Array, sway: Array, phase: float, amplitude: float, turns: Array
+) -> tuple[float, float]:
     """Look a pose up in tables (A, P, 17, 3) and (A, P, 3) of `Gait`, at a phase [cycles].
 
     Returns:

@@ -6,11 +6,6 @@ import math
 from collections.abc import Mapping
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
-from peopleboy.sim.people.body.skeleton import BONE_INDEX
-
 # How far round one looks without turning the body, how fast, and what share of it which bone turns: ours.
 _FARTHEST_RAD: Final = math.radians(100.0)
 _RATE_RAD_S: Final = math.radians(200.0)

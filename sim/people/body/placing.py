@@ -15,7 +15,6 @@ from peopleboy.sim.people.body.skeleton import BONE_INDEX, PARENT_INDEX, chain
 Array = NDArray[np.float64]
 
 
-
 class Frame(NamedTuple):
     """How one person's parts hang together.
 
@@ -74,7 +73,7 @@ def put_on_floor(
 
 @njit(cache=True, nogil=True)
 def carry(bones: Array, bone: NDArray[np.int64], offset_m: Array, poses: Array) -> None:
-    """Put parts (P,) where their bones carry them, `offset_m` (P, 3) from the bones' joints, all poses world."""
+    """Put P parts where bones (17, 4, 4) carry them, each by its `bone`, `offset_m` from the joint."""
     for p in range(len(bone)):
         own, pose, (x, y, z) = bones[bone[p]], poses[p], offset_m[p]
         pose[:] = own

@@ -56,7 +56,7 @@ _CYCLES_PER_RAD = 0.4  # steps of who turns on the spot
 _SPEED_CHANGE_M_S2 = 3.0
 
 
-class Bodies(NamedTuple):
+class Builds(NamedTuple):
     """What never changes of Q people.
 
     Attributes:
@@ -118,29 +118,29 @@ def move_limbs(
 
 
 @njit(cache=True, nogil=True)
-def hold(bodies: Bodies, stances: Stances, q: int, turns: Array) -> tuple[float, float]:
+def hold(builds: Builds, stances: Stances, q: int, turns: Array) -> tuple[float, float]:
     """Tell how one of Q people holds itself: gait, postures, arms, gaze, and that nobody stands quite still.
 
     Returns:
         The pelvis' offset [m] to the front and to the left; `turns` (17, 3) gets the rotation vectors [rad].
     """
     stance = stances[q]
-    amplitude = amplitude_of(stance.speed, bodies.root_scale[q])
-    front, left = gait_pose(bodies.rotations[q], bodies.sway[q], stance.phase, amplitude, turns)
+    amplitude = amplitude_of(stance.speed, builds.root_scale[q])
+    front, left = gait_pose(builds.rotations[q], builds.sway[q], stance.phase, amplitude, turns)
     weights, arms = np.empty(len(stance.blend)), 0.0
     for k in range(len(weights)):
         weights[k] = stance.blend[k] * stance.blend[k] * (3.0 - 2.0 * stance.blend[k])
         arms += weights[k] if k != _STANDING else 0.0
-    own = bodies.arms[q]
+    own = builds.arms[q]
     if own >= 0:
         weights[own] = max(weights[own], 1.0 - arms)
         arms = 1.0
-    _keep_arms(bodies, q, min(arms, 1.0), turns)
+    _keep_arms(builds, q, min(arms, 1.0), turns)
     for k in range(len(weights)):
         if weights[k] > 0.0 and k != _STANDING:
             turns += weights[k] * (_ROTATIONS[k] - _ROTATIONS[_STANDING])
-            front += weights[k] * _SHIFTS[k] * bodies.height_m[q]
-    _sway(stance.time_s, stance.sway_phase, bodies.looks_about_rad[q], turns)
+            front += weights[k] * _SHIFTS[k] * builds.height_m[q]
+    _sway(stance.time_s, stance.sway_phase, builds.looks_about_rad[q], turns)
     if weights[_CALLING] > 0.0:
         swung = WAVE_RAD * math.sin(2.0 * math.pi * WAVE_HZ * stance.time_s)
         turns[_WAVING, 0] += weights[_CALLING] * swung
@@ -151,15 +151,15 @@ def hold(bodies: Bodies, stances: Stances, q: int, turns: Array) -> tuple[float,
 
 
 @njit(cache=True)
-def _keep_arms(bodies: Bodies, q: int, share: float, turns: Array) -> None:
+def _keep_arms(builds: Builds, q: int, share: float, turns: Array) -> None:
     """Let arms hold what they hold, hang as far as a posture asks for it, and swing little with a bag."""
     standing = _ROTATIONS[_STANDING]
     for bone in range(_BONES):
-        if bodies.is_held[q, bone]:
-            turns[bone] = bodies.held[q, bone] + _HELD_SWING * (turns[bone] - standing[bone])
+        if builds.is_held[q, bone]:
+            turns[bone] = builds.held[q, bone] + _HELD_SWING * (turns[bone] - standing[bone])
     for bone in _ARMS:
         turns[bone] += share * (standing[bone] - turns[bone])
-    if bodies.has_bag[q]:
+    if builds.has_bag[q]:
         for bone in _BAG_ARM:
             turns[bone] = standing[bone] + _BAG_SWING * (turns[bone] - standing[bone])
 

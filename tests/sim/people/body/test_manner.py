@@ -4,8 +4,8 @@ import pytest
 from peopleboy.sim.people.body.anthropometry import measure
 from peopleboy.sim.people.body.body_shapes import sole_points
 from peopleboy.sim.people.body.gait import Gait
-from peopleboy.sim.people.body.joints import JOINT_NAMES
 from peopleboy.sim.people.body.gait_tables import amplitude_of
+from peopleboy.sim.people.body.joints import JOINT_NAMES
 from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, joint_offsets, mirror, place_bones
 from peopleboy.sim.people.looks.finish_person import Finisher
@@ -72,7 +72,9 @@ def test_a_stride_times_the_cadence_is_the_speed(seed: int) -> None:
     strikes = np.flatnonzero((heel[1:] < 0.02) & (heel[:-1] >= 0.02)) / 120
     strikes = strikes[np.diff(strikes, prepend=-1.0) > 0.5]
     own = gait(manner_of(seed, person.config))
-    assert own.stride_m(amplitude_of(1.3, own.root_scale)) / np.diff(strikes).mean() == pytest.approx(1.3, rel=0.02)
+    assert own.stride_m(amplitude_of(1.3, own.root_scale)) / np.diff(strikes).mean() == pytest.approx(
+        1.3, rel=0.02
+    )
 
 
 def manner_of(seed: int, config: PersonConfig) -> Manner:

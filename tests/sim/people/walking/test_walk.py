@@ -60,7 +60,11 @@ def test_the_timetable_is_what_the_person_does():
     )
     person = make_person(path=way)
     for k, entry in enumerate(timetable(person.config)):
-        settle(person, entry.time_s - float(person.stance["time_s"][0]) if k else 0.0, start=float(person.stance["time_s"][0]))
+        settle(
+            person,
+            entry.time_s - float(person.stance["time_s"][0]) if k else 0.0,
+            start=float(person.stance["time_s"][0]),
+        )
         assert math.dist(person.position, (entry.x_m, entry.y_m)) < 0.15
 
 
