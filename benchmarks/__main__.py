@@ -27,7 +27,7 @@ from benchmarks.speed.bench_figures import BenchFigure, Goal, nested, read_figur
 from benchmarks.speed.closed_loop import loop_speed, peak_memory_mb, run_speed
 from benchmarks.speed.drone import drone_rates
 from benchmarks.speed.filter_step import step_time_ms
-from benchmarks.speed.many_worlds import PIXELS, TRUTH, many_rates
+from benchmarks.speed.many_worlds import PIXELS, THREADS, TRUTH, many_rates
 from benchmarks.speed.render import render_times
 from benchmarks.speed.whole_tracker import WholeTracker, whole_tracker
 from peopleboy.bad_input import BadInput
@@ -118,12 +118,18 @@ def _environments() -> Iterator[BenchFigure]:
     for case, physics in product(CASES, PHYSICS):
         name = f"{case.name}, {MANY} worlds, {physics} at {QUICK_HZ} Hz"
         yield BenchFigure((of, name, "one process"), vector_rate(case, physics), "{:.0f} steps/s")
-    for case, worlds, least, reason in (
-        (TRUTH, 64, 20, "observations, rewards and figures of episodes are made world by world"),
-        (PIXELS, MANY, 10, "images are drawn world by world, and most of that is Python"),
+    for case, worlds, threads, least, reason in (
+        (TRUTH, 64, 1, 20, "observations, rewards and figures of episodes are made world by world"),
+        (
+            PIXELS,
+            MANY,
+            THREADS,
+            10,
+            "two thirds are kernels that draw; figures of episodes go world by world",
+        ),
     ):
-        ratio = many_rates(case, (worlds,))[worlds].ratio
-        name = f"{case.name}, {worlds} worlds, kinematic"
+        ratio = many_rates(case, (worlds,), threads)[worlds].ratio
+        name = f"{case.name}, {worlds} worlds, kinematic, {threads} {'threads' if threads > 1 else 'thread'}"
         yield BenchFigure(
             (of, name, "one PyBullet world", "ratio"), ratio, "{:.1f}", Goal(least=least), reason
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
@@ -17,6 +17,7 @@ from benchmarks.environments import ACTION, CASES, MANY, QUICK_HZ, SCENARIO, Cas
 from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 
 WORLDS: Final = (1, 4, 16, 64)
+THREADS: Final = 2
 PEOPLE: Final = (1, 15, 30, 60)
 _ROUNDS: Final = 3
 _BY_NAME: Final = {case.name: case for case in CASES}
@@ -26,23 +27,27 @@ PIXELS: Final = _BY_NAME["pixels, 80 x 60"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ManyRate:
-    """Environment steps a second of CPU time, of all worlds together, and that against one PyBullet world."""
+    """Environment steps a second of CPU time, of all worlds together, and that against one PyBullet world.
+
+    With several threads, seconds are those of the clock, for both.
+    """
 
     steps_s: float
     ratio: float
 
 
-def many_rates(case: Case, worlds: Sequence[int] = WORLDS) -> dict[int, ManyRate]:
+def many_rates(case: Case, worlds: Sequence[int] = WORLDS, threads: int = 1) -> dict[int, ManyRate]:
     """Measure kinematic worlds and one PyBullet world in turn, some times, and give the medians by worlds."""
+    return {count: _beside_one(case, count, threads) for count in worlds}
+
+
+def _beside_one(case: Case, worlds: int, threads: int) -> ManyRate:
     few = replace(case, steps=case.steps // _ROUNDS)
-    return {
-        count: _beside_one(few, lambda count=count: vector_rate(case, "kinematic", count))  # type: ignore[misc]
-        for count in worlds
-    }
-
-
-def _beside_one(case: Case, measure: Callable[[], float]) -> ManyRate:
-    pairs = [(measure(), step_rate(case)) for _ in range(_ROUNDS)]
+    clock = time.process_time if threads == 1 else time.perf_counter
+    pairs = [
+        (vector_rate(case, "kinematic", worlds, threads=threads), step_rate(few, clock=clock))
+        for _ in range(_ROUNDS)
+    ]
     return ManyRate(
         steps_s=median(many for many, _ in pairs), ratio=median(many / one for many, one in pairs)
     )
@@ -113,6 +118,12 @@ def main() -> None:
                 f"{rate.ratio:.1f} times one PyBullet world",
                 flush=True,
             )
+    for worlds, rate in many_rates(PIXELS, (MANY, WORLDS[-1]), THREADS).items():
+        print(
+            f"{PIXELS.name}, {worlds} worlds, {THREADS} threads: {rate.steps_s:.0f} steps/s by the clock, "
+            f"{rate.ratio:.1f} times one PyBullet world",
+            flush=True,
+        )
     print(f"truth, {MANY} worlds, whole episodes: {whole_episodes_rate():.0f} steps/s", flush=True)
     for people in PEOPLE:
         scripted, yielding = (people_step_ms(people, yields=yields) for yields in (False, True))

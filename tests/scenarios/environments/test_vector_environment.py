@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import gymnasium
@@ -8,7 +9,22 @@ import peopleboy  # noqa: F401  # tells gymnasium the environments
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.sim.fleet.crew import Crew
+from peopleboy.sim.fleet.together import Together
+from peopleboy.sim.world import World
 
+SLOW_REAR = """
+name: slow_rear
+description: One camera is slower than the others.
+like: single_follow
+robot:
+  at_m: [4.6, 0.0]
+  cameras:
+    thermal: {kind: thermal}
+    colour: {kind: colour}
+    rear: {kind: thermal, yaw_deg: 180, mount_m: [-0.3, 0, 1.3], rate_hz: 5}
+"""
 SHORT = "name: short\ndescription: So short that it ends.\nlike: single_follow\nduration_s: 0.4\n"
 
 
@@ -58,6 +74,7 @@ def test_each_world_is_to_the_byte_a_single_environment_over_its_end_and_a_new_b
         env.close()
 
 
+@pytest.mark.parametrize("observation", ["truth", "pixels"])
 @pytest.mark.parametrize(
     "scenario",
     [
@@ -67,8 +84,9 @@ def test_each_world_is_to_the_byte_a_single_environment_over_its_end_and_a_new_b
         "single_stationary",  # the robot drives into her
     ],
 )
-def test_fleets_are_to_the_byte_single_worlds_whatever_people_do(scenario: str) -> None:
-    settings = {"observation": "truth", "physics": "kinematic", "physics_hz": 60, "normalise": True}
+def test_fleets_are_to_the_byte_single_worlds_whatever_people_do(scenario: str, observation: str) -> None:
+    settings = {"observation": observation, "physics": "kinematic", "physics_hz": 60, "normalise": True}
+    settings["image_size"] = (64, 48)
     many = PeopleBoyVectorEnv(2, scenario=scenario, **settings)
     single = [PeopleBoyEnv(scenario, **settings) for _ in range(2)]
     ends = 0
@@ -77,7 +95,7 @@ def test_fleets_are_to_the_byte_single_worlds_whatever_people_do(scenario: str) 
     over = [False, False]
     for number, env in enumerate(single):
         env.reset(seed=3 + number)
-    for _ in range(100):
+    for _ in range(40 if observation == "pixels" and scenario != "single_stationary" else 100):
         actions = rng.uniform((0.9, -0.02), (1.0, 0.02), (2, 2)).astype(np.float32)
         found, rewards, _, _, infos = many.step(actions)
         for number, env in enumerate(single):
@@ -96,6 +114,45 @@ def test_fleets_are_to_the_byte_single_worlds_whatever_people_do(scenario: str) 
     many.close()
     for env in single:
         env.close()
+
+
+def test_threads_change_no_byte_and_cameras_take_images_at_rates_of_their_own(tmp_path: Path) -> None:
+    path = tmp_path / "slow_rear.yaml"
+    path.write_text(SLOW_REAR)
+    settings = {"scenario": path, "observation": "pixels", "physics": "kinematic", "image_size": (64, 48)}
+    several = [PeopleBoyVectorEnv(3, threads=threads, **settings) for threads in (1, 3)]
+    single = PeopleBoyEnv(**settings)
+    for many in several:
+        many.reset(seed=4)
+    single.reset(seed=6)
+    for action in np.random.default_rng(1).uniform(-1.0, 1.0, (9, 3, 2)).astype(np.float32):
+        alone, both = (many.step(action)[0] for many in several)
+        own = single.step(action[2])[0]
+        for name, array in alone.items():
+            assert array.tobytes() == both[name].tobytes()
+            assert array[2].tobytes() == own[name].tobytes()
+    for env in (*several, single):
+        env.close()
+
+
+def test_images_made_together_are_there_by_all_their_names_until_their_instant_is_over() -> None:
+    config = replace(load_scenario("single_follow").world(3), physics="kinematic")
+    with World(config) as world, World(config) as other:
+        together = Together([world], Crew(1))
+        found = together.step({0: (0.3, 0.2)})[0].senses
+        other.step(0.3, 0.2)
+        own = other.observe()
+        assert list(found.images) == list(own.images)
+        for name in ("thermal_c", "thermal_scene", "thermal"):
+            assert found.images[name].tobytes() == own.images[name].tobytes()
+        together.step({0: (0.3, 0.2)})
+        other.step(0.3, 0.2)
+        other.observe()
+        with pytest.raises(BadInput, match="over"):
+            found.images["colour"]
+        last = together.step({0: (0.3, 0.2)})[0].senses
+        other.step(0.3, 0.2)
+        assert last.images["colour"].tobytes() == other.observe().images["colour"].tobytes()
 
 
 def test_gymnasium_makes_it_by_name_and_samples_fit() -> None:
@@ -122,6 +179,8 @@ def test_gymnasium_makes_it_by_name_and_samples_fit() -> None:
 def test_what_does_not_fit_many_worlds_is_refused() -> None:
     with pytest.raises(BadInput, match="num_envs"):
         PeopleBoyVectorEnv(0)
+    with pytest.raises(BadInput, match="threads 0"):
+        PeopleBoyVectorEnv(2, threads=0)
     with pytest.raises(BadInput, match="render_mode"):
         PeopleBoyVectorEnv(2, render_mode="rgb_array")
     many = PeopleBoyVectorEnv(2, observation="truth", physics="kinematic")
