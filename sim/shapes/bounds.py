@@ -79,28 +79,28 @@ def shape_bounds(kind: int, size: Array, pose: Array, triangles: Array) -> Bound
 @njit(cache=True)
 def box_bounds(pose: Array, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float) -> Bounds:
     """Bounds of the box between two corners of its own frame."""
-    bounds, is_cut = EMPTY, False
+    corners = (
+        map_point(pose, x0, y0, z0),
+        map_point(pose, x1, y0, z0),
+        map_point(pose, x0, y1, z0),
+        map_point(pose, x1, y1, z0),
+        map_point(pose, x0, y0, z1),
+        map_point(pose, x1, y0, z1),
+        map_point(pose, x0, y1, z1),
+        map_point(pose, x1, y1, z1),
+    )
+    bounds, nearest = EMPTY, math.inf
+    for corner in corners:
+        nearest = min(nearest, corner[2])
+    if nearest >= NEAR_M:
+        for corner in corners:
+            x, y = corner[0] / corner[2], corner[1] / corner[2]
+            bounds = min(bounds[0], x), min(bounds[1], y), max(bounds[2], x), max(bounds[3], y)
+        return bounds
     for i in range(8):
-        corner = map_point(pose, x1 if i & 1 else x0, y1 if i & 2 else y0, z1 if i & 4 else z0)
-        if corner[2] < NEAR_M:
-            is_cut = True
-            break
-        x, y = corner[0] / corner[2], corner[1] / corner[2]
-        bounds = min(bounds[0], x), min(bounds[1], y), max(bounds[2], x), max(bounds[3], y)
-    return _cut_box_bounds(pose, x0, y0, z0, x1, y1, z1) if is_cut else bounds
-
-
-@njit(cache=True)
-def _cut_box_bounds(pose: Array, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float) -> Bounds:
-    """Bounds of a box that reaches through the near plane: those of its edges."""
-    bounds = EMPTY
-    for i in range(4):
-        u, v = i & 1, i >> 1
-        x, y, z = (x1 if u else x0), (y1 if u else y0), (z1 if v else z0)
-        other_y = y1 if v else y0
-        bounds = unite(bounds, _segment(map_point(pose, x0, y, z), map_point(pose, x1, y, z)))
-        bounds = unite(bounds, _segment(map_point(pose, x, y0, z), map_point(pose, x, y1, z)))
-        bounds = unite(bounds, _segment(map_point(pose, x, other_y, z0), map_point(pose, x, other_y, z1)))
+        for axis in range(3):
+            if (i >> axis) & 1 == 0:
+                bounds = unite(bounds, _segment(corners[i], corners[i | (1 << axis)]))
     return bounds
 
 
