@@ -75,7 +75,7 @@ def step_rate(case: Case, physics_hz: int = RUN_HZ, clock: Callable[[], float] =
 def vector_rate(
     case: Case, physics: str, worlds: int = MANY, physics_hz: int = QUICK_HZ, *, threads: int = 1
 ) -> float:
-    """Return environment steps per second of CPU time, of many worlds in one process; by the clock of threads."""
+    """Return steps per second of CPU time, of many worlds in one process; of time, with several threads."""
     clock = time.process_time if threads == 1 else time.perf_counter
     many = PeopleBoyVectorEnv(
         worlds,

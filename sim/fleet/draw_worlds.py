@@ -154,7 +154,7 @@ def detect_worlds(
         tables: of radiance.
         detectors: of all worlds.
         quantiles: of the noise.
-        words: (end - first, N) random.
+        words: (G, N) random.
         temperature_c: (G, H, W) [degC] rows first..end-1 are filled.
         grey: (G, H, W) likewise.
     """
@@ -164,7 +164,7 @@ def detect_worlds(
     for row in range(first, end):
         apparent = _smear(radiance[row], eye.sweep, turned[row], 1)
         to_apparent_c(apparent, tables.temperature, tables.span[0], tables.span[1])
-        look_up(quantiles, words[row - first], noise)
+        look_up(quantiles, words[row], noise)
         seen, found, greys = apparent.reshape(-1), temperature_c[row].reshape(-1), grey[row].reshape(-1)
         offset_k = detectors.offset_k[worlds[row]].reshape(-1)
         dead = detectors.dead[worlds[row]].reshape(-1)
@@ -211,7 +211,7 @@ def expose_worlds(
         film: how it exposes.
         level: (G,) of the light, times the camera's gain.
         quantiles: of the noise.
-        words: (end - first, N) random.
+        words: (G, N) random.
         image: (G, H, W, 3) rows first..end-1 are filled.
     """
     canvas, view = _space(eye.lens, scenery)
@@ -227,7 +227,7 @@ def expose_worlds(
         )  # fmt: skip
         lines = linear.reshape(eye.lens.height, 3 * eye.lens.width)
         smeared = _smear(lines, eye.sweep, poses.turned[row], 3)
-        look_up(quantiles, words[row - first], noise.reshape(-1))
+        look_up(quantiles, words[row], noise.reshape(-1))
         image[row] = encode(smeared.reshape(noise.shape), noise, film.gamma, film.read_noise, film.shot_noise)
 
 

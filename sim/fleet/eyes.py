@@ -21,7 +21,7 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.physics.kinematic.kinematic import turn_wheels
 from peopleboy.sim.world import World
 
-_SHARES: Final = 3  # of a camera's images for each thread, so that none waits long for the last
+_SHARES: Final = 2  # of a camera's images for each thread, so that none waits long for the last
 
 
 class Eyes:
@@ -76,7 +76,7 @@ class Eyes:
                     turned=turn_rad_s[rows] * config.exposure_s,
                 )
                 shots.append(Shot(name, config, rows, partial(self._shoot, name, going[rows], poses)))
-        for shot in shots:
+        for shot in reversed(shots):  # as who looks at the first of them helps with that
             if shot.name in asked_for:
                 shot.begin()
         self._shots = Shots(shots, self._images)
