@@ -17,7 +17,7 @@ class Crew:
     """
 
     def __init__(self, threads: int | None = None) -> None:
-        self.threads = len(os.sched_getaffinity(0)) if threads is None else threads
+        self.threads = _processors() if threads is None else threads
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
 
     def start(self, tasks: Sequence[Task]) -> Work:
@@ -47,3 +47,9 @@ class Work:
                 begun.append(future)
         for future in begun:
             future.result()
+
+
+def _processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
