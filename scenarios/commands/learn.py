@@ -125,8 +125,23 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
     help="Folder for the films and the detector.",
 )
 @click.option("--ship", is_flag=True, help="Put the detector in the place of the tracker's own.")
+@click.option(
+    "--windows",
+    multiple=True,
+    type=click.Choice(["whole", "cut"]),
+    default=("whole", "cut"),
+    show_default=True,
+    help="Teach trees for people who are mostly in the image, or cut off; the others stay as they are.",
+)
 @workers_options
-def train_detector(worlds: int, out: Path, ship: bool, workers: int | None, scheduler: str | None) -> None:
+def train_detector(
+    worlds: int,
+    out: Path,
+    ship: bool,
+    windows: tuple[str, ...],
+    workers: int | None,
+    scheduler: str | None,
+) -> None:
     """Learn what people look like to a thermal camera, from random worlds.
 
     Some are as drawn, others full of people, plain, both, or warm. A tenth is held back, to make scores log
@@ -135,5 +150,7 @@ def train_detector(worlds: int, out: Path, ship: bool, workers: int | None, sche
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.people_learning.people_lesson import give_people_lesson
+    from peopleboy.tracker.proposals.window import Kind
 
-    click.echo(give_people_lesson(out, chosen_workers(workers, scheduler), worlds=worlds, ship=ship))
+    chosen, kinds = chosen_workers(workers, scheduler), [kind for kind in Kind if kind in windows]
+    click.echo(give_people_lesson(out, chosen, worlds=worlds, kinds=kinds, ship=ship))

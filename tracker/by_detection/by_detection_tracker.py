@@ -27,7 +27,7 @@ from peopleboy.tracker.by_detection.paths import (
     distances,
 )
 from peopleboy.tracker.by_detection.proposed import Proposed
-from peopleboy.tracker.by_detection.target import Sighting, Target
+from peopleboy.tracker.by_detection.target import Finding, Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
 from peopleboy.tracker.thermal.whereabouts import places_on_floor
@@ -150,8 +150,8 @@ class ByDetectionTracker:
                 target.miss(None if hider is None else self._targets[hider].id, now.dt_s, config)
                 continue
             seen = found[row]
-            sighting = Sighting(float(proposed.scores[seen]), float(common[seen]), float(speed[row]))
-            target.see(sighting, now.time_s, now.dt_s, config)
+            finding = Finding(float(proposed.scores[seen]), float(common[seen]), float(speed[row]))
+            target.see(finding, now.time_s, now.dt_s, config)
             target.widen(proposed.ratio(seen))
             if is_beside[row]:
                 target.overlap()

@@ -109,7 +109,7 @@ class ExistenceConfig:
 
     weakest: float = -2.0
     trust: float = 0.8
-    lasting: float = 0.25
+    lasting: float = 0.4
     birth: float = -0.5
     independent_s: float = 0.25
     still_s: float = 4.0

@@ -19,7 +19,7 @@ _OWN: Final = 0.6  # Bhattacharyya's coefficient above which it looks like itsel
 _LEAST_SIGHTINGS: Final = 3
 
 
-class Sighting(NamedTuple):
+class Finding(NamedTuple):
     """Somebody was found.
 
     Attributes:
@@ -74,7 +74,7 @@ class Target:
         """Whether it is believed to be a person."""
         return self.id > 0
 
-    def see(self, seen: Sighting, time_s: float, dt_s: float, config: ExistenceConfig) -> None:
+    def see(self, seen: Finding, time_s: float, dt_s: float, config: ExistenceConfig) -> None:
         """Take in that it was found."""
         self.seen_s, self.occluder = time_s, None
         self.sightings += 1

@@ -25,7 +25,7 @@ FIRST_DIRECTION: Final = 2
 DIRECTIONS: Final = 6
 MOTION: Final = FIRST_DIRECTION + DIRECTIONS
 CHANNELS: Final = MOTION + 1
-OVER: Final = 8
+OVER: Final = 13
 """Rows of cells that go on above and below an image as it ends: who is cut off there fills a window, too."""
 BESIDE: Final = 4
 """Columns on either side likewise."""
@@ -75,7 +75,7 @@ def channels(grey: Image, change: Image, noise: float, memory: Memory | None = N
         memory: where to put them; None for a place of their own.
 
     Returns:
-        (9, h + 16, w + 8): grey, gradient, 6 directions, motion; what is beyond the border is as at it.
+        (9, h + 26, w + 8): grey, gradient, 6 directions, motion; what is beyond the border is as at it.
     """
     # 1 2 1, both ways.
     smooth = np.asarray(cv2.GaussianBlur(grey, (3, 3), 0.0, borderType=cv2.BORDER_REFLECT_101), np.float32)

@@ -104,9 +104,11 @@ def look(
     scores: list[Floats] = [np.empty(0)]
     for level in levels(grey, change, mount, smallest_px, memory or Memory()):
         sums = summed(level.cells)
-        hits = model.cascade.scan(sums, level.rows)
-        is_sure = hits.score >= least_score
-        row, column = hits.row[is_sure], hits.column[is_sure]
-        boxes.append(model.placing.boxes(sums, row, column, level.boxes(row, column)))
-        scores.append(hits.score[is_sure])
+        for kind, trees in model.trees.items():
+            for rows in level.rows[kind]:
+                hits = trees.cascade.scan(sums, rows)
+                is_sure = hits.score >= least_score
+                row, column = hits.row[is_sure], hits.column[is_sure]
+                boxes.append(trees.placing.boxes(sums, row, column, level.boxes(row, column)))
+                scores.append(hits.score[is_sure])
     return suppress(np.concatenate(boxes), np.concatenate(scores))

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from peopleboy.tracker.proposals.cascade import DEPTH, LEAVES, NODES, Cascade
 from peopleboy.tracker.proposals.channels import CHANNELS
 from peopleboy.tracker.proposals.patches import Patches
 from peopleboy.tracker.proposals.placing import OFFSETS, Placing
-from peopleboy.tracker.proposals.window import COLUMNS, ROWS
+from peopleboy.tracker.proposals.window import COLUMNS, ROWS, Kind
 from peopleboy.tracker.weights_archive import opened_archive
 
 COMMAND: Final = "peopleboy train-detector"
@@ -27,7 +27,20 @@ WEIGHTS: Final = Path(__file__).parent / "weights" / "people.npz"
 _ABOUT: Final = "about"
 _PATCHES: Final = ("channel", "first", "second")
 _ARRAYS: Final = ("feature", "threshold", "leaf")
+_PREFIXES: Final = ("", "placing_")
 _KINDS: Final = tuple(np.dtype(kind) for kind in (np.int16, np.float32, np.float32))
+
+
+class PeopleTrees(NamedTuple):
+    """Of windows of a kind: which show people, and where.
+
+    Attributes:
+        cascade: tells whether somebody is in a window.
+        placing: tells where in it.
+    """
+
+    cascade: Cascade
+    placing: Placing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,24 +48,22 @@ class PeopleModel:
     """What people look like.
 
     Attributes:
-        cascade: tells whether somebody is in a window.
-        placing: tells where in it.
+        trees: for windows of a kind.
         about: what they were learned from, for the reader.
     """
 
-    cascade: Cascade
-    placing: Placing
+    trees: Mapping[Kind, PeopleTrees]
     about: Mapping[str, str] = field(default_factory=dict)
 
     def save(self, path: Path) -> None:
         """Write a NumPy archive without pickles."""
-        content: dict[str, Any] = {
-            "least": self.cascade.least,
-            _ABOUT: np.array(json.dumps(dict(self.about))),
-        } | {name: getattr(self.cascade.patches, name) for name in _PATCHES}
-        for trees, prefix in ((self.cascade, ""), (self.placing, "placing_")):
-            content |= {prefix + name: getattr(trees, name) for name in _ARRAYS}
-            content[prefix + "feature"] = trees.feature.astype(np.int16)
+        content: dict[str, Any] = {_ABOUT: np.array(json.dumps(dict(self.about)))}
+        content |= {name: getattr(self.trees[Kind.WHOLE].cascade.patches, name) for name in _PATCHES}
+        for kind, both in self.trees.items():
+            content[f"{kind}_least"] = both.cascade.least
+            for trees, prefix in ((both.cascade, ""), (both.placing, "placing_")):
+                content |= {f"{kind}_{prefix}{name}": getattr(trees, name) for name in _ARRAYS}
+                content[f"{kind}_{prefix}feature"] = trees.feature.astype(np.int16)
         with path.open("wb") as file:
             np.savez_compressed(file, **content)
 
@@ -65,28 +76,49 @@ class PeopleModel:
         """
         with opened_archive(path, COMMAND) as archive:
             about = json.loads(str(archive[_ABOUT]))
-            least = np.asarray(archive["least"])
             patches = Patches(*(np.asarray(archive[name]) for name in _PATCHES))
-            whether, where = (
-                [np.asarray(archive[prefix + name]) for name in _ARRAYS] for prefix in ("", "placing_")
-            )
-        trees = len(least) if least.ndim == 1 else 0
-        is_right = (
-            trees > 0
-            and least.dtype == np.float32
-            and not np.isnan(least).any()
-            and _are_patches(patches)
-            and _are_trees(whether, (trees,), len(patches))
-            and _are_trees(where, (OFFSETS, where[0].shape[1] if where[0].ndim == 3 else 0), len(patches))
-        )
-        if not is_right:
+            tables = {kind: _Tables.read(archive, kind) for kind in Kind}
+        if not (_are_patches(patches) and all(one.fit(len(patches)) for one in tables.values())):
             raise BadInput(
                 f"holds no trees of depth {DEPTH} on patches of a window of {ROWS} x {COLUMNS} cells; "
                 f"`{COMMAND}` makes some",
                 file=str(path),
             )
-        cascade = Cascade(patches, whether[0].astype(np.int32), whether[1], whether[2], least)
-        return cls(cascade, Placing(patches, where[0].astype(np.int32), where[1], where[2]), about)
+        return cls({kind: one.trees(patches) for kind, one in tables.items()}, about)
+
+
+class _Tables(NamedTuple):
+    """What a file holds of windows of a kind."""
+
+    least: NDArray[Any]
+    whether: list[NDArray[Any]]
+    where: list[NDArray[Any]]
+
+    @classmethod
+    def read(cls, archive: Mapping[str, NDArray[Any]], kind: Kind) -> _Tables:
+        whether, where = (
+            [np.asarray(archive[f"{kind}_{prefix}{name}"]) for name in _ARRAYS] for prefix in _PREFIXES
+        )
+        return cls(np.asarray(archive[f"{kind}_least"]), whether, where)
+
+    def fit(self, patches: int) -> bool:
+        """Tell whether these are tables of trees on so many patches."""
+        least, whether, where = self
+        trees = len(least) if least.ndim == 1 else 0
+        return (
+            trees > 0
+            and least.dtype == np.float32
+            and not bool(np.isnan(least).any())
+            and _are_trees(whether, (trees,), patches)
+            and _are_trees(where, (OFFSETS, where[0].shape[1] if where[0].ndim == 3 else 0), patches)
+        )
+
+    def trees(self, patches: Patches) -> PeopleTrees:
+        least, whether, where = self
+        return PeopleTrees(
+            Cascade(patches, whether[0].astype(np.int32), whether[1], whether[2], least),
+            Placing(patches, where[0].astype(np.int32), where[1], where[2]),
+        )
 
 
 def _are_patches(patches: Patches) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,7 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.proposals.channels import BESIDE, OVER, Cells, Image, Memory, channels, noise_of
-from peopleboy.tracker.proposals.window import CELL_PX, COLUMNS, PERSON_PX, ROWS, Floats, boxes_of, cells_of
+from peopleboy.tracker.proposals.window import (
+    CELL_PX,
+    COLUMNS,
+    PERSON_PX,
+    ROWS,
+    Floats,
+    Kind,
+    boxes_of,
+    cells_of,
+)
 from peopleboy.tracker.thermal.mount import Mount
 
 STEP: Final = 2.0 ** (1.0 / 3.0)
@@ -20,9 +29,19 @@ STEP: Final = 2.0 ** (1.0 / 3.0)
 
 _STATURES_M: Final = (1.4, 2.0)  # of who is looked for
 _SLACK: Final = 0.15  # of a person's height: the pitch of the camera, the gait, and cells are none of a ray's
-_LEAST_ROWS: Final = 12  # of cells in an image; it shows the larger part of whom it cuts off
+_WHOLE_OVER: Final = 8
+"""Rows of cells that a window of somebody who is mostly in the image may reach beyond it."""
+_CUT_OVER: Final = (6, 9)
+"""Rows above and below the image from which on a window is of somebody who is cut off."""
+_CUT_PX: Final = 48.0  # height of the smallest people who are looked for cut off
+_LEAST_ROWS: Final = 7  # of cells in an image: a third of a window
+_LEAST_WHOLE_ROWS: Final = 12  # likewise; it shows the larger part of whom it cuts off
 _CONTEXT: Final = 12
 """Cells above and below a window that its channels depend on."""
+
+
+Rows = tuple[int, int]
+"""The first row of a level's cells, and the one after the last."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,13 +51,13 @@ class Level:
     Attributes:
         cells: (9, h, w) channels, of those rows that are looked at and some around; with a border.
         first: row of the first cell in the whole level, the border's not counted.
-        rows: the first row of `cells` where a window may begin, and the one after the last.
+        rows: ranges of rows of `cells` where windows of a kind may begin.
         scale: pixels of the level per pixel of the image, down and right.
     """
 
     cells: Cells
     first: int
-    rows: tuple[int, int]
+    rows: Mapping[Kind, tuple[Rows, ...]]
     scale: tuple[float, float]
 
     def boxes(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> Floats:
@@ -67,9 +86,9 @@ def levels(
         smallest_px: height of the smallest people.
         memory: for the channels; a level then holds until the next one is asked for.
     """
-    whole = grey.astype(np.float32)
-    image, changes = _Halves(whole), _Halves(change.astype(np.float32))
-    noise, person_px = noise_of(whole), smallest_px
+    original = grey.astype(np.float32)
+    image, changes = _Halves(original), _Halves(change.astype(np.float32))
+    noise, person_px = noise_of(original), smallest_px
     rows, columns = grey.shape
     while True:
         scale = PERSON_PX / person_px
@@ -78,7 +97,9 @@ def levels(
             return
         down, right = CELL_PX * high / rows, CELL_PX * wide / columns
         start, end = _beginnings(mount, high, down)
-        if end > start:
+        ranges = _ranges(start, end, high, person_px)
+        if any(ranges.values()):
+            start, end = _around(ranges)
             first, last = max(start - _CONTEXT, 0), min(end + ROWS + _CONTEXT, high)
             scaled = image.sized((CELL_PX * wide, CELL_PX * high), scale)
             changed = changes.sized((wide, high), scale / CELL_PX)
@@ -88,8 +109,31 @@ def levels(
                 noise * min(1.0, scale),
                 memory,
             )
-            yield Level(cells, first, (start + OVER - first, end + OVER - first), (down, right))
+            yield Level(cells, first, _moved(ranges, OVER - first), (down, right))
         person_px *= STEP
+
+
+def _ranges(start: int, end: int, high: int, person_px: float) -> dict[Kind, tuple[Rows, ...]]:
+    """Tell in which rows windows of each kind begin, of those from a start to an end."""
+    whole = [(-_WHOLE_OVER, high + _WHOLE_OVER - ROWS + 1)] if high >= _LEAST_WHOLE_ROWS else []
+    cut = [(start, 1 - _CUT_OVER[0]), (high + _CUT_OVER[1] - ROWS, end)] if whole else [(start, end)]
+    if person_px < _CUT_PX:
+        cut = []
+    return {Kind.WHOLE: _within(whole, start, end), Kind.CUT: _within(cut, start, end)}
+
+
+def _within(ranges: list[Rows], start: int, end: int) -> tuple[Rows, ...]:
+    parts = [(max(first, start), min(last, end)) for first, last in ranges]
+    return tuple((first, last) for first, last in parts if first < last)
+
+
+def _around(ranges: Mapping[Kind, tuple[Rows, ...]]) -> Rows:
+    rows = [one for several in ranges.values() for one in several]
+    return min(first for first, _ in rows), max(last for _, last in rows)
+
+
+def _moved(ranges: Mapping[Kind, tuple[Rows, ...]], by: int) -> dict[Kind, tuple[Rows, ...]]:
+    return {kind: tuple((a + by, b + by) for a, b in several) for kind, several in ranges.items()}
 
 
 class _Halves:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Final
 
 import numpy as np
@@ -16,6 +17,13 @@ PERSON_PX: Final = 32.0  # height of the person that fills a window, in pixels o
 WIDTH_PER_HEIGHT: Final = 0.41  # of a person's box
 ABOVE_PX: Final = (ROWS * CELL_PX - PERSON_PX) / 2.0
 """Of a window is above the head, and as much below the feet."""
+
+
+class Kind(StrEnum):
+    """Whom windows show: people who are mostly in the image, or such of whom head or feet are beyond it."""
+
+    WHOLE = "whole"
+    CUT = "cut"
 
 
 def boxes_of(row: Floats, column: Floats, scale: tuple[float, float]) -> Floats:

@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.studies.people_learning.cut_off import sides
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
-from peopleboy.tracker.proposals.model import PeopleModel
+from peopleboy.tracker.proposals.model import PeopleModel, PeopleTrees
 from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.proposals.window import Kind
 
 Floats = NDArray[np.float64]
 
@@ -85,8 +87,8 @@ def judge_detector(model: PeopleModel, shots: Iterable[PeopleShot], *, knows_mou
     return Found(scores, hits, overlaps, people, images)
 
 
-def log_odds_line(model: PeopleModel, shots: Sequence[PeopleShot]) -> tuple[float, float]:
-    """Tell gain and offset that make scores the log odds that what is proposed is somebody.
+def log_odds_line(kind: Kind, trees: PeopleTrees, shots: Sequence[PeopleShot]) -> tuple[float, float]:
+    """Tell gain and offset that make scores of windows of a kind the log odds that they show somebody.
 
     It is a logistic regression (Platt 1999) over what is proposed in images; who is there counts, however
     hidden.
@@ -99,10 +101,11 @@ def log_odds_line(model: PeopleModel, shots: Sequence[PeopleShot]) -> tuple[floa
         from sklearn.linear_model import LogisticRegression  # here, as it comes with the extra `train`
     except ImportError as error:
         raise BadInput("train-detector needs scikit-learn: pip install scikit-learn") from error
+    model = PeopleModel({kind: trees})
     scores: list[float] = []
     is_somebody: list[bool] = []
     for shot in shots:
-        for side in (shot, shot.spanned(np.random.default_rng(int(shot.grey.sum(dtype=np.int64))))):
+        for side in sides(shot, np.random.default_rng(int(shot.grey.sum(dtype=np.int64))), kind):
             found = look(model, side.grey, side.change, None, SMALLEST_PX, _LEAST_SCORE)
             overlap = iou(found.box[:, None], side.box[None])
             scores += found.score.tolist()

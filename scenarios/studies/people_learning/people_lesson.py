@@ -28,18 +28,27 @@ from peopleboy.scenarios.studies.people_learning.window_mining import (
     windows_with_people,
 )
 from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
-from peopleboy.tracker.proposals.model import WEIGHTS, PeopleModel
+from peopleboy.tracker.proposals.model import WEIGHTS, PeopleModel, PeopleTrees, shipped_model
+from peopleboy.tracker.proposals.window import Kind
 
 TESTS: Final = 30
 """Worlds to judge by: those of the first seeds."""
 
-ROUNDS: Final = (
-    Boosting(64, 0.3, features=200),
-    Boosting(160, 0.2, features=300),
-    Boosting(320, 0.15, features=300),
-    Boosting(640, 0.12, features=300),
-    Boosting(1500, 0.1),
-)
+ROUNDS: Final = {
+    Kind.WHOLE: (
+        Boosting(64, 0.3, features=200),
+        Boosting(160, 0.2, features=300),
+        Boosting(320, 0.15, features=300),
+        Boosting(640, 0.12, features=300),
+        Boosting(1500, 0.1),
+    ),
+    Kind.CUT: (
+        Boosting(64, 0.3, features=200),
+        Boosting(160, 0.2, features=300),
+        Boosting(320, 0.15, features=300),
+        Boosting(500, 0.1, features=300),
+    ),
+}
 """After each but the last, mistakes are collected, and learned from in the next."""
 
 _SEED_OF_PEOPLE: Final = 0
@@ -50,7 +59,9 @@ _OTHERS: Final = 80000  # windows without people that are in memory: 3.6 kB each
 _FIRST_OTHERS: Final = 16000
 
 
-def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) -> Path:
+def give_people_lesson(
+    out: Path, workers: Workers, *, worlds: int, kinds: Sequence[Kind], ship: bool
+) -> Path:
     """Learn what people look like to a thermal camera, and leave films and trees in a folder.
 
     Films that are there are used.
@@ -60,6 +71,7 @@ def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) 
         workers: who films.
         worlds: how many to learn from, one of each kind at least; a tenth is held back, to make scores log
             odds.
+        kinds: of windows that are taught; trees for others stay the tracker's own.
         ship: whether to put the trees in the place of the tracker's own.
 
     Returns:
@@ -78,39 +90,50 @@ def give_people_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) 
     work_through([task for task in (*tests, *tasks) if not task.film.is_file()], workers, "films")
     held = tasks[_HELD_BACK - 1 :: _HELD_BACK] or tasks[-1:]
     lessons = [task.film for task in tasks if task not in held]
-    model = teach(list(shots_of(lessons)), list(shots_of(task.film for task in held)))
-    kinds = ", ".join(f"{len(kind.seeds(worlds))} {kind.words} from seed {kind.first_seed}" for kind in KINDS)
-    about = {"trained on": f"{kinds}; {len(held)} of them held back"}
+    taught = teach(list(shots_of(lessons)), list(shots_of(task.film for task in held)), kinds)
+    drawn = ", ".join(f"{len(kind.seeds(worlds))} {kind.words} from seed {kind.first_seed}" for kind in KINDS)
+    learned_from = {f"{kind} people": f"{drawn}; {len(held)} of them held back" for kind in kinds}
+    before = shipped_model() if len(taught) < len(Kind) else PeopleModel({})
+    model = PeopleModel({**before.trees, **taught}, {**before.about, **learned_from})
     path = WEIGHTS if ship else out / WEIGHTS.name
     with writing_to(path.parent), whole(path) as part:
         path.parent.mkdir(parents=True, exist_ok=True)
-        replace(model, about=about | _judged(model, [task.film for task in tests])).save(part)
+        told = _judged(model, [task.film for task in tests])
+        replace(model, about={**model.about, **told}).save(part)
     return path
 
 
-def teach(shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot]) -> PeopleModel:
+def teach(
+    shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot], kinds: Sequence[Kind]
+) -> dict[Kind, PeopleTrees]:
     """Teach trees on images, each time with the mistakes of those before.
 
     Args:
         shots: to learn from.
         others_of: of other worlds, by which scores are made log odds.
+        kinds: of windows.
 
     Raises:
         BadInput: scikit-learn is missing, or too few people.
     """
-    people, places = windows_with_people(shots, np.random.default_rng(_SEED_OF_PEOPLE))
+    return {kind: _taught(shots, others_of, kind) for kind in kinds}
+
+
+def _taught(shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot], kind: Kind) -> PeopleTrees:
+    people, places = windows_with_people(shots, np.random.default_rng(_SEED_OF_PEOPLE), kind)
     rng = np.random.default_rng(_SEED_OF_OTHERS)
     patches = patch_pool()
-    others = windows_anywhere(shots, rng, _FIRST_OTHERS)
-    _say(f"{len(shots)} images, {len(people)} windows with people")
-    for number, boosting in enumerate(ROUNDS, 1):
+    others = windows_anywhere(shots, rng, _FIRST_OTHERS, kind)
+    _say(f"{len(shots)} images, {len(people)} windows with {kind} people")
+    rounds = ROUNDS[kind]
+    for number, boosting in enumerate(rounds, 1):
         cascade = teach_cascade(people, others, patches, boosting)
-        if number < len(ROUNDS):
-            found = mistakes(shots, cascade, rng, _MISTAKES)
-            _say(f"round {number} of {len(ROUNDS)}: {len(others)} windows without, {len(found)} mistakes")
+        if number < len(rounds):
+            found = mistakes(shots, cascade, rng, _MISTAKES, kind)
+            _say(f"round {number} of {len(rounds)}: {len(others)} windows without, {len(found)} mistakes")
             others = _some(np.concatenate([others, found]), _OTHERS, rng)
-    model = PeopleModel(cascade, teach_placing(people, places, patches))
-    return replace(model, cascade=cascade.calibrated(*log_odds_line(model, others_of)))
+    trees = PeopleTrees(cascade, teach_placing(people, places, patches))
+    return trees._replace(cascade=cascade.calibrated(*log_odds_line(kind, trees, others_of)))
 
 
 def _some(windows: NDArray[np.float16], most: int, rng: np.random.Generator) -> NDArray[np.float16]:

@@ -21,6 +21,8 @@ Grey = NDArray[np.uint8]
 _LEAST_VISIBLE: Final = 0.35
 _LEAST_INSIDE: Final = 0.5
 _LEAST_CLEAR: Final = 0.45  # of what lies inside the image, somebody who can be learned from shows so much
+_LITTLE_INSIDE: Final = 0.25
+_CLEAR: Final = 0.7
 _HIGHEST: Final = 0.25  # of the height may be above the image
 _SPANNED: Final = 0.5  # share of images that are learned from in another span
 _MOST_BLACK: Final = 0.97
@@ -51,6 +53,7 @@ class PeopleShot:
         mount: of the camera.
         box: (P, 4) [px] of everybody of whom some is seen, from head to feet, as wide as the torso.
         is_good: (P,) who can be learned from: upright, and not mostly hidden.
+        is_clear: (P,) who is upright, and shows most of what lies inside the image, however little that is.
     """
 
     grey: Grey
@@ -58,14 +61,18 @@ class PeopleShot:
     mount: Mount
     box: Floats
     is_good: NDArray[np.bool_]
+    is_clear: NDArray[np.bool_]
 
     def varied(self, rng: np.random.Generator) -> PeopleShot:
-        """Give it as it is or otherwise: mirrored, cut off, negated, in another span, faint."""
+        """Give it as it is or otherwise: mirrored, cut off, and with other greys."""
         shot = self.mirrored() if rng.random() < 0.5 else self
         if rng.random() < _CUT_OFF:
             shot = shot.cut_off(rng)
-        if rng.random() < _NEGATED:
-            shot = shot.negated()
+        return shot.recoloured(rng)
+
+    def recoloured(self, rng: np.random.Generator) -> PeopleShot:
+        """Give it as it is or with other greys: negated, of a poorer camera, in another span, faint."""
+        shot = self.negated() if rng.random() < _NEGATED else self
         if rng.random() < _SOFT:
             shot = shot.softened(rng)
         if rng.random() < _SPANNED:
@@ -104,13 +111,15 @@ class PeopleShot:
             return self
         one = int(rng.choice(tall))
         if rng.random() < _AT_THE_FEET:
-            return self._part(0, bottom[one] - rng.uniform(0.0, _MOST_CUT) * self.box[one, 3])
-        return self._part(top[one] + rng.uniform(0.0, _HIGHEST) * self.box[one, 3], len(self.grey))
+            return self.part(0, bottom[one] - rng.uniform(0.0, _MOST_CUT) * self.box[one, 3], _FEWEST_ROWS)
+        return self.part(
+            top[one] + rng.uniform(0.0, _HIGHEST) * self.box[one, 3], len(self.grey), _FEWEST_ROWS
+        )
 
-    def _part(self, first: float, end: float) -> PeopleShot:
-        """Give some of the rows; whole, if those are few."""
+    def part(self, first: float, end: float, fewest: int) -> PeopleShot:
+        """Give some of the rows; whole, if those are fewer than so many."""
         begin, stop = max(round(first), 0), min(round(end), len(self.grey))
-        if stop - begin < _FEWEST_ROWS:
+        if stop - begin < fewest:
             return self
         top, bottom = self.box[:, 1], self.box[:, 1] + self.box[:, 3]
         shown = np.minimum(bottom, stop) - np.maximum(top, begin)
@@ -126,6 +135,7 @@ class PeopleShot:
             mount=replace(self.mount, horizon_px=self.mount.horizon_px - begin),
             box=(self.box - np.array([0.0, begin, 0.0, 0.0]))[is_left],
             is_good=is_good[is_left],
+            is_clear=self.is_clear[is_left],
         )
 
     def spanned(self, rng: np.random.Generator) -> PeopleShot:
@@ -158,6 +168,7 @@ def _shot(film: PeopleFilm, k: int) -> PeopleShot:
     here = (film.image == k) & (film.shown_px > _LEAST_SHOWN_PX)
     box = film.box[here]
     visible, inside = film.visible[here], film.inside[here]
+    is_clear = film.is_upright[here] & (inside > _LITTLE_INSIDE) & (visible > _CLEAR * inside)
     is_good = (
         film.is_upright[here]
         & (visible > _LEAST_VISIBLE)
@@ -165,4 +176,4 @@ def _shot(film: PeopleFilm, k: int) -> PeopleShot:
         & (visible > _LEAST_CLEAR * inside)
         & (box[:, 1] > -_HIGHEST * box[:, 3])
     )
-    return PeopleShot(film.grey[k], film.change[k], film.seen_by(), box, is_good)
+    return PeopleShot(film.grey[k], film.change[k], film.seen_by(), box, is_good, is_clear)

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.studies.people_learning.cut_off import has_people, varied
 from peopleboy.scenarios.studies.people_learning.many_threads import in_threads
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.boxes import iou
@@ -18,7 +19,7 @@ from peopleboy.tracker.proposals.detector import SMALLEST_PX
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.placing import offsets
 from peopleboy.tracker.proposals.pyramid import STEP, Level, levels
-from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS
+from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS, Kind
 
 Floats = NDArray[np.float64]
 Windows = NDArray[np.float16]
@@ -35,25 +36,27 @@ _A_LEVEL: Final = 6  # windows that are placed anywhere
 _AN_IMAGE: Final = 12  # of what is none
 
 
-def windows_with_people(shots: Sequence[PeopleShot], rng: np.random.Generator) -> tuple[Windows, Floats]:
+def windows_with_people(
+    shots: Sequence[PeopleShot], rng: np.random.Generator, kind: Kind
+) -> tuple[Windows, Floats]:
     """Collect windows (N, 1800) that people fill, in images that are varied, each also a cell off.
 
     Returns:
         The windows, and what is to be known of each (N, 4): see `placing.offsets`.
     """
-    good = [shot for shot in shots if shot.is_good.any() for _ in range(_VARIETIES)]
-    found = [example for examples in in_threads(_filled, _varied(good, rng)) for example in examples]
+    good = [shot for shot in shots if has_people(shot, kind) for _ in range(_VARIETIES)]
+    found = [example for examples in in_threads(_filled, _varied(good, rng, kind)) for example in examples]
     windows = np.array([window for window, _ in found], np.float16).reshape(-1, CELLS)
     return windows, np.array([offset for _, offset in found]).reshape(-1, 4)
 
 
 def _varied(
-    shots: Iterable[PeopleShot], rng: np.random.Generator
+    shots: Iterable[PeopleShot], rng: np.random.Generator, kind: Kind
 ) -> Iterator[tuple[PeopleShot, np.random.Generator]]:
     """Give images varied, each with random numbers of its own."""
     for shot in shots:
         own = np.random.default_rng(rng.integers(2**63))
-        yield shot.varied(own), own
+        yield varied(shot, own, kind), own
 
 
 def _filled(drawn: tuple[PeopleShot, np.random.Generator]) -> list[tuple[Windows, Floats]]:
@@ -70,29 +73,32 @@ def _filled(drawn: tuple[PeopleShot, np.random.Generator]) -> list[tuple[Windows
     return found
 
 
-def windows_anywhere(shots: Sequence[PeopleShot], rng: np.random.Generator, most: int) -> Windows:
+def windows_anywhere(shots: Sequence[PeopleShot], rng: np.random.Generator, most: int, kind: Kind) -> Windows:
     """Collect windows (N, 1800) without people.
 
     Args:
         shots: images, of which each is looked at varied.
         rng: draws which images, and where.
         most: how many are enough.
+        kind: of windows.
     """
     found: list[Windows] = []
     for k in rng.permutation(len(shots)).tolist():
-        shot, here = shots[k].varied(rng), []
+        shot, here = varied(shots[k], rng, kind), []
         for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
-            _, high, wide = level.cells.shape
-            rows = rng.integers(0, high - ROWS + 1, _A_LEVEL)
-            columns = rng.integers(0, wide - COLUMNS + 1, _A_LEVEL)
-            here += _without(shot, level, rows, columns)
+            for first, end in level.rows[kind]:
+                rows = rng.integers(first, end, _A_LEVEL)
+                columns = rng.integers(0, level.cells.shape[2] - COLUMNS + 1, _A_LEVEL)
+                here += _without(shot, level, rows, columns)
         found += [here[k] for k in rng.permutation(len(here))[:_AN_IMAGE]]
         if len(found) >= most:
             break
     return np.array(found, np.float16).reshape(-1, CELLS)
 
 
-def mistakes(shots: Sequence[PeopleShot], cascade: Cascade, rng: np.random.Generator, most: int) -> Windows:
+def mistakes(
+    shots: Sequence[PeopleShot], cascade: Cascade, rng: np.random.Generator, most: int, kind: Kind
+) -> Windows:
     """Collect windows (N, 1800) without people that are taken for some, the worst of each image.
 
     Args:
@@ -100,25 +106,28 @@ def mistakes(shots: Sequence[PeopleShot], cascade: Cascade, rng: np.random.Gener
         cascade: what errs.
         rng: draws which images.
         most: how many are enough.
+        kind: of windows.
     """
     found: list[Windows] = []
-    order = _varied((shots[k] for k in rng.permutation(len(shots)).tolist()), rng)
-    for here in in_threads(lambda drawn: _mistakes(drawn[0], cascade), order):
+    order = _varied((shots[k] for k in rng.permutation(len(shots)).tolist()), rng, kind)
+    for here in in_threads(lambda drawn: _mistakes(drawn[0], cascade, kind), order):
         found += here
         if len(found) >= most:
             break
     return np.array(found, np.float16).reshape(-1, CELLS)
 
 
-def _mistakes(shot: PeopleShot, cascade: Cascade) -> list[Windows]:
+def _mistakes(shot: PeopleShot, cascade: Cascade, kind: Kind) -> list[Windows]:
     boxes, scores, cuts = [np.empty((0, 4))], [np.empty(0)], []
     for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
-        hits = cascade.scan(summed(level.cells), level.rows)
-        is_bad = hits.score >= _LEAST_SCORE
-        boxes.append(level.boxes(hits.row[is_bad], hits.column[is_bad]))
-        scores.append(hits.score[is_bad])
-        places = zip(hits.row[is_bad].tolist(), hits.column[is_bad].tolist(), strict=True)
-        cuts += [(level.cells, row, column) for row, column in places]
+        sums = summed(level.cells)
+        for rows in level.rows[kind]:
+            hits = cascade.scan(sums, rows)
+            is_bad = hits.score >= _LEAST_SCORE
+            boxes.append(level.boxes(hits.row[is_bad], hits.column[is_bad]))
+            scores.append(hits.score[is_bad])
+            places = zip(hits.row[is_bad].tolist(), hits.column[is_bad].tolist(), strict=True)
+            cuts += [(level.cells, row, column) for row, column in places]
     box, score = np.concatenate(boxes), np.concatenate(scores)
     is_left = _is_clear(box, shot)
     chosen: list[int] = []

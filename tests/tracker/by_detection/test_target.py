@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from peopleboy.tracker.by_detection.colours import FEATURES
 from peopleboy.tracker.by_detection.config import ExistenceConfig
-from peopleboy.tracker.by_detection.target import Sighting, Target
+from peopleboy.tracker.by_detection.target import Finding, Target
 
 CONFIG = ExistenceConfig()
 DT_S = 1.0 / 15.0
@@ -31,7 +31,7 @@ def known() -> Target:
 def seen(target: Target, score: float, images: int, since_s: float, speed_m_s: float = 1.5) -> float:
     for image in range(1, images + 1):
         time_s = since_s + image * DT_S
-        target.see(Sighting(score, 0.0, speed_m_s), time_s, DT_S, CONFIG)
+        target.see(Finding(score, 0.0, speed_m_s), time_s, DT_S, CONFIG)
     return time_s
 
 

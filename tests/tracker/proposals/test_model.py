@@ -1,3 +1,4 @@
+import itertools
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -6,8 +7,9 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.proposals.cascade import LEAVES, NODES
-from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
+from peopleboy.tracker.proposals.model import PeopleModel, PeopleTrees, shipped_model
 from peopleboy.tracker.proposals.placing import OFFSETS
+from peopleboy.tracker.proposals.window import Kind
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_trees import PATCHES, PLACING_TREES, TREES, drawn_cascade, drawn_placing
 
@@ -16,7 +18,14 @@ PLACING = (OFFSETS, PLACING_TREES)
 
 
 def drawn_model() -> PeopleModel:
-    return PeopleModel(drawn_cascade(), drawn_placing(), {"trained on": "nothing"})
+    one, other = drawn_cascade(), replace(drawn_cascade(), least=np.full(TREES, -1.0, np.float32))
+    return PeopleModel(
+        {
+            Kind.WHOLE: PeopleTrees(one, drawn_placing()),
+            Kind.CUT: PeopleTrees(replace(other, patches=one.patches), drawn_placing()),
+        },
+        {"whole people": "nothing"},
+    )
 
 
 def test_trees_come_back_from_their_file(tmp_path: Path) -> None:
@@ -24,8 +33,8 @@ def test_trees_come_back_from_their_file(tmp_path: Path) -> None:
     model.save(tmp_path / "people.npz")
     read = PeopleModel.load(tmp_path / "people.npz")
     assert read.about == model.about
-    for part in ("cascade", "placing"):
-        before, after = getattr(model, part), getattr(read, part)
+    for kind, part in itertools.product(Kind, ("cascade", "placing")):
+        before, after = getattr(model.trees[kind], part), getattr(read.trees[kind], part)
         np.testing.assert_array_equal(after.patches.channel, before.patches.channel, strict=True)
         np.testing.assert_array_equal(after.patches.first, before.patches.first, strict=True)
         np.testing.assert_array_equal(after.patches.second, before.patches.second, strict=True)
@@ -54,7 +63,9 @@ def test_a_file_that_is_cut_off_is_refused(tmp_path: Path, share: float) -> None
         PeopleModel.load(path)
 
 
-@pytest.mark.parametrize("lack", ["feature", "least", "placing_feature", "placing_leaf", "about"])
+@pytest.mark.parametrize(
+    "lack", ["whole_feature", "cut_least", "cut_placing_feature", "whole_placing_leaf", "about"]
+)
 def test_a_file_that_lacks_something_is_refused(tmp_path: Path, lack: str) -> None:
     drawn_model().save(tmp_path / "whole.npz")
     with np.load(tmp_path / "whole.npz") as archive:
@@ -81,9 +92,12 @@ def test_a_file_that_lacks_something_is_refused(tmp_path: Path, lack: str) -> No
         ("placing", "threshold", np.zeros((*PLACING, NODES))),
     ],
 )
-def test_other_trees_are_refused(tmp_path: Path, part: str, name: str, wrong: Any) -> None:
+@pytest.mark.parametrize("kind", Kind)
+def test_other_trees_are_refused(tmp_path: Path, part: str, name: str, wrong: Any, kind: Kind) -> None:
     model = drawn_model()
-    replace(model, **{part: replace(getattr(model, part), **{name: wrong})}).save(tmp_path / "other.npz")
+    trees = model.trees[kind]
+    other = trees._replace(**{part: replace(getattr(trees, part), **{name: wrong})})
+    replace(model, trees={**model.trees, kind: other}).save(tmp_path / "other.npz")
     with refused("other.npz", "holds no trees of depth 3 on patches of a window", "train-detector"):
         PeopleModel.load(tmp_path / "other.npz")
 
@@ -100,14 +114,17 @@ def test_other_trees_are_refused(tmp_path: Path, part: str, name: str, wrong: An
 )
 def test_patches_beyond_the_window_are_refused(tmp_path: Path, name: str, wrong: Any) -> None:
     model = drawn_model()
-    patches = replace(model.cascade.patches, **{name: wrong})
-    replace(model, cascade=replace(model.cascade, patches=patches)).save(tmp_path / "other.npz")
+    trees = model.trees[Kind.WHOLE]
+    patches = replace(trees.cascade.patches, **{name: wrong})
+    other = trees._replace(cascade=replace(trees.cascade, patches=patches))
+    replace(model, trees={**model.trees, Kind.WHOLE: other}).save(tmp_path / "other.npz")
     with refused("other.npz", "holds no trees of depth 3 on patches", "train-detector"):
         PeopleModel.load(tmp_path / "other.npz")
 
 
 def test_the_trees_that_are_shipped_say_what_they_were_trained_on() -> None:
-    assert "from seed 1000" in shipped_model().about["trained on"]
+    for kind in Kind:
+        assert "from seed 1000" in shipped_model().about[f"{kind} people"]
 
 
 def test_the_page_says_of_the_shipped_trees_what_their_file_does() -> None:
@@ -115,4 +132,4 @@ def test_the_page_says_of_the_shipped_trees_what_their_file_does() -> None:
     about = shipped_model().about
     for mount in ("known", "unknown"):
         assert about[f"on worlds 0 to 29, mount {mount}"] in page
-    assert about["trained on"] in page
+    assert about["whole people"] in page

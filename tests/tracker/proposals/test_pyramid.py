@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.channels import CHANNELS
+from peopleboy.tracker.proposals.channels import CHANNELS, OVER
 from peopleboy.tracker.proposals.pyramid import STEP, levels
-from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS, boxes_of, cells_of
+from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS, Kind, boxes_of, cells_of
 from peopleboy.tracker.thermal.mount import Mount
 
 GREY: NDArray[np.uint8] = np.kron(
@@ -36,9 +36,11 @@ def test_a_window_has_all_features_of_the_trees() -> None:
 def test_a_known_mount_leaves_out_rows_and_changes_nothing_in_the_others() -> None:
     for whole, part in zip(levels(GREY, STILL, None, 24.0), levels(GREY, STILL, MOUNT, 24.0), strict=True):
         assert part.scale == whole.scale
-        first, end = part.rows
+        if not part.rows[Kind.WHOLE]:
+            continue
+        (first, end), (top, bottom) = part.rows[Kind.WHOLE][0], whole.rows[Kind.WHOLE][0]
         shift = part.first
-        assert end - first <= whole.rows[1] - whole.rows[0]
+        assert end - first <= bottom - top
         np.testing.assert_allclose(
             part.cells[:, first : end + ROWS - 1], whole.cells[:, first + shift : end + ROWS - 1 + shift],
             atol=1e-3,
@@ -55,7 +57,7 @@ def test_whoever_stands_is_looked_for_with_a_known_mount(stature_m: float, mount
         foot = mount.horizon_px + height * mount.height_m / stature_m
         if foot < 240.0 and foot - height > 0.0:
             row = level.windows(np.array([[100.0, foot - height, 10.0, height]]))[0, 0]
-            assert level.rows[0] <= row <= level.rows[1] - 1
+            assert any(first <= row <= end - 1 for ranges in level.rows.values() for first, end in ranges)
 
 
 def test_people_who_cannot_stand_in_view_cost_nothing() -> None:
@@ -64,3 +66,24 @@ def test_people_who_cannot_stand_in_view_cost_nothing() -> None:
 
 def test_an_image_too_small_for_a_window_has_no_level() -> None:
     assert not list(levels(GREY[:16, :20], STILL[:16, :20], None, 24.0))
+
+
+def test_every_window_that_is_looked_for_has_a_kind_and_its_cells() -> None:
+    for level in levels(GREY, STILL, None, 24.0):
+        whole, cut = level.rows[Kind.WHOLE], level.rows[Kind.CUT]
+        high = level.cells.shape[1] - 2 * OVER
+        looked_at = {row for first, end in whole + cut for row in range(first, end)}
+        if PERSON_PX / level.scale[0] < 48.0:
+            assert not cut
+        else:
+            assert looked_at == set(range(high + 2 * OVER - ROWS + 1))
+        assert bool(whole) == (high >= 12)
+
+
+def test_who_is_cut_off_is_looked_for_beyond_the_image() -> None:
+    for level in levels(GREY, STILL, None, 24.0):
+        high = level.cells.shape[1] - 2 * OVER
+        for first, end in level.rows[Kind.CUT] if level.rows[Kind.WHOLE] else ():
+            beyond = [(OVER - row, row + ROWS - OVER - high) for row in range(first, end)]
+            assert all(above >= 6 or below >= 9 for above, below in beyond)
+            assert all(above <= OVER and below <= OVER for above, below in beyond)

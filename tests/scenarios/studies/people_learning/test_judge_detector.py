@@ -9,10 +9,13 @@ from peopleboy.scenarios.studies.people_learning.judge_detector import Found, lo
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.proposals.window import Kind
 from tests.helpers.calls.refused import refused
 
 Floats = NDArray[np.float64]
 SCORES: Floats = np.random.default_rng(0).uniform(-2.0, 4.0, 4000)
+
+WHOLE = Kind.WHOLE, shipped_model().trees[Kind.WHOLE]
 
 
 def test_figures_of_what_was_found() -> None:
@@ -40,7 +43,7 @@ def test_scores_become_the_log_odds_that_it_is_somebody(
 ) -> None:
     odds = np.exp(1.5 * SCORES - 2.0)
     propose(monkeypatch, shots[0], np.random.default_rng(1).random(len(SCORES)) < odds / (1.0 + odds))
-    gain, offset = log_odds_line(shipped_model(), shots[:1])
+    gain, offset = log_odds_line(*WHOLE, shots[:1])
     assert gain == pytest.approx(1.5, abs=0.15)
     assert offset == pytest.approx(-2.0, abs=0.2)
 
@@ -51,7 +54,7 @@ def test_people_alone_or_none_at_all_tell_no_odds(
 ) -> None:
     propose(monkeypatch, shots[0], is_person)
     with refused(f"{2 * is_person.sum()} of {2 * len(SCORES)} proposals", "take more worlds"):
-        log_odds_line(shipped_model(), shots[:1])
+        log_odds_line(*WHOLE, shots[:1])
 
 
 def test_scores_that_say_the_contrary_are_refused(
@@ -59,10 +62,10 @@ def test_scores_that_say_the_contrary_are_refused(
 ) -> None:
     propose(monkeypatch, shots[0], SCORES + np.random.default_rng(1).normal(size=len(SCORES)) < 1.0)
     with refused("people score no more than what is none", "take more worlds"):
-        log_odds_line(shipped_model(), shots[:1])
+        log_odds_line(*WHOLE, shots[:1])
 
 
 def test_without_what_teaches_it_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sklearn.linear_model", None)
     with refused("scikit-learn", "pip install scikit-learn"):
-        log_odds_line(shipped_model(), [])
+        log_odds_line(*WHOLE, [])

@@ -2,15 +2,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from peopleboy.scenarios.studies.people_learning import people_lesson
+from peopleboy.scenarios.studies.people_learning import cut_off, people_lesson
 from peopleboy.scenarios.studies.people_learning.boosting import Boosting
 from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
-from peopleboy.tracker.proposals.model import PeopleModel
+from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
+from peopleboy.tracker.proposals.window import Kind
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.images.drawn_films import drawn_film
@@ -19,16 +21,16 @@ from tests.helpers.images.drawn_films import drawn_film
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """A lesson on drawn films, of few trees."""
-    monkeypatch.setattr(
-        people_lesson, "ROUNDS", (Boosting(3, 0.5, features=20), Boosting(4, 0.5, features=20))
-    )
+    rounds = (Boosting(3, 0.5, features=20), Boosting(4, 0.5, features=20))
+    monkeypatch.setattr(people_lesson, "ROUNDS", dict.fromkeys(Kind, rounds))
     monkeypatch.setattr(people_lesson, "TESTS", 2)
+    monkeypatch.setattr(cut_off, "_TALL_PX", 40.0)
     monkeypatch.setattr(PeopleFilmTask, "__call__", lambda task, _: drawn_film(task.seed).save(task.film))
 
 
 @pytest.mark.usefixtures("quick")
 def test_drawn_people_are_learned_and_found_in_other_images(shots: list[PeopleShot]) -> None:
-    model = people_lesson.teach(shots[:30], shots[30:36])
+    model = PeopleModel(people_lesson.teach(shots[:30], shots[30:36], [Kind.WHOLE]))
     found = judge_detector(model, shots[36:], knows_mount=False)
     assert (found.people, found.images) == (12, 12)
     assert found.recall(1.0) > 0.7
@@ -41,12 +43,25 @@ def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: 
     names = {path.name for path in (tmp_path / "films").iterdir()}
     assert names == {f"world_{seed}.npz" for seed in (0, 1, 1000, 1001, 2000, 3000, 3001, 4000, 5000)}
     about = PeopleModel.load(tmp_path / "people.npz").about
-    assert about["trained on"] == (
+    learned_from = (
         "2 random worlds from seed 1000, 1 crowds from seed 2000, 2 worlds in the robot's own span "
         "from seed 3000, 1 plain worlds as warm as people from seed 4000, 1 crowds in the robot's own span "
         "from seed 5000; 1 of them held back"
     )
+    assert about["cut people"] == about["whole people"] == learned_from
     assert "average precision" in about["on worlds 0 to 1, mount known"]
+
+
+@pytest.mark.usefixtures("quick")
+def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
+    chosen = ("--worlds", 5, "--windows", "cut", "--workers", 1)
+    assert run_cli("train-detector", *chosen, "--out", tmp_path) == 0
+    taught, shipped = PeopleModel.load(tmp_path / "people.npz"), shipped_model()
+    before, after = (model.trees[Kind.WHOLE].cascade for model in (shipped, taught))
+    np.testing.assert_array_equal(after.leaf, before.leaf, strict=True)
+    assert len(taught.trees[Kind.CUT].cascade.leaf) == 4
+    assert taught.about["whole people"] == shipped.about["whole people"]
+    assert taught.about["cut people"].startswith("2 random worlds")
 
 
 @pytest.mark.usefixtures("quick")
@@ -56,7 +71,8 @@ def test_a_tenth_of_the_worlds_is_held_back_and_at_least_one(
 ) -> None:
     split: list[int] = []
 
-    def stop(shots: list[PeopleShot], others_of: list[PeopleShot]) -> PeopleModel:
+    def stop(shots: list[PeopleShot], others_of: list[PeopleShot], kinds: list[Kind]) -> PeopleModel:
+        assert kinds == list(Kind)
         split.extend((len(shots), len(others_of)))
         raise KeyboardInterrupt
 

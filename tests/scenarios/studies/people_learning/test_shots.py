@@ -137,11 +137,12 @@ def test_people_are_cut_off_at_feet_and_head(shots: list[PeopleShot]) -> None:
 
 def test_who_is_cut_away_is_not_there(shots: list[PeopleShot]) -> None:
     low = np.array([[10.0, 105.0, 6.0, 14.0]])
-    two = replace(shots[0], box=np.concatenate([shots[0].box, low]), is_good=np.array([True, False]))
-    part = two._part(0.0, 100.0)
+    good = np.array([True, False])
+    two = replace(shots[0], box=np.concatenate([shots[0].box, low]), is_good=good, is_clear=good)
+    part = two.part(0.0, 100.0, 60)
     np.testing.assert_array_equal(part.box, shots[0].box)
     assert len(part.is_good) == 1
-    assert two._part(0.0, 30.0) is two  # of too few rows nothing can be learned
+    assert two.part(0.0, 30.0, 60) is two  # of too few rows nothing can be learned
 
 
 def test_examples_vary(shots: list[PeopleShot]) -> None:
