@@ -125,7 +125,7 @@ def _environments() -> Iterator[BenchFigure]:
             MANY,
             THREADS,
             10,
-            "two thirds are kernels that draw; figures of episodes go world by world",
+            "about half are kernels that draw; figures of episodes go world by world",
         ),
     ):
         ratio = many_rates(case, (worlds,), threads)[worlds].ratio
