@@ -168,6 +168,11 @@ TRACKERS: Final[dict[str, Factory]] = {
 """Each tracker's factory by name; the first is the default. Whoever has a further one adds it here."""
 
 
+def is_own(name: str) -> bool:
+    """Tell whether a tracker of that name is one of your own, "module:Class"."""
+    return ":" in name
+
+
 def make_tracker(name: str, rng: np.random.Generator) -> Tracker:
     """Make the tracker of that name: one of `TRACKERS`, or "module:Class" for one of your own.
 
@@ -176,7 +181,7 @@ def make_tracker(name: str, rng: np.random.Generator) -> Tracker:
     Raises:
         BadInput: there is none of that name, or what is there is no tracker.
     """
-    if ":" in name:
+    if is_own(name):
         return _own_tracker(name, rng)
     if name not in TRACKERS:
         known = ", ".join(TRACKERS)

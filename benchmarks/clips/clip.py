@@ -7,9 +7,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
@@ -18,7 +15,6 @@ from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_t
 
 CHOSEN_BY: Final = ("camel_08", "camel_21")
 """The clips by which values may be chosen; all others are only reported."""
-WIDTH_PER_HEIGHT: Final = 0.43  # of whole people's boxes, mean of camel_08 and camel_21
 TRUTH: Final = "gt.txt"
 
 
@@ -60,12 +56,6 @@ def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) 
         raise BadInput(f"{home}: no clip {' '.join(missing)} with pictures and {TRUTH}; there are: {told}")
     names = sorted(only or there, key=lambda name: (name not in CHOSEN_BY, name))
     return [_open(there[name], frames) for name in names]
-
-
-def whole_body(box: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Make boxes (N, 4) of torsos as wide as whole people with arms and legs are, about the same middles."""
-    width = WIDTH_PER_HEIGHT * box[:, 3]
-    return np.stack([box[:, 0] + (box[:, 2] - width) / 2.0, box[:, 1], width, box[:, 3]], axis=1)
 
 
 def _truth_of(folder: Path) -> Path | None:

@@ -6,9 +6,9 @@ from typing import Final
 
 from trackers import ByteTrackTracker
 
-from benchmarks.clips.clip import WIDTH_PER_HEIGHT
 from benchmarks.peers.contestants import DetectAndAssociate
 from benchmarks.peers.detectors import Hog
+from peopleboy.tracker.footage.box_kinds import WHOLE_PER_HEIGHT
 
 # Chosen in the peers' favour, by the mean HOTA of camel_08 and camel_21: of confidences .4 to .94, and of
 # 1 and 5 s to remember who is lost. HOG's weak windows only make false tracks.
@@ -22,5 +22,5 @@ def make_peer(enlarged: float) -> DetectAndAssociate:
     tracker = ByteTrackTracker(
         lost_track_buffer=_LOST_BUFFER, track_activation_threshold=_STRONG, high_conf_det_threshold=_STRONG
     )
-    hog = Hog(uses_colour=False, width_per_height=WIDTH_PER_HEIGHT, enlarged=enlarged, weakest=_WEAKEST)
+    hog = Hog(uses_colour=False, width_per_height=WHOLE_PER_HEIGHT, enlarged=enlarged, weakest=_WEAKEST)
     return DetectAndAssociate(hog, tracker)

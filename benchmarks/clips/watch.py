@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from benchmarks.clips.clip import Clip, whole_body
+from benchmarks.clips.clip import Clip
 from benchmarks.peers.ours import Contestant, Ours
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.options import TrackOptions
@@ -20,7 +20,7 @@ from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
-from peopleboy.tracker.trackers import FOOTAGE_TRACKER
+from peopleboy.tracker.trackers import FOOTAGE_TRACKER, is_own
 
 PEERS: Final = {"HOG x 2 + ByteTrack": 2.0, "HOG x 3 + ByteTrack": 3.0}
 """How many times each enlarges the pictures: HOG sees people from 96 px of the enlarged ones on."""
@@ -95,7 +95,7 @@ def make_watcher(name: str, seed: int) -> Contestant:
     """
     if name in PEERS:
         return _peer(name)
-    ours = Ours(name, seed)
+    ours = Ours(name, seed, boxes_whole=not is_own(name))
     for camera in ours.cameras:
         if camera not in ThermalViews.cameras:
             raise BadInput(f"--tracker {name}: wants camera {camera!r}, which clips have not")
@@ -114,7 +114,7 @@ def _scored(clip: Clip, rows: list[tuple[int, int, Floats]]) -> Scores:
     tracks = TrackBoxes(
         frame=np.array([frame for frame, _, _ in rows], dtype=np.int64),
         id=np.array([identity for _, identity, _ in rows], dtype=np.int64),
-        box=whole_body(np.array([box for _, _, box in rows], dtype=np.float64).reshape(-1, 4)),
+        box=np.array([box for _, _, box in rows], dtype=np.float64).reshape(-1, 4),
         confidence=np.ones(len(rows)),
     )
     return evaluate(clip.given.truth, tracks, frames=clip.frames, is_single=clip.given.is_single)

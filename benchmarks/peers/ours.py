@@ -8,6 +8,7 @@ import numpy as np
 
 from benchmarks.peers.detectors import Boxes
 from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.footage.box_kinds import boxed_whole
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
@@ -24,8 +25,9 @@ class Contestant(Protocol):
 class Ours:
     """A tracker of `peopleboy.tracker.trackers`."""
 
-    def __init__(self, name: str, seed: int) -> None:
+    def __init__(self, name: str, seed: int, *, boxes_whole: bool = False) -> None:
         self._tracker = make_tracker(name, stream(seed, "tracker"))
+        self._boxes_whole = boxes_whole
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -34,5 +36,6 @@ class Ours:
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
         """Update, and take the confirmed tracks."""
-        found = list(confirmed(self._tracker.update(frame), THERMAL))
+        tracks = self._tracker.update(frame)
+        found = list(confirmed(boxed_whole(tracks) if self._boxes_whole else tracks, THERMAL))
         return np.array([box for _, box in found]).reshape(-1, 4), [track.id for track, _ in found]

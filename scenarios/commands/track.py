@@ -63,6 +63,11 @@ _TRACKERS = (
     help="VOT, OTB or MOTChallenge truth.  [default: what lies beside the pictures]",
 )
 @click.option(
+    "--boxes",
+    type=click.Choice(("torso", "whole")),
+    help="As wide as the torso, or as all of a person.  [default: as the truth's are; whole without truth]",
+)
+@click.option(
     "--start",
     metavar="X,Y,W,H|truth",
     help="Where a person is in the first picture, as trackers of single objects are told.",
@@ -89,6 +94,7 @@ def track(
     odometry: Path | None,
     tracker: str | None,
     truth: Path | None,
+    boxes: str | None,
     start: str | None,
     seed: int,
     film: bool,
@@ -103,6 +109,7 @@ def track(
     from peopleboy.scenarios.footage.options import RGBD_TRACKER, TrackOptions
     from peopleboy.scenarios.footage.track_footage import track_footage
     from peopleboy.scenarios.progress_bar import progress_bar
+    from peopleboy.tracker.footage.box_kinds import BoxKind
     from peopleboy.tracker.footage.grey import Radiometry, parse_scale
     from peopleboy.tracker.trackers import FOOTAGE_TRACKER
 
@@ -125,6 +132,7 @@ def track(
         rate_hz=rate_hz,
         tracker=tracker or (FOOTAGE_TRACKER if depth is None else RGBD_TRACKER),
         truth=truth,
+        boxes=None if boxes is None else BoxKind(boxes),
         start=None if start is None else _parse_start(start),
         seed=seed,
         film=film,

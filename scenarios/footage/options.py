@@ -8,6 +8,7 @@ from typing import Final
 
 from peopleboy.scenarios.footage.rgbd_camera import RgbdCamera
 from peopleboy.tracker.boxes import Box
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.trackers import FOOTAGE_TRACKER
 
@@ -47,6 +48,8 @@ class TrackOptions:
         rate_hz: pictures a second; None for the footage's own, or `DEFAULT_RATE_HZ`.
         tracker: name of the tracker.
         truth: a truth file; None to look for one beside the pictures.
+        boxes: what our trackers' boxes are drawn round; None for what those of the truth are, or all of a
+            person.
         start: box of a person in the first picture, or "truth" for that of the truth; None to find people.
         seed: 0 or more; everything random follows from it.
         film: whether to write overlay.mp4.
@@ -61,6 +64,7 @@ class TrackOptions:
     rate_hz: float | None = None
     tracker: str = FOOTAGE_TRACKER
     truth: Path | None = None
+    boxes: BoxKind | None = None
     start: Box | str | None = None
     seed: int = 0
     film: bool = False

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
 from peopleboy.scenarios.footage.track_footage import Tracked
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.wording import counted
+
+_ROUND: Final = {
+    BoxKind.TORSO: ", boxes round torsos",
+    BoxKind.WHOLE: ", boxes round whole people",
+    None: "",
+}
 
 
 def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:
     """Say how much was tracked, and which files show it, or what to look at if nobody was found."""
-    count = f"{counted(tracked.frames, 'frame')}, {counted(tracked.tracks, 'track')}"
+    count = f"{counted(tracked.frames, 'frame')}, {counted(tracked.tracks, 'track')}{_ROUND[tracked.boxes]}"
     sheet = options.out / "contact_sheet.png"
     if not tracked.tracks:
         shown = f"Nobody was found. Look at {sheet}: {_what_to_look_at(options)}"

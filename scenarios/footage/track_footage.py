@@ -18,9 +18,10 @@ from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.evaluation.evaluate import Scores
+from peopleboy.tracker.footage.box_kinds import BoxKind, boxed_whole, torso_of
 from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.frame import DEPTH
-from peopleboy.tracker.trackers import Introducible, Tracker, explanation_of, make_tracker
+from peopleboy.tracker.trackers import Introducible, Tracker, explanation_of, is_own, make_tracker
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,6 +34,7 @@ class Tracked:
         tracks: number of track ids.
         scores: against the truth; None without one.
         notes: what was taken as something else than it is.
+        boxes: what boxes are drawn round; None if the tracker is of your own, and knows.
     """
 
     frames: int
@@ -40,6 +42,7 @@ class Tracked:
     tracks: int
     scores: Scores | None
     notes: tuple[str, ...]
+    boxes: BoxKind | None
 
 
 def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> Tracked:
@@ -57,10 +60,11 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
     _check_apart(options)
     views = open_views(options)
     truth = _truth_of(options, views)
+    kind = _kind_of(options, truth)
     tracker = CheckedTracker(
-        _tracker_of(options, views, truth), f"tracker {options.tracker!r}", views.cameras
+        _tracker_of(options, views, truth, kind), f"tracker {options.tracker!r}", views.cameras
     )
-    about = _about(options, views)
+    about = _about(options, views) | {"boxes": kind}
     began = time.perf_counter()
     with whole_folder(options.out, about, overwrite=options.overwrite, kind="run") as folder:
         log = FootageLog(folder, options, views, truth)
@@ -69,13 +73,13 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
                 with at_frame(log.frames + 1):
                     tracks = tracker.update(frame)
                     explanation = explanation_of(tracker)
-                log.add(frame, tracks, explanation)
+                log.add(frame, boxed_whole(tracks) if kind is BoxKind.WHOLE else tracks, explanation)
                 report(log.frames, views.expected)
         scores = log.finish()
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
         about["notes"] = views.notes
     per_second = log.frames / max(time.perf_counter() - began, 1e-9)
-    return Tracked(log.frames, per_second, log.tracks, scores, tuple(views.notes))
+    return Tracked(log.frames, per_second, log.tracks, scores, tuple(views.notes), kind)
 
 
 def _check_apart(options: TrackOptions) -> None:
@@ -94,7 +98,19 @@ def _truth_of(options: TrackOptions, views: Views) -> GivenTruth | None:
     return load_truth(path, views.expected if views.is_exact else None)
 
 
-def _tracker_of(options: TrackOptions, views: Views, truth: GivenTruth | None) -> Tracker:
+def _kind_of(options: TrackOptions, truth: GivenTruth | None) -> BoxKind | None:
+    if is_own(options.tracker):
+        if options.boxes is not None:
+            raise BadInput(f"--boxes {options.boxes}: boxes of a tracker of your own stay; leave it out")
+        return None
+    if options.boxes is not None:
+        return options.boxes
+    return BoxKind.WHOLE if truth is None else BoxKind.of(truth.truth)
+
+
+def _tracker_of(
+    options: TrackOptions, views: Views, truth: GivenTruth | None, kind: BoxKind | None
+) -> Tracker:
     tracker = make_tracker(options.tracker, stream(options.seed, "tracker"))
     for camera in tracker.cameras:
         if camera not in views.cameras:
@@ -107,7 +123,7 @@ def _tracker_of(options: TrackOptions, views: Views, truth: GivenTruth | None) -
             raise BadInput(
                 f"--tracker {options.tracker}: cannot be told where a person is; leave --start out"
             )
-        tracker.introduce(start)
+        tracker.introduce(torso_of(start) if kind is BoxKind.WHOLE else start)
     return tracker
 
 

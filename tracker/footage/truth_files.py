@@ -17,8 +17,15 @@ from peopleboy.tracker.footage.pictures import INNER
 
 KEPT_SINGLE: Final = Path("truth") / "groundtruth.txt"
 """Where a run of ours keeps truth of a single person, as it was given: the format says that it is one."""
-NAMES: Final = ("groundtruth.txt", "groundtruth_rect.txt", "gt/gt.txt", "truth/gt.txt", str(KEPT_SINGLE))
-"""Where the truth lies beside or above the pictures: VOT, OTB, MOTChallenge, a run of ours."""
+NAMES: Final = (
+    "groundtruth.txt",
+    "groundtruth_rect.txt",
+    "gt/gt.txt",
+    "gt.txt",
+    "truth/gt.txt",
+    str(KEPT_SINGLE),
+)
+"""Where the truth lies beside or above the pictures: VOT, OTB, MOTChallenge (twice), a run of ours."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,5 +1,6 @@
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -13,6 +14,7 @@ from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.tracker.evaluation.table import NEED_EVERYBODY
+from peopleboy.tracker.footage.box_kinds import TORSO_PER_HEIGHT, WHOLE_PER_HEIGHT, BoxKind
 from peopleboy.tracker.footage.grey import AutomaticGrey, Radiometry, parse_scale
 from peopleboy.tracker.footage.picture_names import natural_order
 from peopleboy.tracker.footage.pictures import open_footage
@@ -66,12 +68,37 @@ def test_a_started_person_is_tracked_and_the_folder_is_like_that_of_a_run(tmp_pa
     assert cv2.imread(str(out / "contact_sheet.png")).shape[1] > 1600
 
 
+@pytest.mark.parametrize("kind", BoxKind)
+def test_people_are_boxed_as_the_truth_boxes_them(tmp_path, kind):
+    clip = write_folder(tmp_path / "clip")
+    wide = 0.0 if kind is BoxKind.TORSO else 6.0
+    boxes = [
+        (left - wide / 2.0, top, width + wide, height) for left, top, width, height in map(box, range(12))
+    ]
+    text = "\n".join(",".join(map(str, one)) for one in boxes)
+    (clip / "groundtruth_rect.txt").write_text(text + "\n", encoding="utf-8")
+    out, other = tmp_path / "out", tmp_path / "other"
+    options = TrackOptions(footage=clip, out=out, start="truth", tracker="peopleboy")
+    tracked = quietly(options)
+    assert json.loads((out / "run.json").read_text())["boxes"] == tracked.boxes == kind
+    ratio = {BoxKind.TORSO: TORSO_PER_HEIGHT, BoxKind.WHOLE: WHOLE_PER_HEIGHT}[kind]
+    assert first_ratio(out) == pytest.approx(ratio, abs=0.08)
+    (opposite,) = set(BoxKind) - {kind}
+    quietly(replace(options, out=other, boxes=opposite))
+    assert (first_ratio(other) > first_ratio(out)) == (opposite is BoxKind.WHOLE)
+
+
+def first_ratio(folder):
+    _, _, _, _, width, height, *_ = (folder / "tracks.txt").read_text().split()[0].split(",")
+    return float(width) / float(height)
+
+
 def test_boxes_are_in_pixels_of_the_footage_whatever_its_size(tmp_path):
     for size, factor in ((SIZE, 1), ((360, 480), 3)):
         clip = write_folder(tmp_path / f"clip{factor}", size=size)
         start = tuple(factor * edge for edge in box(0))
         out = tmp_path / f"out{factor}"
-        quietly(TrackOptions(footage=clip, out=out, start=start))
+        quietly(TrackOptions(footage=clip, out=out, start=start, boxes=BoxKind.TORSO))
         last = np.array((out / "tracks.txt").read_text().split()[-1].split(",")[2:6], float) / factor
         np.testing.assert_allclose(last[:2], box(11)[:2], atol=5)
 
@@ -184,6 +211,7 @@ def test_a_truncated_video_is_tracked_as_far_as_it_goes_and_says_so(tmp_path):
         (("--start", "1,2,3"), ("X,Y,W,H",)),
         (("--start", "truth"), ("clip", "truth")),
         (("--tracker", "best"), ("'best'", "peopleboy")),
+        (("--tracker", "mine:Mine", "--boxes", "whole"), ("--boxes whole", "leave it out")),
     ],
 )
 def test_options_that_cannot_be_are_refused(tmp_path, options, named):

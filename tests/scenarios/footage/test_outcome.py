@@ -5,6 +5,7 @@ import pytest
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.outcome import outcome_lines
 from peopleboy.scenarios.footage.track_footage import Tracked
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.thermal.variants import VARIANTS
 from tests.helpers.calls.footage_calls import call
@@ -14,8 +15,21 @@ from tests.helpers.images.footage_files import box, write_empty, write_folder
 START = ",".join(str(edge) for edge in box(0))
 
 
-def tracked(frames=2, tracks=2):
-    return Tracked(frames=frames, per_second=10.0, tracks=tracks, scores=None, notes=())
+def tracked(frames=2, tracks=2, boxes=None):
+    return Tracked(frames=frames, per_second=10.0, tracks=tracks, scores=None, notes=(), boxes=boxes)
+
+
+@pytest.mark.parametrize(
+    ("boxes", "words"),
+    [
+        (BoxKind.TORSO, "2 tracks, boxes round torsos, 10"),
+        (BoxKind.WHOLE, "whole people"),
+        (None, "2 tracks, 10"),
+    ],
+)
+def test_it_is_said_what_boxes_are_drawn_round(tmp_path, boxes, words):
+    options = TrackOptions(footage=tmp_path, out=tmp_path)
+    assert words in outcome_lines(tracked(boxes=boxes), options)[0]
 
 
 def test_if_nobody_is_found_that_is_said_with_what_to_look_at(tmp_path):

@@ -80,7 +80,16 @@ def places(path: Path) -> dict[tuple[int, int], tuple[float, float]]:
 
 def test_a_runs_pictures_give_the_people_of_the_run(run: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    done = call(run / "depth_colour", "--depth", run / "depth", "--depth-scale", 0.001, "--out", out)
+    done = call(
+        run / "depth_colour",
+        "--depth",
+        run / "depth",
+        "--depth-scale",
+        0.001,
+        *("--boxes", "torso"),
+        "--out",
+        out,
+    )
     assert done.exit_code == 0, done.output
     told, known = boxes(out / "tracks.txt"), boxes(run / "tracks" / "depth.txt")
     assert len({number for _, number in known}) == 2

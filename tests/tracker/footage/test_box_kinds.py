@@ -1,0 +1,74 @@
+"""Boxes of torsos, and of whole people."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.footage.box_kinds import (
+    TORSO_PER_HEIGHT,
+    WHOLE_PER_HEIGHT,
+    BoxKind,
+    boxed_whole,
+    torso_of,
+    whole_of,
+)
+from peopleboy.tracker.track import Status, Track
+
+TORSO, WHOLE = (40.0, 10.0, 22.0, 100.0), (29.0, 10.5, 45.0, 100.0)
+
+
+def truth(*widths: float) -> TrueBoxes:
+    count = len(widths)
+    return TrueBoxes(
+        frame=np.arange(1, count + 1),
+        id=np.ones(count, int),
+        box=np.array([(10.0, 20.0, width, 100.0) for width in widths]).reshape(-1, 4),
+        counted=np.ones(count, bool),
+        visible=np.ones(count),
+    )
+
+
+def track(**boxes: dict[str, tuple[float, float, float, float]]) -> Track:
+    return Track(id=1, confidence=1.0, status=Status.TRACKED, age_s=1.0, **boxes)
+
+
+@pytest.mark.parametrize(
+    ("widths", "kind"),
+    [
+        ((17.0, 22.0, 27.0), BoxKind.TORSO),
+        ((27.0, 38.0, 53.0), BoxKind.WHOLE),
+        ((22.0, 22.0, 90.0), BoxKind.TORSO),  # one of somebody whose arms are spread
+        ((), BoxKind.WHOLE),
+    ],
+)
+def test_what_boxes_are_drawn_round_is_told_by_how_wide_most_are(
+    widths: tuple[float, ...], kind: BoxKind
+) -> None:
+    assert BoxKind.of(truth(*widths)) is kind
+
+
+def test_boxes_without_height_tell_nothing() -> None:
+    flat = truth(20.0, 40.0)
+    box = flat.box.copy()
+    box[0, 3] = 0.0
+    given = TrueBoxes(frame=flat.frame, id=flat.id, box=box, counted=flat.counted, visible=flat.visible)
+    assert BoxKind.of(given) is BoxKind.WHOLE
+
+
+def test_whole_people_are_boxed_in_every_image() -> None:
+    torso = track(boxes={"thermal": TORSO, "colour": TORSO})
+    (whole,) = boxed_whole([torso])
+    assert whole.boxes == {"thermal": pytest.approx(WHOLE), "colour": pytest.approx(WHOLE)}
+
+
+@given(left=st.floats(-100.0, 500.0), top=st.floats(-100.0, 500.0), height=st.floats(5.0, 400.0))
+def test_a_torso_and_the_whole_have_the_same_middle_and_rows(left: float, top: float, height: float) -> None:
+    torso = (left, top, TORSO_PER_HEIGHT * height, height)
+    whole = whole_of(torso)
+    assert whole[0] + whole[2] / 2.0 == pytest.approx(left + torso[2] / 2.0 + 0.5)
+    assert whole[1:] == pytest.approx((top + 0.5, WHOLE_PER_HEIGHT * height, height))
+    assert torso_of(whole) == pytest.approx(torso)

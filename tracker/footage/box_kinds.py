@@ -1,0 +1,63 @@
+"""What boxes are drawn round: the torso, as ours are, or all of a person, as annotators draw them.
+
+Annotators also count pixels from the image's corner, and ours are counted from the middle of the first one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from enum import StrEnum
+from typing import Final
+
+import numpy as np
+
+from peopleboy.tracker.boxes import Box
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.track import Track
+
+TORSO_PER_HEIGHT: Final = 0.22
+"""Width of the torso over people's height: the median of those in random worlds."""
+WHOLE_PER_HEIGHT: Final = 0.45
+"""The same of people as they are annotated, arms and legs included: by HOTA of camel_08 and camel_21."""
+CORNER_PX: Final = 0.5
+"""Of an image, from the middle of its first pixel."""
+_WIDEST_TORSO: Final = 0.3  # width over height up to which boxes are taken for those of torsos
+
+
+class BoxKind(StrEnum):
+    """What boxes are drawn round."""
+
+    TORSO = "torso"
+    WHOLE = "whole"
+
+    @classmethod
+    def of(cls, truth: TrueBoxes) -> BoxKind:
+        """Tell by how wide they are, in the median; without any, people are taken to be boxed whole."""
+        is_tall = truth.box[:, 3] > 0.0
+        if not is_tall.any():
+            return cls.WHOLE
+        wide = np.median(truth.box[is_tall, 2] / truth.box[is_tall, 3])
+        return cls.TORSO if wide <= _WIDEST_TORSO else cls.WHOLE
+
+
+def boxed_whole(tracks: Iterable[Track]) -> tuple[Track, ...]:
+    """Give tracks with boxes round all of a person, in the place of those round the torso."""
+    return tuple(
+        replace(track, boxes={camera: whole_of(box) for camera, box in track.boxes.items()})
+        for track in tracks
+    )
+
+
+def whole_of(torso: Box) -> Box:
+    """Make a box as wide as people mostly are, about the same middle, and count it from the corner."""
+    left, top, width, height = torso
+    whole = WHOLE_PER_HEIGHT * height
+    return left + (width - whole) / 2.0 + CORNER_PX, top + CORNER_PX, whole, height
+
+
+def torso_of(whole: Box) -> Box:
+    """Make a box that is counted from the corner as wide as torsos mostly are, about the same middle."""
+    left, top, width, height = whole
+    torso = TORSO_PER_HEIGHT * height
+    return left + (width - torso) / 2.0 - CORNER_PX, top - CORNER_PX, torso, height
