@@ -37,6 +37,8 @@ def _what_to_look_at(options: TrackOptions) -> str:
     asked = f"is warm bright there? If not, {remedy}."
     if options.tracker in VARIANTS:
         asked += f" Are people {_heights(options.tracker)} of the picture's height, from head to feet?"
+        if not options.radiometry.is_known:
+            asked += " Are degC known? Then give --temperature-range (8 bit) or --scale (16 bit)."
     return f"{asked} Is their outline to be seen, or only a hot face?"
 
 

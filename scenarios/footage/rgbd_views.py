@@ -14,7 +14,8 @@ from peopleboy.tracker.footage.depth_counts import DepthCounts
 from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.footage.odometry_file import load_odometry
 from peopleboy.tracker.footage.picture_pairs import pair_up
-from peopleboy.tracker.footage.pictures import PictureFolder, read_picture, read_row, size_of
+from peopleboy.tracker.footage.pictures import PictureFolder
+from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame, Odometry, PinholeCalibration
 
 
@@ -39,6 +40,7 @@ class RgbdViews:
         self.notes = list(dict.fromkeys(told))
         self._pairs = pair_up(*(folder.paths for folder in folders))
         self.expected = len(self._pairs.colour)
+        self.numbers = folders[0].numbers
         if options.rate_hz is not None and self._pairs.time_s is not None:
             raise BadInput("--rate-hz: the names of the pictures tell their times; leave it out")
         self.rate_hz = options.rate_hz or self._pairs.rate_hz or DEFAULT_RATE_HZ

@@ -16,6 +16,7 @@ from peopleboy.scenarios.footage.options import DEFAULT_RATE_HZ, TrackOptions
 from peopleboy.tracker.footage.grey import grey_maker
 from peopleboy.tracker.footage.pictures import open_footage
 from peopleboy.tracker.footage.plausible import check_plausible
+from peopleboy.tracker.footage.sequence_info import find_info, rate_in
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.trackers import FOOTAGE_TRACKER
 
@@ -39,8 +40,17 @@ class ThermalViews:
         self._options = options
         self._footage = open_footage(options.footage)
         self._colour = None if options.colour is None else open_footage(options.colour)
-        self.expected, self.is_exact = self._footage.expected, options.footage.is_dir()
-        self.rate_hz = options.rate_hz or self._footage.rate_hz or DEFAULT_RATE_HZ
+        self.expected, self.is_exact = self._footage.expected, self._footage.is_exact
+        self.numbers = self._footage.numbers
+        self.rate_hz = options.rate_hz or self._footage.rate_hz or self._told_rate() or DEFAULT_RATE_HZ
+
+    def _told_rate(self) -> float | None:
+        """Read the rate from what lies beside the pictures."""
+        path = find_info(self._options.footage)
+        rate = None if path is None else rate_in(path)
+        if rate is not None:
+            self._footage.notes.append(f"{path}: {rate:g} pictures a second, as --rate-hz would say")
+        return rate
 
     @property
     def notes(self) -> list[str]:

@@ -20,6 +20,7 @@ class Views(Protocol):
         cameras: names of all that a tracker may want.
         expected: how many frames there should be; a damaged video has fewer.
         is_exact: whether there are exactly as many.
+        numbers: those in the pictures' names, in a row; None if they tell none.
         rate_hz: frames a second.
     """
 
@@ -27,6 +28,7 @@ class Views(Protocol):
     cameras: tuple[str, ...]
     expected: int
     is_exact: bool
+    numbers: range | None
     rate_hz: float
 
     @property

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.footage.pictures import Raw
+from peopleboy.tracker.footage.read_picture import Raw
 
 MILLIMETRES: Final = 0.001
 TUM: Final = 0.0002

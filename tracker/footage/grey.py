@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.footage.pictures import Raw
+from peopleboy.tracker.footage.read_picture import Raw
 
 Grey = NDArray[np.uint8]
 

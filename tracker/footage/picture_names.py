@@ -36,20 +36,37 @@ def pictures_in(folder: Path) -> list[Path]:
     return paths
 
 
+def numbers_in_a_row(paths: Sequence[Path]) -> range | None:
+    """Give the numbers of pictures whose names have consecutive ones and differ in nothing else, or None."""
+    numbers = _numbers(paths)
+    if numbers is None:
+        return None
+    row = range(numbers[0], numbers[0] + len(numbers))
+    return row if numbers == list(row) else None
+
+
 def jumps(paths: Sequence[Path]) -> list[tuple[int, int]]:
     """Find where numbers are missing in a row: the numbers before and after.
 
     Names have to differ in one number alone, which mostly grows by the same step; others, such as times, are
     in no row.
     """
-    parts = [re.split(r"(\d+)", path.stem) for path in paths]
-    if len({len(each) for each in parts}) != 1:
+    numbers = _numbers(paths)
+    if numbers is None:
         return []
-    differing = [column for column in zip(*parts, strict=True) if len(set(column)) > 1]
-    if len(differing) != 1 or not differing[0][0].isdecimal():
-        return []
-    neighbours = list(pairwise(int(number) for number in differing[0]))
+    neighbours = list(pairwise(numbers))
     step, count = Counter(after - before for before, after in neighbours).most_common(1)[0]
     if 2 * count <= len(neighbours):
         return []
     return [(before, after) for before, after in neighbours if after - before > step]
+
+
+def _numbers(paths: Sequence[Path]) -> list[int] | None:
+    """Read the one number in which names differ; None if they differ otherwise, or not."""
+    parts = [re.split(r"(\d+)", path.stem) for path in paths]
+    if len({len(each) for each in parts}) != 1:
+        return None
+    differing = [column for column in zip(*parts, strict=True) if len(set(column)) > 1]
+    if len(differing) != 1 or not differing[0][0].isdecimal():
+        return None
+    return [int(number) for number in differing[0]]

@@ -1,27 +1,26 @@
-"""Footage as a row of arrays: a folder of pictures in natural order, or a video."""
+"""Footage as a row of arrays: a folder of pictures in natural order, the pages of one, or a video."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import Final, Protocol
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.footage.picture_names import SUFFIXES, jumps, pictures_in
+from peopleboy.tracker.footage.other_pictures import film_of, told_left_out
+from peopleboy.tracker.footage.picture_names import SUFFIXES, jumps, numbers_in_a_row, pictures_in
+from peopleboy.tracker.footage.read_picture import Raw, count_pages, read_pages, read_row
 from peopleboy.wording import counted
-
-Raw = NDArray[Any]  # (H, W) uint8, uint16 or float32, or (H, W, 3) uint8 RGB
 
 OF_A_RUN: Final = "thermal"
 INNER: Final = ("img", "img1", "color", OF_A_RUN)
 """Where benchmarks' sequences and runs of ours keep their pictures."""
-_SIXTEEN_BIT: Final = ("I;16", "I;16B", "I;16L", "I")
+PAGED: Final = (".tif", ".tiff")
+"""Files that may hold several pictures."""
 
 
 class Footage(Protocol):
@@ -31,12 +30,16 @@ class Footage(Protocol):
         name: the folder's, or the file's without its ending.
         rate_hz: pictures a second; None if nobody says.
         expected: how many pictures there should be; a damaged video has fewer.
+        is_exact: whether there are exactly as many.
+        numbers: those in the pictures' names, in a row; None if they tell none.
         notes: what was taken as something else than it is, to be told once; complete after reading.
     """
 
     name: str
     rate_hz: float | None
     expected: int
+    is_exact: bool
+    numbers: range | None
     notes: list[str]
 
     def __iter__(self) -> Iterator[Raw]:
@@ -45,16 +48,30 @@ class Footage(Protocol):
 
 
 def open_footage(path: Path) -> Footage:
-    """Open a folder of pictures, a folder that keeps them in one of `INNER`, or a video.
+    """Open a folder of pictures, one that keeps them in one of `INNER`, a TIFF of many pages, or a video.
 
     Raises:
         BadInput: there is none that can be read.
     """
     if path.is_dir():
-        return PictureFolder(_home_of_pictures(path), path.name)
+        return _open_folder(_home_of_pictures(path), path.name)
     if not path.is_file():
         raise BadInput(f"{path}: there is no such folder or video")
-    return Video(path)
+    return Pages(path, path.stem) if path.suffix.lower() in PAGED else Video(path)
+
+
+def beside(footage: Path) -> list[Path]:
+    """List the folders where what belongs to footage lies: its own, and the one above inner pictures."""
+    if not footage.is_dir():
+        return []
+    return [footage, footage.parent] if footage.name in INNER else [footage]
+
+
+def _open_folder(folder: Path, name: str) -> Footage:
+    film = PictureFolder(folder, name)
+    (first, *others) = film.paths
+    is_paged = not others and first.suffix.lower() in PAGED and count_pages(first) > 1
+    return Pages(first, name) if is_paged else film
 
 
 def _home_of_pictures(path: Path) -> Path:
@@ -71,20 +88,25 @@ class PictureFolder:
     """The pictures of a folder, in natural order of their names.
 
     Attributes:
-        paths: its files.
+        paths: its files, but for a few that are called otherwise.
 
     Raises:
-        BadInput: there are none, or the folder cannot be read.
+        BadInput: there are none, or those of two cameras, or the folder cannot be read.
     """
+
+    is_exact = True
 
     def __init__(self, folder: Path, name: str) -> None:
         self.name = name
         self.rate_hz: float | None = None
         self.notes: list[str] = []
-        self.paths = pictures_in(folder)
+        self.paths, others = film_of(pictures_in(folder))
         self.expected = len(self.paths)
         if not self.paths:
             raise BadInput(f"{folder}: there are no pictures here, {_where_else(folder)}")
+        self.numbers = numbers_in_a_row(self.paths)
+        if others:
+            self.notes.append(told_left_out(self.paths, others))
         if gaps := [f"{before} to {after}" for before, after in jumps(self.paths)]:
             more = f" and {counted(len(gaps) - 3, 'time')} more" if len(gaps) > 3 else ""
             self.notes.append(
@@ -96,8 +118,32 @@ class PictureFolder:
         return read_row(self.paths, self.notes)
 
 
+class Pages:
+    """The pages of a TIFF.
+
+    Raises:
+        BadInput: it cannot be read.
+    """
+
+    is_exact = True
+    numbers: range | None = None
+
+    def __init__(self, path: Path, name: str) -> None:
+        self._path, self.name = path, name
+        self.rate_hz: float | None = None
+        self.notes: list[str] = []
+        self.expected = count_pages(path)
+
+    def __iter__(self) -> Iterator[Raw]:
+        """Read them one by one, as `read_pages` does."""
+        return read_pages(self._path, self.notes)
+
+
 class Video:
     """A video that OpenCV reads."""
+
+    is_exact = False
+    numbers: range | None = None
 
     def __init__(self, path: Path) -> None:
         self.path, self.name = path, path.stem
@@ -138,84 +184,9 @@ class Video:
         return film
 
 
-def read_row(paths: Iterable[Path], notes: list[str]) -> Iterator[Raw]:
-    """Read pictures one by one, each of the size and the depth of the first.
-
-    Raises:
-        BadInput: a picture is damaged, or of another size or depth than the first.
-    """
-    first: Raw | None = None
-    for path in paths:
-        picture = read_picture(path, notes)
-        first = picture if first is None else first
-        if picture.shape[:2] != first.shape[:2]:
-            raise BadInput(
-                f"{path}: all pictures must have one size, {size_of(first)} as the first, "
-                f"got {size_of(picture)}"
-            )
-        if picture.dtype != first.dtype:
-            raise BadInput(f"{path}: all pictures must be {first.dtype} as the first, got {picture.dtype}")
-        yield picture
-
-
-def read_picture(path: Path, notes: list[str]) -> Raw:
-    """Read one picture: (H, W) uint8, uint16 or float32, or (H, W, 3) uint8.
-
-    Raises:
-        BadInput: it is damaged, of a kind that is not read, or has pixels that are no numbers.
-    """
-    try:
-        with Image.open(path) as opened:
-            picture = _as_array(opened, path, notes)
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
-        if isinstance(error, BadInput):
-            raise
-        raise BadInput(f"{path}: {_what_is_wrong(path, error)}") from error
-    if picture.dtype == np.float32 and not np.isfinite(picture).all():
-        broken = counted(int((~np.isfinite(picture)).sum()), "pixel")
-        raise BadInput(f"{path}: has {broken} without a finite number; fill or mask them before")
-    return picture
-
-
-def _what_is_wrong(path: Path, error: Exception) -> str:
-    if isinstance(error, OSError) and error.strerror:
-        return f"cannot be read: {error.strerror}"
-    if path.stat().st_size == 0:
-        return "is empty; remove it, or repair it"
-    if isinstance(error, UnidentifiedImageError):
-        return f"is no {path.suffix[1:].upper()}, or damaged; remove it, or repair it"
-    return f"cannot be read as a picture ({error}); remove it, or repair it"
-
-
-def _as_array(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
-    mode = opened.mode
-    if mode in _SIXTEEN_BIT:
-        counts = np.array(opened)
-        if counts.min() < 0 or counts.max() > 65535:
-            raise BadInput(f"{path}: counts must be 0..65535, got {counts.min()}..{counts.max()}")
-        return counts.astype(np.uint16)
-    if mode == "F":
-        return np.array(opened, dtype=np.float32)
-    if mode in ("L", "1"):
-        return np.array(opened.convert("L"))
-    if mode in ("RGBA", "LA", "PA"):
-        _note(notes, "pictures have an opacity channel; it is left out")
-    return np.array(opened.convert("L" if mode == "LA" else "RGB"))
-
-
-def _note(notes: list[str], text: str) -> None:
-    if text not in notes:
-        notes.append(text)
-
-
 def _where_else(folder: Path) -> str:
     """Say which folder inside has pictures, or what a picture is."""
     for inner in sorted(path for path in folder.iterdir() if path.is_dir()):
         if count := len(pictures_in(inner)):
             return f"but {inner.name}/ has {count}; give {inner}"
     return f"wanted are {', '.join(SUFFIXES)}"
-
-
-def size_of(picture: Raw) -> str:
-    """Write a picture's size as WIDTHxHEIGHT."""
-    return f"{picture.shape[1]}x{picture.shape[0]}"

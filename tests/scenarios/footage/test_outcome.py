@@ -52,6 +52,16 @@ def test_the_heights_told_are_those_that_the_tracker_looks_for(tmp_path, name):
     assert most == ([pytest.approx(limits[1], abs=1)] if limits[1] < 100 else [])
 
 
+def test_who_told_no_temperatures_to_the_tracker_that_knows_them_is_told_how(tmp_path):
+    clip = write_empty(tmp_path / "clip")
+    options = ("--out", tmp_path / "out", "--overwrite")
+    for tracker, is_told in (("peopleboy", True), ("anywhere", False)):
+        last = call(clip, *options, "--tracker", tracker).stdout.splitlines()[-1]
+        assert ("--temperature-range" in last) == is_told
+    told = call(clip, *options, "--tracker", "peopleboy", "--temperature-range", 20, 40).stdout
+    assert "--temperature-range" not in told
+
+
 def test_who_gave_black_hot_is_told_to_leave_it_out(tmp_path):
     options = TrackOptions(footage=tmp_path, out=tmp_path, radiometry=Radiometry(is_inverted=True))
     assert "--black-hot" in outcome_lines(tracked(tracks=0), options)[1]

@@ -1,0 +1,161 @@
+"""Reading pictures from files, one by one."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
+
+from peopleboy.bad_input import BadInput
+from peopleboy.wording import counted
+
+Raw = NDArray[Any]  # (H, W) uint8, uint16 or float32, or (H, W, 3) uint8 RGB
+
+_SIXTEEN_BIT: Final = ("I;16", "I;16B", "I;16L", "I")
+_KIND_OF_PAGE: Final = 254  # tag of TIFF, NewSubfileType
+_NO_PAGE: Final = 1 | 4  # of its bits: a smaller copy of another page, a mask
+
+
+def read_row(paths: Iterable[Path], notes: list[str]) -> Iterator[Raw]:
+    """Read pictures one by one, each of the size and the depth of the first.
+
+    Raises:
+        BadInput: a picture is damaged, or of another size or depth than the first.
+    """
+    return _alike((str(path), read_picture(path, notes)) for path in paths)
+
+
+def read_picture(path: Path, notes: list[str]) -> Raw:
+    """Read one picture: (H, W) uint8, uint16 or float32, or (H, W, 3) uint8.
+
+    Raises:
+        BadInput: it is damaged, of a kind that is not read, one of several in its file, or has pixels that
+            are no numbers.
+    """
+    with _opened(path) as image:
+        if (pages := len(_pages_in(image))) > 1:
+            raise BadInput(
+                f"{path}: has {pages} pages, and in a folder each picture is a file; give {path} alone"
+            )
+        return _finite(_as_array(image, path, notes), str(path))
+
+
+def count_pages(path: Path) -> int:
+    """Count the pictures in a file; smaller copies and masks that a TIFF has of them are none.
+
+    Raises:
+        BadInput: it cannot be read.
+    """
+    with _opened(path) as image:
+        return len(_pages_in(image))
+
+
+def read_pages(path: Path, notes: list[str]) -> Iterator[Raw]:
+    """Read the pictures in a file one by one, like those of a row.
+
+    Raises:
+        BadInput: as for them.
+    """
+    return _alike(_each_page(path, notes))
+
+
+def _each_page(path: Path, notes: list[str]) -> Iterator[tuple[str, Raw]]:
+    with _opened(path) as image:
+        for number, page in enumerate(_pages_in(image), start=1):
+            image.seek(page)
+            where = f"{path}: page {number}"
+            yield where, _finite(_as_array(image, path, notes), where)
+
+
+def _alike(pictures: Iterable[tuple[str, Raw]]) -> Iterator[Raw]:
+    first: Raw | None = None
+    for where, picture in pictures:
+        first = picture if first is None else first
+        if picture.shape[:2] != first.shape[:2]:
+            raise BadInput(
+                f"{where}: all pictures must have one size, {size_of(first)} as the first, "
+                f"got {size_of(picture)}"
+            )
+        if picture.dtype != first.dtype:
+            raise BadInput(f"{where}: all pictures must be {first.dtype} as the first, got {picture.dtype}")
+        yield picture
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Image.Image]:
+    """Open a picture, and tell on one line what is wrong with it."""
+    try:
+        with Image.open(path) as image:
+            yield image
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
+        if isinstance(error, BadInput):
+            raise
+        raise BadInput(f"{path}: {_what_is_wrong(path, error)}") from error
+
+
+def _pages_in(image: Image.Image) -> list[int]:
+    """List the places of pictures in a file: of a TIFF, its pages; of others the first alone."""
+    if image.format != "TIFF":
+        return [0]
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", "Corrupt EXIF data", UserWarning)
+            kinds = [_kind_of(image, page) for page in range(int(getattr(image, "n_frames", 1)))]
+    except (UserWarning, TypeError, EOFError) as error:  # as Pillow has it where a file breaks off
+        raise OSError("breaks off between its pages") from error
+    image.seek(0)
+    return [page for page, kind in enumerate(kinds) if not kind & _NO_PAGE] or [0]
+
+
+def _kind_of(image: Image.Image, page: int) -> int:
+    image.seek(page)
+    return int(getattr(image, "tag_v2", {}).get(_KIND_OF_PAGE, 0))
+
+
+def _what_is_wrong(path: Path, error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"cannot be read: {error.strerror}"
+    if path.stat().st_size == 0:
+        return "is empty; remove it, or repair it"
+    if isinstance(error, UnidentifiedImageError):
+        return f"is no {path.suffix[1:].upper()}, or damaged; remove it, or repair it"
+    return f"cannot be read as a picture ({error}); remove it, or repair it"
+
+
+def _as_array(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
+    mode = opened.mode
+    if mode in _SIXTEEN_BIT:
+        counts = np.array(opened)
+        if counts.min() < 0 or counts.max() > 65535:
+            raise BadInput(f"{path}: counts must be 0..65535, got {counts.min()}..{counts.max()}")
+        return counts.astype(np.uint16)
+    if mode == "F":
+        return np.array(opened, dtype=np.float32)
+    if mode in ("L", "1"):
+        return np.array(opened.convert("L"))
+    if mode in ("RGBA", "LA", "PA"):
+        _note(notes, "pictures have an opacity channel; it is left out")
+    return np.array(opened.convert("L" if mode == "LA" else "RGB"))
+
+
+def _finite(picture: Raw, where: str) -> Raw:
+    if picture.dtype == np.float32 and not np.isfinite(picture).all():
+        broken = counted(int((~np.isfinite(picture)).sum()), "pixel")
+        raise BadInput(f"{where}: has {broken} without a finite number; fill or mask them before")
+    return picture
+
+
+def _note(notes: list[str], text: str) -> None:
+    if text not in notes:
+        notes.append(text)
+
+
+def size_of(picture: Raw) -> str:
+    """Write a picture's size as WIDTHxHEIGHT."""
+    return f"{picture.shape[1]}x{picture.shape[0]}"
