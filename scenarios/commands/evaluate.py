@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import Output, output_options
+from peopleboy.scenarios.commands.options import Output, output_options, tell_note
 
 
 @click.command()
@@ -63,7 +63,7 @@ def evaluate(
     elif truth is None or tracks is None:
         raise BadInput("evaluate: --truth and --tracks go together")
     else:
-        scores = evaluate_files(truth, tracks, min_visible=min_visible)
+        scores = evaluate_files(truth, tracks, min_visible=min_visible, note=tell_note)
         groups = {str(tracks): [ScoredRun(str(tracks), str(tracks), None, scores)]}
     comfort = comfort_by_tracker(groups)
 

@@ -89,3 +89,8 @@ def output_options(command: Callable[..., None]) -> Callable[..., None]:
     as_json = click.option("--json", "as_json", is_flag=True, help="Print figures alone, as a JSON document.")
     quiet = click.option("--quiet", is_flag=True, help="Print nothing but what --json asks for, and errors.")
     return as_json(quiet(with_output))
+
+
+def tell_note(text: str) -> None:
+    """Print what was taken as something else than it is."""
+    click.echo(f"peopleboy: note: {text}", err=True)

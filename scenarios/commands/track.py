@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.options import tell_note
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
@@ -21,7 +22,7 @@ _TRACKERS = (
 
 
 @click.command()
-@click.argument("footage", metavar="FOLDER|VIDEO", type=click.Path(path_type=Path))
+@click.argument("footage", metavar="FOLDER|TIFF|VIDEO", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder to leave.")
 @click.option("--colour", type=click.Path(path_type=Path), help="The same view in colour, as many pictures.")
 @click.option(
@@ -39,7 +40,7 @@ _TRACKERS = (
 @click.option(
     "--rate-hz",
     type=click.FloatRange(min=0.1, max=1000.0),
-    help="Pictures a second.  [default: the video's own; 15 for a folder]",
+    help="Pictures a second.  [default: the video's own, or seqinfo.ini's; 15 otherwise]",
 )
 @click.option(
     "--depth",
@@ -100,7 +101,7 @@ def track(
     film: bool,
     overwrite: bool,
 ) -> None:
-    """Track people in a folder of thermal pictures (PNG, TIFF, JPEG, BMP; 8 or 16 bit) or in a video.
+    """Track people in thermal pictures (PNG, TIFF, JPEG, BMP; 8 or 16 bit) of a folder, or in a video.
 
     Leaves tracks.txt (MOTChallenge), tracks.parquet, run.json and contact_sheet.png; metrics.json if there is
     truth. Without temperatures the grey follows the scene's contrast. With --depth and --depth-scale, people
@@ -176,7 +177,7 @@ def _tell(tracked: Tracked, options: TrackOptions) -> None:
     from peopleboy.scenarios.scores.show_scores import print_scores
 
     for note in tracked.notes:
-        click.echo(f"peopleboy: note: {note}", err=True)
+        tell_note(note)
     if tracked.scores is not None:
         print_scores(tracked.scores)
     for line in outcome_lines(tracked, options):

@@ -19,6 +19,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.footage.box_kinds import BoxKind, boxed_whole, torso_of
+from peopleboy.tracker.footage.truth_doubts import doubts
 from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.frame import DEPTH
 from peopleboy.tracker.trackers import Introducible, Tracker, explanation_of, is_own, make_tracker
@@ -77,9 +78,9 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
                 report(log.frames, views.expected)
         scores = log.finish()
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
-        about["notes"] = views.notes
+        about["notes"] = notes = [*views.notes, *_notes_on(truth, log.size)]
     per_second = log.frames / max(time.perf_counter() - began, 1e-9)
-    return Tracked(log.frames, per_second, log.tracks, scores, tuple(views.notes), kind)
+    return Tracked(log.frames, per_second, log.tracks, scores, tuple(notes), kind)
 
 
 def _check_apart(options: TrackOptions) -> None:
@@ -95,7 +96,12 @@ def _truth_of(options: TrackOptions, views: Views) -> GivenTruth | None:
         if options.start == "truth":
             raise BadInput(f"--start truth: {options.footage} has no truth beside it; give --truth FILE")
         return None
-    return load_truth(path, views.expected if views.is_exact else None)
+    return load_truth(path, views.expected if views.is_exact else None, views.numbers)
+
+
+def _notes_on(truth: GivenTruth | None, size: tuple[int, int]) -> list[str]:
+    """Say how truth was taken, and what looks wrong about it beside pictures of a size (H, W)."""
+    return [] if truth is None else [*truth.notes, *doubts(truth.truth, size[1], size[0])]
 
 
 def _kind_of(options: TrackOptions, truth: GivenTruth | None) -> BoxKind | None:

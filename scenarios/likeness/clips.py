@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.picture_names import pictures_in
-from peopleboy.tracker.footage.pictures import INNER, read_picture, size_of
+from peopleboy.tracker.footage.pictures import INNER, PictureFolder
+from peopleboy.tracker.footage.read_picture import read_picture, size_of
 from peopleboy.tracker.footage.truth_files import NAMES, load_truth
 
 Grey = NDArray[np.uint8]
@@ -117,9 +118,9 @@ def _clip(folder: Path) -> Clip:
     truth = next((folder / name for name in _BESIDE if (folder / name).is_file()), None)
     if truth is None:
         raise BadInput(f"{folder}: has no boxes of people; wanted is one of {', '.join(_BESIDE)}")
-    paths = tuple(pictures_in(home))
-    given = load_truth(truth, len(paths))
-    return Clip(folder.resolve().name, _scene(folder), paths, given.truth)
+    film = PictureFolder(home, folder.resolve().name)
+    given = load_truth(truth, film.expected, film.numbers)
+    return Clip(film.name, _scene(folder), tuple(film.paths), given.truth)
 
 
 def _scene(folder: Path) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
@@ -18,14 +18,21 @@ from peopleboy.tracker.frame import THERMAL
 
 
 def evaluate_files(
-    truth: Path, tracks: Path, frames: int | None = None, min_visible: float = MIN_VISIBLE
+    truth: Path,
+    tracks: Path,
+    frames: int | None = None,
+    min_visible: float = MIN_VISIBLE,
+    note: Callable[[str], None] = lambda _: None,
 ) -> Scores:
     """Score MOTChallenge tracks against truth of any format that footage comes with.
 
     People of whom no more than min_visible is seen do not count. Figures that need everybody are undefined
-    where the truth has one person alone.
+    where the truth has one person alone. What was taken as something else than it is goes to `note`.
     """
-    return _score(load_truth(truth, None), read_tracks(tracks), frames, min_visible)
+    given = load_truth(truth, None)
+    for text in given.notes:
+        note(text)
+    return _score(given, read_tracks(tracks), frames, min_visible)
 
 
 def evaluate_runs(

@@ -2,6 +2,8 @@
 
 Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. Ours has
 class 1 (person) alone; of the other classes of MOT16 to MOT20, those that do not count are read as such.
+Others leave the last columns out, or write -1 there for what is not told; all are persons then, who count and
+are visible. Lines of ten end with a place in the world instead of class and visible fraction, as in MOT15.
 Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position).
 An empty file is a sequence without people, or a tracker that found nobody.
 """
@@ -21,6 +23,11 @@ TRACKS_COLUMNS = "frame, id, left, top, width, height, confidence, x, y, z"
 PERSON = 1
 DISTRACTORS = (2, 7, 8, 12)  # person on vehicle, static person, distractor, reflection
 CLASSES = range(1, 14)
+WIDTHS = range(6, 11)
+"""How many numbers a line of truth may have."""
+
+_PLACED = 10  # numbers in lines that end with a place, of which the first 7 are read
+_UNTOLD = -1.0
 
 Kind = TypeVar("Kind", bound=Rows)
 
@@ -36,7 +43,33 @@ def read_truth(path: Path, *, keeps_things: bool = False) -> TrueBoxes:
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
     """
-    table = _read_table(path, TRUTH_COLUMNS)
+    return truth_of(path, read_rows(path), keeps_things=keeps_things)
+
+
+def read_rows(path: Path) -> Floats:
+    """Read the lines of a truth file as numbers (N, 9), without looking at what they are.
+
+    What is not told is 1: people count, are persons, and visible.
+
+    Raises:
+        BadInput: the file cannot be read, or a line has other than numbers, or not as many as the first.
+    """
+    told = _read_table(path, TRUTH_COLUMNS, WIDTHS)
+    columns = TRUTH_COLUMNS.count(",") + 1
+    told = told[:, : 7 if told.shape[1] == _PLACED else columns]
+    table = np.ones((len(told), columns))
+    table[:, : told.shape[1]] = told
+    others = table[:, 6:]
+    others[others == _UNTOLD] = 1.0
+    return table
+
+
+def truth_of(path: Path, table: Floats, *, keeps_things: bool = False) -> TrueBoxes:
+    """Make truth of the rows (N, 9) of a file, as `read_truth` says.
+
+    Raises:
+        BadInput: a row is impossible (the message names its line).
+    """
     kind = table[:, 7]
     for row in np.flatnonzero(~np.isin(kind, CLASSES))[:1]:
         raise BadInput(f"{path}:{row + 1}: class must be 1 (person) to 13, got {kind[row]:g}")
@@ -44,9 +77,10 @@ def read_truth(path: Path, *, keeps_things: bool = False) -> TrueBoxes:
     truth = _build(path, TrueBoxes, table, counted=table[:, 6], visible=table[:, 8])
     if (kind == PERSON).all():
         return truth
-    table[is_distractor, 6] = 0.0
-    people = table[is_distractor | (kind == PERSON)]
-    return _build(path, TrueBoxes, people, counted=people[:, 6], visible=people[:, 8])
+    counted = np.where(is_distractor, 0.0, table[:, 6])
+    is_there = is_distractor | (kind == PERSON)
+    people = table[is_there]
+    return _build(path, TrueBoxes, people, counted=counted[is_there], visible=people[:, 8])
 
 
 def read_tracks(path: Path) -> TrackBoxes:
@@ -55,7 +89,8 @@ def read_tracks(path: Path) -> TrackBoxes:
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
     """
-    table = _read_table(path, TRACKS_COLUMNS)
+    columns = TRACKS_COLUMNS.count(",") + 1
+    table = _read_table(path, TRACKS_COLUMNS, range(columns, columns + 1))
     return _build(path, TrackBoxes, table, confidence=table[:, 6])
 
 
@@ -89,9 +124,8 @@ def track_line(frame: int, identity: int, box: Sequence[float], confidence: floa
     return f"{_start(frame, identity, box)},{confidence:.4f},-1,-1,-1\n"
 
 
-def _read_table(path: Path, names: str) -> Floats:
-    """Read the lines as numbers (N, number of names)."""
-    columns = names.count(",") + 1
+def _read_table(path: Path, names: str, widths: range) -> Floats:
+    """Read the lines as numbers, all as many as in the first, which must be of these widths."""
     try:
         lines = path.read_text(encoding="utf-8").split("\n")
     except (OSError, UnicodeDecodeError) as error:
@@ -99,14 +133,20 @@ def _read_table(path: Path, names: str) -> Floats:
         raise BadInput(f"{path}: cannot be read as MOTChallenge text: {reason}") from error
     if not lines[-1]:
         lines.pop()  # the newline that ends the last line
-    table = [_parse_line(line, names, columns, f"{path}:{number}") for number, line in enumerate(lines, 1)]
-    return np.array(table, dtype=np.float64).reshape(-1, columns)
+    count = len(lines[0].split(",")) if lines else widths[-1]
+    if count in widths:
+        widths = range(count, count + 1)
+    table = [_parse_line(line, names, widths, f"{path}:{number}") for number, line in enumerate(lines, 1)]
+    return np.array(table, dtype=np.float64).reshape(-1, count)
 
 
-def _parse_line(line: str, names: str, columns: int, where: str) -> list[float]:
+def _parse_line(line: str, names: str, widths: range, where: str) -> list[float]:
     cells = line.split(",")
-    if len(cells) != columns:
-        raise BadInput(f"{where}: must have {columns} numbers ({names}), got {len(cells)}: {line[:60]!r}")
+    if len(cells) not in widths:
+        wanted = f"{widths[0]} to {widths[-1]}" if len(widths) > 1 else f"{widths[0]}"
+        raise BadInput(
+            f"{where}: must have {wanted} numbers, comma separated ({names}), got {len(cells)}: {line[:60]!r}"
+        )
     try:
         return [float(cell) for cell in cells]
     except ValueError:

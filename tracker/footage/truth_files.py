@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -11,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.evaluation.mot_files import read_truth
+from peopleboy.tracker.evaluation.mot_files import read_rows, truth_of
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.footage.pictures import INNER
+from peopleboy.tracker.footage.pictures import beside
+from peopleboy.tracker.footage.truth_doubts import frames_before
+from peopleboy.tracker.footage.truth_lines import cells_of, is_motchallenge
 
 KEPT_SINGLE: Final = Path("truth") / "groundtruth.txt"
 """Where a run of ours keeps truth of a single person, as it was given: the format says that it is one."""
@@ -26,6 +27,7 @@ NAMES: Final = (
     str(KEPT_SINGLE),
 )
 """Where the truth lies beside or above the pictures: VOT, OTB, MOTChallenge (twice), a run of ours."""
+_EXACT: Final = "truth.parquet"  # of a run of ours, in which people may be hidden all the time
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,11 +38,13 @@ class GivenTruth:
         truth: the boxes.
         is_single: whether one person alone is annotated, whoever else is there.
         path: the file.
+        notes: what was taken as something else than it is, to be told once.
     """
 
     truth: TrueBoxes
     is_single: bool
     path: Path
+    notes: tuple[str, ...] = ()
 
     def box_at(self, frame: int) -> tuple[float, float, float, float]:
         """Give the box of the first person in a frame.
@@ -57,23 +61,21 @@ class GivenTruth:
 
 def find_truth(footage: Path) -> Path | None:
     """Look for truth beside the pictures, in their folder or the one above; None if there is none."""
-    if not footage.is_dir():
-        return None
-    above = [footage.parent] if footage.name in INNER else []
-    places = [home / name for home in (footage, *above) for name in NAMES]
+    places = [home / name for home in beside(footage) for name in NAMES]
     return next((path for path in places if path.is_file()), None)
 
 
-def load_truth(path: Path, frames: int | None) -> GivenTruth:
+def load_truth(path: Path, frames: int | None, numbers: range | None = None) -> GivenTruth:
     """Read a truth file; its format follows from its lines.
 
     Lines of 4 numbers are x, y, w, h (OTB, VOT), of 8 or more even numbers a polygon (VOT), one line a frame,
-    a line of NaN or of an empty box a frame without the person. Lines of 9, an empty file and a gt.txt are
-    MOTChallenge's.
+    a line of NaN or of an empty box a frame without the person. Lines of 6 to 10 numbers that begin with
+    frame and id, an empty file and a gt.txt are MOTChallenge's.
 
     Args:
         path: the file.
         frames: number of pictures, which lines of a single person must equal; None if unknown.
+        numbers: those in the pictures' names, which frames of MOTChallenge may be; None if they tell none.
 
     Raises:
         BadInput: the file cannot be read, or does not belong to the pictures.
@@ -84,24 +86,30 @@ def load_truth(path: Path, frames: int | None) -> GivenTruth:
         raise BadInput(f"{path}: cannot be read as truth; give a text file of boxes") from error
     while lines and not lines[-1].strip():
         lines.pop()
-    if path.name == "gt.txt" or not lines or len(_cells(lines[0])) == 9:
-        truth = read_truth(path)
-        if frames is not None and truth.last_frame > frames:
-            raise BadInput(f"{path}: must end with frame {frames}, the last picture, got {truth.last_frame}")
-        return GivenTruth(truth, is_single=False, path=path)
+    if path.name == "gt.txt" or is_motchallenge(lines, path):
+        return _of_everybody(path, frames, numbers)
     boxes = [_box(line, f"{path}:{number}") for number, line in enumerate(lines, start=1)]
     if frames is not None and len(boxes) != frames:
         raise BadInput(f"{path}: must have a line for each of the {frames} pictures, got {len(boxes)}")
     return GivenTruth(_single(boxes), is_single=True, path=path)
 
 
-def _cells(line: str) -> list[str]:
-    return [cell for cell in re.split(r"[,;\s]+", line.strip()) if cell]
+def _of_everybody(path: Path, frames: int | None, numbers: range | None) -> GivenTruth:
+    """Read MOTChallenge's lines; nobody ever visible means that it was not told, but in runs of ours."""
+    rows, notes = read_rows(path), list[str]()
+    rows[:, 0] -= frames_before(rows[:, 0], numbers, path, notes)
+    if len(rows) and not rows[:, 8].any() and not (path.parent.parent / _EXACT).is_file():
+        rows[:, 8] = 1.0
+        notes.append(f"{path}: the visible fraction is 0 in all lines; it is taken as not told")
+    truth = truth_of(path, rows)
+    if frames is not None and truth.last_frame > frames:
+        raise BadInput(f"{path}: must end with frame {frames}, the last picture, got {truth.last_frame}")
+    return GivenTruth(truth, is_single=False, path=path, notes=tuple(notes))
 
 
 def _box(line: str, where: str) -> NDArray[np.float64]:
     """Read one line as left, top, width, height (4,)."""
-    cells = _cells(line)
+    cells = cells_of(line)
     try:
         numbers = np.array([float(cell) for cell in cells], dtype=np.float64)
     except ValueError:
