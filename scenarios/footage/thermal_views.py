@@ -49,7 +49,9 @@ class ThermalViews:
         path = find_info(self._options.footage)
         rate = None if path is None else rate_in(path)
         if rate is not None:
-            self._footage.notes.append(f"{path}: {rate:g} pictures a second, as --rate-hz would say")
+            self._footage.notes.append(
+                f"{path}: {rate:g} pictures a second are taken from there; --rate-hz goes first"
+            )
         return rate
 
     @property
