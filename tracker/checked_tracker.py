@@ -9,6 +9,7 @@ from typing import Any
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import blamed
+from peopleboy.tracker.evaluation.sequence import FARTHEST
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
@@ -90,6 +91,8 @@ def _box_faults(boxes: object, cameras: Collection[str]) -> Iterator[str]:
             yield f"boxes must be in images of {', '.join(sorted(cameras))}, got camera {camera!r}"
         if not _are_numbers(box, 4) or min(box[2:]) < 0.0:
             yield f"box in {camera!r} must be a tuple: finite left, top, width >= 0, height >= 0, got {box}"
+        elif max(map(abs, box)) > FARTHEST:
+            yield f"box in {camera!r} must be within +-{FARTHEST:.0e} pixels, got {box}"
 
 
 def _other_faults(track: Track) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Final, Protocol
 
@@ -110,6 +110,32 @@ class Odometry:
             _check_finite(name, getattr(self, name))
 
 
+class ReadOnlyImages(Mapping[str, NDArray[Any]]):
+    """Images by camera, each through a view that refuses to be written to; none is copied or made here."""
+
+    __slots__ = ("_images",)
+
+    def __init__(self, images: Mapping[str, NDArray[Any]]) -> None:
+        self._images = images
+
+    def __getitem__(self, camera: str) -> Any:
+        image: object = self._images[camera]
+        if not isinstance(image, np.ndarray):  # whoever reads it tells of that
+            return image
+        view = image.view()
+        view.setflags(write=False)
+        return view
+
+    def __contains__(self, camera: object) -> bool:
+        return camera in self._images
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._images)
+
+    def __len__(self) -> int:
+        return len(self._images)
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Frame:
     """What the tracker sees at one instant.
@@ -118,7 +144,8 @@ class Frame:
         images: by the camera's name, such as `thermal`, (H, W) uint8 grey, linear over 24..36 degC by
             default, `colour`, (H, W, 3) uint8 RGB, and `depth`, (H, W) uint16 along the optical axis [mm],
             0 where none is read; their sizes may differ. A camera that takes no image at this instant is
-            left out. An image may be made only when it is asked for.
+            left out. An image may be made only when it is asked for, and none can be written to, as others
+            see it too.
         calibrations: of those cameras whose place on the robot is known, by name; none for footage.
         time_s: when the images were taken [s].
         odometry: how the robot moved since the last frame; None if unknown.
@@ -133,8 +160,9 @@ class Frame:
     odometry: Odometry | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a time that is none; images are checked when they are read."""
+        """Refuse a time that is none, and guard the images, which are checked when they are read."""
         _check_finite("time_s", self.time_s)
+        object.__setattr__(self, "images", ReadOnlyImages(self.images))
 
     def grey(self, camera: str) -> NDArray[np.uint8]:
         """Read the (H, W) grey image of a camera.

@@ -83,7 +83,7 @@ def _of_runs(folders: Sequence[Path]) -> dict[str, Any]:
     told = {name: value[np.isfinite(value)] for name, value in values.items()}
     return {
         "runs": len(folders),
-        "scores": to_json(combine(evaluate_runs(folders))),
+        "scores": to_json(combine([run.scores for run in evaluate_runs(folders)])),
         "mean": {name: float(value.mean()) if value.size else None for name, value in told.items()},
         "worst": {name: float(value.max()) if value.size else None for name, value in told.items()},
     }

@@ -22,6 +22,7 @@ from peopleboy.scenarios.run_folder.out_folder import check_out, writing_to
 from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.running.watchers import Watchers
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import TRACKERS
@@ -39,6 +40,7 @@ class Adoption:
         name: what their tracker is called.
         out: the folder to leave.
         camera: in whose images the boxes are.
+        boxes: what they are drawn round.
         record: whether to write recording.rrd.
         overwrite: whether an earlier run in that folder may be replaced.
     """
@@ -48,6 +50,7 @@ class Adoption:
     name: str
     out: Path
     camera: str = THERMAL
+    boxes: BoxKind = BoxKind.TORSO
     record: bool = True
     overwrite: bool = False
 
@@ -87,7 +90,7 @@ def adopt(what: Adoption, report: Callable[[int, int], None]) -> RunScores:
             folder.write(tick, [event.to_json() for event in events])
             report(tick.frame, run.frames)
         folder.flush()
-        scores = score_run(part, run.frames, following=None)
+        scores = score_run(part, run.frames, following=None, boxes=what.boxes)
         watchers.save(part)
         folder.complete(scores.to_json())
     return scores
@@ -122,6 +125,7 @@ def _about(what: Adoption, run: FinishedRun) -> dict[str, Any]:
         "scenario": run.about.scenario,
         "seed": run.about.seed,
         "tracker": what.name,
+        "boxes": what.boxes,
         "renderer": run.about.renderer,
         "rate_hz": run.rate_hz,
         "images": run.about.images,

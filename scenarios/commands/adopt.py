@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from peopleboy.scenarios.commands.options import boxes_option, tell_note
+
 
 @click.command()
 @click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
@@ -17,18 +19,26 @@ import click
     help="Folder to leave.  [default: beside RUN, SCENARIO-SEED-NAME, or RUN-NAME for a folder of runs]",
 )
 @click.option("--camera", default="thermal", show_default=True, help="In whose images the boxes are.")
+@boxes_option
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
 def adopt(
-    run: Path, tracks: Path, name: str, out: Path | None, camera: str, no_rrd: bool, overwrite: bool
+    run: Path,
+    tracks: Path,
+    name: str,
+    out: Path | None,
+    camera: str,
+    boxes: str,
+    no_rrd: bool,
+    overwrite: bool,
 ) -> None:
     """Take tracks that were made elsewhere, of the images of RUN, for those of a run.
 
     TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1; frames are
-    from 1 on, and boxes in pixels of the camera's images. Leaves a folder with RUN's scenario and truth
-    and with these tracks, which report, view, evaluate and export take like any other. What such text does
-    not tell, status and place on the floor, is said to be unknown. The images are rendered again, and are
-    those of RUN.
+    the camera's images, counted 1, 2, 3 ... as exports do, and boxes in pixels of them. Leaves a folder with
+    RUN's scenario and truth and with these tracks, which report, view, evaluate and export take like any
+    other. What such text does not tell, status and place on the floor, is said to be unknown. The images are
+    rendered again, and are those of RUN.
 
     RUN may be a folder of runs, such as a sweep's. TRACKS is one of files then, SCENARIO-SEED.txt for each
     of them, as benchmarks ask for; those files may lie in a folder data in it.
@@ -39,6 +49,7 @@ def adopt(
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.scores.headline import headline
     from peopleboy.scenarios.scores.show_scores import print_scores
+    from peopleboy.tracker.footage.box_kinds import BoxKind
 
     what = Adoption(
         run=run,
@@ -46,6 +57,7 @@ def adopt(
         name=name,
         out=out if out is not None else run.resolve().parent / f"{_title(run, tracks)}-{name}",
         camera=camera,
+        boxes=BoxKind(boxes),
         record=not no_rrd,
         overwrite=overwrite,
     )
@@ -56,6 +68,8 @@ def adopt(
         if len(each) == 1:
             print_scores(scores.people)
         click.echo(f"{adoption.tracks.stem}: {headline(scores)}")
+        for note in scores.notes:
+            tell_note(note)
     click.echo("Status and place on the floor of these tracks are unknown.")
     click.echo(what.out)
 

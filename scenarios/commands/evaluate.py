@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import Output, output_options, tell_note
+from peopleboy.scenarios.commands.options import BOXES, Output, output_options, tell_note
 
 
 @click.command()
@@ -28,14 +28,24 @@ from peopleboy.scenarios.commands.options import Output, output_options, tell_no
     show_default=True,
     help="People count if more than this share of them is seen; 0.3 leaves out slivers at the border.",
 )
-@click.option("--camera", default="thermal", show_default=True, help="In whose image boxes are scored.")
+@click.option(
+    "--camera",
+    help="In whose image boxes are scored.  [default: thermal, or the only one in which there are some]",
+)
+@click.option(
+    "--boxes",
+    type=BOXES,
+    help="Against which of the truth's boxes: as wide as the torso, or as all of a person.  "
+    "[default: what each run was scored by]",
+)
 @output_options
 def evaluate(
     runs: Sequence[Path],
     truth: Path | None,
     tracks: Path | None,
     min_visible: float,
-    camera: str,
+    camera: str | None,
+    boxes: str | None,
     output: Output,
 ) -> None:
     """Score tracks against truth: one pair of files, or the folders of any number of runs.
@@ -52,14 +62,19 @@ def evaluate(
     from peopleboy.scenarios.scores.comfort.comfort_of_runs import comfort_by_tracker
     from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
     from peopleboy.scenarios.scores.show_scores import print_comfort, print_runs
+    from peopleboy.tracker.footage.box_kinds import BoxKind
 
-    if camera != "thermal" and not runs:
+    if camera is not None and not runs:
         raise BadInput("evaluate: --camera goes with folders of runs; give --truth RUN/truth/CAMERA.gt.txt")
+    if boxes is not None and not runs:
+        raise BadInput(
+            "evaluate: --boxes goes with folders of runs; boxes in --truth are of one kind; leave it out"
+        )
     if bool(runs) == (truth is not None or tracks is not None):
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
     if runs:
         found = [run for folder in runs for run in runs_in(folder)]
-        groups = score_by_tracker(found, min_visible, camera)
+        groups = score_by_tracker(found, min_visible, camera, None if boxes is None else BoxKind(boxes))
     elif truth is None or tracks is None:
         raise BadInput("evaluate: --truth and --tracks go together")
     else:
@@ -68,7 +83,7 @@ def evaluate(
     comfort = comfort_by_tracker(groups)
 
     def show() -> None:
-        print_runs(groups)
+        print_runs(groups, note=tell_note)
         print_comfort(comfort)
 
     told = {tracker: score.to_json() for tracker, score in comfort.items()}

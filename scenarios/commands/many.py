@@ -11,10 +11,13 @@ import click
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import (
+    BOXES,
     Output,
     behaviour_option,
+    boxes_option,
     output_options,
     physics_option,
+    tell_note,
     tracker_option,
     workers_options,
 )
@@ -39,6 +42,7 @@ _SEEN: Final = 0.3
     help="Where the runs' folders go.",
 )
 @tracker_option
+@boxes_option
 @behaviour_option
 @physics_option
 @workers_options
@@ -50,6 +54,7 @@ def sweep(
     randomise: int | None,
     out: Path,
     tracker: str | None,
+    boxes: str,
     behaviour: str | None,
     physics: str | None,
     workers: int | None,
@@ -67,23 +72,26 @@ def sweep(
     from peopleboy.scenarios.running.sweep import sweep_worlds
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
     from peopleboy.scenarios.scores.show_scores import print_runs
+    from peopleboy.tracker.footage.box_kinds import BoxKind
 
-    who = chosen_workers(workers, scheduler)
+    who, kind = chosen_workers(workers, scheduler), BoxKind(boxes)
     if (scenario is None) == (randomise is None) or (randomise is not None and seeds is not None):
         raise BadInput("sweep: give a scenario, with --seeds or without, or --randomise N")
     if scenario is None:
-        runs = sweep_worlds(range(randomise or 0), out, tracker, who, behaviour, physics, overwrite=overwrite)
+        runs = sweep_worlds(
+            range(randomise or 0), out, tracker, who, behaviour, physics, kind, overwrite=overwrite
+        )
     else:
         count = range(10 if seeds is None else seeds)
-        runs = run_seeds(scenario, count, out, tracker, who, behaviour, physics, overwrite=overwrite)
+        runs = run_seeds(scenario, count, out, tracker, who, behaviour, physics, kind, overwrite=overwrite)
     groups = score_by_tracker(runs)
     if randomise is None:
-        output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))
+        output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups, note=tell_note))
         return
     seen = score_by_tracker(runs, _SEEN)
 
     def show() -> None:
-        print_runs(groups)
+        print_runs(groups, note=tell_note)
         print_runs(seen, f"people of whom more than {_SEEN:.0%} is seen")
 
     output.figures(lambda: figures_of_all(groups) | {"seen": figures_of_all(seen)}, show)
@@ -115,6 +123,13 @@ def sweep(
     show_default=True,
     help="Where runs, tables and plots go.",
 )
+@click.option(
+    "--boxes",
+    type=BOXES,
+    default="torso",
+    show_default=True,
+    help="What boxes of trackers of your own are drawn round: the torso, or all of a person.",
+)
 @physics_option
 @workers_options
 @click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
@@ -124,6 +139,7 @@ def compare(
     scenarios: Sequence[str],
     seeds: int,
     out: Path,
+    boxes: str,
     physics: str | None,
     workers: int | None,
     scheduler: str | None,
@@ -138,13 +154,16 @@ def compare(
     from peopleboy.scenarios.running.compare_controllers import compare, parse_controller
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.running.show_comparison import keep_comparison, show_comparison
+    from peopleboy.tracker.footage.box_kinds import BoxKind
 
     who = chosen_workers(workers, scheduler)
     chosen = [parse_controller(text) for text in controllers.split(",")]
     names = [load_scenario(scenario).name for scenario in scenarios]
     found = []
     for scenario, name in zip(scenarios, names, strict=True):
-        runs = compare(scenario, chosen, range(seeds), out / name, who, physics, overwrite=overwrite)
+        runs = compare(
+            scenario, chosen, range(seeds), out / name, who, physics, BoxKind(boxes), overwrite=overwrite
+        )
         found.append(keep_comparison(name, runs, out / name))
         if output.is_wordy:
             show_comparison(name, runs)

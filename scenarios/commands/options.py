@@ -37,6 +37,16 @@ physics_option = click.option(
     "[default: the scenario's]",
 )
 
+BOXES = click.Choice(["torso", "whole"])
+boxes_option = click.option(
+    "--boxes",
+    type=BOXES,
+    default="torso",
+    show_default=True,
+    help="What the tracker's boxes are drawn round, and so the truth's by which they are scored: the torso, "
+    "or all of a person, as most detectors do.",
+)
+
 _COUNT = "Processes at the same time; 1 for none but this one.  [default: one a core]"
 _ADDRESS = "Work on the cluster of this Dask scheduler instead."
 

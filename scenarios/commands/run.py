@@ -15,8 +15,10 @@ from peopleboy.scenarios.commands.options import (
     SEED,
     Output,
     behaviour_option,
+    boxes_option,
     output_options,
     physics_option,
+    tell_note,
     tracker_option,
     workers_options,
 )
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
 )
 @click.option("--frames", is_flag=True, help="Write every image of every camera as PNG too.")
 @tracker_option
+@boxes_option
 @behaviour_option
 @physics_option
 @click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
@@ -60,6 +63,7 @@ def run(
     out: Path | None,
     frames: bool,
     tracker: str | None,
+    boxes: str,
     behaviour: str | None,
     physics: str | None,
     renderer: str,
@@ -82,6 +86,7 @@ def run(
     from peopleboy.scenarios.recording.viewer import live_viewer
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.running.run import RunOptions
+    from peopleboy.tracker.footage.box_kinds import BoxKind
 
     is_suite = scenario in suite_names()
     if is_suite and seed is not None:
@@ -101,6 +106,7 @@ def run(
         out=out if out is not None else Path("runs") / name,
         frames=frames,
         tracker=tracker,
+        boxes=BoxKind(boxes),
         renderer=renderer,
         record=not no_rrd,
         lossless=lossless,
@@ -140,7 +146,10 @@ def _run_one(scenario: Scenario, options: RunOptions, output: Output) -> None:
     scores = _run_shown(scenario, options)
     about = {"run": str(options.out), "scenario": scenario.name, "seed": options.seed}
     about["tracker"] = tracker_name(scenario, options)
-    output.figures(lambda: about | {"figures": scores.to_json()}, lambda: _show(scores, options))
+    output.figures(
+        lambda: about | {"notes": list(scores.notes), "figures": scores.to_json()},
+        lambda: _show(scores, options),
+    )
 
 
 def _show(scores: RunScores, options: RunOptions) -> None:
@@ -153,6 +162,8 @@ def _show(scores: RunScores, options: RunOptions) -> None:
         if score is not None:
             print_drive(title, score.rows())
     click.echo(headline(scores))
+    for note in scores.notes:
+        tell_note(note)
     click.echo(f"{options.out / 'contact_sheet.png'} shows the key moments.")
     if options.record:
         click.echo(f"peopleboy view {options.out} plays the recording.")
@@ -180,7 +191,7 @@ def _run_suite(name: str, options: RunOptions, physics: str | None, workers: Wor
 
     folders = run_suite(name, options, workers, physics)
     groups = score_by_tracker(folders)
-    output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups))
+    output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups, note=tell_note))
     if output.is_wordy:
         for path in folders:
             click.echo(path)

@@ -12,6 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.report.findings.summary import RunFindings, headline, headline_of_many, look_into
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_run, runs_in
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
+from peopleboy.scenarios.scores.same_scenes import check_same_scenes
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
 from peopleboy.wording import counted
@@ -27,12 +28,14 @@ class Column:
         label: by which it is told from the others.
         runs: at least one.
         scores: of each run.
+        notes: what whoever reads them must know, of the first run of which there is something; a line each.
         occlusions: total ones, of each run.
     """
 
     label: str
     runs: tuple[RunFindings, ...]
     scores: tuple[Scores, ...]
+    notes: tuple[str, ...]
     occlusions: tuple[tuple[Occlusion, ...], ...]
 
     @property
@@ -63,7 +66,7 @@ def read_columns(paths: Sequence[Path]) -> list[Column]:
 
     Raises:
         BadInput: a folder holds no complete run or is given twice, or there are too many trackers to stand
-            side by side.
+            side by side, or runs of one scenario and seed are of different scenes.
     """
     folders = [runs_in(path) for path in paths]
     _refuse_repeats([folder for of_path in folders for folder in of_path])
@@ -75,6 +78,9 @@ def read_columns(paths: Sequence[Path]) -> list[Column]:
         groups = list(by_tracker.values())
     if len(groups) > MOST_BESIDE:
         raise BadInput(f"report: runs of {len(groups)} trackers; at most {MOST_BESIDE} stand side by side")
+    check_same_scenes(
+        [{run.folder: (run.about.scenario, run.about.seed) for run in group} for group in groups]
+    )
     labels = _labels(groups, paths)
     return [_column(label, group) for label, group in zip(labels, groups, strict=True)]
 
@@ -118,10 +124,12 @@ def _refuse_repeats(folders: Sequence[Path]) -> None:
 
 def _column(label: str, runs: Sequence[FinishedRun]) -> Column:
     found = tuple(look_into(run) for run in runs)
+    scored = evaluate_runs([run.folder for run in runs])
     return Column(
         label=label,
         runs=found,
-        scores=tuple(evaluate_runs([run.folder for run in runs])),
+        scores=tuple(people.scores for people in scored),
+        notes=next((people.notes for people in scored if people.notes), ()),
         occlusions=tuple(_occlusions(of_run) for of_run in found),
     )
 

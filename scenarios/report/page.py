@@ -23,6 +23,7 @@ from peopleboy.scenarios.report.findings.sentences import listed
 from peopleboy.scenarios.report.page_file import check_place, write_page
 from peopleboy.scenarios.report.pictures import PicturedMoment, contact_sheet, pictured_moments
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.scores.yardstick import Yardstick
 
 HERE = Path(__file__).parent
 _NAMED = 4  # scenarios in a title
@@ -49,7 +50,7 @@ def write_report(paths: Sequence[Path], out: Path) -> list[str]:
     check_place(out)
     columns = read_columns(paths)
     moments = pictured_moments(columns)
-    lines = [*lacking(columns), *_unknown(columns), *_without_images(moments)]
+    lines = [*lacking(columns), *_notes(columns), *_unknown(columns), *_without_images(moments)]
     write_page(render(columns, moments, lines), out)
     return lines
 
@@ -89,6 +90,11 @@ def render(columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: 
     )
 
 
+def _notes(columns: Sequence[Column]) -> list[str]:
+    """Say what must be known of the figures, a line a tracker."""
+    return [f"{column.found.run.about.tracker}: {note}" for column in columns for note in column.notes]
+
+
 def _unknown(columns: Sequence[Column]) -> list[str]:
     """Say what tracks that were made elsewhere do not tell, a line a tracker."""
     adopted = {f.run.about.tracker: f.run.about.adopted for column in columns for f in column.runs}
@@ -122,7 +128,8 @@ def _first_repeated(singles: Sequence[Column]) -> int:
 
 def _settings(column: Column) -> list[tuple[str, str]]:
     """What is needed to do it again, name and value."""
-    run, runs = column.found.run, [found.run for found in column.runs]
+    found = column.found
+    run, runs = found.run, [one.run for one in column.runs]
     played, about, adopted = _said(run), run.about, run.about.adopted
     robot: Any = played.get("robot", {})
     behaviour = robot.get("behaviour", "stand") if isinstance(robot, dict) else "stand"
@@ -133,6 +140,7 @@ def _settings(column: Column) -> list[tuple[str, str]]:
         ("seed" if column.is_single else "seeds", seeds),
         ("tracker", about.tracker),
         ("tracks", "" if adopted is None else f"{adopted.tracks}, made elsewhere"),
+        ("boxes", "" if found.yardstick == Yardstick() else f"held against {found.yardstick}"),
         ("robot", about.behaviour or (str(behaviour) if played else "")),
         ("eyes of the robot", "" if adopted is None else adopted.driven_by),
         ("images", _images(run)),
@@ -144,6 +152,7 @@ def _settings(column: Column) -> list[tuple[str, str]]:
     ]
     if not lacking([column]) and adopted is None:
         steered = "" if about.behaviour is None else f" --behaviour {about.behaviour}"
+        steered += "" if about.boxes == "torso" else f" --boxes {about.boxes}"
         command = f"peopleboy run {run.folder}/scenario.yaml --tracker {about.tracker}{steered} --out NEW"
         rows.append(("again", command))
     return [(name, value) for name, value in rows if value]

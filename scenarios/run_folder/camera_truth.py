@@ -6,11 +6,18 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TextIO
 
+import numpy as np
+
 from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.run_files import WRITTEN_TRUTH, read_table, written_truth
 from peopleboy.scenarios.run_folder.tables import TRUTH, Row, truth_rows, write_table
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import with_boxes
-from peopleboy.tracker.evaluation.mot_files import truth_line
+from peopleboy.tracker.evaluation.mot_files import read_truth, truth_line
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.footage.box_kinds import BoxKind
+
+_WHOLE = ("whole_left_px", "whole_top_px", "whole_width_px", "whole_height_px")
 
 
 def further_cameras(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
@@ -42,6 +49,35 @@ class CameraTruth:
         """Bring both to disk, and close the text."""
         self.flush()
         self._lines.close()
+
+
+def truth_files(folder: Path, camera: str) -> tuple[Path, Path]:
+    """Name the text and the table of a camera's truth in a run's folder."""
+    if camera == "thermal":
+        return folder / "truth" / "gt.txt", folder / "truth.parquet"
+    return folder / "truth" / f"{camera}.gt.txt", folder / "truth" / f"{camera}.parquet"
+
+
+def true_boxes(text: Path, table: Path, kind: BoxKind) -> TrueBoxes:
+    """Read who was there: boxes round torsos are in the text, those round whole people in the table alone.
+
+    Whole ones are those of the silhouette as if nothing hid it, also outside the image.
+
+    Raises:
+        BadInput: the file is missing or spoilt.
+    """
+    if kind is BoxKind.TORSO:
+        return read_truth(text)
+    columns = (*WRITTEN_TRUTH, "is_counted", "visible_fraction", *_WHOLE)
+    people = written_truth(read_table(table, TRUTH, columns))
+    people = people.filter(people["whole_left_px"].is_valid())
+    return TrueBoxes(
+        frame=people["frame"].to_numpy(),
+        id=people["id"].to_numpy(),
+        box=np.stack([people[name].to_numpy() for name in _WHOLE], axis=-1),
+        counted=people["is_counted"].to_numpy(zero_copy_only=False),
+        visible=people["visible_fraction"].to_numpy(),
+    )
 
 
 def gt_lines(tick: Tick, camera: str = "thermal") -> list[str]:

@@ -52,6 +52,7 @@ class About(BaseModel):
     frames: Annotated[int, Field(ge=0)]
     versions: dict[str, str]
     images: bool = False
+    boxes: Literal["torso", "whole"] = "torso"
     behaviour: str | None = None
     adopted: Adopted | None = None
 

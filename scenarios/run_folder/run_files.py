@@ -32,7 +32,7 @@ from peopleboy.tracker.track import Box, Status, Track
 _AGAIN = "run the scenario again"
 _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
 # What tells which rows of the tables are in the text files too.
-_WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
+WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
 _WRITTEN_TRACKS = ("frame", "id", "status", "left_px")
 
 
@@ -119,7 +119,7 @@ def read_files(
         raise BadInput(f"{folder / 'tracks.parquet'}: unknown status {name!r}; {_AGAIN}")
     check_end(files.truth, folder / _TRUTH_TEXT, frames)
     check_end(files.tracks, folder / _TRACKS_TEXT, frames)
-    _check_rows(files.truth, folder / _TRUTH_TEXT, _written_truth(files.people))
+    _check_rows(files.truth, folder / _TRUTH_TEXT, written_truth(files.people))
     _check_rows(files.tracks, folder / _TRACKS_TEXT, _written_tracks(files.beliefs))
     return files
 
@@ -136,8 +136,8 @@ def check_whole(folder: Path, truth: TrueBoxes, tracks: TrackBoxes) -> None:
         BadInput: a box is missing, or nobody's, or a table is spoilt.
     """
     if (folder / "truth.parquet").is_file():
-        people = read_table(folder / "truth.parquet", TRUTH, _WRITTEN_TRUTH)
-        _check_rows(truth, folder / _TRUTH_TEXT, _written_truth(people))
+        people = read_table(folder / "truth.parquet", TRUTH, WRITTEN_TRUTH)
+        _check_rows(truth, folder / _TRUTH_TEXT, written_truth(people))
     if (folder / "tracks.parquet").is_file():
         beliefs = read_table(folder / "tracks.parquet", TRACKS, _WRITTEN_TRACKS)
         _check_rows(tracks, folder / _TRACKS_TEXT, _written_tracks(beliefs))
@@ -176,7 +176,7 @@ def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Ta
     return table
 
 
-def _written_truth(people: pa.Table) -> pa.Table:
+def written_truth(people: pa.Table) -> pa.Table:
     """Keep the rows of people who have a line in truth/gt.txt."""
     return people.filter(pc.and_(pa.array(is_in_image(people)), pc.is_valid(people["left_px"])))
 

@@ -18,7 +18,8 @@ from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
-from peopleboy.tracker.trackers import DEFAULT_TRACKER
+from peopleboy.tracker.footage.box_kinds import BoxKind
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 
 GROUPS = ("following", "corridor", "comfort")  # of metrics.json: how the robot drove
 
@@ -58,6 +59,7 @@ def compare(
     out: Path,
     workers: Workers,
     physics: str | None = None,
+    boxes: BoxKind = BoxKind.TORSO,
     *,
     overwrite: bool,
 ) -> dict[Controller, list[Figures]]:
@@ -72,18 +74,21 @@ def compare(
         out: where the runs' folders go, each CONTROLLER-SEED.
         workers: who does the runs.
         physics: what moves the robot; None for what the scenario says.
+        boxes: what boxes of trackers of your own are drawn round; those of ours are round torsos.
         overwrite: whether earlier runs are replaced.
 
     Returns:
         For each controller the figures of each seed, NaN for what is undefined.
 
     Raises:
-        BadInput: as for a single run, a controller is named twice, or a complete run in the place of one is
-            another one.
+        BadInput: as for a single run, a controller is named twice, no tracker is one of your own whose
+            boxes are round whole people, or a complete run in the place of one is another one.
         TasksFailed: some runs failed.
     """
     if len(set(controllers)) < len(controllers):
         raise BadInput(f"--controllers {','.join(map(str, controllers))}: each may be there once only")
+    if boxes is not BoxKind.TORSO and not any(is_own(controller.eyes) for controller in controllers):
+        raise BadInput(f"--boxes {boxes}: no controller sees by a tracker of your own; leave it out")
     loaded = load_scenario(scenario)
     if physics is not None:
         loaded = loaded.moved_by(physics)
@@ -94,6 +99,7 @@ def compare(
                 seed=seed,
                 out=out / f"{controller}-{seed}".replace(":", "."),
                 tracker=controller.eyes,
+                boxes=boxes if is_own(controller.eyes) else BoxKind.TORSO,
                 record=False,
                 overwrite=overwrite,
             ),

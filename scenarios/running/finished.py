@@ -21,7 +21,8 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
     Never, if it is to be replaced.
 
     Raises:
-        BadInput: it holds a complete run of another scenario, seed, tracker or version, or a spoilt one.
+        BadInput: it holds a complete run of another scenario, seed, tracker, kind of boxes or version, or a
+            spoilt one.
     """
     if options.overwrite or not _is_complete(options.out):
         return False
@@ -30,6 +31,10 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
     if run.about.tracker != tracker:
         raise BadInput(
             f"{options.out}: was run with tracker {run.about.tracker!r}; give --overwrite, or another --out"
+        )
+    if run.about.boxes != options.boxes:
+        raise BadInput(
+            f"{options.out}: was run with --boxes {run.about.boxes}; give --overwrite, or another --out"
         )
     if run.about.behaviour != scenario.own_behaviour:
         was = run.about.behaviour or run.scenario.robot.behaviour

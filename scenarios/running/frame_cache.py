@@ -24,15 +24,15 @@ from peopleboy import sim
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
-from peopleboy.scenarios.run_folder.camera_truth import gt_lines
+from peopleboy.scenarios.run_folder.camera_truth import gt_lines, true_boxes
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
 from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
-from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import Calibration, Frame, Odometry, PinholeCalibration
 from peopleboy.tracker.track import Track
 
@@ -68,9 +68,9 @@ class Film:
     shapes: Mapping[str, tuple[int, ...]]
     calibrations: Mapping[str, Calibration] = field(compare=False)
 
-    def truth(self) -> TrueBoxes:
-        """Read who was there, as the evaluation wants it."""
-        return read_truth(self.folder / "gt.txt")
+    def truth(self, boxes: BoxKind = BoxKind.TORSO) -> TrueBoxes:
+        """Read who was there, as the evaluation wants it; boxes round torsos, or round whole people."""
+        return true_boxes(self.folder / "gt.txt", self.folder / "truth.parquet", boxes)
 
     def people(self) -> pa.Table:
         """Read the whole truth: one row per frame and person (`run_folder.tables.TRUTH`)."""

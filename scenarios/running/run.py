@@ -22,6 +22,7 @@ from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.sim.world import World
 from peopleboy.tracker.checked_tracker import CheckedTracker
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import knows_again
 
 FOLLOWERS = ("follow_person", "patrol")
@@ -36,6 +37,7 @@ class RunOptions:
         out: the run's folder.
         frames: whether to write every image.
         tracker: name of the tracker, "truth", or "module:Class"; None for the scenario's.
+        boxes: what the tracker's boxes are drawn round, and so those of the truth that they are held against.
         renderer: "raycast" or "bullet".
         record: whether to write recording.rrd.
         lossless: whether its images are kept without loss.
@@ -47,6 +49,7 @@ class RunOptions:
     out: Path
     frames: bool = False
     tracker: str | None = None
+    boxes: BoxKind = BoxKind.TORSO
     renderer: str = "raycast"
     record: bool = True
     lossless: bool = False
@@ -85,6 +88,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         "scenario": scenario.name,
         "seed": options.seed,
         "tracker": name,
+        "boxes": options.boxes,
         "renderer": options.renderer,
         "rate_hz": config.control_hz,
         "images": options.frames,
@@ -120,7 +124,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
                     is_lossless=options.lossless,
                 )
             )
-        watchers = Watchers(config, title, recorder)
+        watchers = Watchers(config, title, recorder, options.boxes)
         frames = round(scenario.duration_s * config.control_hz)
         stage = FaultySensors(world, scenario.spec.faults, config.robot.sonar.farthest_m)
         checked = CheckedTracker(tracker, f"tracker {name!r}", config.robot.cameras)
@@ -140,7 +144,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         comfort = None
         if scenario.robot.behaviour != "stand" and config.people:
             comfort = watchers.comfort.score()
-        scores = score_run(options.out, frames, following, corridor, comfort)
+        scores = score_run(options.out, frames, following, corridor, comfort, options.boxes)
         watchers.save(options.out)
         folder.complete(scores.to_json())
     return scores

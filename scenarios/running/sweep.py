@@ -11,6 +11,7 @@ from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
+from peopleboy.tracker.footage.box_kinds import BoxKind
 
 
 def sweep(
@@ -21,6 +22,7 @@ def sweep(
     workers: Workers,
     behaviour: str | None = None,
     physics: str | None = None,
+    boxes: BoxKind = BoxKind.TORSO,
     *,
     overwrite: bool,
 ) -> list[Path]:
@@ -36,7 +38,12 @@ def sweep(
     loaded = _changed(load_scenario(scenario), behaviour, physics)
     options = [
         RunOptions(
-            seed=seed, out=out / f"{loaded.name}-{seed}", tracker=tracker, record=False, overwrite=overwrite
+            seed=seed,
+            out=out / f"{loaded.name}-{seed}",
+            tracker=tracker,
+            boxes=boxes,
+            record=False,
+            overwrite=overwrite,
         )
         for seed in seeds
     ]
@@ -51,6 +58,7 @@ def sweep_worlds(
     workers: Workers,
     behaviour: str | None = None,
     physics: str | None = None,
+    boxes: BoxKind = BoxKind.TORSO,
     *,
     overwrite: bool,
 ) -> list[Path]:
@@ -67,7 +75,12 @@ def sweep_worlds(
     for seed in seeds:
         world = _changed(random_scenario(seed), behaviour, physics)
         options = RunOptions(
-            seed=seed, out=out / world.name, tracker=tracker, record=False, overwrite=overwrite
+            seed=seed,
+            out=out / world.name,
+            tracker=tracker,
+            boxes=boxes,
+            record=False,
+            overwrite=overwrite,
         )
         tasks.append(RunTask(world, options))
     play(unfinished(tasks), workers, "random worlds")

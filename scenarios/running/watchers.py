@@ -12,23 +12,34 @@ from peopleboy.scenarios.scores.comfort.comfort_score import ComfortLog
 from peopleboy.scenarios.scores.corridor_score import CorridorLog
 from peopleboy.scenarios.scores.following_score import FollowingLog, whose_tracks
 from peopleboy.sim.config import WorldConfig
+from peopleboy.tracker.footage.box_kinds import BoxKind
 
 
 class Watchers:
-    """Hands each tick to all who look on; a recorder only if there is one."""
+    """Hands each tick to all who look on; a recorder only if there is one.
 
-    def __init__(self, config: WorldConfig, title: str, recorder: Recorder | None) -> None:
+    Args:
+        config: of the world.
+        title: of the run.
+        recorder: of it, if there is one.
+        boxes: what the tracker's boxes are drawn round.
+    """
+
+    def __init__(
+        self, config: WorldConfig, title: str, recorder: Recorder | None, boxes: BoxKind = BoxKind.TORSO
+    ) -> None:
         self.following = FollowingLog()
         self.corridor = CorridorLog()
         self.comfort = ComfortLog()
         self._events = RunEvents()
         self._sheet = ContactSheet(title, config.robot)
         self._recorder = recorder
+        self._boxes = boxes
 
     def update(self, tick: Tick) -> list[LogLine]:
         """Look at one tick and return what happened at it."""
         events = self._events.update(tick)
-        self.following.add(tick.truth, *whose_tracks(tick))
+        self.following.add(tick.truth, *whose_tracks(tick, self._boxes))
         self.corridor.add(tick.truth)
         self.comfort.add(tick.truth)
         self._sheet.add(tick, events)

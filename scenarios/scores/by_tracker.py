@@ -14,13 +14,12 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
+from peopleboy.scenarios.scores.same_scenes import Scene, check_same_scenes
+from peopleboy.scenarios.scores.yardstick import Yardstick
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, spread, to_json
 from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
-from peopleboy.tracker.frame import THERMAL
-
-Scene = tuple[str, int]
-"""Scenario, or footage, and seed."""
+from peopleboy.tracker.footage.box_kinds import BoxKind
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,12 +31,16 @@ class ScoredRun:
         tracker: whose tracks they are.
         scene: what there was to be seen; None where nobody knows.
         scores: of the tracks.
+        by: what boxes were held against; None for squares on the floor, footage and files.
+        notes: what whoever reads the scores must know, a line each.
     """
 
     name: str
     tracker: str
     scene: Scene | None
     scores: Scores
+    by: Yardstick | None = None
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,22 +64,34 @@ Groups = Mapping[str, Sequence[ScoredRun]]
 
 
 def score_by_tracker(
-    folders: Sequence[Path], min_visible: float = MIN_VISIBLE, camera: str = THERMAL
+    folders: Sequence[Path],
+    min_visible: float = MIN_VISIBLE,
+    camera: str | None = None,
+    boxes: BoxKind | None = None,
 ) -> Groups:
     """Score the runs in these folders, and sort them by tracker, in the order in which these come first.
 
+    Args:
+        folders: of the runs.
+        min_visible: as for `evaluate_runs`.
+        camera: the same.
+        boxes: the same.
+
     Raises:
-        BadInput: as for `evaluate_runs`, or a run does not say what its tracker was.
+        BadInput: as for `evaluate_runs`, or a run does not say what its tracker was, or trackers saw
+            different scenes of one name.
     """
     groups: dict[str, list[ScoredRun]] = {}
-    for folder, scores in zip(folders, evaluate_runs(folders, min_visible, camera), strict=True):
+    for folder, people in zip(folders, evaluate_runs(folders, min_visible, camera, boxes), strict=True):
         about = read_run(folder)
         tracker, seed = about.get("tracker"), about.get("seed")
         if not isinstance(tracker, str):
             raise BadInput(f"{folder / 'run.json'}: tracker: must be a name, got {tracker!r}; run it again")
         name = about.get("scenario", about.get("footage"))
         scene = (name, seed) if isinstance(name, str) and isinstance(seed, int) else None
-        groups.setdefault(tracker, []).append(ScoredRun(str(folder), tracker, scene, scores))
+        run = ScoredRun(str(folder), tracker, scene, people.scores, people.by, people.notes)
+        groups.setdefault(tracker, []).append(run)
+    check_same_scenes([{Path(run.name): run.scene for run in runs} for runs in groups.values()])
     return groups
 
 
@@ -118,7 +133,9 @@ def _together(runs: Sequence[ScoredRun]) -> dict[str, Any]:
 
 def _alone(run: ScoredRun) -> dict[str, Any]:
     scene, seed = (None, None) if run.scene is None else run.scene
-    return {"run": run.name, "scene": scene, "seed": seed, "figures": to_json(run.scores)}
+    by = {} if run.by is None else {"scored_by": run.by.to_json()}
+    about = {"run": run.name, "scene": scene, "seed": seed, "notes": list(run.notes)}
+    return about | {"figures": by | to_json(run.scores)}
 
 
 def _difference(

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.run_folder.run_files import check_end, check_whole
-from peopleboy.scenarios.scores.people_scores import score_camera, score_people
+from peopleboy.scenarios.scores.people_scores import ScoredPeople, score_people
+from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, own_camera
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.frame import THERMAL
 
@@ -36,32 +39,71 @@ def evaluate_files(
 
 
 def evaluate_runs(
-    folders: Sequence[Path], min_visible: float = MIN_VISIBLE, camera: str = THERMAL
-) -> list[Scores]:
+    folders: Sequence[Path],
+    min_visible: float = MIN_VISIBLE,
+    camera: str | None = None,
+    boxes: BoxKind | None = None,
+) -> list[ScoredPeople]:
     """Score the runs in these folders, one by one; min_visible as for files.
 
-    Boxes are scored in the image of a camera; those of the thermal one come with places on the floor.
+    Args:
+        folders: of the runs.
+        min_visible: people of whom no more than this is seen do not count.
+        camera: in whose images boxes are scored; those of the thermal one come with places on the floor. None
+            for that one, or the only one in whose images the tracker gave boxes.
+        boxes: what the truth's boxes are drawn round; None for what each run was scored by.
 
     Raises:
         BadInput: a folder holds no run, or one that was cut off, or whose files do not belong together, or
             one of footage without truth.
     """
-    if camera == THERMAL:
-        return [_evaluate_run(folder, min_visible) for folder in folders]
-    return [score_camera(folder, camera, read_run(folder)["frames"], min_visible) for folder in folders]
+    return [_evaluate_run(folder, min_visible, camera, boxes) for folder in folders]
 
 
-def _evaluate_run(folder: Path, min_visible: float) -> Scores:
-    about, truth = read_run(folder), find_truth(folder)
+def _evaluate_run(
+    folder: Path, min_visible: float, camera: str | None, boxes: BoxKind | None
+) -> ScoredPeople:
+    about = read_run(folder)
+    if "footage" in about or not (folder / "truth.parquet").is_file():
+        return _evaluate_texts(folder, about["frames"], min_visible, camera, boxes)
+    by = Yardstick(camera or own_camera(folder), boxes or _said(folder, about))
+    if by == Yardstick():
+        given, found = _read_texts(folder, about["frames"])
+        held = (given.truth, found)
+    else:
+        held = boxes_held(folder, by)
+    return score_people(folder, held, about["frames"], by, min_visible)
+
+
+def _evaluate_texts(
+    folder: Path, frames: int, min_visible: float, camera: str | None, boxes: BoxKind | None
+) -> ScoredPeople:
+    """Score a run of footage, which has one camera and boxes of one kind."""
+    for option, value in (("--camera", camera), ("--boxes", boxes)):
+        if value is not None and value != THERMAL:
+            raise BadInput(f"{option} {value}: {folder} has no tables of a scenario; leave it out")
+    return ScoredPeople(_score(*_read_texts(folder, frames), frames, min_visible))
+
+
+def _read_texts(folder: Path, frames: int) -> tuple[GivenTruth, TrackBoxes]:
+    truth = find_truth(folder)
     if truth is None:
         raise BadInput(f"{folder}: has no truth to score against; give --truth with --tracks")
     given, found = load_truth(truth, None), read_tracks(folder / "tracks.txt")
-    check_end(given.truth, truth, about["frames"])
-    check_end(found, folder / "tracks.txt", about["frames"])
+    check_end(given.truth, truth, frames)
+    check_end(found, folder / "tracks.txt", frames)
     check_whole(folder, given.truth, found)
-    if (folder / "truth.parquet").is_file():
-        return score_people(folder, given.truth, found, about["frames"], min_visible)
-    return _score(given, found, about["frames"], min_visible)
+    return given, found
+
+
+def _said(folder: Path, about: Mapping[str, Any]) -> BoxKind:
+    """What a run was scored by; runs of earlier versions do not say so, and had torsos."""
+    said = about.get("boxes", BoxKind.TORSO)
+    if said not in set(BoxKind):
+        raise BadInput(
+            f"{folder / 'run.json'}: boxes: must be {' or '.join(BoxKind)}, got {said!r}; run it again"
+        )
+    return BoxKind(said)
 
 
 def _score(given: GivenTruth, found: TrackBoxes, frames: int | None, min_visible: float) -> Scores:

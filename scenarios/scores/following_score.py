@@ -22,6 +22,7 @@ from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.floor import floor_squares
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
@@ -82,13 +83,18 @@ class Spot(NamedTuple):
     place_m: tuple[float, float]
 
 
-def whose_tracks(tick: Tick) -> tuple[int, bool]:
-    """Give the number of the track on the person to follow, 0 for none; and whether another is followed."""
-    robot = tick.truth.robot
+def whose_tracks(tick: Tick, boxes: BoxKind = BoxKind.TORSO) -> tuple[int, bool]:
+    """Give the number of the track on the person to follow, 0 for none; and whether another is followed.
+
+    Args:
+        tick: the instant.
+        boxes: what the tracker's boxes are drawn round.
+    """
+    robot, is_whole = tick.truth.robot, boxes is BoxKind.WHOLE
     spots = {
-        person.id: Spot(person.box, robot.locate(person.position_m))
+        person.id: Spot(box, robot.locate(person.position_m))
         for person in tick.truth.people
-        if person.box is not None
+        if (box := person.whole_box if is_whole else person.box) is not None
     }
     return track_on(spots.get(TARGET), tick.tracks), _is_wrong(spots, tick)
 

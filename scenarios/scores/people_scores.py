@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.run_folder.on_floor import (
     BELIEFS,
     PEOPLE,
@@ -18,34 +16,62 @@ from peopleboy.scenarios.run_folder.on_floor import (
 )
 from peopleboy.scenarios.run_folder.run_files import read_table
 from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
-from peopleboy.sim.geometry.panorama import around_px
+from peopleboy.scenarios.scores.yardstick import Yardstick, notes_on
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
-from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
+from peopleboy.tracker.frame import THERMAL
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScoredPeople:
+    """How well people were found, and by what that was told.
+
+    Attributes:
+        scores: the figures.
+        by: what boxes were held against; None for squares on the floor, and for footage.
+        notes: what whoever reads the figures must know, a line each.
+    """
+
+    scores: Scores
+    by: Yardstick | None = None
+    notes: tuple[str, ...] = ()
 
 
 def score_people(
-    folder: Path, truth: TrueBoxes, tracks: TrackBoxes, frames: int, min_visible: float = MIN_VISIBLE
-) -> Scores:
-    """Score the tracks of a run: their boxes in the thermal image, and where they say that people stand.
+    folder: Path,
+    held: tuple[TrueBoxes, TrackBoxes],
+    frames: int,
+    by: Yardstick,
+    min_visible: float = MIN_VISIBLE,
+) -> ScoredPeople:
+    """Score the tracks of a run: their boxes in a camera's image, and where they say that people stand.
 
-    A tracker that gave no box of anybody, but places, is scored on the floor alone: everybody is a square
-    there (`floor_squares`), and all figures of boxes are those of squares.
+    Places come with the boxes of the thermal image. A tracker that gave no box of anybody there, but places,
+    is scored on the floor alone: everybody is a square there (`floor_squares`), and all figures of boxes are
+    those of squares.
 
     Args:
         folder: of the run, with its tables.
-        truth: who is where in the thermal image.
-        tracks: the boxes that the tracker gave in it.
+        held: `boxes_held` of the run: who was there, and the boxes that the tracker gave.
         frames: how many.
+        by: what boxes are held against.
         min_visible: people of whom at most this fraction is visible do not count.
+
+    Raises:
+        BadInput: a table is missing or spoilt.
     """
+    truth, tracks = held
+    if by.camera != THERMAL:
+        scores = evaluate(truth, tracks, frames=frames, min_visible=min_visible)
+        return ScoredPeople(scores, by, notes_on(folder, by, truth, tracks))
     robot = read_table(folder / "robot.parquet", ROBOT, POSE)
     people = read_table(folder / "truth.parquet", TRUTH, PEOPLE)
     beliefs = read_table(folder / "tracks.parquet", TRACKS, BELIEFS)
-    if is_on_floor_alone(beliefs):
+    is_on_floor = is_on_floor_alone(beliefs)
+    if is_on_floor:
         truth, tracks = as_squares(folder, people, beliefs, robot)
-    return evaluate(
+    scores = evaluate(
         truth,
         tracks,
         frames=frames,
@@ -53,20 +79,6 @@ def score_people(
         standing=places_of_people(people, robot),
         believed=places_of_tracks(beliefs),
     )
-
-
-def score_camera(folder: Path, camera: str, frames: int, min_visible: float = MIN_VISIBLE) -> Scores:
-    """Score the boxes that the tracker of a run gave in the image of a further camera.
-
-    In a panorama, boxes go on over the seam.
-
-    Raises:
-        BadInput: there are none.
-    """
-    paths = folder / "truth" / f"{camera}.gt.txt", folder / "tracks" / f"{camera}.txt"
-    for path in paths:
-        if not path.is_file():
-            raise BadInput(f"{path}: there is no such file; no boxes were given in camera {camera!r}")
-    around = around_px(cameras_of(folder)[camera].camera)
-    truth, tracks = replace(read_truth(paths[0]), around_px=around), read_tracks(paths[1])
-    return evaluate(truth, tracks, frames=frames, min_visible=min_visible)
+    if is_on_floor:
+        return ScoredPeople(scores)
+    return ScoredPeople(scores, by, notes_on(folder, by, truth, tracks))

@@ -13,10 +13,11 @@ from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import (
     FollowingScore,
 )
-from peopleboy.scenarios.scores.people_scores import score_camera, score_people
+from peopleboy.scenarios.scores.people_scores import ScoredPeople, score_people
+from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, own_camera
 from peopleboy.tracker.evaluation.evaluate import Scores
-from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 from peopleboy.tracker.evaluation.table import to_json
+from peopleboy.tracker.footage.box_kinds import BoxKind
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,6 +30,8 @@ class RunScores:
         corridor: of the way along corridors; None if the robot was not to follow any.
         comfort: of people among whom the robot drove; None if it was not to drive, or nobody was there.
         further: of people by the boxes that the tracker gave in further cameras' images, by camera.
+        by: what the boxes of `people` were held against; None for squares on the floor.
+        notes: what whoever reads the figures must know, a line each.
     """
 
     people: Scores
@@ -36,10 +39,13 @@ class RunScores:
     corridor: CorridorScore | None = None
     comfort: ComfortScore | None = None
     further: Mapping[str, Scores] = field(default_factory=dict)
+    by: Yardstick | None = None
+    notes: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """Give all figures as JSON can hold them: None for what is undefined."""
-        groups: dict[str, Any] = dict(to_json(self.people))
+        groups: dict[str, Any] = {} if self.by is None else {"scored_by": self.by.to_json()}
+        groups |= to_json(self.people)
         drives = {"following": self.following, "corridor": self.corridor, "comfort": self.comfort}
         for group, score in drives.items():
             if score is not None:
@@ -58,14 +64,22 @@ def score_run(
     following: FollowingScore | None,
     corridor: CorridorScore | None = None,
     comfort: ComfortScore | None = None,
+    boxes: BoxKind = BoxKind.TORSO,
 ) -> RunScores:
-    """Score a run from the truth and tracks in its folder."""
-    truth, tracks = read_truth(folder / "truth" / "gt.txt"), read_tracks(folder / "tracks.txt")
+    """Score a run from the truth and tracks in its folder; `boxes` says what the truth's are drawn round."""
+
+    def scored(camera: str) -> ScoredPeople:
+        by = Yardstick(camera, boxes)
+        return score_people(folder, boxes_held(folder, by), frames, by)
+
+    people = scored(own_camera(folder))
     further = sorted(path.stem for path in (folder / "tracks").glob("*.txt"))
     return RunScores(
-        score_people(folder, truth, tracks, frames),
+        people.scores,
         following,
         corridor,
         comfort,
-        {camera: score_camera(folder, camera, frames) for camera in further},
+        {camera: scored(camera).scores for camera in further},
+        people.by,
+        people.notes,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -49,21 +49,25 @@ def print_comfort(by_tracker: Mapping[str, ComfortScore]) -> None:
     _print(table)
 
 
-def print_runs(groups: Groups, who: str = "people") -> None:
+def print_runs(groups: Groups, who: str = "people", note: Callable[[str], None] = lambda _: None) -> None:
     """Print every figure of runs: those of one tracker together, those of several side by side.
 
     Args:
         groups: the runs by their trackers.
         who: is to be found, in the tables' titles.
+        note: is told what whoever reads the figures must know of a tracker, once for all its runs.
     """
     if len(groups) > 1:
         _print_beside(groups, who)
-        return
-    ((tracker, runs),) = groups.items()
-    if len(runs) == 1:
-        print_scores(runs[0].scores, who)
     else:
-        _print_spread(tracker, [run.scores for run in runs], who)
+        ((tracker, runs),) = groups.items()
+        if len(runs) == 1:
+            print_scores(runs[0].scores, who)
+        else:
+            _print_spread(tracker, [run.scores for run in runs], who)
+    for tracker, runs in groups.items():
+        for line in next((run.notes for run in runs if run.notes), ()):
+            note(f"{tracker}: {line}")
 
 
 def _print_spread(tracker: str, sequences: Sequence[Scores], who: str) -> None:
@@ -99,7 +103,7 @@ def _print_beside(groups: Groups, who: str) -> None:
         table.add_row(figure.name, *values, *apart)
     console = Console(width=None if sys.stdout.isatty() else 30 + 30 * (len(wholes) + len(compared)))
     console.print(table)
-    console.print(f"\n{_how_they_differ(compared)}\n", soft_wrap=True)
+    console.print(f"\n{_how_they_differ(compared)}{_by_what(groups)}\n", soft_wrap=True)
 
 
 def _how_they_differ(compared: Sequence[Difference]) -> str:
@@ -110,6 +114,15 @@ def _how_they_differ(compared: Sequence[Difference]) -> str:
         )
     text = "A difference is the mean over runs of the same scenario and seed"
     return f"{text}, with its 95 % bootstrap interval." if pairs > 1 else f"{text}; one pair has no interval."
+
+
+def _by_what(groups: Groups) -> str:
+    """Say what each tracker's boxes are held against, if it is not the same for all."""
+    held = {tracker: {str(run.by) for run in runs if run.by} for tracker, runs in groups.items()}
+    if len(set().union(*held.values())) < 2:
+        return ""
+    told = [f"{tracker} against {' and '.join(sorted(by))}" for tracker, by in held.items() if by]
+    return f" Boxes are held by their own truth: {'; '.join(told)}."
 
 
 def _interval(interval: Interval, unit: str, pairs: int) -> str:

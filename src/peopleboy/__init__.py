@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from peopleboy.sim.world import World
     from peopleboy.tracker.evaluation.evaluate import evaluate
     from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+    from peopleboy.tracker.footage.box_kinds import BoxKind
     from peopleboy.tracker.frame import Frame
     from peopleboy.tracker.track import Status, Track
     from peopleboy.tracker.trackers import Tracker, make_tracker
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 _HOMES: Final = {
     "BadInput": "bad_input",
     "Behaviour": "behaviours.behaviour",
+    "BoxKind": "tracker.footage.box_kinds",
     "Command": "behaviours.command",
     "Frame": "tracker.frame",
     "PeopleBoyEnv": "scenarios.environments.environment",
@@ -55,6 +57,7 @@ _HOMES: Final = {
 __all__ = [
     "BadInput",
     "Behaviour",
+    "BoxKind",
     "Command",
     "Frame",
     "PeopleBoyEnv",

@@ -47,6 +47,7 @@ WRONG = {
     "(track(id=7), track(id=7))": ("differ", "7 twice"),
     "(track(boxes={'thermal': (0, 0, float('nan'), 5)}),)": ("track 1", "'thermal'", "finite", "nan"),
     "(track(boxes={'thermal': (0, 0, -1, 5)}),)": ("width >= 0", "-1"),
+    "(track(boxes={'thermal': (2e6, 0, 5, 5)}),)": ("'thermal'", "1e+06 pixels", "2000000.0"),
     "(track(boxes={'thermal': (0, 0, 5)}),)": ("left, top, width", "(0, 0, 5)"),
     "(track(boxes={'thermal': np.arange(4)}),)": ("must be a tuple", "[0 1 2 3]"),
     "(track(boxes=(0, 0, 5, 5)),)": ("by camera",),
@@ -113,6 +114,16 @@ def test_an_error_of_theirs_ends_the_run_in_a_marked_folder_with_its_traceback(
     # It is done again once that is mended.
     (home / "failing.py").write_text(TRACKER.replace("ANSWER", "()"), encoding="utf-8")
     assert run_cli("evaluate", "run") == 2
+
+
+def test_who_writes_into_an_image_spoils_none_and_is_told_so(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = write_tracker(home, "frame.grey('thermal').fill(0)", "writing")
+    assert run_cli("run", "brief.yaml", "--tracker", name, "--no-rrd", "--out", "run") == 1
+    assert_names(
+        capsys.readouterr().err, f"frame 3: tracker '{name}' failed", "read-only", "writing.py, line 21"
+    )
 
 
 def test_in_a_sweep_the_failed_runs_are_named_with_where_their_tracebacks_are(

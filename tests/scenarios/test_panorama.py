@@ -139,7 +139,8 @@ def test_tracks_on_the_other_side_of_the_seam_match_all_the_same(tracked: Path, 
     text = [f"{frame},7,{float(left) - 480.0},{','.join(box)},1,-1,-1,-1" for frame, _, left, *box in
             (line[:6] for line in lines)]  # fmt: skip
     (run / "tracks" / "panorama.txt").write_text("".join(f"{line}\n" for line in text), encoding="utf-8")
-    (scores,) = evaluate_runs([run], camera="panorama")
+    (people,) = evaluate_runs([run], camera="panorama")
+    scores = people.scores
     assert scores.counts.targets > 3
     assert scores.thesis.ca == scores.thesis.aa == pytest.approx(100.0)
     assert scores.mot.hota.hota == pytest.approx(100.0)

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from peopleboy.sim.on_demand import OnDemand
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
 from tests.helpers.calls.refused import refused
 
@@ -44,7 +45,7 @@ def test_a_depth_image_of_another_shape_or_type_is_refused_by_name(image, got):
 def test_depth_is_read_and_is_no_grey_image():
     depth = np.full((4, 5), 2500, np.uint16)
     frame = Frame(images={DEPTH: depth, DEPTH_COLOUR: np.zeros((4, 5, 3), np.uint8)}, time_s=0.0)
-    assert frame.depth(DEPTH) is depth
+    assert np.shares_memory(frame.depth(DEPTH), depth)
     assert frame.rgb(DEPTH_COLOUR).shape == (4, 5, 3)
     with refused("depth image", "(H, W) uint8", "uint16"):
         frame.grey(DEPTH)
@@ -66,3 +67,19 @@ def test_a_time_that_is_not_finite_is_refused(value):
 def test_odometry_that_is_not_finite_is_refused(name, value):
     with refused(name, "finite", value):
         Odometry(**{name: value})
+
+
+def test_images_cannot_be_written_to_are_no_copies_and_are_made_when_asked_for():
+    image = np.zeros((4, 5), np.uint8)
+    frame = Frame(images={THERMAL: image}, time_s=0.0)
+    for seen in (frame.images[THERMAL], frame.grey(THERMAL), dict(frame.images)[THERMAL]):
+        with pytest.raises(ValueError, match="read-only"):
+            seen[:] = 1
+        assert np.shares_memory(seen, image)
+    image[:] = 7  # the owner still can
+    assert frame.grey(THERMAL).max() == 7
+    asked = []
+    lazy = Frame(images=OnDemand((THERMAL, COLOUR), lambda name: asked.append(name) or image), time_s=0.0)
+    assert (list(lazy.images), COLOUR in lazy.images, asked) == ([THERMAL, COLOUR], True, [])
+    assert lazy.grey(THERMAL).shape == (4, 5)
+    assert asked == [THERMAL]

@@ -1,10 +1,11 @@
-"""What boxes are drawn round: the torso, as ours are, or all of a person, as annotators draw them.
+"""What boxes are drawn round: the torso, as ours are, or all of a person, as annotators and detectors do.
 
 Annotators also count pixels from the image's corner, and ours are counted from the middle of the first one.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from enum import StrEnum
@@ -13,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from peopleboy.tracker.boxes import Box
-from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.evaluation.sequence import Rows, TrueBoxes
 from peopleboy.tracker.track import Track
 
 TORSO_PER_HEIGHT: Final = 0.22
@@ -34,11 +35,15 @@ class BoxKind(StrEnum):
     @classmethod
     def of(cls, truth: TrueBoxes) -> BoxKind:
         """Tell by how wide they are, in the median; without any, people are taken to be boxed whole."""
-        is_tall = truth.box[:, 3] > 0.0
-        if not is_tall.any():
-            return cls.WHOLE
-        wide = np.median(truth.box[is_tall, 2] / truth.box[is_tall, 3])
-        return cls.TORSO if wide <= _WIDEST_TORSO else cls.WHOLE
+        return cls.TORSO if width_per_height(truth) <= _WIDEST_TORSO else cls.WHOLE
+
+
+def width_per_height(boxes: Rows) -> float:
+    """Say how wide boxes are for their height, in the median; NaN without any."""
+    is_tall = boxes.box[:, 3] > 0.0
+    if not is_tall.any():
+        return math.nan
+    return float(np.median(boxes.box[is_tall, 2] / boxes.box[is_tall, 3]))
 
 
 def boxed_whole(tracks: Iterable[Track]) -> tuple[Track, ...]:

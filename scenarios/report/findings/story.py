@@ -9,11 +9,15 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 
 from peopleboy.scenarios.report.findings.spans import Flags, Floats, Ints, between, settle
+from peopleboy.scenarios.run_folder.camera_truth import truth_files
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.on_floor import as_squares, is_on_floor_alone
-from peopleboy.scenarios.run_folder.run_files import RunFiles
+from peopleboy.scenarios.run_folder.run_files import RunFiles, read_table
+from peopleboy.scenarios.run_folder.tables import TRUTH
+from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, own_camera
 from peopleboy.sim.truth.events import (
     LEAVES_INSIDE,
     OCCLUSION_ENDS,
@@ -24,6 +28,8 @@ from peopleboy.sim.truth.events import (
 from peopleboy.sim.truth.truth import BORDER
 from peopleboy.tracker.evaluation.association import associate, pair_up
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+from peopleboy.tracker.footage.box_kinds import BoxKind
+from peopleboy.tracker.frame import THERMAL
 
 STEADY_S = 0.3  # a number that lies on a person for less is fleeting
 _BOX = ("left_px", "top_px", "width_px", "height_px")
@@ -106,12 +112,27 @@ class RunStory:
         return is_on_floor_alone(self.files.beliefs)
 
     @cached_property
+    def yardstick(self) -> Yardstick:
+        """What the tracker's boxes are held against, as in the scores of the run."""
+        return Yardstick(own_camera(self.run.folder), BoxKind(self.run.about.boxes))
+
+    @cached_property
+    def seen(self) -> pa.Table:
+        """What is true of people in the images of that camera."""
+        if self.yardstick.camera == THERMAL:
+            return self.files.people
+        _, table = truth_files(self.run.folder, self.yardstick.camera)
+        return read_table(table, TRUTH, _PEOPLE)
+
+    @cached_property
     def boxes(self) -> tuple[TrueBoxes, TrackBoxes]:
-        """What is matched: boxes in the thermal image, or, of a tracker without any, squares on the floor."""
+        """What is matched: boxes in that camera's image, or, without any, squares on the floor."""
         files = self.files
         if self.is_on_floor:
             return as_squares(self.run.folder, files.people, files.beliefs, files.robot)
-        return files.truth, files.tracks
+        if self.yardstick == Yardstick():
+            return files.truth, files.tracks
+        return boxes_held(self.run.folder, self.yardstick)
 
     @cached_property
     def people(self) -> tuple[Story, ...]:
@@ -119,7 +140,7 @@ class RunStory:
         lying = _lying(*self.boxes)
         if self.is_on_floor:
             lying.offset[:] = np.nan  # it is none of pixels
-        return tuple(_tell(self, who, lying) for who in np.unique(self.files.people["id"]).tolist())
+        return tuple(_tell(self, who, lying) for who in np.unique(self.seen["id"]).tolist())
 
     def called(self, name: str) -> Story:
         """The story of somebody."""
@@ -150,7 +171,7 @@ def _lying(truth: TrueBoxes, tracks: TrackBoxes) -> Any:
 
 
 def _tell(story: RunStory, person: int, lying: Any) -> Story:
-    frames, people = story.run.frames, story.files.people
+    frames, people = story.run.frames, story.seen
     rows = people.filter(np.asarray(people["id"].to_numpy() == person))
     at = rows["frame"].to_numpy() - 1
     mine = lying[lying.person == person]

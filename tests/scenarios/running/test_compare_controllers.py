@@ -10,6 +10,7 @@ from peopleboy.scenarios.running.compare_controllers import Controller, compare,
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.show_comparison import keep_comparison, show_comparison
 from peopleboy.scenarios.scores.bootstrap import bootstrap
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from tests.helpers.calls.refused import refused
 
 NAN = math.nan
@@ -46,6 +47,12 @@ def test_a_controller_named_twice_is_refused(tmp_path):
         compare(
             "single_follow", [parse_controller("stand")] * 2, range(1), tmp_path, Workers(), overwrite=False
         )
+
+
+def test_whole_people_are_boxed_by_trackers_of_ones_own_alone(tmp_path):
+    chosen = [parse_controller("stand@truth")]
+    with refused("--boxes whole", "leave it out"):
+        compare("single_follow", chosen, range(1), tmp_path, Workers(), boxes=BoxKind.WHOLE, overwrite=False)
 
 
 def test_a_comparison_is_printed_drawn_and_kept(tmp_path, capsys):

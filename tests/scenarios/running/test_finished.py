@@ -46,6 +46,7 @@ def test_a_run_that_was_cut_off_is_not_finished(options: RunOptions, content: st
     ("said", "why"),
     [
         ({"tracker": "thesis"}, "was run with tracker 'thesis'"),
+        ({"boxes": "whole"}, "was run with --boxes whole"),
         ({"renderer": "bullet"}, "is a run of another scenario"),
         ({"tracker": None}, r"run\.json: tracker: "),
         ({"footage": "clip"}, "is a run of footage"),

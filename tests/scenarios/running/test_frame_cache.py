@@ -13,6 +13,7 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
 from peopleboy.sim.world import World
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from tests.helpers.calls.refused import refused
 
@@ -52,6 +53,10 @@ def test_frames_from_disk_equal_those_of_the_run_to_the_byte(shot: Film) -> None
 def test_truth_lies_beside_the_frames(shot: Film) -> None:
     assert shot.truth().last_frame == 39
     assert shot.people().num_rows == 39
+    torso, whole = (shot.truth(kind) for kind in BoxKind)
+    assert np.array_equal(torso.frame, whole.frame)
+    assert (whole.box[:, 2] > torso.box[:, 2]).mean() > 0.9
+    assert np.array_equal(whole.box[:, 0], shot.people()["whole_left_px"].to_numpy()[whole.frame - 1])
 
 
 def test_a_film_is_made_once(shot: Film, monkeypatch: pytest.MonkeyPatch) -> None:
