@@ -40,6 +40,7 @@ from peopleboy.sim.shapes.shape_table import ShapeTable, make_shape_table
 from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.bystanders import bystanders
 from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.scenes import SCENE, Scenes
 from peopleboy.sim.truth.truth import BORDER, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 
@@ -147,17 +148,18 @@ class World:
             BadInput: this is a world without images.
         """
         self._check_sight()
-        return self.with_images(self.sense())
-
-    def with_images(self, senses: Senses, images: Mapping[str, NDArray[Any]] | None = None) -> Observation:
-        """Add the images of this instant to the other senses; None for those made here when asked for."""
+        senses = self.sense()
         return Observation(
             time_s=senses.time_s,
-            images=self._rig.read(self._tick) if images is None else images,
+            images=self.take_images(),
             sonar_m=senses.sonar_m,
             odometry=senses.odometry,
             wheel_speeds_m_s=senses.wheel_speeds_m_s,
         )
+
+    def take_images(self) -> Mapping[str, NDArray[Any]]:
+        """Give the images of this instant, as `observe` does; there must be images."""
+        return self._rig.read(self._tick)
 
     def sense(self) -> Senses:
         """Read every sensor but the cameras once; instead of `observe`, where nobody needs the images."""
@@ -170,19 +172,18 @@ class World:
 
     def scene(self) -> ImageFreeTruth:
         """Tell what is true at this instant as far as no image is needed for it."""
-        return ImageFreeTruth(
-            time_s=self.time_s,
-            robot=self._robot.pose(),
-            robot_velocity=self._robot.velocity(),
-            contacts=self.touching,
-            people=bystanders(
-                self._crowd.people,
-                self._physics,
-                self._robot.pose(),
-                self._robot.world_from_robot(),
-                flat_geometry(self.config.robot.cameras, "thermal"),
-            ),
-        )
+        return self.scenes().truths()[0]
+
+    def scenes(self) -> Scenes:
+        """Tell what `scene` does as arrays, of one world."""
+        pose, world_from_robot = self._robot.pose(), self._robot.world_from_robot()
+        robot = np.array([pose.x, pose.y, pose.heading])
+        camera = flat_geometry(self.config.robot.cameras, "thermal")
+        people = bystanders(self._crowd.people, self._physics, robot, world_from_robot, camera)
+        worlds = np.zeros(1, SCENE)
+        worlds["time_s"], worlds["robot"], worlds["velocity"] = self.time_s, robot, self._robot.velocity()
+        worlds["is_touching"], worlds["end"] = bool(self._touching), len(people)
+        return Scenes(worlds, people, (self._crowd.names,), (self.touching,))
 
     def truth(self, camera: str = "thermal") -> Truth:
         """Tell all that is true at this instant, boxes and masks in the image of a camera.

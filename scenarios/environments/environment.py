@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,21 +14,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import Command
-from peopleboy.scenarios.environments.episode_figures import EpisodeFigures, Figures
+from peopleboy.scenarios.environments.judging.episode_figures import Figures, track_in
+from peopleboy.scenarios.environments.judging.episodes import Episodes, Terms, Verdicts
+from peopleboy.scenarios.environments.judging.rewards import TASKS, TERMS
 from peopleboy.scenarios.environments.normalise import Normaliser
 from peopleboy.scenarios.environments.observations import (
     KINDS,
     Arrays,
-    feel,
     observation_space,
-    see_images,
     see_tracks,
-    see_truth,
 )
 from peopleboy.scenarios.environments.randomise import check_options, vary, world_of
-from peopleboy.scenarios.environments.rewards import TASKS, TERMS, reward_terms
 from peopleboy.scenarios.environments.scene_picture import ScenePicture
-from peopleboy.scenarios.environments.situation import Episode
+from peopleboy.scenarios.environments.teller import Teller
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
@@ -41,14 +38,12 @@ from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.fleet.instant import Instant
-from peopleboy.sim.fleet.together import perceive
+from peopleboy.sim.fleet.instants import Instants, perceive
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.observation import Observation, Senses
+from peopleboy.sim.observation import Observation
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import BLIND
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
@@ -126,18 +121,19 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         first = self._moved(_random_episode(0) if scenario is None else load_scenario(scenario))
         self._tracker_name = first.tracker if tracker is None else tracker
         self._wanted = camera_names(self._tracker_name)  # refuses an unknown name now
-        self._task, self._kind, self._size = task, observation, image_size
+        self.task, self._kind, self._size = task, observation, image_size
         self.render_mode = render_mode
         usual = first.world(0)
         self._physics_hz = usual.physics_hz if physics_hz is None else physics_hz
         replace(usual, physics_hz=self._physics_hz)  # refuses a rate that does not fit now
         self._take(first)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
-        self._shown = _shown(cameras, observation, self._robot)
-        self.observation_space = observation_space(observation, self._robot, self._shown)
-        self._normaliser = Normaliser(self._robot) if normalise else None
-        if self._normaliser is not None:
-            self.observation_space = self._normaliser.space(self.observation_space)
+        shown = _shown(cameras, observation, self._robot)
+        normaliser = Normaliser(self._robot) if normalise else None
+        self.teller = Teller(observation, self._robot, shown, normaliser)
+        space = observation_space(observation, self._robot, shown)
+        self.observation_space = space if normaliser is None else normaliser.space(space)
+        self.join(Episodes(1, task), 0)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -157,33 +153,34 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         config = self._config(chosen)
         self._world = World(config)
         self._calibrations = calibrations_of(config.robot.cameras)
-        self._limits, self._dt_s = config.robot.drive, 1.0 / config.control_hz
-        self._frames = round(self._scenario.duration_s * config.control_hz)
-        self._frame = 0
-        self._action = (0.0, 0.0)
+        self._dt_s = 1.0 / config.control_hz
         self._commands: list[Command] = []
         self._is_varied = bool(chosen)
         self._tracker: Tracker | None = None
         if self._kind == "tracks":
             self._tracker = make_eyes(self._tracker_name, self._seed, self._world.truth)
             check_cameras(self._tracker, config.robot.cameras)
-        plan, follow = self._scenario.plan, self._scenario.follow_config()
-        following = following_task(config, follow.keep_height)
-        self._keep_m = following.keep_m
-        self._episode = Episode(plan, self._dt_s, may_lose=self._task != "corridor")
-        self._figures = EpisodeFigures(plan, following)
-        self._start = Planar(0.0, 0.0, 0.0)
         self._tracks: tuple[Track, ...] = ()
+        self._before: Planar | None = None
         self._images: Arrays = {}
-        self._is_over = False
-        if self._normaliser is not None:
-            self._normaliser.begin()
-        self._start = self._perceive(perceive(self._world)).odometry
-        self._episode.judge(self._scene)
-        observation = self.observation()
+        terms = Terms(
+            plan=self._scenario.plan,
+            following=following_task(config, self._scenario.follow_config().keep_height),
+            frames=round(self._scenario.duration_s * config.control_hz),
+            dt_s=self._dt_s,
+            limits=config.robot.drive.limits,
+        )
+        tracks = self._perceive(self._world)
+        verdicts = self._episodes.begin(self._number, terms, self._instants, tracks)
+        self._truth = verdicts.truths[0]
+        observation = self._observation()
         if self.render_mode == "human":
             self._show_first()
-        return observation, self._info(dict.fromkeys(TERMS, 0.0))
+        return observation, self._info(verdicts)
+
+    def join(self, episodes: Episodes, number: int) -> None:
+        """Have the episodes from the next one on among those of many worlds, under a number."""
+        self._episodes, self._number = episodes, number
 
     def vary_by(self, options: Mapping[str, Any]) -> None:
         """Vary every episode from the next one on for which `reset` is given no options, as lessons do.
@@ -205,49 +202,46 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         Raises:
             BadInput: the action is not two finite numbers, or there is no episode under way.
         """
-        command = self.begin_step(check_actions(action, (2,))[0])
-        self.world.step(command.linear_m_s, command.angular_rad_s)
-        result = self.end_step(perceive(self.world))
-        return self.observation(), *result
-
-    def begin_step(self, shares: tuple[float, float]) -> Command:
-        """Give the command for an action, as checked, by which the world is to be stepped now; see `step`.
-
-        Raises:
-            BadInput: there is no episode under way.
-        """
-        self._running()
-        limits = self._limits
-        command = Command(
-            linear_m_s=shares[0] * limits.max_linear_m_s, angular_rad_s=shares[1] * limits.max_angular_rad_s
-        )
-        self._shares = shares
-        self._commands.append(command)
-        self._frame += 1
-        return command
-
-    def end_step(self, instant: Instant) -> tuple[SupportsFloat, bool, bool, dict[str, Any]]:
-        """Judge the instant to which the world has been stepped; see `step`. `observation` is for later."""
-        shares, limits = self._shares, self._limits
-        self._perceive(instant)
-        situation = self._episode.judge(self._scene)
-        terms = reward_terms(
-            self._task, situation, dt_s=self._dt_s, keep_m=self._keep_m,
-            max_linear_m_s=limits.max_linear_m_s, action=shares, before=self._action,
-        )  # fmt: skip
-        self._action = shares
-        terminated = situation.collided or situation.is_lost
-        truncated = self._frame >= self._frames
-        self._is_over = terminated or truncated
-        reward = math.fsum(terms.values())
+        shares, world = check_actions(action, (2,)), self._running()
+        linear_m_s, angular_rad_s = (shares[0] * self._own["limits"]).tolist()
+        self._commands.append(Command(linear_m_s=linear_m_s, angular_rad_s=angular_rad_s))
+        world.step(linear_m_s, angular_rad_s)
+        tracks = self._perceive(world)
+        verdicts = self._episodes.judge(self._instants, shares, tracks)
+        self._truth = verdicts.truths[0]
+        reward = verdicts.rewards[0]
         if self._viewer is not None:
             self._viewer.go_on(self._draw(), reward, self._dt_s)
-        return reward, terminated, truncated, self._info(terms)
+        ends, is_cut = bool(verdicts.terminations[0]), bool(verdicts.truncations[0])
+        return self._observation(), reward, ends, is_cut, self._info(verdicts)
 
-    def observation(self) -> Arrays:
-        """Tell what the controller is told of the instant that was judged last."""
-        found = feel(self._senses, self._start) | self._see()
-        return found if self._normaliser is None else self._normaliser(found)
+    def track(self, instants: Instants, row: int) -> int:
+        """Let the tracker look at an instant, where there is one.
+
+        Args:
+            instants: of many worlds.
+            row: of this one's.
+
+        Returns:
+            The number of the track that lies on the person to follow, 0 for none.
+        """
+        assert self._tracker is not None
+        world, senses = self._running(even_over=True), instants.senses(row)
+        assert isinstance(senses, Observation)
+        self._tracks = self._tracker.update(make_frame(senses, self._calibrations, self._before))
+        self._before = senses.odometry
+        box = world.box(TARGET) if world.config.people else None
+        return track_in(instants.scenes, row, self._tracks, box)
+
+    @property
+    def tracks(self) -> NDArray[np.float32]:
+        """`tracks` (35,) of the instant at which the tracker looked last."""
+        return see_tracks(self._tracks, self._robot)
+
+    @property
+    def seed(self) -> int:
+        """That of the last episode, which has begun."""
+        return self._seed
 
     @property
     def world(self) -> World:
@@ -275,7 +269,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             BadInput: there is no episode yet.
         """
         self._running(even_over=True)
-        return self._figures.metrics()
+        return self._episodes.metrics(self._number)
 
     def save(self, folder: str | Path, *, record: bool = True, overwrite: bool = False) -> None:
         """Write the episode so far as a run's folder, to be reported, viewed and exported.
@@ -310,7 +304,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             record=record,
             overwrite=overwrite,
         )
-        frames = min(self._frame + 1, self._frames)
+        frames = int(min(self._own["frame"] + 1, self._own["frames"]))
         save_episode(self._scenario, self._commands, frames, options, config.control_hz)
 
     def close(self) -> None:
@@ -323,9 +317,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     def _draw(self) -> NDArray[np.uint8]:
         self._running(even_over=True)
         assert self._picture is not None
-        assert isinstance(self._senses, Observation)
+        senses = self._instants.senses(0)
+        assert isinstance(senses, Observation)
         explanation = None if self._tracker is None else explanation_of(self._tracker)
-        return self._picture.draw(self._senses, self._scene, self._tracks, explanation)
+        return self._picture.draw(senses, self._truth, self._tracks, explanation)
 
     def _show_first(self) -> None:
         """Show the episode's first instant, in a viewer that is there already or opened now."""
@@ -356,47 +351,35 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         config = replace(config, robot=self._robot, physics_hz=self._physics_hz, renderer=renderer)
         return vary(config, options, stream(self._seed, "environment.options"))
 
-    def _perceive(self, instant: Instant) -> Senses:
-        """Take in an instant; a tracker looks at it now, for the figures."""
-        world = self._running()
-        before = self._senses.odometry if self._frame > 0 else None
-        self._senses: Senses = instant.senses
-        self._scene: ImageFreeTruth = instant.scene
-        if self._tracker is not None:
-            assert isinstance(self._senses, Observation)
-            self._tracks = self._tracker.update(make_frame(self._senses, self._calibrations, before))
-        if self._frame < self._frames:
-            self._note(world)
-        return self._senses
+    def _perceive(self, world: World) -> list[int] | None:
+        """Take in an instant; gives what `Episodes.judge` is to know of the tracker."""
+        self._instants = perceive(world)._replace(numbers=np.array([self._number]))
+        return None if self._tracker is None else [self.track(self._instants, 0)]
 
-    def _see(self) -> Arrays:
-        """Give what the chosen eyes tell."""
-        if self._kind == "truth":
-            return see_truth(self._scene, self._robot)
-        if self._kind == "tracks":
-            return see_tracks(self._tracks, self._robot)
-        assert isinstance(self._senses, Observation)
-        self._images |= see_images(self._senses, self._robot, self._shown)
-        return self._images
+    def _observation(self) -> Arrays:
+        """Tell what the controller is told of this instant."""
+        tracks = self.tracks[None] if self.teller.tracks else None
+        found = self.teller.tell(self._instants, self._episodes.records, tracks)
+        self._images |= {name: images[0] for name, (_, images) in self.teller.show(self._instants).items()}
+        return {name: array[0] for name, array in found.items()} | self._images
 
-    def _note(self, world: World) -> None:
-        """Keep this instant for the figures."""
-        if self._kind == "tracks" and world.config.people:
-            self._figures.add_tracked(self._scene, self._tracks, world.box(TARGET))
-        else:
-            self._figures.add_seen(self._scene)
+    @property
+    def _own(self) -> np.void:
+        """The record EPISODE of the last episode."""
+        own: np.void = self._episodes.records[self._number]
+        return own
 
-    def _info(self, terms: dict[str, float]) -> dict[str, Any]:
+    def _info(self, verdicts: Verdicts) -> dict[str, Any]:
         info = {
-            "truth": self._scene,
-            "reward": terms,
-            "events": self._episode.events,
+            "truth": self._truth,
+            "reward": dict(zip(TERMS, verdicts.terms[0].tolist(), strict=True)),
+            "events": verdicts.events[0],
             "seed": self._seed,
         }
-        return info | {"metrics": self.metrics()} if self._is_over else info
+        return info | {"metrics": self.metrics()} if self._own["is_over"] else info
 
     def _running(self, *, even_over: bool = False) -> World:
-        if self._world is None or (self._is_over and not even_over):
+        if self._world is None or (self._own["is_over"] and not even_over):
             raise BadInput("environment: no episode is under way; call reset() first")
         return self._world
 
@@ -435,8 +418,8 @@ def _shown(cameras: Sequence[str] | None, observation: str, robot: RobotConfig) 
     return tuple(cameras)
 
 
-def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> list[tuple[float, float]]:
-    """Give the two shares of each of some actions, clipped.
+def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """Give the two shares of each of some actions, clipped: (G, 2).
 
     Raises:
         BadInput: they have not that shape, or not all numbers are finite.
@@ -446,8 +429,7 @@ def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> list[tuple[floa
         raise BadInput(f"actions of shape {shares.shape}: must be {shape}, two finite numbers each")
     if not np.isfinite(shares).all():
         raise BadInput(f"action {actions!r} must be two finite numbers: shares of speed and turn rate")
-    clipped = np.clip(shares, -1.0, 1.0).reshape(-1, 2).tolist()
-    return [(linear, angular) for linear, angular in clipped]
+    return np.clip(shares, -1.0, 1.0).reshape(-1, 2)
 
 
 def _resize(robot: RobotConfig, size: tuple[int, int]) -> RobotConfig:

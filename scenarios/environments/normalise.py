@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from gymnasium import spaces
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.environments.observations import COLUMNS, MOST_TRACKS, Arrays
+from peopleboy.sim.physics.kinematic.solids import Array
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 AWAY_M: Final = 20.0
@@ -43,7 +45,6 @@ class Normaliser:
         self._odometry = np.array(
             [AWAY_M, AWAY_M, 1.0, 1.0, drive.max_linear_m_s, drive.max_angular_rad_s], np.float32
         )
-        self._rows = _Rows()
 
     def space(self, raw: spaces.Space[Arrays]) -> spaces.Space[Arrays]:
         """Give the space of what comes out for that of what goes in."""
@@ -59,36 +60,45 @@ class Normaliser:
             }
         )
 
-    def begin(self) -> None:
-        """Forget who had which row."""
-        self._rows = _Rows()
+    def __call__(self, observation: Arrays, holders: NDArray[np.float64]) -> Arrays:
+        """Bring the next observations of G worlds within bounds.
 
-    def __call__(self, observation: Arrays) -> Arrays:
-        """Bring the next observation of an episode within bounds."""
+        Args:
+            observation: as `observation_space` says, with worlds first.
+            holders: (G, 5) numbers of the people who have the rows of `tracks`, kept up to date; 0 for none,
+                as at the beginning of an episode.
+        """
         found = observation | {
             "sonar": np.clip(observation["sonar"] / self._reach_m, 0.0, 1.0),
             "odometry": np.clip(observation["odometry"] / self._odometry, -1.0, 1.0),
         }
         if "tracks" in observation:
-            found["tracks"] = self._rows.sorted(observation["tracks"])
+            told = observation["tracks"].reshape(-1, MOST_TRACKS, len(COLUMNS))
+            shares = np.clip(told / _SCALES, _LOWEST, 1.0)
+            found["tracks"] = np.empty_like(observation["tracks"])
+            _keep_rows(told, shares, holders, found["tracks"].reshape(told.shape))
         return found
 
 
-class _Rows:
-    """Knows who had which row of `tracks` in the last observation."""
+@njit(cache=True)
+def _keep_rows(told: NDArray[np.float32], shares: Array, holders: Array, found: NDArray[np.float32]) -> None:
+    """Put everybody into the row of before, and newcomers into the first that is free.
 
-    def __init__(self) -> None:
-        self._holders = [0.0] * MOST_TRACKS
-
-    def sorted(self, tracks: NDArray[Any]) -> NDArray[np.float32]:
-        """Put everybody into the row of before, and the numbers within bounds."""
-        people = {float(row[0]): row for row in tracks.reshape(MOST_TRACKS, len(COLUMNS)) if row[0] > 0}
-        holders = [number if number in people else 0.0 for number in self._holders]
-        for newcomer in [number for number in people if number not in holders]:
-            holders[holders.index(0.0)] = newcomer
-        self._holders = holders
-        table = np.zeros((MOST_TRACKS, len(COLUMNS)), np.float32)
-        for row, number in zip(table, holders, strict=True):
-            if number:
-                row[:] = np.clip(people[number] / _SCALES, _LOWEST, 1.0)
-        return table.reshape(-1)
+    Args:
+        told: (G, 5, 7) as in observations.
+        shares: (G, 5, 7) the same within bounds.
+        holders: (G, 5) see `Normaliser`.
+        found: (G, 5, 7).
+    """
+    found[:] = 0.0
+    for world in range(len(told)):
+        numbers, places = told[world, :, 0], holders[world]
+        for place in range(len(places)):
+            if not (numbers == places[place]).any():
+                places[place] = 0.0
+        for row in range(len(numbers)):
+            if numbers[row] > 0.0 and not (places == numbers[row]).any():
+                places[np.argmax(places == 0.0)] = numbers[row]
+        for place in range(len(places)):
+            if places[place] > 0.0:
+                found[world, place] = shares[world, np.argmax(numbers == places[place])]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
@@ -10,21 +9,21 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.environments.tell_worlds import fill_tracks, tell_motions
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.thermal_box import thermal_box
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import kind_of
-from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.observation import Observation, Senses
-from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
+from peopleboy.sim.fleet.instants import Instants
+from peopleboy.sim.physics.kinematic.solids import Array
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
-from peopleboy.tracker.boxes import Box, image_shares
+from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.truth.scenes import Scenes
+from peopleboy.sim.truth.seen import SEEN
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
 Arrays = dict[str, NDArray[Any]]
-Row = tuple[float, ...]
 
 KINDS: Final = ("pixels", "tracks", "truth")
 MOST_TRACKS: Final = 5
@@ -62,69 +61,63 @@ def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> sp
         for name in shown:
             camera = robot.cameras[name]
             dtype = kind_of(camera).dtype
-            found[name] = spaces.Box(0, int(np.iinfo(dtype).max), _shape(camera), dtype)
+            found[name] = spaces.Box(0, int(np.iinfo(dtype).max), image_shape(camera), dtype)
     else:
         lowest, highest = (np.tile(np.array(row, np.float32), MOST_TRACKS) for row in (_LOWEST, _HIGHEST))
         found["tracks"] = spaces.Box(lowest, highest, dtype=np.float32)
     return spaces.Dict(found)  # type: ignore[return-value]  # typed there as if samples were spaces
 
 
-def feel(senses: Senses, start: Planar) -> Arrays:
-    """Give what every observation has: sonar and odometry."""
-    here = senses.odometry
-    turned = here.heading - start.heading
-    cos, sin = math.cos(start.heading), math.sin(start.heading)
-    dx, dy = here.x - start.x, here.y - start.y
-    left, right = senses.wheel_speeds_m_s
-    odometry = (
-        cos * dx + sin * dy, cos * dy - sin * dx, math.cos(turned), math.sin(turned),
-        (left + right) / 2.0, (right - left) / WHEEL_DISTANCE_M,
-    )  # fmt: skip
-    return {"sonar": senses.sonar_m.astype(np.float32), "odometry": np.array(odometry, np.float32)}
+def feel(instants: Instants, starts: Array) -> Arrays:
+    """Give what every observation has, of G worlds: sonar (G, 16) and odometry (G, 6).
+
+    Args:
+        instants: of the worlds.
+        starts: (G, 3) odometry x, y [m], heading [rad] at the beginning of each episode.
+    """
+    odometry = np.empty((len(starts), 6), np.float32)
+    tell_motions(starts, instants.odometry, instants.wheel_speeds_m_s, odometry)
+    return {"sonar": instants.sonar_m.astype(np.float32), "odometry": odometry}
 
 
-def see_images(observation: Observation, robot: RobotConfig, shown: Sequence[str]) -> Arrays:
-    """Give the images of `pixels`, of the cameras that are `shown` and have a new one."""
-    images = observation.images
-    return {name: images[name].reshape(_shape(robot.cameras[name])) for name in shown if name in images}
-
-
-def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> Arrays:
-    """Give what the tracker is sure of."""
+def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> NDArray[np.float32]:
+    """Give what the tracker is sure of in one world: (35,)."""
     thermal = calibrations_of(robot.cameras)[THERMAL]
-    return _table(
-        _row(track.id, box, track.confidence, track.status is not Status.TOTALLY_OCCLUDED, robot)
+    rows = [
+        (track.id, *box, track.confidence, track.status is not Status.TOTALLY_OCCLUDED)
         for track in tracks
         if track.status is not Status.TENTATIVE and (box := thermal_box(track, thermal)) is not None
-    )
+    ]
+    found = _fill(np.array(rows, np.float64).reshape(-1, 7), np.array([[0, len(rows)]]), robot)
+    return found.reshape(-1)
 
 
-def see_truth(scene: ImageFreeTruth, robot: RobotConfig) -> Arrays:
-    """Give what a perfect tracker would say: everybody within the image, hidden or not."""
-    rows = (
-        _row(person.id, person.box, 1.0, person.is_seen, robot)
-        for person in scene.people
-        if person.box is not None
-    )
-    return _table(row for row in rows if abs(row[1]) <= 1.0)  # whose middle lies between the borders
+def see_truth(scenes: Scenes, robot: RobotConfig) -> NDArray[np.float32]:
+    """Give what a perfect tracker would say in G worlds, everybody within the image: (G, 35)."""
+    people = scenes.people
+    seen, sure = people["free_ray_share"] > SEEN, np.ones(len(people))
+    rows = np.column_stack([people["id"], people["box"], sure, seen])
+    borders = np.column_stack([scenes.worlds["first"], scenes.worlds["end"]])
+    return _fill(rows, borders, robot, farthest=1.0)  # whose middle lies between the borders
 
 
-def _shape(camera: CameraConfig) -> tuple[int, int, int]:
+def image_shape(camera: CameraConfig) -> tuple[int, int, int]:
+    """(H, W, C) of its images in an observation."""
     return camera.camera.height, camera.camera.width, kind_of(camera).channels
 
 
-def _row(number: int, box: Box, confidence: float, visible: bool, robot: RobotConfig) -> Row:
+def _fill(
+    people: Array, borders: Numbers, robot: RobotConfig, farthest: float = np.inf
+) -> NDArray[np.float32]:
+    """Fill `tracks` (G, 35): the tallest first, and nobody into the rest.
+
+    Args:
+        people: (Q, 7) id, box [px], confidence and is_visible, one world after the other.
+        borders: (G, 2) where those of each world begin and end.
+        robot: with the thermal camera, in whose image the boxes are.
+        farthest: [half image widths] of people from the middle of the image.
+    """
     camera = robot.cameras["thermal"].camera
-    return float(number), *image_shares(box, camera.width, camera.height), confidence, float(visible)
-
-
-def _table(rows: Iterable[Row]) -> Arrays:
-    """Put the tallest first, and nobody into the rest."""
-    tallest = sorted(rows, key=lambda row: -row[2])[:MOST_TRACKS]
-    numbers = [
-        min(max(number, low), high)
-        for row in tallest
-        for number, low, high in zip(row, _LOWEST, _HIGHEST, strict=True)
-    ]
-    numbers += [0.0] * (MOST_TRACKS * len(COLUMNS) - len(numbers))
-    return {"tracks": np.array(numbers, np.float32)}
+    found = np.empty((len(borders), MOST_TRACKS * len(COLUMNS)), np.float32)
+    fill_tracks(people, borders, camera.width, camera.height, farthest, _LOWEST, _HIGHEST, found)
+    return found

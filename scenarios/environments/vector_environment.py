@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, SupportsFloat
+from typing import Any
 
 import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -13,12 +13,15 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv, check_actions
 from peopleboy.scenarios.environments.join_infos import Infos, join_infos
+from peopleboy.scenarios.environments.judging.episodes import Episodes
 from peopleboy.scenarios.environments.observations import Arrays
+from peopleboy.scenarios.environments.step_results import StepResults
 from peopleboy.sim.fleet.crew import Crew
+from peopleboy.sim.fleet.instants import Instants
 from peopleboy.sim.fleet.together import Together
+from peopleboy.sim.shapes.joined_tables import Numbers
 
 Flags = NDArray[np.bool_]
-Result = tuple[SupportsFloat, bool, bool, dict[str, Any]]  # of a single environment's step
 
 
 class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
@@ -56,11 +59,16 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self.num_envs = num_envs
         self._crew = Crew(threads)
         self._envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))
-        self.single_action_space = self._envs[0].action_space
-        self.single_observation_space = self._envs[0].observation_space
+        first = self._envs[0]
+        self._episodes = Episodes(num_envs, first.task)
+        for number, env in enumerate(self._envs):
+            env.join(self._episodes, number)
+        self.single_action_space = first.action_space
+        self.single_observation_space = first.observation_space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self._is_over = np.zeros(num_envs, np.bool_)
+        self._teller = first.teller
+        self._kept: Arrays = {}
         self._together: Together | None = None  # until episodes have begun
 
     def reset(
@@ -90,8 +98,8 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             observation, info = env.reset(seed=own, options=options)
             _put(found, number, observation)
             infos.append(info)
-        self._is_over[:] = False
         self._together = None
+        self._keep(found)
         return found, join_infos(infos)
 
     def step(self, actions: NDArray[np.float32]) -> tuple[Arrays, NDArray[np.float64], Flags, Flags, Infos]:
@@ -100,24 +108,20 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         Raises:
             BadInput: the actions are not (B, 2) finite numbers, or there are no episodes under way.
         """
-        results = self._step_together(check_actions(actions, (self.num_envs, 2)))
-        found, begun = self._empty(), dict[int, Arrays]()
-        infos: list[Infos] = []
-        rewards = np.zeros(self.num_envs)
-        terminations, truncations = np.zeros((2, self.num_envs), np.bool_)
-        for number, env in enumerate(self._envs):
-            if self._is_over[number]:
-                begun[number], info = env.reset()
-                self._together = None
-            else:
-                reward, ended, cut, info = results[number]
-                rewards[number], terminations[number], truncations[number] = float(reward), ended, cut
-            infos.append(info)
-        joined = join_infos(infos)
-        for number, env in enumerate(self._envs):
-            _put(found, number, begun[number] if number in begun else env.observation())
-        self._is_over = terminations | truncations
-        return found, rewards, terminations, truncations, joined
+        shares, is_over = check_actions(actions, (self.num_envs, 2)), self._episodes.records["is_over"].copy()
+        instants = self._step_together(np.flatnonzero(~is_over), shares)
+        results = StepResults(self.num_envs)
+        for each in instants:
+            results.take(each.numbers, self._episodes.judge(each, shares[each.numbers], self._track(each)))
+        begun = self._begin(np.flatnonzero(is_over), results)
+        ends = (results.terminations | results.truncations).tolist()
+        metrics = [self._episodes.metrics(number) if is_end else None for number, is_end in enumerate(ends)]
+        infos = results.infos([env.seed for env in self._envs], metrics)
+        found = self._tell(instants)  # at last, as images are being made meanwhile
+        for number, observation in begun.items():
+            _put(found, number, observation)
+        self._keep(found)
+        return found, results.rewards, results.terminations, results.truncations, infos
 
     def vary_by(self, options: dict[str, Any]) -> None:
         """Vary every world's episodes from its next one on, as for a single environment.
@@ -134,16 +138,47 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             env.close()
         self._crew.close()
 
-    def _step_together(self, actions: Sequence[tuple[float, float]]) -> dict[int, Result]:
-        """Step the worlds whose episodes are under way; gives what each environment says, by its number."""
-        going = {number: env for number, env in enumerate(self._envs) if not self._is_over[number]}
-        commands = {number: env.begin_step(actions[number]) for number, env in going.items()}
+    def _step_together(self, going: Numbers, shares: NDArray[np.float64]) -> list[Instants]:
+        """Step the worlds whose episodes are under way."""
         if self._together is None:
             self._together = Together([env.world for env in self._envs], self._crew)
-        instants = self._together.step(
-            {number: (command.linear_m_s, command.angular_rad_s) for number, command in commands.items()}
-        )
-        return {number: env.end_step(instants[number]) for number, env in going.items()}
+        return self._together.step(going, (shares * self._episodes.records["limits"])[going])
+
+    def _track(self, instants: Instants) -> list[int] | None:
+        """Let trackers look, if there are any; gives what `Episodes.judge` is to know of them."""
+        if not self._teller.tracks:
+            return None
+        return [
+            self._envs[number].track(instants, row) for row, number in enumerate(instants.numbers.tolist())
+        ]
+
+    def _begin(self, numbers: Numbers, results: StepResults) -> dict[int, Arrays]:
+        """Begin new episodes in some worlds; gives their observations."""
+        found = {}
+        for number in numbers.tolist():
+            found[number], info = self._envs[number].reset()
+            results.begin(number, info)
+            self._together = None
+        return found
+
+    def _tell(self, instants: Sequence[Instants]) -> Arrays:
+        """Tell what controllers are told of some instants; of other worlds it tells nothing yet."""
+        found = self._empty()
+        for name, images in self._kept.items():
+            found[name][:] = images
+        for each in instants:
+            tracks = None
+            if self._teller.tracks:
+                tracks = np.stack([self._envs[number].tracks for number in each.numbers.tolist()])
+            for name, array in self._teller.tell(each, self._episodes.records, tracks).items():
+                found[name][each.numbers] = array
+            for name, (rows, array) in self._teller.show(each).items():
+                found[name][each.numbers[rows]] = array
+        return found
+
+    def _keep(self, found: Arrays) -> None:
+        """Keep the images of cameras that do not take one at every step."""
+        self._kept = {name: found[name].copy() for name in self._teller.slow}
 
     def _empty(self) -> Arrays:
         spaces = self.observation_space.spaces.items()  # type: ignore[attr-defined]  # it is a Dict

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore, Leg, score_corridor
 from peopleboy.sim.places.floor_plan import FloorPlan
@@ -24,13 +25,23 @@ class CorridorLog:
 
     def score(self, plan: FloorPlan) -> CorridorScore:
         """Score the way so far in the corridors of a floor plan."""
-        table = np.array(self._rows, dtype=np.float64)
-        return score_corridor(
-            time_s=table[:, 0],
-            robot=table[:, 1:4],
-            is_contact=table[:, 4] > 0.0,
-            legs=tuple(centre_line(area) for _, area in plan.areas),
-        )
+        return score_way(np.array(self._rows, dtype=np.float64), plan)
+
+
+def score_way(table: NDArray[np.float64], plan: FloorPlan) -> CorridorScore:
+    """Score a way in the corridors of a floor plan.
+
+    Args:
+        table: (T, 5) of each instant the time [s], the robot's x, y [m] and heading [rad], and whether it
+            touched anything.
+        plan: of the place.
+    """
+    return score_corridor(
+        time_s=table[:, 0],
+        robot=table[:, 1:4],
+        is_contact=table[:, 4] > 0.0,
+        legs=tuple(centre_line(area) for _, area in plan.areas),
+    )
 
 
 def centre_line(area: Rectangle) -> Leg:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.scores.following_metrics import (
@@ -57,18 +58,29 @@ class FollowingLog:
 
     def score(self, task: FollowingTask) -> FollowingScore:
         """Score what happened so far against what the robot was to do."""
-        table = np.array(self._rows, dtype=np.float64)
-        wrong = table[:, 8]
-        run = FollowingRun(
-            time_s=table[:, 0],
-            robot=table[:, 1:4],
-            person=table[:, 4:6],
-            is_tracked=table[:, 7] > 0.0,
-            is_contact=table[:, 6] > 0.0,
-            track=table[:, 7].astype(np.int64),
-            is_wrong=None if np.isnan(wrong).any() else wrong > 0.0,
-        )
-        return score_following(run, task)
+        return score_instants(np.array(self._rows, dtype=np.float64), task)
+
+
+def score_instants(table: NDArray[np.float64], task: FollowingTask) -> FollowingScore:
+    """Score how one person was followed.
+
+    Args:
+        table: (T, 9) of each instant the time [s], the robot's x, y [m] and heading [rad], x, y [m] of the
+            person to follow, NaN while away, whether the robot touched anything, the number of the track on
+            the person, 0 for none, and whether it went after somebody else, NaN if nobody knows.
+        task: what was asked.
+    """
+    wrong = table[:, 8]
+    run = FollowingRun(
+        time_s=table[:, 0],
+        robot=table[:, 1:4],
+        person=table[:, 4:6],
+        is_tracked=table[:, 7] > 0.0,
+        is_contact=table[:, 6] > 0.0,
+        track=table[:, 7].astype(np.int64),
+        is_wrong=None if np.isnan(wrong).any() else wrong > 0.0,
+    )
+    return score_following(run, task)
 
 
 class Spot(NamedTuple):

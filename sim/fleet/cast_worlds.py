@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from peopleboy.sim.fleet.side_by_side import Joined, Numbers, world_in
+from peopleboy.sim.fleet.side_by_side import Joined, world_in
 from peopleboy.sim.physics.kinematic.cast import cast_into
 from peopleboy.sim.physics.kinematic.solids import Array, refresh
+from peopleboy.sim.shapes.joined_tables import Numbers
 
 
 @njit(cache=True, nogil=True)

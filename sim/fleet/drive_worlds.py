@@ -9,37 +9,17 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.fleet.side_by_side import Joined, Numbers, world_in
+from peopleboy.sim.fleet.side_by_side import Joined, world_in
 from peopleboy.sim.geometry.angles import remainder
 from peopleboy.sim.physics.kinematic.drive import push_out, roll
 from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids, refresh
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle
-from peopleboy.sim.robot.peoplebot import approach
+from peopleboy.sim.robot.peoplebot import Gears, approach
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M, WHEEL_RADIUS_M, wheel_speeds
+from peopleboy.sim.shapes.joined_tables import Numbers
 
 _approach = njit(cache=True)(approach)
 _wheel_speeds = njit(cache=True)(wheel_speeds)
-
-
-class Robots(NamedTuple):
-    """What moves the robots of G worlds that are to be stepped, and what their encoders make of it.
-
-    Attributes:
-        command, target: (G, 2) [m/s, rad/s] speeds now, and those to be reached.
-        rise: (G, 2) [m/s2, rad/s2] at which they are.
-        turned: (G, 2) [rad] wheel angles as the odometry knows them.
-        odometry: (G, 3) x, y [m], heading [rad].
-        noise: (G, 2) standard normal, of the encoders in this step.
-        noise_m: (G,) [m/sqrt(m)] what they are to be multiplied by.
-    """
-
-    command: Array
-    target: Array
-    rise: Array
-    turned: Array
-    odometry: Array
-    noise: Array
-    noise_m: Array
 
 
 class Capsules(NamedTuple):
@@ -66,7 +46,8 @@ def drive_worlds(
     going: Numbers,
     joined: Joined,
     vehicle: Vehicle,
-    robots: Robots,
+    gears: Gears,
+    noise_m: Array,
     people: Capsules,
     dt_s: float,
     steps: int,
@@ -78,8 +59,9 @@ def drive_worlds(
         going: (G,) numbers of the worlds.
         joined: changed in place.
         vehicle: all robots.
-        robots: `command`, `turned` and `odometry` are changed in place.
-        people: likewise.
+        gears: of all robots, with worlds first; `command`, `turned` and `odometry` are changed in place.
+        noise_m: (G, 2) [m/sqrt(m)] of the encoders in this step.
+        people: who are placed, all of them.
         dt_s: [s] length of a physics step.
         steps: how many of them.
         touched: one for each body of `joined`, gets True for what its robot touched.
@@ -87,24 +69,24 @@ def drive_worlds(
     for row in range(len(going)):
         world = going[row]
         bodies, solids = world_in(joined, world)
-        first, end = joined.firsts.body[world], joined.firsts.body[world + 1]
+        first, end = joined.first_body[world], joined.first_body[world + 1]
         met = np.zeros(end - first, np.bool_)
         for k in range(steps):
-            _set_wheels(robots, row, dt_s, joined.motion.speeds[world])
+            _set_wheels(gears, world, dt_s, joined.motion.speeds[world])
             _move_people(people, world, (k + 1) / steps, bodies)
             refresh(bodies, solids)
             met[:] = False
             _roll(joined, world, vehicle, bodies, solids, dt_s, met)
             touched[first:end] |= met
         bodies.stale[joined.own[world]] = True
-        _count(robots, row, joined.motion.angles[world])
+        _count(gears, world, noise_m[row], joined.motion.angles[world])
         _put_people(people, world, bodies)
 
 
 @njit(cache=True)
-def _set_wheels(robots: Robots, row: int, dt_s: float, speeds: Array) -> None:
+def _set_wheels(gears: Gears, world: int, dt_s: float, speeds: Array) -> None:
     """Move the speeds towards those to be reached; see `PeopleBot.drive`."""
-    command, target, rise = robots.command[row], robots.target[row], robots.rise[row]
+    command, target, rise = gears.command[world], gears.target[world], gears.rise[world]
     if command[0] == target[0] and command[1] == target[1]:
         return
     for k in range(2):
@@ -172,16 +154,15 @@ def _roll(
 
 
 @njit(cache=True)
-def _count(robots: Robots, row: int, angles: Array) -> None:
+def _count(gears: Gears, world: int, noise_m: Array, angles: Array) -> None:
     """Integrate what the encoders counted; see `PeopleBot.update_odometry`."""
     rims = np.empty(2)
     for k in range(2):
-        travelled = (angles[k] - robots.turned[row, k]) * WHEEL_RADIUS_M
-        noise = robots.noise[row, k] * robots.noise_m[row]
-        rims[k] = travelled + noise * math.sqrt(abs(travelled))
-        robots.turned[row, k] = angles[k]
+        travelled = (angles[k] - gears.turned[world, k]) * WHEEL_RADIUS_M
+        rims[k] = travelled + noise_m[k] * math.sqrt(abs(travelled))
+        gears.turned[world, k] = angles[k]
     turn, advance = (rims[1] - rims[0]) / WHEEL_DISTANCE_M, (rims[0] + rims[1]) / 2.0
-    odometry = robots.odometry[row]
+    odometry = gears.odometry[world]
     middle = odometry[2] + turn / 2.0
     odometry[0] += advance * math.cos(middle)
     odometry[1] += advance * math.sin(middle)

@@ -3,36 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from itertools import accumulate
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.kinds import flat_geometry
-from peopleboy.sim.fleet.cast_worlds import cast_eyes, hear_worlds, refresh_worlds
+from peopleboy.sim.fleet.cast_worlds import refresh_worlds
 from peopleboy.sim.fleet.crew import Crew
-from peopleboy.sim.fleet.drive_worlds import Capsules, Robots, drive_worlds
-from peopleboy.sim.fleet.eyes import Eyes, cameras_of
+from peopleboy.sim.fleet.drawing.eyes import Eyes, cameras_of
+from peopleboy.sim.fleet.drive_worlds import Capsules
+from peopleboy.sim.fleet.drives import Drives
+from peopleboy.sim.fleet.ears import Ears
 from peopleboy.sim.fleet.hold_people import Limbs
-from peopleboy.sim.fleet.instant import Instant
-from peopleboy.sim.fleet.shots import Pictures
+from peopleboy.sim.fleet.instants import Instants, OwnPictures, Pictures
 from peopleboy.sim.fleet.side_by_side import lay_side_by_side
 from peopleboy.sim.fleet.walk_worlds import Walks
+from peopleboy.sim.fleet.watch_people import Watch
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.observation import Senses
-from peopleboy.sim.people.person import Person
 from peopleboy.sim.physics.kinematic.kinematic import Kinematic
+from peopleboy.sim.physics.kinematic.solids import Array
 from peopleboy.sim.robot.robot_body import WHEEL_RADIUS_M
-from peopleboy.sim.robot.sonar import read_echoes
-from peopleboy.sim.truth.bystanders import describe
-from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
-from peopleboy.sim.truth.upright import free_ray_shares, stand_before
+from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.truth.scenes import SCENE, Scenes
 from peopleboy.sim.world import World
-
-Command = tuple[float, float]
 
 
 class Fleet:
@@ -55,195 +50,106 @@ class Fleet:
         self._joined, laid = lay_side_by_side(states)
         for each, state in zip(physics, laid, strict=True):
             each.lay_into(state)
-        self._vehicle = states[0].vehicle
-        first = worlds[0]
-        self._ring = first.robot.ring
-        self._camera = flat_geometry(first.config.robot.cameras, "thermal")
-        config = first.config
-        self._dt_s, self._steps = 1.0 / config.physics_hz, config.physics_hz // config.control_hz
-        self._control_s = 1.0 / config.control_hz
-        self._own = self._joined.firsts.body[:-1] + self._joined.own
+        self._own = self._joined.first_body[:-1] + self._joined.own
+        self._control_s = 1.0 / worlds[0].config.control_hz
+        self._drives = Drives(worlds, self._joined, states[0].vehicle)
+        self._ears = Ears(worlds, self._joined)
         self._walks = Walks(worlds)
-        self._is_scripted = self._walks.is_scripted.tolist()
-        self._know_people(physics)
-        shows = worlds[0].has_images and any(world.crowd.people for world in worlds)
+        self._watch = Watch(worlds, self._walks, self._joined)
+        self._capsules = _capsules(worlds, self._walks)
+        self._names = [world.crowd.names for world in worlds]
+        shows = worlds[0].has_images and any(self._names)
         self._limbs = Limbs(worlds, self._walks, self._joined) if shows else None
-        wheels = self._joined.firsts.part[:-1, None] + np.array([each.wheels for each in physics])
+        wheels = self._joined.first_part[:-1, None] + np.array([each.wheels for each in physics])
         makes_images = cameras_of(worlds[0]) is not None
         self._eyes = Eyes(worlds, self._joined, wheels, crew) if makes_images else None
 
-    def step(self, commands: Mapping[int, Command]) -> None:
+    def step(self, going: Numbers, commands: Array) -> None:
         """Step some of the worlds, as `World.step` does.
 
         Args:
-            commands: speeds [m/s, rad/s] by the number of the world.
+            going: (G,) numbers of the worlds, rising.
+            commands: (G, 2) speeds [m/s, rad/s].
+
+        Raises:
+            BadInput: a command is not finite.
         """
         if self._eyes is not None:
             self._eyes.finish()
-        going = np.array(list(commands), np.int64)
-        before = self._walks.places()
-        self._begin(going, commands)
-        robots = self._robots(going)
-        capsules = Capsules(
-            first=self._walks.first,
-            body=self._capsule_bodies,
-            is_solid=np.array([is_solid for world in self._worlds for is_solid in world.crowd.are_solid]),
-            middle_m=self._heights_m / 2.0,
-            before=before,
-            after=self._walks.places(),
+        self._drives.command(going, commands)
+        before = self._walks.records["position"].copy()
+        self._walk(going, commands)
+        is_solid = [is_solid for world in self._worlds for is_solid in world.crowd.are_solid]
+        capsules = self._capsules._replace(
+            is_solid=np.array(is_solid, np.bool_), before=before, after=self._walks.records["position"]
         )
         if self._limbs is not None:
             self._limbs.place(going)
-        touched = np.zeros(len(self._joined.bodies.places), np.bool_)
-        drive_worlds(going, self._joined, self._vehicle, robots, capsules, self._dt_s, self._steps, touched)
-        firsts, any_touched = self._joined.firsts.body, bool(touched.any())
-        rows = zip(going.tolist(), robots.command.tolist(), robots.odometry.tolist(), strict=True)
-        for row, (number, (linear, angular), odometry) in enumerate(rows):
-            world = self._worlds[number]
-            world.robot.take_over((linear, angular), robots.turned[row], Planar(*odometry))
-            mine = touched[firsts[number] : firsts[number + 1]] if any_touched else None
-            names = set() if mine is None else _kinematic(world).names_of(mine)
-            world.end_step(names, are_placed=True)
+        self._end(going, self._drives.drive(going, capsules))
 
-    def _begin(self, going: NDArray[np.int64], commands: Mapping[int, Command]) -> None:
-        """Give robots their commands, and let people walk on."""
-        places = self._joined.bodies.places[self._own[going], :2]
-        for number, (linear_m_s, angular_rad_s) in commands.items():
-            world = self._worlds[number]
-            if self._is_scripted[number]:
-                world.robot.command(linear_m_s, angular_rad_s)
-            else:
-                world.begin_step(linear_m_s, angular_rad_s)
-        times_s = [self._worlds[number].time_s for number in commands]
-        self._walks.step(going, times_s, self._control_s, places)
+    def _walk(self, going: Numbers, commands: Array) -> None:
+        """Let people walk on."""
+        for number, command in zip(going.tolist(), commands.tolist(), strict=True):
+            if not self._walks.is_scripted[number]:
+                self._worlds[number].begin_step(*command)
+        times_s = self._times(going)
+        self._walks.step(going, times_s, self._control_s, self._joined.bodies.places[self._own[going], :2])
         if self._limbs is not None:
             self._limbs.move(going, times_s, self._control_s)
 
-    def look(self, numbers: Sequence[int]) -> list[Instant]:
+    def _end(self, going: Numbers, touched: NDArray[np.bool_]) -> None:
+        """Tell worlds what came of the step."""
+        first, any_touched = self._joined.first_body, bool(touched.any())
+        for number in going.tolist():
+            world, names = self._worlds[number], set[str]()
+            if any_touched:
+                names = _kinematic(world).names_of(touched[first[number] : first[number + 1]])
+            world.end_step(names, are_placed=True)
+
+    def look(self, going: Numbers) -> Instants:
         """Sense and tell the truth in some of the worlds, as `World.sense` and `World.scene` do.
 
         Args:
-            numbers: of the worlds.
+            going: (G,) numbers of the worlds, rising.
         """
-        going = np.array(numbers, np.int64)
         places = self._joined.bodies.places[self._own[going]]
         poses = pose_matrices(places[:, :3], places[:, 3:])
-        robots = [
-            Planar(x, y, math.atan2(sine, cosine))
-            for x, y, sine, cosine in poses[:, (0, 1, 1, 0), (3, 3, 0, 0)].tolist()
-        ]
         refresh_worlds(going, self._joined)
-        speeds = self._speeds(going, poses)
-        pictures = self._look_around(going, poses, speeds)
-        sonar = self._hear(going, poses)
-        people = self._see(going, poses, robots)
-        rims = (self._joined.motion.speeds[going] * WHEEL_RADIUS_M).tolist()
-        found = []
-        for row, number in enumerate(numbers):
-            world, robot = self._worlds[number], robots[row]
-            left, right = rims[row]
-            senses = Senses(
-                time_s=world.time_s, sonar_m=sonar[row], odometry=world.robot.odometry,
-                wheel_speeds_m_s=(left, right),
-            )  # fmt: skip
-            if world.has_images:
-                senses = world.with_images(senses, None if pictures is None else pictures[row])
-            scene = ImageFreeTruth(
-                time_s=world.time_s, robot=robot, robot_velocity=speeds[row], contacts=world.touching,
-                people=people[row],
-            )  # fmt: skip
-            found.append(Instant(senses, scene))
-        return found
-
-    def _look_around(
-        self, going: NDArray[np.int64], poses: Matrix, speeds: Sequence[tuple[float, float]]
-    ) -> list[Pictures] | None:
-        """Begin with images, if these are worlds whose images are made together."""
-        if self._eyes is None:
-            return None
-        return self._eyes.look(going, poses, np.array([turn for _, turn in speeds]))
-
-    def _know_people(self, physics: Sequence[Kinematic]) -> None:
-        """Keep of everybody what never changes."""
-        crowds = [world.crowd for world in self._worlds]
-        self._people: list[tuple[tuple[int, Person], ...]] = [
-            tuple(enumerate(crowd.people, 1)) for crowd in crowds
-        ]
-        everybody = [person for crowd in crowds for person in crowd.people]
-        self._capsule_bodies = np.array(
-            [
-                each.number_of(name)
-                for each, crowd in zip(physics, crowds, strict=True)
-                for name in crowd.capsules
-            ],
-            np.int64,
-        )
-        self._heights_m = np.array([person.config.height_m for person in everybody])
-        self._radii_m = np.array([person.radius_m for person in everybody])
-
-    def _robots(self, going: NDArray[np.int64]) -> Robots:
-        robots = [self._worlds[number].robot for number in going.tolist()]
-        gears = [robot.gears for robot in robots]
-        odometry = [(robot.odometry.x, robot.odometry.y, robot.odometry.heading) for robot in robots]
-        return Robots(
-            command=np.array([each.command for each in gears]).reshape(-1, 2),
-            target=np.array([each.target for each in gears]).reshape(-1, 2),
-            rise=np.array([each.rise for each in gears]).reshape(-1, 2),
-            turned=np.array([each.turned for each in gears]).reshape(-1, 2),
-            odometry=np.array(odometry).reshape(-1, 3),
-            noise=np.array([robot.draw_noise() for robot in robots]).reshape(-1, 2),
-            noise_m=np.array([robot.encoder_noise_m for robot in robots]),
+        scenes = np.zeros(len(going), SCENE)
+        scenes["time_s"], scenes["robot"] = self._times(going), _planar(poses)
+        scenes["velocity"] = self._speeds(going, poses)
+        pictures = self._take_images(going, poses, scenes["velocity"][:, 1])
+        sonar_m = self._ears.hear(going, poses)
+        people, first = self._watch.see(going, poses, scenes["robot"])
+        scenes["first"], scenes["end"] = first[:-1], first[1:]
+        contacts = tuple([self._worlds[number].touching for number in going.tolist()])
+        scenes["is_touching"] = [bool(names) for names in contacts]
+        names = tuple([self._names[number] for number in going.tolist()])
+        return Instants(
+            numbers=going,
+            sonar_m=sonar_m,
+            odometry=self._drives.gears.odometry[going],
+            wheel_speeds_m_s=self._joined.motion.speeds[going] * WHEEL_RADIUS_M,
+            scenes=Scenes(scenes, people, names, contacts),
+            pictures=pictures,
         )
 
-    def _hear(self, going: NDArray[np.int64], poses: Matrix) -> Matrix:
-        """(G, 16) [m] readings of the sonars."""
-        ring = self._ring
-        turns, shifts = poses[:, :3, :3].transpose(0, 2, 1), poses[:, None, :3, 3]
-        starts, ends = ring.starts @ turns + shifts, ring.ends @ turns + shifts
-        nearest_m = np.empty((len(going), len(ring.starts)))
-        hear_worlds(going, self._joined, starts, ends, ring.reach, nearest_m)
-        drawn = [self._worlds[number].robot.ring.draw_noise() for number in going.tolist()]
-        noise_m, is_lost = (np.array(each) for each in zip(*drawn, strict=True))
-        return read_echoes(nearest_m, noise_m, is_lost, ring.config)
+    def _take_images(self, going: Numbers, poses: Matrix, turn_rad_s: Array) -> Pictures | None:
+        if self._eyes is not None:
+            return self._eyes.look(going, poses, turn_rad_s)
+        worlds = [self._worlds[number] for number in going.tolist()]
+        return OwnPictures([world.take_images() for world in worlds]) if worlds[0].has_images else None
 
-    def _see(
-        self, going: NDArray[np.int64], poses: Matrix, robots: Sequence[Planar]
-    ) -> list[tuple[Bystander, ...]]:
-        """Tell of everybody who is present in the worlds, as `bystanders` does of one."""
-        present = [[pair for pair in self._people[number] if pair[1].present] for number in going.tolist()]
-        counts = [len(each) for each in present]
-        if not any(counts):
-            return [()] * len(present)
-        row = np.repeat(np.arange(len(going)), counts)
-        who = np.array([number - 1 for each in present for number, _ in each])
-        who += self._walks.first[going[row]]
-        radii_m = self._radii_m[who]
-        world_from_camera = poses @ self._camera.robot_from_camera
-        places = _rows([person.position for each in present for _, person in each])
-        uprights = stand_before(places, self._heights_m[who], radii_m, self._camera, world_from_camera[row])
-        fraction = np.ones(uprights.points.shape[:2])
-        cast_eyes(
-            np.flatnonzero(uprights.reaches_in),
-            going[row],
-            self._joined,
-            uprights.eyes,
-            uprights.points,
-            fraction,
-        )
-        boxes, shares = uprights.boxes.tolist(), free_ray_shares(uprights, fraction, radii_m).tolist()
-        ends = list(accumulate(counts, initial=0))
-        return [
-            describe(each, robot, boxes[begin:end], shares[begin:end])
-            for each, robot, begin, end in zip(present, robots, ends, ends[1:], strict=False)
-        ]
+    def _times(self, going: Numbers) -> Array:
+        return np.array([self._worlds[number].time_s for number in going.tolist()])
 
-    def _speeds(self, going: NDArray[np.int64], poses: Matrix) -> list[tuple[float, float]]:
-        """True forward speed [m/s] and turn rate [rad/s] of each robot."""
+    def _speeds(self, going: Numbers, poses: Matrix) -> Array:
+        """(G, 2) true forward speed [m/s] and turn rate [rad/s] of each robot."""
         velocity = self._joined.motion.velocity[going]
         linear = velocity.copy()
         linear[:, 2] = 0.0
         ahead = (linear[:, None, :] @ poses[:, :3, 0][:, :, None])[:, 0, 0]
-        return list(zip(ahead.tolist(), velocity[:, 2].tolist(), strict=True))
+        return np.stack([ahead, velocity[:, 2]], axis=1)
 
 
 def kind_of_fleet(world: World) -> tuple[object, ...] | None:
@@ -256,11 +162,27 @@ def kind_of_fleet(world: World) -> tuple[object, ...] | None:
     return config.physics_hz, config.control_hz, config.robot.sonar, camera, views
 
 
+def _planar(poses: Matrix) -> Array:
+    """(G, 3) x, y [m], heading [rad] of poses (G, 4, 4)."""
+    headings = map(math.atan2, poses[:, 1, 0].tolist(), poses[:, 0, 0].tolist())
+    return np.column_stack([poses[:, :2, 3], list(headings)])
+
+
+def _capsules(worlds: Sequence[World], walks: Walks) -> Capsules:
+    """By what people are met; where it is comes with each step."""
+    people = [person for world in worlds for person in world.crowd.people]
+    bodies = [_kinematic(world).number_of(name) for world in worlds for name in world.crowd.capsules]
+    places = walks.records["position"]
+    return Capsules(
+        first=walks.first,
+        body=np.array(bodies, np.int64),
+        is_solid=np.zeros(len(people), np.bool_),
+        middle_m=np.array([person.config.height_m for person in people]) / 2.0,
+        before=places,
+        after=places,
+    )
+
+
 def _kinematic(world: World) -> Kinematic:
     assert isinstance(world.physics, Kinematic)
     return world.physics
-
-
-def _rows(places: Sequence[Matrix]) -> Matrix:
-    """Places (2,) as (Q, 2)."""
-    return np.array(places).reshape(-1, 2)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from peopleboy.sim.fleet.side_by_side import Joined, Numbers
+from peopleboy.sim.fleet.side_by_side import Joined
 from peopleboy.sim.fleet.walk_worlds import Walks
 from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.body.placing import carry, put_on_floor
@@ -18,6 +18,7 @@ from peopleboy.sim.people.person import Person, pace_m_s
 from peopleboy.sim.people.scripted.script import Records
 from peopleboy.sim.physics.kinematic.kinematic import Kinematic
 from peopleboy.sim.physics.kinematic.solids import Array
+from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World
 
 
@@ -60,12 +61,12 @@ class Limbs:
         self._unit_stride_m = np.array([gait.unit_stride_m for gait in gaits])
         self._parts = self._know_parts(worlds)
 
-    def move(self, going: Numbers, times_s: Sequence[float], dt_s: float) -> None:
+    def move(self, going: Numbers, times_s: Array, dt_s: float) -> None:
         """Advance gaits and postures of all in some worlds who walk by records, and have just walked on.
 
         Args:
             going: (G,) numbers of the worlds.
-            times_s: [s] in each of them at the start of the step.
+            times_s: (G,) [s] in each of them at the start of the step.
             dt_s: [s] length of the step.
         """
         walks = self._walks
@@ -74,7 +75,7 @@ class Limbs:
         paces = [pace_m_s(velocity, turn) for velocity, turn in zip(velocities, turns, strict=True)]
         _move(
             going[walks.is_scripted[going]], walks.first, records, self._stances, self._unit_stride_m,
-            self._builds.root_scale, np.array(paces), np.array(times_s)[walks.is_scripted[going]], dt_s,
+            self._builds.root_scale, np.array(paces), times_s[walks.is_scripted[going]], dt_s,
         )  # fmt: skip
 
     def place(self, going: Numbers) -> None:
@@ -87,7 +88,7 @@ class Limbs:
             if self._people[q].present and not self._people[q].is_handling
         ]
         headings = np.array([self._people[q].heading for q in who])
-        places = np.column_stack([self._walks.places()[who], headings])
+        places = np.column_stack([self._walks.records["position"][who], headings])
         _place(np.array(who, np.int64), places, self._builds, self._stances, self._parts, self._joined)
 
     def _know_parts(self, worlds: Sequence[World]) -> Parts:
@@ -102,7 +103,7 @@ class Limbs:
             body=np.array(
                 [
                     first + _number_of(world, person, part.name)
-                    for world, first in zip(worlds, self._joined.firsts.body.tolist(), strict=False)
+                    for world, first in zip(worlds, self._joined.first_body.tolist(), strict=False)
                     for person in world.crowd.people
                     for part in person.parts
                 ],

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+
+import numpy as np
 
 from peopleboy.sim.fleet.crew import Crew
-from peopleboy.sim.fleet.fleet import Command, Fleet, kind_of_fleet
-from peopleboy.sim.fleet.instant import Instant
+from peopleboy.sim.fleet.fleet import Fleet, kind_of_fleet
+from peopleboy.sim.fleet.instants import Instants, perceive
+from peopleboy.sim.physics.kinematic.solids import Array
+from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World
 
 
@@ -21,30 +25,33 @@ class Together:
             kinds[kind_of_fleet(world)].append(number)
         self._alone = kinds.pop(None, [])
         self._fleets = [
-            (Fleet([worlds[number] for number in group], crew), group) for group in kinds.values()
+            (Fleet([worlds[number] for number in group], crew), np.array(group, np.int64))
+            for group in kinds.values()
         ]
 
-    def step(self, commands: Mapping[int, Command]) -> dict[int, Instant]:
+    def step(self, going: Numbers, commands: Array) -> list[Instants]:
         """Step some of the worlds, and perceive what is in them then.
 
         Args:
-            commands: speeds [m/s, rad/s] by the number of the world.
+            going: (G,) numbers of the worlds, rising.
+            commands: (G, 2) speeds [m/s, rad/s].
+
+        Returns:
+            What is perceived in all of them, as many worlds at a time as are stepped together.
+
+        Raises:
+            BadInput: a command is not finite.
         """
-        found = {}
+        found = []
         for number in self._alone:
-            if number in commands:
-                self._worlds[number].step(*commands[number])
-                found[number] = perceive(self._worlds[number])
+            for row in np.flatnonzero(going == number).tolist():
+                world = self._worlds[number]
+                world.step(*commands[row].tolist())
+                found.append(perceive(world)._replace(numbers=going[row : row + 1]))
         for fleet, group in self._fleets:
-            inside = {k: commands[number] for k, number in enumerate(group) if number in commands}
-            if inside:
-                fleet.step(inside)
-                found |= {
-                    group[k]: instant for k, instant in zip(inside, fleet.look(list(inside)), strict=True)
-                }
+            inside = np.isin(group, going, assume_unique=True)
+            if inside.any():
+                own = np.flatnonzero(inside)
+                fleet.step(own, commands[np.isin(going, group, assume_unique=True)])
+                found.append(fleet.look(own)._replace(numbers=group[own]))
         return found
-
-
-def perceive(world: World) -> Instant:
-    """Sense once in one world, images included where there are any."""
-    return Instant(world.observe() if world.has_images else world.sense(), world.scene())

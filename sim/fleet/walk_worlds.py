@@ -8,10 +8,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.fleet.side_by_side import Numbers
 from peopleboy.sim.people.scripted.script import WALK, Records, Script, Scripts, join_scripts
 from peopleboy.sim.people.scripted.walk_scripts import walk_on
 from peopleboy.sim.physics.kinematic.solids import Array
+from peopleboy.sim.shapes.joined_tables import Numbers, ends
 from peopleboy.sim.world import World
 
 _TWO = 2.0  # see `walk_on`
@@ -24,13 +24,14 @@ class Walks:
     Attributes:
         first: (B + 1,) where the people of each world begin.
         is_scripted: (B,) in which worlds all are.
-        records: (Q,) WALK of everybody; of no meaning in the other worlds.
+        records: (Q,) WALK of everybody; of those who walk by themselves only where they are, how they move,
+            and whether they are there.
     """
 
     def __init__(self, worlds: Sequence[World]) -> None:
         self._crowds = [world.crowd for world in worlds]
         counts = [len(crowd.people) for crowd in self._crowds]
-        self.first = np.cumsum([0, *counts]).astype(np.int64)
+        self.first = ends(counts)
         own = [world.crowd.follow_scripts(has_begun=world.time_s > 0.0) for world in worlds]
         self.is_scripted = np.array([each is not None for each in own], np.bool_)
         scripts: list[Script] = []
@@ -43,36 +44,37 @@ class Walks:
         for crowd, each, first, end in zip(self._crowds, own, self.first, self.first[1:], strict=False):
             if each is not None:
                 crowd.lay_into(self.records[first:end])
+        self._follow(np.arange(len(worlds)))
 
-    def step(self, going: NDArray[np.int64], times_s: list[float], dt_s: float, robots: Array) -> None:
-        """Let all walk on who are guided by scripts.
+    def step(self, going: Numbers, times_s: Array, dt_s: float, robots: Array) -> None:
+        """Let all walk on who are guided by scripts; the others have just walked.
 
         Args:
             going: (G,) numbers of the worlds.
-            times_s: [s] in each of them at the start of the step.
+            times_s: (G,) [s] in each of them at the start of the step.
             dt_s: [s] length of the step.
             robots: (G, 2) [m] where their robots are.
         """
         _walk_worlds(
-            going, self.is_scripted, self.first, self.records, self._scripts, np.array(times_s), dt_s,
+            going, self.is_scripted, self.first, self.records, self._scripts, times_s, dt_s,
             robots, _TWO,
         )  # fmt: skip
         records = self.records
         headings, present = records["heading"].tolist(), records["is_present"].tolist()
         postures = records["posture"].tolist()
-        ends = self.first.tolist()
+        borders = self.first.tolist()
         for number in going[self.is_scripted[going]].tolist():
-            first, end = ends[number], ends[number + 1]
+            first, end = borders[number], borders[number + 1]
             self._crowds[number].take_over(headings[first:end], present[first:end], postures[first:end])
+        self._follow(going)
 
-    def places(self) -> Array:
-        """(Q, 2) [m] where everybody is, a copy."""
-        found = self.records["position"].copy()
-        for number in np.flatnonzero(~self.is_scripted).tolist():
-            people = self._crowds[number].people
-            if people:
-                found[self.first[number] : self.first[number + 1]] = [person.position for person in people]
-        return found
+    def _follow(self, going: Numbers) -> None:
+        """Write down where those are now who walk by themselves."""
+        for number in going[~self.is_scripted[going]].tolist():
+            own = self.records[self.first[number] : self.first[number + 1]]
+            for record, person in zip(own, self._crowds[number].people, strict=True):
+                record["position"], record["velocity"] = person.position, person.velocity
+                record["heading"], record["is_present"] = person.heading, person.present
 
 
 @njit(cache=True, nogil=True)

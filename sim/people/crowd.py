@@ -127,6 +127,11 @@ class Crowd:
                 self._place_solid(person, before + share * (person.position - before))
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Everybody's, present or not."""
+        return tuple(person.name for person in self.people)
+
+    @property
     def capsules(self) -> tuple[str, ...]:
         """Names of the bodies by which people are met."""
         return tuple(f"{person.name}/{_SOLID}" for person in self.people)

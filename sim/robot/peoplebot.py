@@ -37,18 +37,20 @@ def limit_command(linear: float, angular: float, limits: DriveConfig) -> tuple[f
 
 
 class Gears(NamedTuple):
-    """What a robot's wheels are to do and have done.
+    """What a robot's wheels are to do and have done; with worlds first, those of many robots.
 
     Attributes:
-        command, target: [m/s, rad/s] speeds now, and those to be reached.
-        rise: [m/s2, rad/s2] at which they are.
+        command, target: (2,) [m/s, rad/s] speeds now, and those to be reached.
+        rise: (2,) [m/s2, rad/s2] at which they are.
         turned: (2,) [rad] wheel angles as the odometry knows them.
+        odometry: (3,) x, y [m], heading [rad].
     """
 
-    command: tuple[float, float]
-    target: tuple[float, float]
-    rise: tuple[float, float]
+    command: NDArray[np.float64]
+    target: NDArray[np.float64]
+    rise: NDArray[np.float64]
     turned: NDArray[np.float64]
+    odometry: NDArray[np.float64]
 
 
 class PeopleBot:
@@ -62,10 +64,11 @@ class PeopleBot:
         self._physics = physics
         self._limits = config.drive
         self._encoder_noise = stream(seed, "odometry.noise")
-        self._command = (0.0, 0.0)
-        self._target = (0.0, 0.0)
-        self._is_emergency = False
         x, y = config.at_m
+        self._gears = Gears(
+            command=np.zeros(2), target=np.zeros(2), rise=np.array(self._limits.rise), turned=np.zeros(2),
+            odometry=np.array([x, y, config.heading_rad]),
+        )  # fmt: skip
         half = config.heading_rad / 2.0
         physics.add_urdf(
             NAME,
@@ -76,8 +79,7 @@ class PeopleBot:
         )
         self._turn_wheels()
         self.ring = SonarRing(physics, config.sonar, stream(seed, "sonar.noise"), NAME)
-        self._turned = self._wheel_angles()
-        self.odometry = Planar(x, y, config.heading_rad)
+        self._gears.turned[:] = self._wheel_angles()
 
     def command(self, linear: float, angular: float, *, is_emergency: bool = False) -> None:
         """Ask for a velocity [m/s, rad/s], clipped to the robot's limits; it is approached, not jumped to.
@@ -89,53 +91,62 @@ class PeopleBot:
         """
         if not (math.isfinite(linear) and math.isfinite(angular)):
             raise BadInput(f"velocity command ({linear}, {angular}) must be finite")
-        self._target = limit_command(linear, angular, self._limits)
-        self._is_emergency = is_emergency
+        limits, gears = self._limits, self._gears
+        gears.target[:] = limit_command(linear, angular, limits)
+        gears.rise[:] = limits.emergency_rise if is_emergency else limits.rise
 
     def drive(self, dt_s: float) -> None:
         """Move the wheel speeds towards the command, as far as the acceleration limits allow in dt_s."""
-        if self._command == self._target:
+        gears = self._gears
+        command, target = gears.command.tolist(), gears.target.tolist()
+        if command == target:
             return
-        linear_m_s2, angular_rad_s2 = self._rise()
-        self._command = (
-            approach(self._command[0], self._target[0], linear_m_s2 * dt_s),
-            approach(self._command[1], self._target[1], angular_rad_s2 * dt_s),
-        )
+        rises = gears.rise.tolist()
+        gears.command[:] = [
+            approach(now, goal, rise * dt_s) for now, goal, rise in zip(command, target, rises, strict=True)
+        ]
         self._turn_wheels()
 
     def update_odometry(self) -> None:
         """Integrate what the wheel encoders counted since the last call, with their noise."""
-        angles = self._wheel_angles()
-        travelled = (angles - self._turned) * WHEEL_RADIUS_M
-        self._turned = angles
-        noise = self.draw_noise() * self.encoder_noise_m
+        gears, angles, noise = self._gears, self._wheel_angles(), np.empty(2)
+        travelled = (angles - gears.turned) * WHEEL_RADIUS_M
+        gears.turned[:] = angles
+        self.draw_noise(noise)
+        noise *= self._limits.encoder_noise_m
         left, right = (travelled + noise * np.sqrt(np.abs(travelled))).tolist()
         turn = (right - left) / WHEEL_DISTANCE_M
-        middle = self.odometry.heading + turn / 2.0
+        x, y, heading = gears.odometry.tolist()
+        middle = heading + turn / 2.0
         advance = (left + right) / 2.0
-        self.odometry = Planar(
-            self.odometry.x + advance * math.cos(middle),
-            self.odometry.y + advance * math.sin(middle),
-            math.remainder(self.odometry.heading + turn, math.tau),
+        gears.odometry[:] = (
+            x + advance * math.cos(middle),
+            y + advance * math.sin(middle),
+            math.remainder(heading + turn, math.tau),
         )
 
-    def draw_noise(self) -> NDArray[np.float64]:
-        """(2,) standard normal, what the encoders' noise is made of in the next control step."""
-        return self._encoder_noise.standard_normal(2)
-
-    @property
-    def encoder_noise_m(self) -> float:
-        """[m] what that is to be multiplied by."""
-        return self._limits.encoder_noise_m
+    def draw_noise(self, noise: NDArray[np.float64]) -> None:
+        """Fill (2,) with standard normal noise, of which the encoders' is made in the next control step."""
+        self._encoder_noise.standard_normal(out=noise)
 
     @property
     def gears(self) -> Gears:
         """What its wheels are to do and have done."""
-        return Gears(self._command, self._target, self._rise(), self._turned)
+        return self._gears
 
-    def take_over(self, command: tuple[float, float], turned: NDArray[np.float64], odometry: Planar) -> None:
-        """Be as somebody else has driven it, with wheels that turn and have turned in the world already."""
-        self._command, self._turned, self.odometry = command, turned, odometry
+    def lay_into(self, gears: Gears) -> None:
+        """Keep all that in other arrays from now on, which hold the same already."""
+        self._gears = gears
+
+    @property
+    def limits(self) -> DriveConfig:
+        """What it can do."""
+        return self._limits
+
+    @property
+    def odometry(self) -> Planar:
+        """Pose that the wheels' encoders add up to, world frame, exact at the start."""
+        return Planar(*self._gears.odometry.tolist())
 
     def sonar(self) -> NDArray[np.float64]:
         """Read the ring once: (16,) [m]."""
@@ -168,16 +179,9 @@ class PeopleBot:
         """Names of the bodies that the robot touched during the last physics step, the floor included."""
         return self._physics.touching(NAME)
 
-    def _rise(self) -> tuple[float, float]:
-        """Accelerations [m/s2, rad/s2] as things are."""
-        limits = self._limits
-        if self._is_emergency:
-            return limits.emergency_m_s2, limits.emergency_rad_s2
-        return limits.linear_acceleration_m_s2, limits.angular_acceleration_rad_s2
-
     def _turn_wheels(self) -> None:
         """Set the motors to the speeds that give the present command."""
-        speeds = [speed / WHEEL_RADIUS_M for speed in wheel_speeds(*self._command)]
+        speeds = [speed / WHEEL_RADIUS_M for speed in wheel_speeds(*self._gears.command.tolist())]
         self._physics.set_joint_speeds(NAME, dict(zip(_JOINTS, speeds, strict=True)), _MOTOR_TORQUE_NM)
 
     def _wheel_angles(self) -> NDArray[np.float64]:

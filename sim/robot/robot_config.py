@@ -56,6 +56,21 @@ class DriveConfig:
     emergency_rad_s2: float = math.radians(400.0)
     encoder_noise_m: float = 0.002
 
+    @property
+    def limits(self) -> tuple[float, float]:
+        """[m/s, rad/s] of the two speeds."""
+        return self.max_linear_m_s, self.max_angular_rad_s
+
+    @property
+    def rise(self) -> tuple[float, float]:
+        """[m/s2, rad/s2] rates at which the two speeds change."""
+        return self.linear_acceleration_m_s2, self.angular_acceleration_rad_s2
+
+    @property
+    def emergency_rise(self) -> tuple[float, float]:
+        """[m/s2, rad/s2] the same in an emergency."""
+        return self.emergency_m_s2, self.emergency_rad_s2
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotConfig:

@@ -68,20 +68,29 @@ class SonarRing:
         starts = starts.repeat(self.reach.shape[1], axis=0)
         fraction = self._physics.cast_rays(starts, ends, ignore=self._owner)[0].reshape(self.reach.shape)
         nearest_m = np.where(fraction < 1.0, fraction * self.reach, np.inf).min(axis=1)
-        return read_echoes(nearest_m, *self.draw_noise(), self.config)
+        noise, chance = np.empty(_SONARS), np.empty(_SONARS)
+        self.draw_noise(noise, chance)
+        return read_echoes(nearest_m, noise, chance, self.config)
 
-    def draw_noise(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """(16,) [m] errors of the next readings, and (16,) which of them are lost."""
-        noise = self._rng.normal(0.0, self.config.noise_m, _SONARS)
-        return noise, self._rng.random(_SONARS) < self.config.drop_out
+    def draw_noise(self, noise: NDArray[np.float64], chance: NDArray[np.float64]) -> None:
+        """Fill (16,) with standard normal noise, and (16,) with 0..1 evenly, for the next readings."""
+        self._rng.standard_normal(out=noise)
+        self._rng.random(out=chance)
 
 
 def read_echoes(
     nearest_m: NDArray[np.float64],
-    noise_m: NDArray[np.float64],
-    is_lost: NDArray[np.bool_],
+    noise: NDArray[np.float64],
+    chance: NDArray[np.float64],
     config: SonarConfig,
 ) -> NDArray[np.float64]:
-    """Make readings (..., 16) [m] of how far the nearest is in each cone, inf for nothing."""
-    reading = np.where(is_lost, np.inf, nearest_m + noise_m)
+    """Make readings (..., 16) [m] of how far the nearest is in each cone, inf for nothing.
+
+    Args:
+        nearest_m: (..., 16) [m].
+        noise: (..., 16) standard normal.
+        chance: (..., 16) 0..1 evenly; that of an echo that is lost is less than the share of drop-outs.
+        config: of the ring.
+    """
+    reading = np.where(chance < config.drop_out, np.inf, nearest_m + config.noise_m * noise)
     return np.clip(reading, config.nearest_m, config.farthest_m)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.seen import is_seen
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Bystander:
+class Bystander(NamedTuple):
     """One person who is present, seen or not.
 
     Attributes:
@@ -46,8 +45,7 @@ class Bystander:
         return is_seen(self.free_ray_share)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImageFreeTruth:
+class ImageFreeTruth(NamedTuple):
     """The truth about one instant without images.
 
     Attributes:

@@ -37,32 +37,37 @@ class ComfortLog:
 
     def score(self) -> ComfortScore:
         """Score what happened so far."""
-        table = np.array(self._rows, dtype=np.float64)
-        row = np.repeat(np.arange(len(table)), table[:, 5].astype(np.int64))
         people = np.array(self._people, dtype=np.float64).reshape(-1, 4)
-        gap_m, soonest_s = np.full((2, len(table)), np.inf)
-        np.minimum.at(gap_m, row, self._gaps(row))
-        np.minimum.at(soonest_s, row, _times_to_collision(table[row], people))
-        return score_comfort(
-            ComfortRun(
-                time_s=table[:, 0],
-                robot=table[:, 1:4],
-                gap_m=gap_m,
-                time_to_collision_s=soonest_s,
-            )
-        )
+        return score_company(np.array(self._rows, dtype=np.float64), people)
 
-    def _gaps(self, row: NDArray[np.int64]) -> list[float]:
-        """Distances [m] of people on the floor from the robot's outline."""
-        robots = [Planar(x, y, heading) for _, x, y, heading, _, _ in self._rows]
-        return [
-            outline_gap(robots[number], (x, y))
-            for number, (x, y, _, _) in zip(row.tolist(), self._people, strict=True)
-        ]
+
+def score_company(table: NDArray[np.float64], people: NDArray[np.float64]) -> ComfortScore:
+    """Score how a robot drove among people.
+
+    Args:
+        table: (T, 6) of each instant the time [s], the robot's x, y [m], heading [rad] and forward speed
+            [m/s], and how many people were there.
+        people: (Q, 4) x, y [m] and velocity [m/s] of all of them, one instant after the other.
+    """
+    row = np.repeat(np.arange(len(table)), table[:, 5].astype(np.int64))
+    gap_m, soonest_s = np.full((2, len(table)), np.inf)
+    np.minimum.at(gap_m, row, _gaps(table[row], people))
+    np.minimum.at(soonest_s, row, _times_to_collision(table[row], people))
+    return score_comfort(
+        ComfortRun(time_s=table[:, 0], robot=table[:, 1:4], gap_m=gap_m, time_to_collision_s=soonest_s)
+    )
+
+
+def _gaps(robots: NDArray[np.float64], people: NDArray[np.float64]) -> list[float]:
+    """Distances [m] on the floor of people, (Q, 4), from the outlines of robots, (Q, 6), as above."""
+    return [
+        outline_gap(Planar(*robot), (x, y))
+        for robot, (x, y) in zip(robots[:, 1:4].tolist(), people[:, :2].tolist(), strict=True)
+    ]
 
 
 def _times_to_collision(robots: NDArray[np.float64], people: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Times [s] (Q,) of robots, rows of `ComfortLog`, and people, rows x, y, vx, vy."""
+    """Times [s] (Q,) of robots and people, rows as above."""
     headings, speeds = robots[:, 3].tolist(), robots[:, 4]
     own_x = speeds * [math.cos(heading) for heading in headings]
     own_y = speeds * [math.sin(heading) for heading in headings]

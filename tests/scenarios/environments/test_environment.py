@@ -18,6 +18,7 @@ from peopleboy.registration import ENVIRONMENTS
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.observations import KINDS
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.sim.world import World
 from tests.helpers.calls.refused import refused
 
@@ -182,7 +183,8 @@ def test_a_second_of_perfect_following_earns_one(scene: Path) -> None:
         far = env.step((0.0, 0.0))[4]["truth"].people[0].distance_m
     terms = env.step((0.0, 0.0))[4]["reward"]
     assert far == pytest.approx(1.5, abs=0.02)
-    keep_m = env._keep_m
+    scenario = load_scenario(scene)
+    keep_m = following_task(scenario.world(0), scenario.follow_config().keep_height).keep_m
     near = (1.0 - (keep_m - far) / 3.0) / 30.0
     assert terms["keep"] == pytest.approx(near, abs=1e-3)
     assert terms["face"] == pytest.approx(1.0 / 30.0, abs=1e-3)

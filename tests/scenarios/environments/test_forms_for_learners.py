@@ -21,21 +21,27 @@ def told(*people: tuple[float, ...], **numbers: Any) -> dict[str, np.ndarray]:
     """An observation with these people, and nothing else to tell unless said."""
     rows = [*people, *[(0.0,) * 7] * (5 - len(people))]
     usual = {"sonar": np.full(16, 5.0, np.float32), "odometry": np.zeros(6, np.float32)}
-    return usual | {"tracks": np.array(rows, np.float32).reshape(-1)} | numbers
+    told = usual | {"tracks": np.array(rows, np.float32).reshape(-1)} | numbers
+    return {name: array[None] for name, array in told.items()}
 
 
 def rows(observation: dict[str, np.ndarray]) -> list[list[float]]:
     return np.round(observation["tracks"].reshape(5, 7).astype(float), 4).tolist()
 
 
+def normalised(holders: np.ndarray, observation: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    return {name: array[0] for name, array in Normaliser(ROBOT)(observation, holders).items()}
+
+
 def test_every_entry_is_its_share_of_what_becomes_one_and_clipped_beyond() -> None:
-    found = Normaliser(ROBOT)(
+    found = normalised(
+        np.zeros((1, 5)),
         told(
             (900_000.0, -0.5, 0.6, 0.2, 0.8, 0.9, 1.0),
             (7.0, 3.0, 3.0, -5.0, 5.0, 0.5, 0.0),
             sonar=np.linspace(0.5, 8.0, 16, dtype=np.float32),
             odometry=np.array([5.0, -40.0, 0.6, -0.8, -0.4, 9.0], np.float32),
-        )
+        ),
     )
     assert found["sonar"] == pytest.approx(np.minimum(np.linspace(0.1, 1.6, 16), 1.0))
     assert found["odometry"] == pytest.approx([0.25, -1.0, 0.6, -0.8, -0.5, 1.0])
@@ -46,15 +52,14 @@ def test_every_entry_is_its_share_of_what_becomes_one_and_clipped_beyond() -> No
 
 
 def test_whoever_has_a_row_keeps_it_and_newcomers_take_the_first_that_is_free() -> None:
-    normaliser = Normaliser(ROBOT)
+    holders = np.zeros((1, 5))
     (a, b, c) = ((float(n), n / 10.0, 0.5, 0.2, 0.7, 1.0, 1.0) for n in (1, 2, 3))
     columns = [
-        [row[1] for row in rows(normaliser(told(*people)))][:3]
+        [row[1] for row in rows(normalised(holders, told(*people)))][:3]
         for people in ((a, b), (b, a), (c, b), (c, a, b), ())
     ]
     assert columns == [[0.1, 0.2, 0], [0.1, 0.2, 0], [0.3, 0.2, 0], [0.3, 0.2, 0.1], [0, 0, 0]]
-    normaliser.begin()
-    assert rows(normaliser(told(b)))[0][1] == 0.2
+    assert rows(normalised(np.zeros((1, 5)), told(b)))[0][1] == 0.2
 
 
 @pytest.mark.parametrize("kind", ["truth", "pixels"])

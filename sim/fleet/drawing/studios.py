@@ -23,20 +23,13 @@ from peopleboy.sim.cameras.thermal import (
     TEMPERATURE,
     mirrored,
 )
-from peopleboy.sim.fleet.draw_worlds import (
-    Detectors,
-    Eye,
-    Film,
-    Poses,
-    Radiators,
-    detect_worlds,
-    expose_worlds,
-    radiate_worlds,
-)
-from peopleboy.sim.fleet.scenery import Scenery
-from peopleboy.sim.fleet.side_by_side import Numbers
+from peopleboy.sim.fleet.drawing.colour_worlds import Film, expose_worlds
+from peopleboy.sim.fleet.drawing.look_worlds import Eye, Poses
+from peopleboy.sim.fleet.drawing.scenery import Scenery
+from peopleboy.sim.fleet.drawing.thermal_worlds import Detectors, Radiators, detect_worlds, radiate_worlds
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.canvas import Lens
+from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World, light_level
 
 Images = tuple[NDArray[Any], ...]

@@ -12,10 +12,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import name_images
 from peopleboy.sim.fleet.crew import Work
-from peopleboy.sim.fleet.studios import Images
+from peopleboy.sim.fleet.drawing.studios import Images
 from peopleboy.sim.on_demand import OnDemand
 
-Pictures = Mapping[str, NDArray[Any]]
 Start = Callable[[], tuple[Images, Work]]
 
 
@@ -57,14 +56,22 @@ class Shot:
         if self._begun is not None:
             self._begun[1].finish()
 
+    def images(self) -> NDArray[Any]:
+        """Give those of the camera's own name, of all of its worlds."""
+        return self._finish()[0]
+
     def image(self, name: str, place: int) -> NDArray[Any]:
         """Give an image of that name, of the world at some place among its own."""
-        self.is_asked_for = True
-        images, work = self.begin()
-        work.finish()
+        images = self._finish()
         if name == self.name:
             return np.asarray(images[0][place])
         return name_images(self.name, self._config, [each[place] for each in images])[name]
+
+    def _finish(self) -> Images:
+        self.is_asked_for = True
+        images, work = self.begin()
+        work.finish()
+        return images
 
 
 class Shots:
@@ -92,19 +99,21 @@ class Shots:
         for shot in self._shots:
             shot.end()
 
-    def pictures(self, worlds: int) -> list[Pictures]:
-        """Give the images of each of so many worlds by their names."""
-        owners: list[dict[str, tuple[Shot, int]]] = [{} for _ in range(worlds)]
-        for shot in self._shots:
-            for place, row in enumerate(shot.rows):
-                for image in self._names[shot.name]:
-                    owners[row][image] = shot, place
-        return [_pictures(own) for own in owners]
+    def of(self, row: int) -> Mapping[str, NDArray[Any]]:
+        """Give the images of one of the worlds by their names."""
+        owners = {
+            image: (shot, shot.rows.index(row))
+            for shot in self._shots
+            if row in shot.rows
+            for image in self._names[shot.name]
+        }
 
+        def make(image: str) -> NDArray[Any]:
+            shot, place = owners[image]
+            return shot.image(image, place)
 
-def _pictures(owners: Mapping[str, tuple[Shot, int]]) -> Pictures:
-    def make(image: str) -> NDArray[Any]:
-        shot, place = owners[image]
-        return shot.image(image, place)
+        return OnDemand(owners, make)
 
-    return OnDemand(owners, make)
+    def together(self, camera: str) -> tuple[Sequence[int], Sequence[NDArray[Any]] | NDArray[Any]]:
+        """Give the images of a camera's own name: in which of the worlds it takes one, and these."""
+        return next(((shot.rows, shot.images()) for shot in self._shots if shot.name == camera), ((), ()))

@@ -12,13 +12,14 @@ import numpy as np
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import image_names
 from peopleboy.sim.fleet.crew import Crew, Work
-from peopleboy.sim.fleet.draw_worlds import Poses
-from peopleboy.sim.fleet.scenery import Array, join_scenery
-from peopleboy.sim.fleet.shots import Pictures, Shot, Shots
-from peopleboy.sim.fleet.side_by_side import Joined, Numbers
-from peopleboy.sim.fleet.studios import Images, is_simple, open_studio
+from peopleboy.sim.fleet.drawing.look_worlds import Poses
+from peopleboy.sim.fleet.drawing.scenery import Array, join_scenery
+from peopleboy.sim.fleet.drawing.shots import Shot, Shots
+from peopleboy.sim.fleet.drawing.studios import Images, is_simple, open_studio
+from peopleboy.sim.fleet.side_by_side import Joined
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.physics.kinematic.kinematic import turn_wheels
+from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World
 
 _SHARES: Final = 2  # of a camera's images for each thread, so that none waits long for the last
@@ -46,11 +47,11 @@ class Eyes:
             name: open_studio(name, config, scenery, worlds) for name, config in self._cameras.items()
         }
         self._images = {name: image_names(name, config) for name, config in self._cameras.items()}
-        first_body = np.repeat(joined.firsts.body[:-1], np.diff(joined.firsts.part))
+        first_body = np.repeat(joined.first_body[:-1], np.diff(joined.first_part))
         self._body_of_part = joined.bodies.of_part + first_body
         self._shots = Shots.none()
 
-    def look(self, going: Numbers, robots: Array, turn_rad_s: Array) -> list[Pictures]:
+    def look(self, going: Numbers, robots: Array, turn_rad_s: Array) -> Shots:
         """Take the images of some worlds at this instant.
 
         Args:
@@ -80,7 +81,7 @@ class Eyes:
             if shot.name in asked_for:
                 shot.begin()
         self._shots = Shots(shots, self._images)
-        return self._shots.pictures(len(due))
+        return self._shots
 
     def finish(self) -> None:
         """Wait for all images with which somebody has begun, as must be before the worlds change."""

@@ -1,0 +1,1 @@
+"""What controllers earn, and how their episodes went."""

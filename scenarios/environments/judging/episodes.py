@@ -1,0 +1,159 @@
+"""Episodes in many worlds, judged together; a single environment has one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.environments.judging.episode_figures import EpisodeFigures, Figures
+from peopleboy.scenarios.environments.judging.rewards import ENDS, TASKS, TERMS, reward_worlds
+from peopleboy.scenarios.environments.judging.situation import EPISODE, Array, areas_of
+from peopleboy.scenarios.scores.following_metrics import FollowingTask
+from peopleboy.sim.fleet.instants import Instants
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.shapes.joined_tables import Numbers, ends
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.scenes import Scenes
+
+Events = tuple[tuple[str, str], ...]
+_TWO: Final = 2.0  # see `reward_worlds`
+
+
+class Terms(NamedTuple):
+    """By what one episode is played.
+
+    Attributes:
+        plan: of the place.
+        following: how the person is to be followed.
+        frames: steps after which time is over.
+        dt_s: [s] length of a step.
+        limits: [m/s, rad/s] of the drive.
+    """
+
+    plan: FloorPlan
+    following: FollowingTask
+    frames: int
+    dt_s: float
+    limits: tuple[float, float]
+
+
+class Verdicts(NamedTuple):
+    """What came of a step in G worlds.
+
+    Attributes:
+        terms: (G, 8) of the reward, in the order of `TERMS`.
+        rewards: (G,) their sums.
+        terminations, truncations: (G,) whether the episodes are over.
+        events: what is new, and to or with whom.
+        truths: what is true.
+    """
+
+    terms: Array
+    rewards: list[float]
+    terminations: NDArray[np.bool_]
+    truncations: NDArray[np.bool_]
+    events: list[Events]
+    truths: list[ImageFreeTruth]
+
+
+class Episodes:
+    """The episodes of B worlds.
+
+    Attributes:
+        records: (B,) EPISODE of the last one in each world, over or not.
+    """
+
+    def __init__(self, count: int, task: str) -> None:
+        self.records = np.zeros(count, EPISODE)
+        self.records["is_over"] = True
+        self._task = TASKS.index(task)
+        self._plans = [np.zeros((0, 4))] * count
+        self._touched: list[set[str]] = [set() for _ in range(count)]
+        self._figures: dict[int, EpisodeFigures] = {}
+        self._lay_out()
+
+    def begin(self, number: int, terms: Terms, instants: Instants, tracks: Sequence[int] | None) -> Verdicts:
+        """Begin an episode in one of the worlds.
+
+        Args:
+            number: of the world.
+            terms: by what it is played.
+            instants: the first one, in that world alone.
+            tracks: see `judge`.
+        """
+        self.records[number] = np.zeros((), EPISODE)
+        own = self.records[number : number + 1]
+        own["start"], own["frame"], own["frames"] = instants.odometry, -1, terms.frames
+        own["dt_s"], own["keep_m"], own["limits"] = terms.dt_s, terms.following.keep_m, terms.limits
+        self._plans[number], self._touched[number] = areas_of(terms.plan), set()
+        self._figures[number] = EpisodeFigures(terms.plan, terms.following)
+        self._lay_out()
+        verdicts = self.judge(instants, np.zeros((1, 2)), tracks)
+        own["is_over"] = False
+        return verdicts._replace(terms=np.zeros_like(verdicts.terms), rewards=[0.0])
+
+    def judge(self, instants: Instants, actions: Array, tracks: Sequence[int] | None) -> Verdicts:
+        """Judge the next instants of some episodes.
+
+        Args:
+            instants: of G worlds, by their numbers.
+            actions: (G, 2) that led there.
+            tracks: of each the number of the track that lies on the person to follow, 0 for none; None where
+                there is no tracker, and a person counts as tracked while seen.
+        """
+        numbers, scenes, records = instants.numbers, instants.scenes, self.records
+        records["frame"][numbers] += 1
+        seen, terms = records["seen"][numbers], np.empty((len(numbers), len(TERMS)))
+        reward_worlds(
+            self._task, numbers, records, scenes.worlds, scenes.people, self._areas, self._first_area,
+            actions, _TWO, terms,
+        )  # fmt: skip
+        now = records[numbers]
+        if tracks is None:
+            tracks = (now["seen"] & np.uint64(1)).tolist()  # whether the first person is seen
+        is_noted = (now["frame"] < now["frames"]).tolist()
+        for row, (number, notes) in enumerate(zip(numbers.tolist(), is_noted, strict=True)):
+            if notes:
+                self._figures[number].add(scenes, row, tracks[row])
+        return Verdicts(
+            terms=terms,
+            rewards=list(map(math.fsum, terms.tolist())),
+            terminations=(terms[:, ENDS] != 0.0).any(axis=1),
+            truncations=now["frame"] >= now["frames"],
+            events=self._compare(numbers, scenes, seen, now["seen"]),
+            truths=scenes.truths(),
+        )
+
+    def metrics(self, number: int) -> Figures:
+        """Give the figures of an episode so far, see `EpisodeFigures`."""
+        return self._figures[number].metrics()
+
+    def _compare(
+        self, numbers: Numbers, scenes: Scenes, before: NDArray[np.uint64], now: NDArray[np.uint64]
+    ) -> list[Events]:
+        """Give what is new since the instants before; `before` and `now` are who was and is seen."""
+        touching = self.records["is_touching"]
+        is_new = (before != now) | touching[numbers] | scenes.worlds["is_touching"]
+        touching[numbers] = scenes.worlds["is_touching"]
+        events: list[Events] = [()] * len(numbers)
+        for row in np.flatnonzero(is_new).tolist():
+            names, contacts = scenes.names[row], set(scenes.contacts[row])
+            appeared, gone = (
+                [name for k, name in enumerate(names) if bits >> k & 1]
+                for bits in (int(now[row] & ~before[row]), int(before[row] & ~now[row]))
+            )
+            touched, self._touched[numbers[row]] = self._touched[numbers[row]], contacts
+            found = [("seen", name) for name in sorted(appeared)]
+            found += [("out of sight", name) for name in sorted(gone)]
+            found += [("contact", name) for name in sorted(contacts - touched)]
+            events[row] = tuple(found)
+        return events
+
+    def _lay_out(self) -> None:
+        """Put the areas of all places into one array."""
+        self._areas = np.concatenate(self._plans)
+        self._first_area = ends([len(areas) for areas in self._plans])

@@ -1,0 +1,93 @@
+"""All that is sensed in many worlds at an instant, and what is true then."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.observation import Observation, Senses
+from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.truth.scenes import Scenes
+from peopleboy.sim.world import World
+
+Image = NDArray[Any]
+
+
+class Pictures(Protocol):
+    """The images of an instant in G worlds; see `Observation.images` for until when they can be had."""
+
+    def of(self, row: int) -> Mapping[str, Image]:
+        """Images by name of one of the worlds."""
+        ...
+
+    def together(self, camera: str) -> tuple[Sequence[int], Sequence[Image] | Image]:
+        """Images of a camera's own name: in which of the worlds it takes one, and these."""
+        ...
+
+
+class OwnPictures:
+    """Images that each world makes by itself."""
+
+    def __init__(self, images: Sequence[Mapping[str, Image]]) -> None:
+        self._images = images
+
+    def of(self, row: int) -> Mapping[str, Image]:
+        """See `Pictures.of`."""
+        return self._images[row]
+
+    def together(self, camera: str) -> tuple[Sequence[int], Sequence[Image] | Image]:
+        """See `Pictures.together`."""
+        rows = [row for row, images in enumerate(self._images) if camera in images]
+        return rows, [self._images[row][camera] for row in rows]
+
+
+class Instants(NamedTuple):
+    """What the robots of G worlds sense, and what is true at the same time.
+
+    Attributes:
+        numbers: (G,) of the worlds.
+        sonar_m: (G, 16) [m].
+        odometry: (G, 3) x, y [m], heading [rad].
+        wheel_speeds_m_s: (G, 2) [m/s] as in `Senses`.
+        scenes: what is true.
+        pictures: None where there are no images.
+    """
+
+    numbers: Numbers
+    sonar_m: NDArray[np.float64]
+    odometry: NDArray[np.float64]
+    wheel_speeds_m_s: NDArray[np.float64]
+    scenes: Scenes
+    pictures: Pictures | None
+
+    def senses(self, row: int) -> Senses:
+        """What one robot senses; an `Observation` where there are images."""
+        time_s, sonar_m = float(self.scenes.worlds["time_s"][row]), self.sonar_m[row]
+        odometry = Planar(*self.odometry[row].tolist())
+        left, right = self.wheel_speeds_m_s[row].tolist()
+        if self.pictures is None:
+            return Senses(
+                time_s=time_s, sonar_m=sonar_m, odometry=odometry, wheel_speeds_m_s=(left, right)
+            )  # fmt: skip
+        return Observation(
+            time_s=time_s, sonar_m=sonar_m, odometry=odometry, wheel_speeds_m_s=(left, right),
+            images=self.pictures.of(row),
+        )  # fmt: skip
+
+
+def perceive(world: World) -> Instants:
+    """Sense once in one world, images included where there are any."""
+    senses, pictures = world.sense(), OwnPictures([world.take_images()]) if world.has_images else None
+    at = senses.odometry
+    return Instants(
+        numbers=np.zeros(1, np.int64),
+        sonar_m=senses.sonar_m[None],
+        odometry=np.array([[at.x, at.y, at.heading]]),
+        wheel_speeds_m_s=np.array([senses.wheel_speeds_m_s]),
+        scenes=world.scenes(),
+        pictures=pictures,
+    )

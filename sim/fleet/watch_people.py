@@ -1,0 +1,72 @@
+"""Who could be seen from many robots, told together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from peopleboy.sim.cameras.kinds import flat_geometry
+from peopleboy.sim.fleet.cast_worlds import cast_eyes
+from peopleboy.sim.fleet.side_by_side import Joined
+from peopleboy.sim.fleet.walk_worlds import Walks
+from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.truth.bystanders import look_at
+from peopleboy.sim.truth.scenes import BYSTANDER, Records
+from peopleboy.sim.truth.upright import stand_before
+from peopleboy.sim.world import World
+
+
+class Watch:
+    """Everybody in B worlds, before the thermal cameras of their robots, all of one kind.
+
+    Args:
+        worlds: of a fleet.
+        walks: where everybody goes.
+        joined: where all is that may hide them.
+    """
+
+    def __init__(self, worlds: Sequence[World], walks: Walks, joined: Joined) -> None:
+        self._walks, self._joined = walks, joined
+        self._camera = flat_geometry(worlds[0].config.robot.cameras, "thermal")
+        counts = [len(world.crowd.people) for world in worlds]
+        self._world = np.repeat(np.arange(len(worlds)), counts)
+        people = [person for world in worlds for person in world.crowd.people]
+        self._known = np.zeros(len(people), BYSTANDER)
+        self._known["id"] = [number for count in counts for number in range(1, count + 1)]
+        self._known["height_m"] = [person.config.height_m for person in people]
+        self._known["radius_m"] = [person.radius_m for person in people]
+
+    def see(self, going: Numbers, poses: Matrix, robots: Matrix) -> tuple[Records, Numbers]:
+        """Tell of everybody who is present in some worlds, as `bystanders` does of one.
+
+        Args:
+            going: (G,) numbers of the worlds, rising, which are up to date.
+            poses: (G, 4, 4) of their robots.
+            robots: (G, 3) [m, m, rad] the same.
+
+        Returns:
+            (Q,) records BYSTANDER of all of them, and (G + 1,) where those of each world begin.
+        """
+        records = self._walks.records
+        row = np.full(len(self._walks.is_scripted), -1)
+        row[going] = np.arange(len(going))
+        who = np.flatnonzero(records["is_present"] & (row[self._world] >= 0))
+        row = row[self._world[who]]
+        first = np.searchsorted(row, np.arange(len(going) + 1))
+        found = self._known[who]
+        if len(who) == 0:
+            return found, first
+        walks = records[who]
+        found["position_m"], found["velocity_m_s"] = walks["position"], walks["velocity"]
+        found["heading_rad"] = walks["heading"]
+        cameras = (poses @ self._camera.robot_from_camera)[row]
+        uprights = stand_before(
+            found["position_m"], found["height_m"], found["radius_m"], self._camera, cameras
+        )
+        fraction = np.ones(uprights.points.shape[:2])
+        looked = np.flatnonzero(uprights.reaches_in)
+        cast_eyes(looked, going[row], self._joined, uprights.eyes, uprights.points, fraction)
+        look_at(found, robots[row], uprights, fraction)
+        return found, first
