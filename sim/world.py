@@ -256,16 +256,16 @@ class World:
         self._robot.command(linear_m_s, angular_rad_s, is_emergency=is_emergency)
         self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot_state())
 
-    def end_step(self, touched: Collection[str], *, are_placed: bool = False) -> None:
+    def end_step(self, touched: Collection[str], *, is_settled: bool = False) -> None:
         """Take over what physics made of the step.
 
         Args:
             touched: names of the bodies that the robot touched.
-            are_placed: whether people are already where they are now, by capsule and, where seen, by limbs.
+            is_settled: whether nobody comes or goes, and all people and things are where they are now.
         """
         self._tick += 1
-        self._touching = {name.split("/")[0] for name in touched} - {"floor"}
-        if are_placed and self._crowd.stays and not self.config.place.movers:
+        self._touching = {name.split("/")[0] for name in touched} - {"floor"} if touched else set()
+        if is_settled:
             self._forget()
         else:
             self._settle()

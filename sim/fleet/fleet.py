@@ -57,6 +57,10 @@ class Fleet:
         self._walks = Walks(worlds)
         self._watch = Watch(worlds, self._walks, self._joined)
         self._capsules = _capsules(worlds, self._walks)
+        self._bodies = (
+            np.repeat(self._joined.first_body[:-1], np.diff(self._walks.first)) + self._capsules.body
+        )
+        self._moves_things = np.array([bool(world.config.place.movers) for world in worlds])
         self._names = [world.crowd.names for world in worlds]
         shows = worlds[0].has_images and any(self._names)
         self._limbs = Limbs(worlds, self._walks, self._joined) if shows else None
@@ -77,15 +81,18 @@ class Fleet:
         if self._eyes is not None:
             self._eyes.finish()
         self._drives.command(going, commands)
-        before = self._walks.records["position"].copy()
+        before, is_solid = self._walks.records.copy(), ~self._joined.bodies.hidden[self._bodies]
         self._walk(going, commands)
-        is_solid = [is_solid for world in self._worlds for is_solid in world.crowd.are_solid]
+        now = self._walks.records
         capsules = self._capsules._replace(
-            is_solid=np.array(is_solid, np.bool_), before=before, after=self._walks.records["position"]
+            is_solid=is_solid, before=before["position"], after=now["position"]
         )
         if self._limbs is not None:
             self._limbs.place(going)
-        self._end(going, self._drives.drive(going, capsules))
+        touched = self._drives.drive(going, capsules)
+        # Who was there and is there no more, or the other way round, or waits for the robot to make room.
+        is_other = (now["is_present"] != before["is_present"]) | (now["is_present"] != is_solid)
+        self._end(going, touched, is_other)
 
     def _walk(self, going: Numbers, commands: Array) -> None:
         """Let people walk on."""
@@ -97,14 +104,16 @@ class Fleet:
         if self._limbs is not None:
             self._limbs.move(going, times_s, self._control_s)
 
-    def _end(self, going: Numbers, touched: NDArray[np.bool_]) -> None:
-        """Tell worlds what came of the step."""
-        first, any_touched = self._joined.first_body, bool(touched.any())
-        for number in going.tolist():
+    def _end(self, going: Numbers, touched: NDArray[np.bool_], is_other: NDArray[np.bool_]) -> None:
+        """Tell worlds what came of the step, by which bodies were touched and which people come or go."""
+        changes, any_touched = self._moves_things.copy(), bool(touched.any())
+        changes[self._walks.world[is_other]] = True
+        for number, is_changed in zip(going.tolist(), changes[going].tolist(), strict=True):
             world, names = self._worlds[number], set[str]()
             if any_touched:
-                names = _kinematic(world).names_of(touched[first[number] : first[number + 1]])
-            world.end_step(names, are_placed=True)
+                first, end = self._joined.first_body[number : number + 2]
+                names = _kinematic(world).names_of(touched[first:end])
+            world.end_step(names, is_settled=not is_changed)
 
     def look(self, going: Numbers) -> Instants:
         """Sense and tell the truth in some of the worlds, as `World.sense` and `World.scene` do.

@@ -44,14 +44,15 @@ class Together:
         """
         found = []
         for number in self._alone:
-            for row in np.flatnonzero(going == number).tolist():
+            for k in np.flatnonzero(going == number).tolist():
                 world = self._worlds[number]
-                world.step(*commands[row].tolist())
-                found.append(perceive(world)._replace(numbers=going[row : row + 1]))
+                world.step(*commands[k].tolist())
+                found.append(perceive(world)._replace(numbers=going[k : k + 1]))
+        row = np.full(len(self._worlds), -1)
+        row[going] = np.arange(len(going))
         for fleet, group in self._fleets:
-            inside = np.isin(group, going, assume_unique=True)
-            if inside.any():
-                own = np.flatnonzero(inside)
-                fleet.step(own, commands[np.isin(going, group, assume_unique=True)])
+            own = np.flatnonzero(row[group] >= 0)
+            if len(own):
+                fleet.step(own, commands[row[group[own]]])
                 found.append(fleet.look(own)._replace(numbers=group[own]))
         return found

@@ -23,6 +23,7 @@ class Walks:
 
     Attributes:
         first: (B + 1,) where the people of each world begin.
+        world: (Q,) where everybody is.
         is_scripted: (B,) in which worlds all are.
         records: (Q,) WALK of everybody; of those who walk by themselves only where they are, how they move,
             and whether they are there.
@@ -31,7 +32,7 @@ class Walks:
     def __init__(self, worlds: Sequence[World]) -> None:
         self._crowds = [world.crowd for world in worlds]
         counts = [len(crowd.people) for crowd in self._crowds]
-        self.first = ends(counts)
+        self.first, self.world = ends(counts), np.repeat(np.arange(len(counts)), counts)
         own = [world.crowd.follow_scripts(has_begun=world.time_s > 0.0) for world in worlds]
         self.is_scripted = np.array([each is not None for each in own], np.bool_)
         scripts: list[Script] = []

@@ -31,7 +31,6 @@ class Watch:
         self._walks, self._joined = walks, joined
         self._camera = flat_geometry(worlds[0].config.robot.cameras, "thermal")
         counts = [len(world.crowd.people) for world in worlds]
-        self._world = np.repeat(np.arange(len(worlds)), counts)
         people = [person for world in worlds for person in world.crowd.people]
         self._known = np.zeros(len(people), BYSTANDER)
         self._known["id"] = [number for count in counts for number in range(1, count + 1)]
@@ -49,18 +48,18 @@ class Watch:
         Returns:
             (Q,) records BYSTANDER of all of them, and (G + 1,) where those of each world begin.
         """
-        records = self._walks.records
-        row = np.full(len(self._walks.is_scripted), -1)
+        walks, records = self._walks, self._walks.records
+        row = np.full(len(walks.is_scripted), -1)
         row[going] = np.arange(len(going))
-        who = np.flatnonzero(records["is_present"] & (row[self._world] >= 0))
-        row = row[self._world[who]]
+        who = np.flatnonzero(records["is_present"] & (row[walks.world] >= 0))
+        row = row[walks.world[who]]
         first = np.searchsorted(row, np.arange(len(going) + 1))
         found = self._known[who]
         if len(who) == 0:
             return found, first
-        walks = records[who]
-        found["position_m"], found["velocity_m_s"] = walks["position"], walks["velocity"]
-        found["heading_rad"] = walks["heading"]
+        present = records[who]
+        found["position_m"], found["velocity_m_s"] = present["position"], present["velocity"]
+        found["heading_rad"] = present["heading"]
         cameras = (poses @ self._camera.robot_from_camera)[row]
         uprights = stand_before(
             found["position_m"], found["height_m"], found["radius_m"], self._camera, cameras

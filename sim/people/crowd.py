@@ -136,19 +136,6 @@ class Crowd:
         """Names of the bodies by which people are met."""
         return tuple(f"{person.name}/{_SOLID}" for person in self.people)
 
-    @property
-    def are_solid(self) -> list[bool]:
-        """Whether each of them is there to be met."""
-        return [person.name in self._solid for person in self.people]
-
-    @property
-    def stays(self) -> bool:
-        """Whether nobody comes, goes, or waits for the robot to be out of its way."""
-        return all(
-            person.present == self._is_shown[person.name] == (person.name in self._solid)
-            for person in self.people
-        )
-
     def show(self, gap_to_robot: Callable[[float, float], float]) -> None:
         """Put every visible part where its person is now; those who are away are hidden.
 

@@ -51,7 +51,7 @@ def expose_worlds(
         film: how it exposes.
         level: (G,) of the light, times the camera's gain.
         quantiles: of the noise.
-        words: (G, N) random.
+        words: (end - first, N) random, of these rows.
         image: (G, H, W, 3) rows first..end-1 are filled.
     """
     canvas, view = open_space(eye.lens, scenery)
@@ -67,5 +67,5 @@ def expose_worlds(
         )  # fmt: skip
         lines = linear.reshape(eye.lens.height, 3 * eye.lens.width)
         smeared = smear(lines, eye.sweep, poses.turned[row], 3)
-        look_up(quantiles, words[row], noise.reshape(-1))
+        look_up(quantiles, words[row - first], noise.reshape(-1))
         image[row] = encode(smeared.reshape(noise.shape), noise, film.gamma, film.read_noise, film.shot_noise)

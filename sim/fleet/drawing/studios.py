@@ -68,10 +68,11 @@ class ThermalStudio:
         shape = (len(worlds), self._config.camera.height, self._config.camera.width)
         radiance, temperature_c = np.empty(shape, np.float32), np.empty(shape, np.float32)
         grey, surroundings = np.empty(shape, np.uint8), self._surroundings[worlds]
-        words = np.stack([_thermal(self._worlds[k], self._name).draw_noise() for k in worlds.tolist()])
+        sensors = [_thermal(self._worlds[number], self._name) for number in worlds.tolist()]
         eye, scenery = self._eye, self._scenery
 
         def fill(first: int, end: int) -> None:
+            words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
             radiate_worlds(first, end, worlds, scenery, poses, eye, _TABLES, surroundings, radiance)
             for row in range(first, end):
                 radiance[row] = optics_blur(radiance[row], self._config.blur_px)
@@ -95,10 +96,11 @@ class ColourStudio:
         """See `Studio.shoot`; of (G, H, W, 3) sRGB."""
         image = np.empty((len(worlds), self._config.camera.height, self._config.camera.width, 3), np.uint8)
         own = [self._worlds[number] for number in worlds.tolist()]
-        words = np.stack([_colour(world, self._name).draw_noise() for world in own])
+        sensors = [_colour(world, self._name) for world in own]
         level = np.array([light_level(each.config.place, each.time_s) * self._config.gain for each in own])
 
         def fill(first: int, end: int) -> None:
+            words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
             expose_worlds(
                 first, end, worlds, self._scenery, poses, self._eye, self._film, level, QUANTILES, words,
                 image,

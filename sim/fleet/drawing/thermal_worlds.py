@@ -108,7 +108,7 @@ def detect_worlds(
         tables: of radiance.
         detectors: of all worlds.
         quantiles: of the noise.
-        words: (G, N) random.
+        words: (end - first, N) random, of these rows.
         temperature_c: (G, H, W) [degC] rows first..end-1 are filled.
         grey: (G, H, W) likewise.
     """
@@ -118,7 +118,7 @@ def detect_worlds(
     for row in range(first, end):
         apparent = smear(radiance[row], eye.sweep, turned[row], 1)
         to_apparent_c(apparent, tables.temperature, tables.span[0], tables.span[1])
-        look_up(quantiles, words[row], noise)
+        look_up(quantiles, words[row - first], noise)
         seen, found, greys = apparent.reshape(-1), temperature_c[row].reshape(-1), grey[row].reshape(-1)
         offset_k = detectors.offset_k[worlds[row]].reshape(-1)
         dead = detectors.dead[worlds[row]].reshape(-1)
