@@ -80,7 +80,7 @@ class Normaliser:
         return found
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _keep_rows(told: NDArray[np.float32], shares: Array, holders: Array, found: NDArray[np.float32]) -> None:
     """Put everybody into the row of before, and newcomers into the first that is free.
 

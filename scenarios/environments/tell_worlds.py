@@ -16,7 +16,7 @@ from peopleboy.tracker.boxes import image_shares
 _image_shares = njit(cache=True)(image_shares)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def tell_motions(starts: Array, now: Array, wheels: Array, found: NDArray[np.float32]) -> None:
     """Fill `odometry`.
 
@@ -37,7 +37,7 @@ def tell_motions(starts: Array, now: Array, wheels: Array, found: NDArray[np.flo
         found[row, 4], found[row, 5] = (left + right) / 2.0, (right - left) / WHEEL_DISTANCE_M
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def fill_tracks(
     people: Array,
     borders: Numbers,

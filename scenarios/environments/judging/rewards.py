@@ -43,7 +43,7 @@ _FOLLOW, _CORRIDOR, _PATROL = range(len(TASKS))
 _KEEP, _FACE, _PROGRESS, _CENTRE, _SPACE, _CHANGE, _COLLISION, _LOST = range(len(TERMS))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def reward_worlds(
     task: int,
     numbers: Numbers,

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.blur import optics_blur, sweep_of_one_rad
+from peopleboy.sim.cameras.blur import optics_blur_sheet, optics_margin, sweep_of_one_rad
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.colour import GAMMA, LIGHT
 from peopleboy.sim.cameras.noise import QUANTILES
@@ -66,19 +66,20 @@ class ThermalStudio:
     def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
         """See `Studio.shoot`; of greys and temperatures [degC], (G, H, W)."""
         shape = (len(worlds), self._config.camera.height, self._config.camera.width)
-        radiance, temperature_c = np.empty(shape, np.float32), np.empty(shape, np.float32)
-        grey, surroundings = np.empty(shape, np.uint8), self._surroundings[worlds]
+        temperature_c, grey = np.empty(shape, np.float32), np.empty(shape, np.uint8)
+        surroundings, blur_px = self._surroundings[worlds], self._config.blur_px
+        margin = optics_margin(blur_px)
         sensors = [_thermal(self._worlds[number], self._name) for number in worlds.tolist()]
         eye, scenery = self._eye, self._scenery
 
         def fill(first: int, end: int) -> None:
             words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
-            radiate_worlds(first, end, worlds, scenery, poses, eye, _TABLES, surroundings, radiance)
-            for row in range(first, end):
-                radiance[row] = optics_blur(radiance[row], self._config.blur_px)
+            sheet = np.empty((end - first, shape[1] + 2 * margin, shape[2]), np.float32)
+            radiate_worlds(first, end, worlds, scenery, poses, eye, _TABLES, surroundings, margin, sheet)
+            sheet = optics_blur_sheet(sheet, blur_px)
             detect_worlds(
-                first, end, worlds, radiance, eye, poses.turned, _TABLES, self._detectors, QUANTILES, words,
-                temperature_c, grey,
+                first, end, worlds, margin, sheet, eye, poses.turned, _TABLES, self._detectors, QUANTILES,
+                words, temperature_c, grey,
             )  # fmt: skip
 
         return (grey, temperature_c), fill

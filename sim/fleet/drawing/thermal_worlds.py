@@ -35,7 +35,8 @@ def radiate_worlds(
     eye: Eye,
     tables: Radiators,
     surroundings: Array,
-    radiance: Image,
+    margin: int,
+    sheet: Image,
 ) -> None:
     """Form thermal images before optics.
 
@@ -48,18 +49,22 @@ def radiate_worlds(
         eye: the camera, the same in all worlds.
         tables: of radiance.
         surroundings: (G,) radiance of what surfaces mirror.
-        radiance: (G, H, W) rows first..end-1 are filled.
+        margin: M rows above and below each image.
+        sheet: (end - first, H + 2 M, W) is filled, with those rows as `optics_blur_sheet` wants them.
     """
     canvas, view = open_space(eye.lens, scenery)
     for row in range(first, end):
         table, looks = table_of(scenery.tables, worlds[row]), looks_of(scenery, worlds[row])
         matrices = look_into(worlds[row], row, table, scenery.part, poses, eye, canvas)
         locate(table.surface_part, eye.lens, canvas, view.part, view.depth)
-        radiance[row] = radiance_image(
+        radiance = sheet[row - first]
+        radiance[margin : margin + eye.lens.height] = radiance_image(
             view.part, view.depth, matrices, looks.thermal, looks.kind, looks.period, looks.phase,
             looks.finish, looks.texels, looks.paint, looks.paint_texels, tables.radiance, surroundings[row],
             tables.span_c,
         )  # fmt: skip
+        for k in range(margin):
+            radiance[k], radiance[-1 - k] = radiance[margin], radiance[-1 - margin]
 
 
 class Detectors(NamedTuple):
@@ -86,7 +91,8 @@ def detect_worlds(
     first: int,
     end: int,
     worlds: Numbers,
-    radiance: Image,
+    margin: int,
+    sheet: Image,
     eye: Eye,
     turned: Array,
     tables: Radiators,
@@ -102,7 +108,8 @@ def detect_worlds(
         first: row of the first world of these.
         end: row after the last one.
         worlds: (G,) their numbers.
-        radiance: (G, H, W), what is read of it is lost.
+        margin: M rows above and below each image.
+        sheet: (end - first, H + 2 M, W), what is read of it is lost.
         eye: the camera.
         turned: (G,) [rad] as in `Poses`.
         tables: of radiance.
@@ -112,11 +119,11 @@ def detect_worlds(
         temperature_c: (G, H, W) [degC] rows first..end-1 are filled.
         grey: (G, H, W) likewise.
     """
-    height, width = radiance.shape[1:]
+    height, width = temperature_c.shape[1:]
     noise = np.empty(height * width, np.float32)
     black, white = np.float32(0.0), np.float32(255.0)
     for row in range(first, end):
-        apparent = smear(radiance[row], eye.sweep, turned[row], 1)
+        apparent = smear(sheet[row - first][margin : margin + height], eye.sweep, turned[row], 1)
         to_apparent_c(apparent, tables.temperature, tables.span[0], tables.span[1])
         look_up(quantiles, words[row - first], noise)
         seen, found, greys = apparent.reshape(-1), temperature_c[row].reshape(-1), grey[row].reshape(-1)
