@@ -57,6 +57,7 @@ class Limbs:
         for q, person in enumerate(self._people):
             own = slice(q, q + 1)
             person.lay_into(self._stances[own], Builds._make(array[own] for array in self._builds))
+        self._handle_things = any(world.config.place.movers for world in worlds)
         gaits = [person.gait for person in self._people]
         self._unit_stride_m = np.array([gait.unit_stride_m for gait in gaits])
         self._parts = self._know_parts(worlds)
@@ -80,16 +81,14 @@ class Limbs:
 
     def place(self, going: Numbers) -> None:
         """Put the parts of all who are in some worlds where they are now, but of those who handle a thing."""
-        ends = self._walks.first.tolist()
-        who = [
-            q
-            for number in going.tolist()
-            for q in range(ends[number], ends[number + 1])
-            if self._people[q].present and not self._people[q].is_handling
-        ]
-        headings = np.array([self._people[q].heading for q in who])
-        places = np.column_stack([self._walks.records["position"][who], headings])
-        _place(np.array(who, np.int64), places, self._builds, self._stances, self._parts, self._joined)
+        walks = self._walks
+        is_going = np.zeros(len(walks.is_scripted), np.bool_)
+        is_going[going] = True
+        who = np.flatnonzero(walks.records["is_present"] & is_going[walks.world])
+        if self._handle_things:
+            who = who[[not self._people[q].is_handling for q in who.tolist()]]
+        places = np.column_stack([walks.records["position"][who], walks.records["heading"][who]])
+        _place(who, places, self._builds, self._stances, self._parts, self._joined)
 
     def _know_parts(self, worlds: Sequence[World]) -> Parts:
         frames = [person.frame for person in self._people]

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.geometry.products import fma
+from peopleboy.sim.geometry.vectors import Point
+from peopleboy.sim.rendering.canvas import Lens
 
 # Heights at which a person's middle is looked for, in shares of the stature.
-_LOOKED_AT = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+_LOOKED_AT = (0.1, 0.3, 0.5, 0.7, 0.9)
 _NEAREST_M = 0.05
 
 
@@ -44,20 +49,75 @@ def stand_before(
         camera: of all of them.
         world_from_camera: (Q, 4, 4).
     """
-    ends = np.concatenate([places, np.zeros((len(places), 1))], axis=1)[:, None, :].repeat(3, axis=1)
-    ends[:, 0, 2], ends[:, 2, 2] = heights_m, heights_m / 2.0
-    points = ends[:, :1].repeat(len(_LOOKED_AT), axis=1)
-    points[:, :, 2] = _LOOKED_AT * heights_m[:, None]
-    camera_from_world = _inverses(world_from_camera)
-    seen = _transforms(camera_from_world, ends)
-    shown = camera.project(seen)
-    half = camera.focal_px * radii_m / seen[:, 2, 2]
-    left, top = shown[:, 2, 0] - half, shown[:, 0, 1]
-    boxes = np.stack([left, top, 2.0 * half, shown[:, 1, 1] - top], axis=1)
-    boxes[seen[:, :, 2].min(axis=1) < _NEAREST_M] = np.nan
-    u, v = np.moveaxis(camera.project(_transforms(camera_from_world, points)), -1, 0)
-    is_inside = (u > -0.5) & (u < camera.width - 0.5) & (v > -0.5) & (v < camera.height - 0.5)
-    return Uprights(boxes, _reach_in(boxes, camera), world_from_camera[:, :3, 3], points, is_inside)
+    count = len(places)
+    found = Uprights(
+        boxes=np.empty((count, 4)),
+        reaches_in=np.empty(count, np.bool_),
+        eyes=world_from_camera[:, :3, 3],
+        points=np.empty((count, len(_LOOKED_AT), 3)),
+        is_inside=np.empty((count, len(_LOOKED_AT)), np.bool_),
+    )
+    u, v = camera.centre_px
+    lens = Lens(camera.focal_px, u, v, camera.width, camera.height)
+    _stand_before(places, heights_m, radii_m, lens, world_from_camera, found)
+    return found
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _stand_before(
+    places: Matrix, heights_m: Matrix, radii_m: Matrix, lens: Lens, poses: Matrix, found: Uprights
+) -> None:
+    camera_from_world = np.empty((3, 4))
+    for q in range(len(places)):
+        _invert(poses[q], camera_from_world)
+        x, y, height = places[q, 0], places[q, 1], heights_m[q]
+        head, foot = _seen(camera_from_world, x, y, height), _seen(camera_from_world, x, y, 0.0)
+        middle = _seen(camera_from_world, x, y, height / 2.0)
+        box, half = found.boxes[q], lens.focal * radii_m[q] / middle[2]
+        top, bottom = _shown(head, lens)[1], _shown(foot, lens)[1]
+        box[0], box[1], box[2], box[3] = _shown(middle, lens)[0] - half, top, 2.0 * half, bottom - top
+        if min(head[2], foot[2], middle[2]) < _NEAREST_M:
+            box[:] = np.nan
+        found.reaches_in[q] = (  # which a box of NaN does not
+            (box[0] + box[2] > -0.5)
+            & (box[0] < lens.width)
+            & (box[1] + box[3] > -0.5)
+            & (box[1] < lens.height)
+        )
+        for k in range(len(_LOOKED_AT)):
+            point = found.points[q, k]
+            point[0], point[1], point[2] = x, y, _LOOKED_AT[k] * height
+            u, v = _shown(_seen(camera_from_world, point[0], point[1], point[2]), lens)
+            is_across, is_up = (u > -0.5) & (u < lens.width - 0.5), (v > -0.5) & (v < lens.height - 0.5)
+            found.is_inside[q, k] = is_across & is_up
+
+
+@njit(cache=True)
+def _invert(pose: Matrix, inverse: Matrix) -> None:
+    """Write the inverse (3, 4) of a rigid pose, its sums rounded as BLAS does in products with one vector."""
+    for i in range(3):
+        for k in range(3):
+            inverse[i, k] = pose[k, i]
+        first = fma(-pose[0, i], pose[0, 3], -pose[1, i] * pose[1, 3])
+        inverse[i, 3] = fma(-pose[2, i], pose[2, 3], first)
+
+
+@njit(cache=True)
+def _seen(camera_from_world: Matrix, x: float, y: float, z: float) -> Point:
+    """A point of the world in the optical frame, its sums rounded as in `products`."""
+    rows = camera_from_world
+    return (
+        fma(z, rows[0, 2], fma(y, rows[0, 1], x * rows[0, 0])) + rows[0, 3],
+        fma(z, rows[1, 2], fma(y, rows[1, 1], x * rows[1, 0])) + rows[1, 3],
+        fma(z, rows[2, 2], fma(y, rows[2, 1], x * rows[2, 0])) + rows[2, 3],
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _shown(point: Point, lens: Lens) -> tuple[float, float]:
+    """Do as `Pinhole.project` with one point."""
+    z = point[2] if point[2] > 1e-9 else np.nan
+    return lens.focal * point[0] / z + lens.centre_u, lens.focal * point[1] / z + lens.centre_v
 
 
 def free_ray_shares(uprights: Uprights, fraction: Matrix, radii_m: Matrix) -> Matrix:
@@ -72,31 +132,21 @@ def free_ray_shares(uprights: Uprights, fraction: Matrix, radii_m: Matrix) -> Ma
     Returns:
         (Q,) 0 for those who do not reach into the image.
     """
-    gaps = uprights.points - uprights.eyes[:, None, :]
-    short = np.linalg.norm(gaps, axis=-1) * (1.0 - fraction)
-    is_free = short <= 1.5 * radii_m[:, None]
-    return np.where(uprights.reaches_in, np.mean(uprights.is_inside & is_free, axis=1), 0.0)
+    shares = np.zeros(len(fraction))
+    _count_free(uprights, fraction, radii_m, shares)
+    return shares
 
 
-def _reach_in(boxes: Matrix, camera: Pinhole) -> NDArray[np.bool_]:
-    """Tell which boxes (Q, 4) reach into the image; a box of NaN does not."""
-    left, top, width, height = boxes.T
-    found: NDArray[np.bool_] = (
-        (left + width > -0.5) & (left < camera.width) & (top + height > -0.5) & (top < camera.height)
-    )
-    return found
-
-
-def _inverses(poses: Matrix) -> Matrix:
-    """Invert rigid (Q, 4, 4) poses."""
-    inverses = np.zeros_like(poses)
-    inverses[:, :3, :3] = poses[:, :3, :3].transpose(0, 2, 1)
-    inverses[:, :3, 3] = (-inverses[:, :3, :3] @ poses[:, :3, 3, None])[..., 0]
-    inverses[:, 3, 3] = 1.0
-    return inverses
-
-
-def _transforms(poses: Matrix, points: Matrix) -> Matrix:
-    """Map (Q, N, 3) points by (Q, 4, 4) poses, one each."""
-    mapped: Matrix = points @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3]
-    return mapped
+@njit(cache=True, nogil=True)
+def _count_free(uprights: Uprights, fraction: Matrix, radii_m: Matrix, shares: Matrix) -> None:
+    rays = fraction.shape[1]
+    for q in range(len(fraction)):
+        if not uprights.reaches_in[q]:
+            continue
+        free = 0
+        for k in range(rays):
+            point, eye = uprights.points[q, k], uprights.eyes[q]
+            x, y, z = point[0] - eye[0], point[1] - eye[1], point[2] - eye[2]
+            short = math.sqrt(x * x + y * y + z * z) * (1.0 - fraction[q, k])
+            free += uprights.is_inside[q, k] and short <= 1.5 * radii_m[q]
+        shares[q] = free / rays
