@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import Command
 from peopleboy.scenarios.environments.judging.episode_figures import Figures, track_in
-from peopleboy.scenarios.environments.judging.episodes import Episodes, Terms, Verdicts
+from peopleboy.scenarios.environments.judging.episodes import LiveEpisodes, Terms, Verdicts
 from peopleboy.scenarios.environments.judging.rewards import TASKS, TERMS
 from peopleboy.scenarios.environments.normalise import Normaliser
 from peopleboy.scenarios.environments.observations import (
@@ -133,7 +133,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self.teller = Teller(observation, self._robot, shown, normaliser)
         space = observation_space(observation, self._robot, shown)
         self.observation_space = space if normaliser is None else normaliser.space(space)
-        self.join(Episodes(1, task), 0)
+        self.join(LiveEpisodes(1, task), 0)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -178,7 +178,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             self._show_first()
         return observation, self._info(verdicts)
 
-    def join(self, episodes: Episodes, number: int) -> None:
+    def join(self, episodes: LiveEpisodes, number: int) -> None:
         """Have the episodes from the next one on among those of many worlds, under a number."""
         self._episodes, self._number = episodes, number
 
@@ -352,7 +352,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         return vary(config, options, stream(self._seed, "environment.options"))
 
     def _perceive(self, world: World) -> list[int] | None:
-        """Take in an instant; gives what `Episodes.judge` is to know of the tracker."""
+        """Take in an instant; gives what `LiveEpisodes.judge` is to know of the tracker."""
         self._instants = perceive(world)._replace(numbers=np.array([self._number]))
         return None if self._tracker is None else [self.track(self._instants, 0)]
 

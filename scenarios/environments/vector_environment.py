@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv, check_actions
 from peopleboy.scenarios.environments.join_infos import Infos, join_infos
-from peopleboy.scenarios.environments.judging.episodes import Episodes
+from peopleboy.scenarios.environments.judging.episodes import LiveEpisodes
 from peopleboy.scenarios.environments.observations import Arrays
 from peopleboy.scenarios.environments.step_results import StepResults
 from peopleboy.sim.fleet.crew import Crew
@@ -60,7 +60,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self._crew = Crew(threads)
         self._envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))
         first = self._envs[0]
-        self._episodes = Episodes(num_envs, first.task)
+        self._episodes = LiveEpisodes(num_envs, first.task)
         for number, env in enumerate(self._envs):
             env.join(self._episodes, number)
         self.single_action_space = first.action_space
@@ -145,7 +145,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         return self._together.step(going, (shares * self._episodes.records["limits"])[going])
 
     def _track(self, instants: Instants) -> list[int] | None:
-        """Let trackers look, if there are any; gives what `Episodes.judge` is to know of them."""
+        """Let trackers look, if there are any; gives what `LiveEpisodes.judge` is to know of them."""
         if not self._teller.tracks:
             return None
         return [

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.fleet.drive_worlds import Capsules, drive_worlds
 from peopleboy.sim.fleet.side_by_side import Joined
+from peopleboy.sim.fleet.walk_worlds import Walks
+from peopleboy.sim.physics.kinematic.kinematic import Kinematic
 from peopleboy.sim.physics.kinematic.solids import Array
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle
 from peopleboy.sim.robot.peoplebot import Gears
@@ -22,6 +24,7 @@ class Drives:
 
     Args:
         worlds: of a fleet.
+        walks: where everybody goes.
         joined: where all is that they may run into.
         vehicle: what they roll on.
 
@@ -29,18 +32,18 @@ class Drives:
         gears: of all of them, with worlds first.
     """
 
-    def __init__(self, worlds: Sequence[World], joined: Joined, vehicle: Vehicle) -> None:
+    def __init__(self, worlds: Sequence[World], walks: Walks, joined: Joined, vehicle: Vehicle) -> None:
         self._robots = [world.robot for world in worlds]
-        self._joined, self._vehicle = joined, vehicle
+        self._walks, self._joined, self._vehicle = walks, joined, vehicle
+        self._capsules = _capsules(worlds, walks)
+        self._bodies = joined.first_body[walks.world] + self._capsules.body
         self.gears = Gears(*map(np.stack, zip(*(robot.gears for robot in self._robots), strict=True)))
         for number, robot in enumerate(self._robots):
             robot.lay_into(Gears(*(array[number] for array in self.gears)))
-        limits = [robot.limits for robot in self._robots]
-        self._limits, self._rise = (
-            np.array([each.limits for each in limits]),
-            np.array([each.rise for each in limits]),
-        )
-        self._noise_m = np.array([each.encoder_noise_m for each in limits])
+        drives = [robot.limits for robot in self._robots]
+        self._limits = np.array([each.limits for each in drives])
+        self._rise = np.array([each.rise for each in drives])
+        self._noise_m = np.array([each.encoder_noise_m for each in drives])
         config = worlds[0].config
         self._dt_s, self._steps = 1.0 / config.physics_hz, config.physics_hz // config.control_hz
 
@@ -56,8 +59,18 @@ class Drives:
         self.gears.target[going] = np.clip(commands, -limits, limits)
         self.gears.rise[going] = self._rise[going]
 
-    def drive(self, going: Numbers, capsules: Capsules) -> NDArray[np.bool_]:
+    @property
+    def are_solid(self) -> NDArray[np.bool_]:
+        """(Q,) whether each of all people is there to be met."""
+        are_solid: NDArray[np.bool_] = ~self._joined.bodies.hidden[self._bodies]
+        return are_solid
+
+    def drive(self, going: Numbers, before: Array) -> NDArray[np.bool_]:
         """Let physics do a control step, and count what the wheels have turned.
+
+        Args:
+            going: (G,) numbers of the worlds.
+            before: (Q, 2) [m] where all people stood at its start.
 
         Returns:
             One for each body of all worlds: whether a robot touched it.
@@ -66,8 +79,29 @@ class Drives:
         for row, number in enumerate(going.tolist()):
             self._robots[number].draw_noise(noise[row])
         noise *= self._noise_m[going, None]
+        after = self._walks.records["position"]
+        capsules = self._capsules._replace(is_solid=self.are_solid, before=before, after=after)
         touched = np.zeros(len(self._joined.bodies.places), np.bool_)
         drive_worlds(
             going, self._joined, self._vehicle, self.gears, noise, capsules, self._dt_s, self._steps, touched
         )
         return touched
+
+
+def _capsules(worlds: Sequence[World], walks: Walks) -> Capsules:
+    """By what people are met; where it is comes with each step."""
+    people = [person for world in worlds for person in world.crowd.people]
+    places = walks.records["position"]
+    return Capsules(
+        first=walks.first,
+        body=np.array([number for world in worlds for number in _capsule_numbers(world)], np.int64),
+        is_solid=np.zeros(len(people), np.bool_),
+        middle_m=np.array([person.config.height_m for person in people]) / 2.0,
+        before=places,
+        after=places,
+    )
+
+
+def _capsule_numbers(world: World) -> list[int]:
+    assert isinstance(world.physics, Kinematic)
+    return [world.physics.number_of(name) for name in world.crowd.capsules]

@@ -12,7 +12,6 @@ from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.fleet.cast_worlds import refresh_worlds
 from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.drawing.eyes import Eyes, cameras_of
-from peopleboy.sim.fleet.drive_worlds import Capsules
 from peopleboy.sim.fleet.drives import Drives
 from peopleboy.sim.fleet.ears import Ears
 from peopleboy.sim.fleet.hold_people import Limbs
@@ -52,14 +51,10 @@ class Fleet:
             each.lay_into(state)
         self._own = self._joined.first_body[:-1] + self._joined.own
         self._control_s = 1.0 / worlds[0].config.control_hz
-        self._drives = Drives(worlds, self._joined, states[0].vehicle)
-        self._ears = Ears(worlds, self._joined)
         self._walks = Walks(worlds)
+        self._drives = Drives(worlds, self._walks, self._joined, states[0].vehicle)
+        self._ears = Ears(worlds, self._joined)
         self._watch = Watch(worlds, self._walks, self._joined)
-        self._capsules = _capsules(worlds, self._walks)
-        self._bodies = (
-            np.repeat(self._joined.first_body[:-1], np.diff(self._walks.first)) + self._capsules.body
-        )
         self._moves_things = np.array([bool(world.config.place.movers) for world in worlds])
         self._names = [world.crowd.names for world in worlds]
         shows = worlds[0].has_images and any(self._names)
@@ -81,17 +76,14 @@ class Fleet:
         if self._eyes is not None:
             self._eyes.finish()
         self._drives.command(going, commands)
-        before, is_solid = self._walks.records.copy(), ~self._joined.bodies.hidden[self._bodies]
+        before = self._walks.records.copy()
         self._walk(going, commands)
-        now = self._walks.records
-        capsules = self._capsules._replace(
-            is_solid=is_solid, before=before["position"], after=now["position"]
-        )
         if self._limbs is not None:
             self._limbs.place(going)
-        touched = self._drives.drive(going, capsules)
+        touched = self._drives.drive(going, before["position"])
         # Who was there and is there no more, or the other way round, or waits for the robot to make room.
-        is_other = (now["is_present"] != before["is_present"]) | (now["is_present"] != is_solid)
+        are_present = self._walks.records["is_present"]
+        is_other = (are_present != before["is_present"]) | (are_present != self._drives.are_solid)
         self._end(going, touched, is_other)
 
     def _walk(self, going: Numbers, commands: Array) -> None:
@@ -175,21 +167,6 @@ def _planar(poses: Matrix) -> Array:
     """(G, 3) x, y [m], heading [rad] of poses (G, 4, 4)."""
     headings = map(math.atan2, poses[:, 1, 0].tolist(), poses[:, 0, 0].tolist())
     return np.column_stack([poses[:, :2, 3], list(headings)])
-
-
-def _capsules(worlds: Sequence[World], walks: Walks) -> Capsules:
-    """By what people are met; where it is comes with each step."""
-    people = [person for world in worlds for person in world.crowd.people]
-    bodies = [_kinematic(world).number_of(name) for world in worlds for name in world.crowd.capsules]
-    places = walks.records["position"]
-    return Capsules(
-        first=walks.first,
-        body=np.array(bodies, np.int64),
-        is_solid=np.zeros(len(people), np.bool_),
-        middle_m=np.array([person.config.height_m for person in people]) / 2.0,
-        before=places,
-        after=places,
-    )
 
 
 def _kinematic(world: World) -> Kinematic:

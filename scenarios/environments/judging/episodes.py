@@ -1,4 +1,4 @@
-"""Episodes in many worlds, judged together; a single environment has one."""
+"""LiveEpisodes in many worlds, judged together; a single environment has one."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Verdicts(NamedTuple):
     truths: list[ImageFreeTruth]
 
 
-class Episodes:
+class LiveEpisodes:
     """The episodes of B worlds.
 
     Attributes:
