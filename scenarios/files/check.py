@@ -142,15 +142,15 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]],
 
 def crosses(box: Rectangle, start: tuple[float, float], end: tuple[float, float]) -> bool:
     """Whether a straight line has a point inside a rectangle (slab method)."""
-    origin, way = np.array(start), np.subtract(end, start)
-    low, high = np.array([box.min_x, box.min_y]), np.array([box.max_x, box.max_y])
     first, last = 0.0, 1.0
-    for axis in range(2):
-        if abs(way[axis]) < 1e-12:
-            if not low[axis] < origin[axis] < high[axis]:
+    spans = (box.min_x, box.max_x), (box.min_y, box.max_y)
+    for (low, high), origin, goal in zip(spans, start, end, strict=True):
+        way = goal - origin
+        if abs(way) < 1e-12:
+            if not low < origin < high:
                 return False
             continue
-        near, far = sorted(((low[axis] - origin[axis]) / way[axis], (high[axis] - origin[axis]) / way[axis]))
+        near, far = sorted(((low - origin) / way, (high - origin) / way))
         first, last = max(first, near), min(last, far)
     return first < last
 

@@ -15,7 +15,7 @@ from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.body.placing import carry, put_on_floor
 from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
 from peopleboy.sim.people.person import Person, pace_m_s
-from peopleboy.sim.people.scripted.script import Records
+from peopleboy.sim.people.scripted.script import Records, join_records
 from peopleboy.sim.physics.kinematic.kinematic import Kinematic
 from peopleboy.sim.physics.kinematic.solids import Array
 from peopleboy.sim.shapes.joined_tables import Numbers
@@ -52,7 +52,7 @@ class Limbs:
     def __init__(self, worlds: Sequence[World], walks: Walks, joined: Joined) -> None:
         self._walks, self._joined = walks, joined
         self._people = [person for world in worlds for person in world.crowd.people]
-        self._stances = np.concatenate([np.zeros(0, STANCE), *(each.stance for each in self._people)])
+        self._stances = join_records([each.stance for each in self._people], STANCE)
         self._builds = Builds(*map(np.concatenate, zip(*(each.build for each in self._people), strict=True)))
         for q, person in enumerate(self._people):
             own = slice(q, q + 1)

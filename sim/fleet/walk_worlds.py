@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.scripted.script import WALK, Records, Script, Scripts, join_scripts
+from peopleboy.sim.people.scripted.script import WALK, Records, Script, Scripts, join_records, join_scripts
 from peopleboy.sim.people.scripted.walk_scripts import walk_on
 from peopleboy.sim.physics.kinematic.solids import Array
 from peopleboy.sim.shapes.joined_tables import Numbers, ends
@@ -41,7 +41,7 @@ class Walks:
             scripts += [_NO_SCRIPT] * count if each is None else each.scripts
             records.append(np.zeros(count, WALK) if each is None else each.records)
         self._scripts = join_scripts(scripts)
-        self.records = np.concatenate([np.zeros(0, WALK), *records])
+        self.records = join_records(records, WALK)
         for crowd, each, first, end in zip(self._crowds, own, self.first, self.first[1:], strict=False):
             if each is not None:
                 crowd.lay_into(self.records[first:end])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import Enum
+from functools import lru_cache
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.places.rectangle import CLOSE_M, Rectangle, lengthened, subtract
@@ -108,13 +109,7 @@ class FloorPlan:
 
     def walls(self) -> tuple[Wall, ...]:
         """List the sides of all areas along which at least a piece of wall stands."""
-        inside = tuple(area for _, area in self.areas)
-        named = (
-            Wall(name=f"{name}_{side.name.lower()}" if name else side.name.lower(), area=area, side=side)
-            for name, area in self.areas
-            for side in (Side.NORTH, Side.SOUTH, Side.EAST, Side.WEST)
-        )
-        return tuple(wall for wall in named if subtract(_facing(wall), inside))
+        return _walls(self.areas)
 
     def opening(self, door: Door) -> Rectangle:
         """The floor inside the thickness of the wall, from jamb to jamb."""
@@ -168,6 +163,17 @@ class FloorPlan:
         corners_x = sorted((x + nx * near_m - abs(ny) * half_m, x + nx * far_m + abs(ny) * half_m))
         corners_y = sorted((y + ny * near_m - abs(nx) * half_m, y + ny * far_m + abs(nx) * half_m))
         return Rectangle(corners_x[0], corners_y[0], corners_x[1], corners_y[1])
+
+
+@lru_cache(maxsize=64)
+def _walls(areas: tuple[tuple[str, Rectangle], ...]) -> tuple[Wall, ...]:
+    inside = tuple(area for _, area in areas)
+    named = (
+        Wall(name=f"{name}_{side.name.lower()}" if name else side.name.lower(), area=area, side=side)
+        for name, area in areas
+        for side in (Side.NORTH, Side.SOUTH, Side.EAST, Side.WEST)
+    )
+    return tuple(wall for wall in named if subtract(_facing(wall), inside))
 
 
 def _join_stubs(blocks: list[tuple[Wall, Rectangle]]) -> tuple[tuple[Wall, Rectangle], ...]:

@@ -1,4 +1,4 @@
-"""LiveEpisodes in many worlds, judged together; a single environment has one."""
+"""Episodes in many worlds, judged together; a single environment has one."""
 
 from __future__ import annotations
 

@@ -97,7 +97,6 @@ class Eyes:
 def cameras_of(world: World) -> tuple[tuple[str, CameraConfig], ...] | None:
     """What all worlds must share whose images are made together; None for a world that makes its own."""
     config = world.config
-    simple = all(is_simple(camera) for camera in world.cameras.values())
-    if config.renderer != "raycast" or config.detail != "plain" or not simple:
+    if config.renderer != "raycast" or config.detail != "plain":
         return None
-    return tuple(world.cameras.items())
+    return tuple(world.cameras.items()) if all(map(is_simple, world.cameras.values())) else None

@@ -73,11 +73,23 @@ class Gait:
     @cached_property
     def tables(self) -> tuple[Array, Array]:
         """(A, P, 17, 3) and (A, P, 3) tables of all amplitudes, made for those who are looked at."""
-        tables = [self._make_table(float(a)) for a in AMPLITUDES]
-        return np.stack([rotations for rotations, _ in tables]), np.stack([sway for _, sway in tables])
+        walks = [self._walk(float(amplitude)) for amplitude in AMPLITUDES]
+        rotations = np.concatenate([rotations for rotations, _, _ in walks])
+        pelvis = np.concatenate([pelvis for _, pelvis, _ in walks])
+        for side in SIDES:
+            ankle, pitch = (
+                np.concatenate(each) for each in zip(*(feet[side] for *_, feet in walks), strict=True)
+            )
+            self._bend_leg(side, rotations, pelvis, ankle, pitch)
+        shape = len(AMPLITUDES), PHASES
+        return rotations.reshape(*shape, len(BONES), 3), pelvis.reshape(*shape, 3)
 
-    def _make_table(self, amplitude: float) -> tuple[Array, Array]:
-        """Compute (P, 17, 3) rotation vectors and (P, 3) pelvis offsets at every phase, for one amplitude."""
+    def _walk(self, amplitude: float) -> tuple[Array, Array, dict[str, tuple[Array, Array]]]:
+        """Compute a walk of one amplitude at every phase, legs aside.
+
+        Returns:
+            (P, 17, 3) rotation vectors, (P, 3) [m] pelvis offsets, and the feet as `_foot_path` gives them.
+        """
         phases = np.arange(PHASES) / PHASES
         rotations = self._clip_rotations(phases, amplitude)
         sway = fourier_basis(phases) @ load_walking_clip().sway * self._scale * min(amplitude, 1.0)
@@ -86,9 +98,7 @@ class Gait:
         share = min(amplitude / 0.3, 1.0)
         reach = _STANDING_REACH + share * (_MAX_REACH - _STANDING_REACH)
         pelvis = np.column_stack([sway[:, :2], self._hip_height(rotations, sway, feet, reach)])
-        for side in SIDES:
-            self._bend_leg(side, rotations, pelvis, *feet[side])
-        return rotations, pelvis
+        return rotations, pelvis, feet
 
     def _clip_rotations(self, phases: Array, amplitude: float) -> Array:
         """Scale the clip's swing about its mean, and the mean towards standing; legs come later."""
@@ -174,9 +184,9 @@ class Gait:
     ) -> Array:
         """(P,) [m] heights of the pelvis at which both legs reach their feet: a smooth curve."""
         limits = []
-        reach = reach * self._leg_lengths().sum()
+        reach, turn = reach * self._leg_lengths().sum(), Rotation.from_rotvec(rotations[:, 0])
         for side in SIDES:
-            hips = Rotation.from_rotvec(rotations[:, 0]).apply(self._offsets[BONE_INDEX[f"{side}_thigh"]])
+            hips = turn.apply(self._offsets[BONE_INDEX[f"{side}_thigh"]])
             gap = feet[side][0] - hips - sway * [1.0, 1.0, 0.0]
             limits.append(gap[:, 2] + np.sqrt(reach**2 - gap[:, 0] ** 2 - gap[:, 1] ** 2))
         limit = np.min(limits, axis=0)

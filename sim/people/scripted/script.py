@@ -149,11 +149,16 @@ class Scripts(NamedTuple):
     first_piece: NDArray[np.int64]
 
 
+def join_records(records: Sequence[Records], kind: np.dtype[Any]) -> Records:
+    """Put records of one kind one after the other, as bytes: else numpy compares kinds field by field."""
+    return np.concatenate([np.zeros(0, np.uint8), *(each.view(np.uint8) for each in records)]).view(kind)
+
+
 def join_scripts(scripts: Sequence[Script]) -> Scripts:
     """Put scripts one after the other."""
     return Scripts(
-        waypoints=np.concatenate([np.zeros(0, WAYPOINT), *(script.waypoints for script in scripts)]),
-        pieces=np.concatenate([np.zeros(0, PIECE), *(script.pieces for script in scripts)]),
+        waypoints=join_records([script.waypoints for script in scripts], WAYPOINT),
+        pieces=join_records([script.pieces for script in scripts], PIECE),
         first_waypoint=np.cumsum([0, *(len(script.waypoints) for script in scripts)])[:-1].astype(np.int64),
         first_piece=np.cumsum([0, *(len(script.pieces) for script in scripts)])[:-1].astype(np.int64),
     )

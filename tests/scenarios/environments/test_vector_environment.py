@@ -206,3 +206,22 @@ def test_what_does_not_fit_many_worlds_is_refused() -> None:
         many.reset(seed=[1])
     with pytest.raises(BadInput, match=r"\(2, 2\)"):
         many.step(np.zeros(2, np.float32))
+
+
+def test_worlds_of_several_kinds_some_of_them_empty_are_single_worlds_too() -> None:
+    settings = {"observation": "pixels", "physics": "kinematic", "image_size": (64, 48), "physics_hz": 60}
+    settings["randomise"] = {"noise": [0.5, 1.5], "people": [0, 1]}  # each camera has a noise of its own
+    many = PeopleBoyVectorEnv(3, threads=2, **settings)
+    single = [PeopleBoyEnv(**settings) for _ in range(3)]
+    many.reset(seed=5)
+    there = {len(env.reset(seed=5 + number)[1]["truth"].people) for number, env in enumerate(single)}
+    assert there == {0, 1}
+    for actions in np.random.default_rng(2).uniform(-1.0, 1.0, (3, 3, 2)).astype(np.float32):
+        found, rewards, _, _, infos = many.step(actions)
+        own = [env.step(action) for env, action in zip(single, actions, strict=True)]
+        assert rewards.tolist() == [reward for _, reward, *_ in own]
+        assert_alike(infos, join_infos([info for *_, info in own]))
+        for number, (seen, *_) in enumerate(own):
+            assert all(found[name][number].tobytes() == array.tobytes() for name, array in seen.items())
+    for env in (many, *single):
+        env.close()
