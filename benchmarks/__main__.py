@@ -119,14 +119,8 @@ def _environments() -> Iterator[BenchFigure]:
         name = f"{case.name}, {MANY} worlds, {physics} at {QUICK_HZ} Hz"
         yield BenchFigure((of, name, "one process"), vector_rate(case, physics), "{:.0f} steps/s")
     for case, worlds, threads, least, reason in (
-        (TRUTH, 64, 1, 20, "observations, rewards and figures of episodes are made world by world"),
-        (
-            PIXELS,
-            MANY,
-            THREADS,
-            10,
-            "about half are kernels that draw; figures of episodes go world by world",
-        ),
+        (TRUTH, 64, 1, 20, "sonar, contacts and random numbers take half of a step"),
+        (PIXELS, MANY, THREADS, 10, "about two thirds are kernels that draw"),
     ):
         ratio = many_rates(case, (worlds,), threads)[worlds].ratio
         name = f"{case.name}, {worlds} worlds, kinematic, {threads} {'threads' if threads > 1 else 'thread'}"
