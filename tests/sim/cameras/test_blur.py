@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
+from peopleboy.sim.cameras.blur import optics_blur, optics_blur_sheet, optics_margin, rotation_blur
 from peopleboy.sim.geometry.pinhole import Pinhole
 
 CAMERA = Pinhole(width=64, height=16, vertical_fov_rad=0.25)
@@ -45,3 +45,12 @@ def test_rotation_blur_equals_the_mean_over_small_turns() -> None:
 def test_no_turn_leaves_the_image_alone() -> None:
     image = np.random.default_rng(0).random((16, 64, 3)).astype(np.float32)
     assert np.array_equal(rotation_blur(image, CAMERA, 0.0), image)
+
+
+@pytest.mark.parametrize("sigma_px", [0.0, 0.3, 0.7, 2.5])
+def test_many_images_are_blurred_at_once_to_the_byte_as_each_by_itself(sigma_px: float) -> None:
+    images = np.random.default_rng(0).uniform(30.0, 70.0, (3, 24, 33)).astype(np.float32)
+    margin = optics_margin(sigma_px)
+    sheet = optics_blur_sheet(np.pad(images, ((0, 0), (margin, margin), (0, 0)), mode="edge"), sigma_px)
+    for image, own in zip(images, sheet[:, margin : margin + 24], strict=True):
+        assert own.tobytes() == optics_blur(image, sigma_px).tobytes()
