@@ -172,6 +172,27 @@ class LifeConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SearchConfig:
+    """How new people are looked for, and of whom it is told sooner or later than by `LifeConfig`.
+
+    The sources look at each image once, and treat all alike.
+    """
+
+    looks: int = 1  # times that the detector moves its samples and weighs them in each image
+    small_h: float = 0.0  # body semi-height [px] below which somebody is small
+    small_confidence: float = 0.5  # `birth_confidence` of who is small
+    # Who is not small, and has nobody known beside, is born after `clear_frames` above this; 1: never sooner.
+    clear_confidence: float = 1.0
+    clear_frames: int = 1
+    clear_margin: float = 0.0  # widths of those known that count as beside them, on each side
+
+    def __post_init__(self) -> None:
+        check_positive(self, "looks", "clear_frames")
+        check_not_negative(self, "small_h", "clear_margin")
+        check_share(self, "small_confidence", "clear_confidence")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class BoxConfig:
     """How a contour becomes a box (thesis: 2 w by 3.5 h; paper: 2 w by 3 h)."""
 
@@ -286,6 +307,7 @@ class TrackerConfig:
     detector: FilterConfig = field(default_factory=FilterConfig)
     person: FilterConfig = field(default_factory=FilterConfig)
     life: LifeConfig = field(default_factory=LifeConfig)
+    search: SearchConfig = field(default_factory=SearchConfig)
     box: BoxConfig = field(default_factory=BoxConfig)
     smoothing: SmoothingConfig = field(default_factory=SmoothingConfig)
     interaction: InteractionConfig = field(default_factory=InteractionConfig)

@@ -18,6 +18,8 @@ from peopleboy.tracker.thermal.ellipse import ellipse_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.mount import Mount, mount_of, seen_from
 from peopleboy.tracker.thermal.mount_belief import MountBelief, believed_from, is_learnable, tells_mount
+from peopleboy.tracker.thermal.newcomers.detector import detected
+from peopleboy.tracker.thermal.newcomers.evidence import Evidence
 from peopleboy.tracker.thermal.occlusion.depth_order import (
     ExpectedPerson,
     Order,
@@ -32,17 +34,14 @@ from peopleboy.tracker.thermal.particle_filter import (
     Belief,
     FrameView,
     advance,
-    draw_fresh,
     view_frame,
     weigh,
 )
 from peopleboy.tracker.thermal.particles import Floats, draw_around
-from peopleboy.tracker.thermal.tracked_person import FORGET_S, TrackedPerson, is_born, newborn
+from peopleboy.tracker.thermal.tracked_person import FORGET_S, TrackedPerson, newborn
 from peopleboy.tracker.thermal.whereabouts import (
     Regions,
     box_of,
-    detector_factor,
-    least_overlaps,
     overlap_shares,
     person_factor,
     places_on_floor,
@@ -73,7 +72,7 @@ class PeopleTracker:
         self._clutter: float | None = None
         self._last_s: float | None = None
         self._detector: Belief | None = None
-        self._hits = 0
+        self._evidence = Evidence()
         self._persons: tuple[TrackedPerson, ...] = ()
         self._memories: tuple[TrackedPerson, ...] = ()
         self._told: tuple[TrackedPerson, ...] = ()
@@ -122,6 +121,7 @@ class PeopleTracker:
         if self._introduced is not None:
             self._meet(self._introduced, view, frame.time_s)
             self._introduced = None
+        self._identify(view, frame.time_s)
         newcomer = self._search(view, frame.time_s)
         self._learn_mount(model.shape[0])
         known = (*self._persons, *self._memories)
@@ -208,29 +208,50 @@ class PeopleTracker:
         if sum(not person.is_hidden for person in self._persons) >= config.interaction.max_persons:
             self._detector = None
             return ()
-        self._detector = self._detected(view)
-        self._hits = self._hits + 1 if is_born(self._detector, view, config.life) else 0
-        if self._hits == 0:
+        seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
+        self._detector = detected(self._detector, seen, view, config, self._rng)
+        known = [person.shown for person in (*self._persons, *self._memories)]
+        self._evidence = self._evidence.after(self._detector, known, view, config)
+        if not self._evidence.is_some:
             return ()
         found = newborn(self._born + 1, self._detector, view, time_s, config)
-        if self._hits < config.life.birth_frames:
+        if not self._evidence.is_enough(config):
             return (replace(found, status=Status.TENTATIVE),)
-        self._hits, self._detector = 0, None
-        lost = (*self._memories, *(person for person in self._persons if person.is_hidden))
-        known = self._policy.recognised(found, lost, view) if lost else None
-        if known is None:
-            self._born = found.id
-        else:
-            self._memories = tuple(person for person in self._memories if person is not known)
-            self._persons = tuple(person for person in self._persons if person is not known)
-            found = replace(
-                found,
-                id=known.id,
-                born_s=known.born_s,
-                looks=known.looks or found.looks,
-            )
+        self._evidence, self._detector = Evidence(), None
+        found = self._identified(found, view, time_s)
+        self._born = max(self._born, found.id)
         self._persons = tuple(sorted((*self._persons, found), key=lambda person: person.id))
         return ()
+
+    def _identify(self, view: FrameView, time_s: float) -> None:
+        """Find out who those are of whom too little was seen when they were found."""
+        for person in self._persons:
+            if person.is_unidentified and not person.is_hidden:
+                found = self._identified(person, view, time_s)
+                others = (other for other in self._persons if other is not person)
+                self._persons = tuple(sorted((*others, found), key=lambda other: other.id))
+
+    def _identified(self, found: TrackedPerson, view: FrameView, time_s: float) -> TrackedPerson:
+        """Give a person the identity of the one, lost before it was found, who it is.
+
+        Who cannot be compared yet with all of them stays new until then.
+        """
+        hidden = (person for person in self._persons if person.is_hidden)
+        before = [one for one in (*self._memories, *hidden) if one.hidden_s >= time_s - found.born_s]
+        if not all(self._policy.can_compare(found, person) for person in before):
+            return replace(found, is_unidentified=True)
+        known = self._policy.recognised(found, before, view) if before else None
+        if known is None:
+            return replace(found, is_unidentified=False)
+        self._memories = tuple(person for person in self._memories if person is not known)
+        self._persons = tuple(person for person in self._persons if person is not known)
+        return replace(
+            found,
+            id=known.id,
+            born_s=known.born_s,
+            looks=known.looks or found.looks,
+            is_unidentified=False,
+        )
 
     def _meet(self, box: Box, view: FrameView, time_s: float) -> None:
         """Start a filter on samples around a person who is pointed out."""
@@ -239,17 +260,6 @@ class PeopleTracker:
         found = newborn(self._born + 1, belief, view, time_s, self._config)
         self._born = found.id
         self._persons = (*self._persons, found)
-
-    def _detected(self, view: FrameView) -> Belief:
-        """Weigh the detector's samples, kept off the people that are tracked."""
-        config, rng = self._config, self._rng
-        if self._detector is None:
-            state = draw_fresh(config.detector.count, view, config.detector, config, rng)
-        else:
-            state = advance(self._detector.particles, view, config.detector, config, rng)
-        seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
-        factor = detector_factor(least_overlaps(state, regions_of(seen, config), config), config.interaction)
-        return weigh(state, view, config.detector, config, factor)
 
     def _is_shown(self, person: TrackedPerson, view: FrameView) -> bool:
         """Tell whether a hidden person is shown: nobody outside of the image is."""

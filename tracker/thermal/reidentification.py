@@ -22,6 +22,7 @@ PLACE_WEIGHT = 0.56
 LOOKS_WEIGHT = 1.76
 WORST = 6.8
 GROWTH = 0.7  # largest change of the logarithm of the height
+COMPARED = 0.5  # share of somebody's known looks that must be seen of who may be the same person
 
 
 def least_mismatch(
@@ -31,6 +32,18 @@ def least_mismatch(
     costs = [mismatch(found, person, view, config) for person in lost]
     best = int(np.argmin(costs))
     return lost[best] if costs[best] < WORST else None
+
+
+def is_comparable(found: TrackedPerson, lost: TrackedPerson) -> bool:
+    """Tell whether enough is seen of a newly found person's looks to compare them with those of one lost.
+
+    The colour camera sees less to the sides than the thermal one, and heat alone is much the same in all.
+    """
+    if found.looks is None or lost.looks is None:
+        return True
+    is_known = ~np.isnan(lost.looks.mean)
+    is_seen = is_known & ~np.isnan(found.looks.mean)
+    return bool(is_seen.sum() >= COMPARED * is_known.sum())
 
 
 def most_alike_and_nearest(found: TrackedPerson, lost: Sequence[TrackedPerson]) -> TrackedPerson | None:

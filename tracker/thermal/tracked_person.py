@@ -46,6 +46,7 @@ class TrackedPerson:
         hidden_frames: for how many frames it has been hidden.
         hidden_s: for how long it has been hidden [s].
         looks: what it looked like of late, by which its samples are compared; None until that was seen.
+        is_unidentified: whether it may yet turn out to be somebody who was lost.
     """
 
     id: int
@@ -63,6 +64,7 @@ class TrackedPerson:
     hidden_frames: int = 0
     hidden_s: float = 0.0
     looks: ColourModel | None = None
+    is_unidentified: bool = False
 
     @property
     def is_settled(self) -> bool:
@@ -80,7 +82,12 @@ def is_born(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
 
     Source: thesis, section 4.2: mean of equation 4.4 above 0.5 and equation 4.6 below its threshold.
     """
-    return belief.confidence > config.birth_confidence and _agrees(belief, view, config)
+    return is_sure(belief, view, config.birth_confidence, config)
+
+
+def is_sure(belief: Belief, view: FrameView, confidence: float, config: LifeConfig) -> bool:
+    """Tell whether a filter's samples agree on somebody, above a confidence."""
+    return belief.confidence > confidence and _agrees(belief, view, config)
 
 
 def is_kept(belief: Belief, view: FrameView, config: LifeConfig) -> bool:

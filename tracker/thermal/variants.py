@@ -24,6 +24,7 @@ from peopleboy.tracker.thermal.config import (
     LikelihoodConfig,
     LimitsConfig,
     MotionConfig,
+    SearchConfig,
     SmoothingConfig,
     StayBehindConfig,
     TrackerConfig,
@@ -175,6 +176,15 @@ PEOPLEBOY = TrackerConfig(
         doubt_frames=5,
         death_frames=12,
         uncertainty_px2=100.0,
+    ),
+    # Chosen on hall_visits, passers_by and corridor_patrol, seeds 100 to 102.
+    search=SearchConfig(
+        looks=2,
+        small_h=18.0,
+        small_confidence=0.85,
+        clear_confidence=0.6,
+        clear_frames=2,
+        clear_margin=0.4,
     ),
     # Torso and feet of the drawn and simulated people lie so, relative to the ellipse that fits them best.
     box=BoxConfig(width_per_w=1.88, height_per_h=3.9, hair_per_h=0.08),

@@ -1,5 +1,5 @@
 from dataclasses import replace
-from itertools import pairwise
+from itertools import chain, pairwise, repeat
 
 import numpy as np
 import pytest
@@ -9,6 +9,8 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal import people_tracker
 from peopleboy.tracker.thermal.config import InteractionConfig
+from peopleboy.tracker.thermal.newcomers import detector
+from peopleboy.tracker.thermal.occlusion.walk_on import WalkOn
 from peopleboy.tracker.thermal.particle_filter import weigh
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, VARIANTS
@@ -73,15 +75,16 @@ def test_equal_seeds_give_equal_tracks():
     assert run() == run()
 
 
-def test_the_image_is_measured_once_for_each_person_and_once_for_the_detector(monkeypatch):
+def test_the_image_is_measured_once_for_each_person_and_in_each_look_of_the_detector(monkeypatch):
     calls = []
-    monkeypatch.setattr(people_tracker, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
+    for module in (people_tracker, detector):
+        monkeypatch.setattr(module, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
     tracker = PeopleTracker(APART, np.random.default_rng(0))
     for i in range(60):
         calls.clear()
         before = len(tracker.explanation.particles.keys() - {0})
         tracker.update(frame(i, *THREE))
-        assert calls == [1000] * (before + 1)
+        assert calls == [1000] * (before + APART.search.looks)
 
 
 def test_shared_samples_are_divided_evenly():
@@ -167,6 +170,20 @@ def test_who_was_lost_is_remembered_for_ten_seconds(seconds, is_known):
     for i in range(gone, gone + 30):
         after = tracker.update(dressed(i, (150, 30, RED, 140)))
     assert (confirmed(before)[0].id == confirmed(after)[0].id) is is_known
+
+
+def test_who_cannot_be_compared_yet_has_a_new_number_until_it_is_known_again(monkeypatch):
+    answers = chain([False] * 5, repeat(True))
+    monkeypatch.setattr(WalkOn, "can_compare", lambda *_: next(answers))
+    tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(1))
+    for i in range(40):
+        tracker.update(dressed(i, (150, 30, RED, 140)))
+    for i in range(40, 100):
+        tracker.update(dressed(i))
+    back = [tracker.update(dressed(i, (150, 30, RED, 140))) for i in range(100, 130)]
+    ids = [confirmed(tracks)[0].id for tracks in back if confirmed(tracks)]
+    assert ids == [2] * 5 + [1] * (len(ids) - 5)
+    assert all(len(confirmed(tracks)) <= 1 for tracks in back)
 
 
 @pytest.mark.parametrize("name", VARIANTS)

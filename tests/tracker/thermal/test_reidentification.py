@@ -8,7 +8,11 @@ from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
 from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
 from peopleboy.tracker.thermal.particles import equally_weighted
-from peopleboy.tracker.thermal.reidentification import least_mismatch, most_alike_and_nearest
+from peopleboy.tracker.thermal.reidentification import (
+    is_comparable,
+    least_mismatch,
+    most_alike_and_nearest,
+)
 from peopleboy.tracker.thermal.tracked_person import SIZE, TrackedPerson
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status
@@ -63,3 +67,20 @@ def test_the_thesis_asks_that_the_nearest_is_also_the_most_alike():
     assert (
         most_alike_and_nearest(person(9), (near, replace(far_but_alike, looks=near_but_other.looks))) is near
     )
+
+
+def seen_in_part(number, share):
+    """Somebody of whose 12 features a share is known."""
+    mean = np.zeros((1, 12), dtype=np.float32)
+    mean[:, round(12 * share) :] = np.nan
+    return replace(person(number), looks=ColourModel(mean, 10))
+
+
+@pytest.mark.parametrize(("share", "is_enough"), [(1.0, True), (0.5, True), (0.4, False), (0.0, False)])
+def test_who_is_seen_by_half_of_what_is_known_can_be_compared(share, is_enough):
+    assert is_comparable(seen_in_part(9, share), person(1)) is is_enough
+
+
+def test_what_was_never_known_need_not_be_seen():
+    assert is_comparable(seen_in_part(9, 0.3), seen_in_part(1, 0.3))
+    assert is_comparable(replace(person(9), looks=None), person(1))

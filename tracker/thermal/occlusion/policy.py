@@ -53,6 +53,10 @@ class OcclusionPolicy(Protocol):
         """Suppose where a person is (9,) whose samples no longer look for it."""
         ...
 
+    def can_compare(self, found: TrackedPerson, lost: TrackedPerson) -> bool:
+        """Tell whether enough is seen of a newly found person to say whether it is one who was lost."""
+        ...
+
     def recognised(
         self, found: TrackedPerson, lost: Sequence[TrackedPerson], view: FrameView
     ) -> TrackedPerson | None:

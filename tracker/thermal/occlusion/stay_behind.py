@@ -74,6 +74,10 @@ class StayBehind:
         state[VW:] = 0.0
         return state
 
+    def can_compare(self, found: TrackedPerson, lost: TrackedPerson) -> bool:  # noqa: ARG002
+        """Decide at once."""
+        return True
+
     def recognised(
         self,
         found: TrackedPerson,

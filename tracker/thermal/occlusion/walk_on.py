@@ -14,7 +14,7 @@ from peopleboy.tracker.thermal.contour.likelihood import body_share, head_share,
 from peopleboy.tracker.thermal.occlusion.depth_order import Surroundings
 from peopleboy.tracker.thermal.particle_filter import Belief, FrameView
 from peopleboy.tracker.thermal.particles import FOOT, VW, VX, VY, D, H, W, X, Y, equally_weighted
-from peopleboy.tracker.thermal.reidentification import least_mismatch
+from peopleboy.tracker.thermal.reidentification import is_comparable, least_mismatch
 from peopleboy.tracker.thermal.tracked_person import (
     FORGET_S,
     SIZE,
@@ -173,6 +173,10 @@ class WalkOn:
         state[VW:] = 0.0
         state[VX:] *= FADING
         return state
+
+    def can_compare(self, found: TrackedPerson, lost: TrackedPerson) -> bool:
+        """Wait until most is seen of what is known of the one who was lost."""
+        return is_comparable(found, lost)
 
     def recognised(
         self, found: TrackedPerson, lost: Sequence[TrackedPerson], view: FrameView

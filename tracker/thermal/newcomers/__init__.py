@@ -1,0 +1,1 @@
+"""How people are found of whom nobody knows yet."""
