@@ -18,8 +18,6 @@ from peopleboy.tracker.thermal.ellipse import ellipse_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.mount import Mount, mount_of, seen_from
 from peopleboy.tracker.thermal.mount_belief import MountBelief, believed_from, is_learnable, tells_mount
-from peopleboy.tracker.thermal.newcomers.detector import detected
-from peopleboy.tracker.thermal.newcomers.evidence import Evidence
 from peopleboy.tracker.thermal.occlusion.depth_order import (
     ExpectedPerson,
     Order,
@@ -34,14 +32,17 @@ from peopleboy.tracker.thermal.particle_filter import (
     Belief,
     FrameView,
     advance,
+    draw_fresh,
     view_frame,
     weigh,
 )
 from peopleboy.tracker.thermal.particles import Floats, draw_around
-from peopleboy.tracker.thermal.tracked_person import FORGET_S, TrackedPerson, newborn
+from peopleboy.tracker.thermal.tracked_person import FORGET_S, Streak, TrackedPerson, newborn
 from peopleboy.tracker.thermal.whereabouts import (
     Regions,
     box_of,
+    detector_factor,
+    least_overlaps,
     overlap_shares,
     person_factor,
     places_on_floor,
@@ -72,7 +73,7 @@ class PeopleTracker:
         self._clutter: float | None = None
         self._last_s: float | None = None
         self._detector: Belief | None = None
-        self._evidence = Evidence()
+        self._streak = Streak()
         self._persons: tuple[TrackedPerson, ...] = ()
         self._memories: tuple[TrackedPerson, ...] = ()
         self._told: tuple[TrackedPerson, ...] = ()
@@ -208,16 +209,15 @@ class PeopleTracker:
         if sum(not person.is_hidden for person in self._persons) >= config.interaction.max_persons:
             self._detector = None
             return ()
-        seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
-        self._detector = detected(self._detector, seen, view, config, self._rng)
+        self._detector = self._detected(view)
         known = [person.shown for person in (*self._persons, *self._memories)]
-        self._evidence = self._evidence.after(self._detector, known, view, config)
-        if not self._evidence.is_some:
+        self._streak = self._streak.after(self._detector, known, view, config)
+        if not self._streak.is_some:
             return ()
         found = newborn(self._born + 1, self._detector, view, time_s, config)
-        if not self._evidence.is_enough(config):
+        if not self._streak.is_enough(config):
             return (replace(found, status=Status.TENTATIVE),)
-        self._evidence, self._detector = Evidence(), None
+        self._streak, self._detector = Streak(), None
         found = self._identified(found, view, time_s)
         self._born = max(self._born, found.id)
         self._persons = tuple(sorted((*self._persons, found), key=lambda person: person.id))
@@ -260,6 +260,22 @@ class PeopleTracker:
         found = newborn(self._born + 1, belief, view, time_s, self._config)
         self._born = found.id
         self._persons = (*self._persons, found)
+
+    def _detected(self, view: FrameView) -> Belief:
+        """Move and weigh the detector's samples, once in each look, kept off those who are tracked."""
+        config, rng, belief, moved = self._config, self._rng, self._detector, view
+        seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
+        regions = regions_of(seen, config)
+        for _ in range(config.search.looks):
+            if belief is None:
+                state = draw_fresh(config.detector.count, view, config.detector, config, rng)
+            else:
+                state = advance(belief.particles, moved, config.detector, config, rng)
+            factor = detector_factor(least_overlaps(state, regions, config), config.interaction)
+            belief = weigh(state, view, config.detector, config, factor)
+            moved = replace(view, turn_rad=0.0)  # the camera has turned once
+        assert belief is not None
+        return belief
 
     def _is_shown(self, person: TrackedPerson, view: FrameView) -> bool:
         """Tell whether a hidden person is shown: nobody outside of the image is."""

@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 from itertools import chain, pairwise, repeat
 
@@ -6,12 +7,12 @@ import pytest
 
 from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.thermal import people_tracker
 from peopleboy.tracker.thermal.config import InteractionConfig
-from peopleboy.tracker.thermal.newcomers import detector
 from peopleboy.tracker.thermal.occlusion.walk_on import WalkOn
 from peopleboy.tracker.thermal.particle_filter import weigh
+from peopleboy.tracker.thermal.particles import X
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, VARIANTS
 from peopleboy.tracker.track import Status
@@ -77,14 +78,44 @@ def test_equal_seeds_give_equal_tracks():
 
 def test_the_image_is_measured_once_for_each_person_and_in_each_look_of_the_detector(monkeypatch):
     calls = []
-    for module in (people_tracker, detector):
-        monkeypatch.setattr(module, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
+    monkeypatch.setattr(people_tracker, "weigh", lambda *args: calls.append(len(args[0])) or weigh(*args))
     tracker = PeopleTracker(APART, np.random.default_rng(0))
     for i in range(60):
         calls.clear()
         before = len(tracker.explanation.particles.keys() - {0})
         tracker.update(frame(i, *THREE))
         assert calls == [1000] * (before + APART.search.looks)
+
+
+def searching(looks, **changes):
+    """A tracker in which nobody is ever born, so that its detector goes on."""
+    detector = replace(PEOPLEBOY.detector, **changes)
+    search = replace(PEOPLEBOY.search, looks=looks, clear_frames=99)
+    life = replace(PEOPLEBOY.life, birth_frames=99)
+    config = replace(PEOPLEBOY, detector=detector, search=search, life=life)
+    return PeopleTracker(config, np.random.default_rng(0))
+
+
+def samples_after(tracker, frames):
+    for seen in frames:
+        tracker.update(seen)
+    return tracker.explanation.particles[0].state
+
+
+def test_two_looks_at_an_image_are_worth_two_images():
+    once, twice = searching(looks=1), searching(looks=2)
+    frames = [frame(i, (100, 30)) for i in range(6)]
+    assert np.array_equal(samples_after(once, frames), samples_after(twice, frames[:3]))
+
+
+def test_the_camera_turns_once_in_however_many_looks():
+    turn_rad = 0.2
+    (focal_px, _, centre_px), *_ = ROBOTS_OWN.intrinsics.tolist()
+    x = centre_px + focal_px * math.tan(turn_rad + math.atan((100 - centre_px) / focal_px))
+    turned = replace(frame(2, (x, 30)), odometry=Odometry(turn_rad=turn_rad))
+    tracker = searching(looks=2, fresh_share=0.0)
+    states = samples_after(tracker, (frame(0, (100, 30)), frame(1, (100, 30)), turned))
+    assert np.median(states[:, X]) == pytest.approx(x, abs=4)
 
 
 def test_shared_samples_are_divided_evenly():

@@ -5,9 +5,9 @@ import pytest
 
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.newcomers.evidence import Evidence
 from peopleboy.tracker.thermal.particle_filter import Belief, view_frame
 from peopleboy.tracker.thermal.particles import equally_weighted
+from peopleboy.tracker.thermal.tracked_person import Streak
 from peopleboy.tracker.thermal.variants import PEOPLEBOY, VARIANTS
 from tests.helpers.images.drawn_people import blank
 
@@ -31,10 +31,10 @@ def belief(confidence, h=LARGE, spread_px2=10.0):
 
 
 def frames_until_born(seen, known=(), config=PEOPLEBOY, most=10):
-    evidence = Evidence()
+    streak = Streak()
     for frame in range(1, most):
-        evidence = evidence.after(seen, known, VIEW, config)
-        if evidence.is_enough(config):
+        streak = streak.after(seen, known, VIEW, config)
+        if streak.is_enough(config):
             return frame
     return None
 
@@ -55,22 +55,22 @@ def test_who_is_large_and_alone_is_told_of_sooner_and_who_is_small_later(confide
     assert frames_until_born(belief(confidence, h), known) == frames
 
 
-def test_samples_that_do_not_agree_are_no_evidence():
+def test_samples_that_do_not_agree_are_no_streak():
     assert frames_until_born(belief(0.99, spread_px2=LIFE.uncertainty_px2)) is None
 
 
 def test_frames_must_be_in_a_row():
-    evidence = Evidence()
+    streak = Streak()
     for confidence in (0.99, 0.1, 0.99):
-        evidence = evidence.after(belief(confidence), (), VIEW, PEOPLEBOY)
-        assert not evidence.is_enough(PEOPLEBOY)
-    assert evidence == Evidence(frames=1, clear_frames=1)
+        streak = streak.after(belief(confidence), (), VIEW, PEOPLEBOY)
+        assert not streak.is_enough(PEOPLEBOY)
+    assert streak == Streak(frames=1, clear_frames=1)
 
 
 def test_what_is_small_counts_in_images_of_240_rows():
     doubled = replace(VIEW, image=np.zeros((480, 640), dtype=np.uint8))
-    after = Evidence().after(belief(0.7, h=LARGE), (), doubled, PEOPLEBOY)
-    assert after == Evidence()
+    after = Streak().after(belief(0.7, h=LARGE), (), doubled, PEOPLEBOY)
+    assert after == Streak()
 
 
 @pytest.mark.parametrize("name", ["thesis", "thermal", "colour", "paper"])

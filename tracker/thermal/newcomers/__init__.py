@@ -1,1 +1,0 @@
-"""How people are found of whom nobody knows yet."""
