@@ -97,7 +97,10 @@ def test_frames_are_counted_from_the_start_to_the_first_that_is_claimed(tmp_path
 
 
 def test_means_are_over_all_starts_and_the_blind_find_nobody(tmp_path: Path) -> None:
-    late, blind = LateSetting("late", films=tmp_path), Setting("peopleboy", (("life.birth_frames", 99),))
+    late, blind = (
+        LateSetting("late", films=tmp_path),
+        Setting("peopleboy", (("life.birth_frames", 99), ("search.clear_frames", 99))),
+    )
     plan = Plan(cache=tmp_path, suites={"dataset1": (PLAY,)}, repeats=2)
     experiment = Delay(("dataset1",), {"late": late, "blind": blind})
     done: dict[str, dict[str, object]] = {}
