@@ -49,7 +49,7 @@ def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) 
     Raises:
         BadInput: there are no clips, or one that is named is missing or cannot be used.
     """
-    there = {one.name: one for one in home.iterdir() if _truth_of(one) is not None}
+    there = {one.name: one for one in home.iterdir() if find_truth(one) is not None}
     missing = [name for name in only if name not in there]
     if missing or not there:
         told = ", ".join(sorted(there)) or "none"
@@ -58,13 +58,8 @@ def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) 
     return [_open(there[name], frames) for name in names]
 
 
-def _truth_of(folder: Path) -> Path | None:
-    given = folder / TRUTH
-    return given if given.is_file() else find_truth(folder)
-
-
 def _open(folder: Path, frames: int | None) -> Clip:
-    path, there = _truth_of(folder), open_footage(folder).expected
+    path, there = find_truth(folder), open_footage(folder).expected
     assert path is not None
     count = there if frames is None else min(frames, there)
     given = _load(path, there)

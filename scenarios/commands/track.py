@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import tell_note
+from peopleboy.scenarios.commands.options import BOXES, tell_note
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
@@ -65,7 +65,7 @@ _TRACKERS = (
 )
 @click.option(
     "--boxes",
-    type=click.Choice(("torso", "whole")),
+    type=BOXES,
     help="As wide as the torso, or as all of a person.  [default: as the truth's are; whole without truth]",
 )
 @click.option(
