@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import (
     Effort,
     Figures,
+    FilmFigure,
     Line,
     Outcome,
     Samples,
@@ -84,7 +86,7 @@ def _plain(outcome: Outcome) -> dict[str, Any]:
             [
                 line.group,
                 line.who,
-                {name: _short(values) for name, values in figures.items()},
+                {name: _plain_figures(values) for name, values in figures.items()},
             ]
             for line, figures in outcome.samples.items()
         ],
@@ -93,10 +95,7 @@ def _plain(outcome: Outcome) -> dict[str, Any]:
 
 def _outcome(number: str, plain: Mapping[str, Any]) -> Outcome:
     samples: Samples = {
-        Line(group, who): {
-            name: np.array([math.nan if value is None else value for value in values])
-            for name, values in figures.items()
-        }
+        Line(group, who): {name: _figures(values) for name, values in figures.items()}
         for group, who, figures in plain["samples"]
     }
     return Outcome(
@@ -108,6 +107,27 @@ def _outcome(number: str, plain: Mapping[str, Any]) -> Outcome:
     )
 
 
-def _short(values: Figures) -> list[float | None]:
+def _plain_figures(values: Figures) -> list[float | None] | dict[str, Any]:
+    if not isinstance(values, FilmFigure):
+        return _short(np.asarray(values))
+    return {
+        "films": values.films,
+        "whole": _short(np.array([values.whole]))[0],
+        "without": _short(values.without),
+    }
+
+
+def _figures(plain: list[float | None] | Mapping[str, Any]) -> Figures:
+    if isinstance(plain, list):
+        return _long(plain)
+    (whole,) = _long([plain["whole"]])
+    return FilmFigure(float(whole), _long(plain["without"]), tuple(plain["films"]))
+
+
+def _short(values: NDArray[np.float64]) -> list[float | None]:
     """Cut figures to a few digits; None for NaN."""
-    return [None if math.isnan(one) else float(f"{one:.{_DIGITS}g}") for one in np.asarray(values).tolist()]
+    return [None if math.isnan(one) else float(f"{one:.{_DIGITS}g}") for one in values.tolist()]
+
+
+def _long(values: list[float | None]) -> NDArray[np.float64]:
+    return np.array([math.nan if one is None else one for one in values])

@@ -30,8 +30,32 @@ class Line:
     who: str
 
 
-Figures = NDArray[np.float64] | ImageErrors
-"""Of one line and column: (R,) one figure per repeat, or the errors of many images."""
+@dataclass(frozen=True, slots=True, eq=False)
+class FilmFigure:
+    """A figure of a single repeat, and what it would be without each of its films.
+
+    Attributes:
+        whole: of all films.
+        without: (F,) of all but one.
+        films: names of the data sets that they are; figures of the same films have the same.
+    """
+
+    whole: float
+    without: NDArray[np.float64]
+    films: tuple[str, ...]
+
+    @property
+    def by_film(self) -> NDArray[np.float64]:
+        """Give the jackknife's pseudo-values (F,), which stand for figures of each film by itself.
+
+        Source: Miller, "The jackknife - a review", Biometrika 61, 1974.
+        """
+        count = len(self.without)
+        return count * self.whole - (count - 1) * self.without
+
+
+Figures = NDArray[np.float64] | FilmFigure | ImageErrors
+"""Of one line and column: (R,) one figure per repeat, that of a single one by films, or errors of images."""
 
 Samples = Mapping[Line, Mapping[str, Figures]]
 """Of each line, by the column's name."""
@@ -142,12 +166,20 @@ class Outcome:
     def repeats(self) -> int | None:
         """How many values each figure is of: repeats, splits or turns; None where there are none."""
         sizes = [
-            values.size
-            for figures in self.samples.values()
-            for values in figures.values()
-            if isinstance(values, np.ndarray)
+            1 if isinstance(values, FilmFigure) else values.size
+            for values in self._figures()
+            if not isinstance(values, ImageErrors)
         ]
         return max(sizes, default=None)
+
+    @property
+    def films(self) -> int | None:
+        """Over how many films the intervals are; None where they are over repeats."""
+        sizes = [len(values.without) for values in self._figures() if isinstance(values, FilmFigure)]
+        return max(sizes, default=None)
+
+    def _figures(self) -> Iterator[Figures]:
+        return (values for figures in self.samples.values() for values in figures.values())
 
     @classmethod
     def of(cls, experiment: Experiment, plan: Plan, store: Store) -> Outcome | None:

@@ -7,9 +7,16 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from peopleboy.scenarios.studies.reproduce.experiments.experiment import Chart, Done, Line, Samples, missing
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import (
+    Chart,
+    Done,
+    Figures,
+    FilmFigure,
+    Line,
+    Samples,
+    missing,
+)
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Changes, Setting
 from peopleboy.scenarios.studies.reproduce.measuring.units import (
     RECORDS,
@@ -94,12 +101,26 @@ class Tracking:
             for trial in self._trials(plan):
                 yield from units_of(trial, plan, repeat)
 
-    def _figures(self, trial: TrackerTrial, plan: Plan, done: Done) -> dict[str, NDArray[np.float64]]:
-        rows = []
-        for repeat in range(plan.repeats):
-            sums = add_up([done[unit.key][trial.rule] for unit in units_of(trial, plan, repeat)])
-            rows.append([metric(sums, name) for name in self.metrics])
-        return dict(zip(self.metrics, np.array(rows).T, strict=True))
+    def _figures(self, trial: TrackerTrial, plan: Plan, done: Done) -> dict[str, Figures]:
+        first, *others = (
+            [done[unit.key][trial.rule] for unit in units_of(trial, plan, repeat)]
+            for repeat in range(plan.repeats)
+        )
+        if not others and len(first) > 1:
+            return self._by_films(first, trial.suites)
+        rows = np.array([self._row(films) for films in (first, *others)])
+        return dict(zip(self.metrics, rows.T, strict=True))
+
+    def _by_films(self, films: list[dict[str, Any]], names: tuple[str, ...]) -> dict[str, Figures]:
+        without = np.array([self._row(films[:film] + films[film + 1 :]) for film in range(len(films))])
+        return {
+            metric: FilmFigure(whole, rest, names)
+            for metric, whole, rest in zip(self.metrics, self._row(films), without.T, strict=True)
+        }
+
+    def _row(self, films: list[dict[str, Any]]) -> list[float]:
+        sums = add_up(films)
+        return [metric(sums, name) for name in self.metrics]
 
 
 def units_of(trial: TrackerTrial, plan: Plan, repeat: int) -> list[TrackUnit]:

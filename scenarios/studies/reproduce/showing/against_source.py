@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from peopleboy.scenarios.studies.distance_learning.image_errors import ErrorSummary, ImageErrors
-from peopleboy.scenarios.studies.reproduce.experiments.experiment import Figures, Line, Samples
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import Figures, FilmFigure, Line, Samples
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS
 from peopleboy.scenarios.studies.reproduce.showing.error_tests import (
     TTest,
@@ -16,7 +16,7 @@ from peopleboy.scenarios.studies.reproduce.showing.error_tests import (
     paired_by_blocks,
     unpaired,
 )
-from peopleboy.scenarios.studies.reproduce.showing.intervals import Gap, by_stretches, margin, paired
+from peopleboy.scenarios.studies.reproduce.showing.intervals import Gap, by_stretches, margin, mean_of, paired
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim
 
 BLIND = 5.0  # [%] below which both figures say only that nobody is found
@@ -43,12 +43,14 @@ class Verdict:
         difference: of our figures of the two groups.
         outcome: how the claim fares.
         tests: of errors of images, by name, in words.
+        times: the first figure over the second, where the claim is about that; None elsewhere.
     """
 
     who: str
     difference: Gap
     outcome: ClaimStatus
     tests: tuple[str, ...] = ()
+    times: float | None = None
 
 
 def judge(claim: Claim, samples: Samples) -> Iterator[Verdict]:
@@ -68,14 +70,15 @@ def _verdict(claim: Claim, who: str, one: Figures, other: Figures) -> Verdict:
         )
     assert not isinstance(one, ImageErrors)
     assert not isinstance(other, ImageErrors)  # a column has figures of one kind
-    difference, second = paired(claim.metric, one, other), float(other.mean())
+    difference, second = paired(claim.metric, one, other), mean_of(other)
     if math.isnan(difference.by):
         outcome = ClaimStatus.UNKNOWN
     elif claim.metric in (*THESIS, *PAPER) and max(second, second + difference.by) < BLIND:
         outcome = ClaimStatus.BLIND
     else:
         outcome = _outcome(claim, difference, second)
-    return Verdict(who, difference, outcome)
+    times = None if claim.times is None else mean_of(one) / second
+    return Verdict(who, difference, outcome, times=times)
 
 
 def _tests(one: ImageErrors, other: ImageErrors) -> Iterator[str]:
@@ -98,7 +101,7 @@ def _outcome(claim: Claim, ours: Gap, second: float) -> ClaimStatus:
         return ClaimStatus.UNCLEAR
     if claim.expect in ("alike", "no less"):
         return _alike(ours, margin(claim.metric, second), either_way=claim.expect == "alike")
-    least = MUCH * abs(claim.by or 0.0)
+    least = MUCH * (abs(claim.by or 0.0) if claim.times is None else abs(claim.times - 1.0) * second)
     if claim.expect == "differs":
         is_far = ours.low > least or ours.high < -least
         is_near = -least <= ours.low and ours.high <= least
@@ -123,6 +126,8 @@ def mean_and_spread(values: Figures) -> tuple[float, float | None]:
     """Give mean and standard deviation, over the repeats or of the images; None where there is one repeat."""
     if isinstance(values, ImageErrors):
         return values.all.mean, values.all.deviation
+    if isinstance(values, FilmFigure):
+        return values.whole, None
     spread = float(values.std(ddof=1)) if values.size > 1 else None
     return float(values.mean()), spread
 

@@ -10,7 +10,7 @@ from typing import Final
 
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Samples
-from peopleboy.scenarios.studies.reproduce.showing.intervals import PERCENT, Gap, margin, to_source
+from peopleboy.scenarios.studies.reproduce.showing.intervals import PERCENT, Gap, margin, mean_of, to_source
 from peopleboy.scenarios.studies.reproduce.showing.source import SOURCE, SourceTable
 
 _SECONDS: Final = "s"
@@ -61,7 +61,7 @@ def compare(samples: Samples, table: SourceTable) -> Iterator[Compared]:
                     continue
                 away = to_source(column, ours, source, deviation)
                 standing = _standing(column, away, source)
-                yield Compared(value.group, column, line.who, source, float(ours.mean()), away, standing)
+                yield Compared(value.group, column, line.who, source, mean_of(ours), away, standing)
 
 
 def _standing(column: str, away: Gap, source: float) -> Standing:

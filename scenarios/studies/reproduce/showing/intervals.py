@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -13,6 +13,7 @@ from scipy.stats import t as student
 
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
 from peopleboy.scenarios.studies.occlusion_learning.example_splits import TRAINING_SHARE
+from peopleboy.scenarios.studies.reproduce.experiments.experiment import FilmFigure
 from peopleboy.scenarios.studies.reproduce.experiments.learning import SHARE
 from peopleboy.scenarios.studies.reproduce.experiments.tracking import PAPER, THESIS
 
@@ -54,15 +55,17 @@ def margin(column: str, reference: float) -> float:
     return POINTS if column in PERCENT else PART * abs(reference)
 
 
-def paired(column: str, one: Floats, other: Floats) -> Gap:
-    """Compare figures (R,) of the same repeats by Student's interval.
+def paired(column: str, one: Floats | FilmFigure, other: Floats | FilmFigure) -> Gap:
+    """Compare figures (R,) of the same repeats by Student's interval, or those of a single one by films.
 
     Splits of one set of examples share most of it; the interval is that of Nadeau and Bengio, "Inference for
     the generalization error", Machine Learning 52, 2003, which is wider for that.
     """
-    means = float(one.mean()), float(other.mean())
+    if isinstance(one, FilmFigure) and isinstance(other, FilmFigure):
+        return _by_films(column, one, other)
+    means = mean_of(one), mean_of(other)
     by = means[0] - means[1]
-    if one.shape != other.shape or one.size < 2:
+    if isinstance(one, FilmFigure) or isinstance(other, FilmFigure) or one.size != other.size or one.size < 2:
         return Gap(by, effect=_effect(column, *means, ()))
     away = one - other
     spread = float(away.std(ddof=1)) * math.sqrt(1.0 / away.size + _RETESTED.get(column, 0.0))
@@ -70,21 +73,35 @@ def paired(column: str, one: Floats, other: Floats) -> Gap:
     return Gap(by, by - half, by + half, _effect(column, *means, (one, other)))
 
 
-def to_source(column: str, ours: Floats, source: float, deviation: float | None) -> Gap:
+def _by_films(column: str, one: FilmFigure, other: FilmFigure) -> Gap:
+    """Compare figures of a single repeat: film by film if both are of the same, else by Welch's interval."""
+    values, others = one.by_film, other.by_film
+    apart = [values - others] if one.films == other.films else [values, others]
+    by, half = one.whole - other.whole, _welch(_over_films(part) for part in apart)
+    return Gap(by, by - half, by + half, _effect(column, one.whole, other.whole, ()))
+
+
+def to_source(column: str, ours: Floats | FilmFigure, source: float, deviation: float | None) -> Gap:
     """Compare figures (R,) with a printed one; its deviation, if there is one, is that of ten repeats."""
-    mean, count = float(ours.mean()), ours.size
+    mean = mean_of(ours)
     by = mean - source
+    if isinstance(ours, FilmFigure):
+        half = _welch([_over_films(ours.by_film)])
+        return Gap(by, by - half, by + half, _effect(column, mean, source, ()))
+    count = ours.size
     if count < 2:
         return Gap(by, effect=_effect(column, mean, source, ()))
     parts = [(float(ours.var(ddof=1)) * (1.0 / count + _RETESTED.get(column, 0.0)), count - 1)]
     if deviation is not None:
         theirs = deviation**2 * (1.0 / SOURCE_REPEATS + _RETESTED.get(column, 0.0))
         parts.append((theirs, SOURCE_REPEATS - 1))
-    total = sum(variance for variance, _ in parts)
-    # Welch and Satterthwaite's degrees of freedom.
-    freedom = total**2 / sum(v**2 / df for v, df in parts) if total > 0 else count - 1
-    half = _reach(freedom) * math.sqrt(total)
+    half = _welch(parts)
     return Gap(by, by - half, by + half, _effect(column, mean, source, (ours,), deviation))
+
+
+def mean_of(figures: Floats | FilmFigure) -> float:
+    """Give what is shown of figures: the mean over repeats (R,), or that of the single one."""
+    return figures.whole if isinstance(figures, FilmFigure) else float(figures.mean())
 
 
 def by_stretches(one: ImageErrors, other: ImageErrors) -> Gap:
@@ -111,11 +128,15 @@ def cohens_h(one: float, other: float) -> float:
 def hedges_g(by: float, deviations: tuple[float, ...], count: int) -> float:
     """Give a difference in pooled deviations, corrected for few values; NaN without any deviation.
 
+    So it is with a single degree of freedom, for which the correction is nought.
+
     Source: Hedges, "Distribution theory for Glass's estimator of effect size", J. Educ. Stat. 6, 1981.
     """
     spread = math.sqrt(sum(one**2 for one in deviations) / len(deviations))
     freedom = len(deviations) * (count - 1)
-    return by / spread * (1.0 - 3.0 / (4.0 * freedom - 1.0)) if spread > 0 else math.nan
+    if spread == 0 or freedom < 2:
+        return math.nan
+    return by / spread * (1.0 - 3.0 / (4.0 * freedom - 1.0))
 
 
 def _effect(
@@ -130,6 +151,23 @@ def _effect(
     known = tuple(spreads if deviation is None else [*spreads, deviation])
     g = hedges_g(one - other, known, samples[0].size) if known else math.nan
     return "" if math.isnan(g) else f"g = {g:+.2f}"
+
+
+def _over_films(values: Floats) -> tuple[float, int]:
+    """Give the variance of the mean of values (F,), and its degrees of freedom."""
+    return float(values.var(ddof=1)) / values.size, values.size - 1
+
+
+def _welch(parts: Iterable[tuple[float, int]]) -> float:
+    """Give half of the 95 % interval of a sum, from variances and their degrees of freedom.
+
+    Source: Welch, "The generalization of Student's problem", Biometrika 34, 1947.
+    """
+    known = list(parts)
+    total = sum(variance for variance, _ in known)
+    if not total > 0:
+        return total
+    return _reach(total**2 / sum(v**2 / df for v, df in known)) * math.sqrt(total)
 
 
 def _reach(freedom: float) -> float:

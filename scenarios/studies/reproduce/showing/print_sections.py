@@ -59,7 +59,8 @@ def _print_claim(console: Console, item: Checked) -> None:
     metric = item.claim.metric
     console.print(f"  {escape(item.claim.says)}")
     for one in item.verdicts:
-        told = f"{one.outcome.value}; {metric} {span(one.difference, metric)}"
+        times = "" if one.times is None else f"{one.times:.2f} times; "
+        told = f"{one.outcome.value}; {times}{metric} {span(one.difference, metric)}"
         console.print(f"    {escape(one.who)}: {escape(told)}")
         for test in one.tests:
             console.print(f"      {escape(test)}")

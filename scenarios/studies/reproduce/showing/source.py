@@ -52,6 +52,8 @@ class Claim(Strict):
     """what the first is, or that they differ either way"""
     by: Number | None = None
     """difference in points that the source gives"""
+    times: Number | None = None
+    """how many times the second's figure the source says that the first's is"""
     tested: bool = False
     """whether the source has a paired t-test"""
 

@@ -94,6 +94,7 @@ class Section:
     left_out: tuple[str, ...] = ()
     effort: Effort | None = None
     repeats: int | None = None
+    films: int | None = None
 
     def summary(self, main: str) -> str:
         """How the source's claims fare with a main tracker, in a few words."""
@@ -173,6 +174,7 @@ def section(outcome: Outcome) -> Section:
         left_out=outcome.left_out,
         effort=outcome.effort,
         repeats=outcome.repeats,
+        films=outcome.films,
     )
 
 

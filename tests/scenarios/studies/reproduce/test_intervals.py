@@ -67,6 +67,7 @@ def test_effect_sizes_are_cohens_and_hedges() -> None:
     assert cohens_h(25.0, 21.0) == pytest.approx(0.095, abs=0.001)
     assert hedges_g(1.0, (2.0, 2.0), 10) == pytest.approx(0.5 * (1 - 3 / 71))
     assert np.isnan(hedges_g(1.0, (0.0, 0.0), 10))
+    assert np.isnan(hedges_g(1.0, (2.0,), 2))  # the correction of a single degree of freedom is 0
     assert paired("AA", ONE, OTHER).effect.startswith("h = +")
     assert paired("m", ONE, OTHER).effect.startswith("g = +")
 

@@ -276,6 +276,22 @@ def test_claims_are_judged_by_the_interval_of_the_difference(
     assert [verdict.outcome for verdict in judge(claim, samples)] == [outcome]
 
 
+@pytest.mark.parametrize(
+    ("first", "outcome"),
+    [
+        ([30.0, 31.0, 30.5], ClaimStatus.WEAKER),
+        ([600.0, 610.0, 590.0], ClaimStatus.HOLDS),
+        ([9.0, 9.5, 9.2], ClaimStatus.FAILS),
+    ],
+)
+def test_a_claim_of_a_hundred_times_asks_for_half_of_that(first: list[float], outcome: ClaimStatus) -> None:
+    claim = Claim(says="x", metric="ms", groups=("a", "b"), expect="more", times=100.0)
+    samples = {A: {"ms": np.array(first)}, B: {"ms": np.array([10.0, 10.1, 10.2])}}
+    (found,) = judge(claim, samples)
+    assert found.outcome == outcome
+    assert found.times == pytest.approx(np.mean(first) / 10.1)
+
+
 DRAWN = (
     "figure-3.4",
     "figure-3.5",
