@@ -48,6 +48,11 @@ class Compared:
     difference: Gap
     standing: Standing
 
+    @property
+    def is_below(self) -> bool:
+        """Whether ours is the worse of the two, for sure or not."""
+        return self.difference.by > 0 if self.column == _SECONDS else self.difference.by < 0
+
 
 def compare(samples: Samples, table: SourceTable) -> Iterator[Compared]:
     """Set every printed figure that can be compared beside all of ours."""

@@ -34,6 +34,7 @@ MAIN = {
     "literal": ("literal", "literal, held out", "as printed", "room_long, random split", "room_long"),
     "default": ("default", "default, held out", "measured"),
 }
+MAIN_ROWS = ("default", "default, strict")
 FINE = (
     "m",
     "|r|",
@@ -148,6 +149,7 @@ def page_text(sections: Sequence[Section], about: PageHead) -> str:
         sections=sections,
         about=about,
         general=notes["general"],
+        below=list(below_source(sections)),
         margins={"points": POINTS, "part": 100 * PART, "much": 100 * MUCH},
         papers=sorted(papers),
         contents={name: items for name, items in source_contents().items() if name in papers},
@@ -176,6 +178,20 @@ def section(outcome: Outcome) -> Section:
         repeats=outcome.repeats,
         films=outcome.films,
     )
+
+
+def below_source(sections: Iterable[Section]) -> Iterator[tuple[str, Compared]]:
+    """Give every printed figure that the default does not reach, strictly or not, by the part's id.
+
+    Figures of one part that another repeats are given once.
+    """
+    seen = set()
+    for part in sections:
+        for one in part.compared:
+            what = (one.group, one.column, one.who, one.source, one.ours)
+            if one.who in MAIN_ROWS and one.is_below and what not in seen:
+                seen.add(what)
+                yield part.id, one
 
 
 def effects_to_source(samples: Samples, table: SourceTable) -> Iterator[str]:

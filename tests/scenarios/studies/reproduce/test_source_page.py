@@ -42,7 +42,12 @@ from peopleboy.scenarios.studies.reproduce.reproduce import MEANS, RESULTS, Mean
 from peopleboy.scenarios.studies.reproduce.showing.against_source import ClaimStatus, judge
 from peopleboy.scenarios.studies.reproduce.showing.print_sections import print_sections
 from peopleboy.scenarios.studies.reproduce.showing.source import Claim, source_tables
-from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead, section, write_page
+from peopleboy.scenarios.studies.reproduce.showing.source_page import (
+    PageHead,
+    below_source,
+    section,
+    write_page,
+)
 from peopleboy.scenarios.studies.scene_films.scene_choices import CHOICES as SCENE_MODELS
 from peopleboy.scenarios.studies.scene_films.watch_scene import CLEAN
 from peopleboy.sim.random_streams import stream
@@ -290,6 +295,22 @@ def test_a_claim_of_a_hundred_times_asks_for_half_of_that(first: list[float], ou
     (found,) = judge(claim, samples)
     assert found.outcome == outcome
     assert found.times == pytest.approx(np.mean(first) / 10.1)
+
+
+def test_what_the_default_does_not_reach_is_listed_once_for_sure_or_not() -> None:
+    figures = {"default": 65.0, "default, strict": 50.0, "default, half in view": 50.0, "literal": 50.0}
+    samples = {
+        Line(group, who): {"AA": np.array([figure, figure + 0.1])}
+        for group, more in (("1000", 0.0), ("2000", 10.0))
+        for who, figure in ((who, figure + more) for who, figure in figures.items())
+    }
+    part = section(Outcome(EXPERIMENTS["figure-5.5a"], samples))
+    found = [(number, one.group, one.who, one.standing.value) for number, one in below_source([part, part])]
+    assert found == [
+        ("figure-5.5a", "1000", "default", "as the source"),
+        ("figure-5.5a", "1000", "default, strict", "worse"),
+        ("figure-5.5a", "2000", "default, strict", "worse"),
+    ]
 
 
 DRAWN = (
