@@ -183,12 +183,12 @@ def section(outcome: Outcome) -> Section:
 def below_source(sections: Iterable[Section]) -> Iterator[tuple[str, Compared]]:
     """Give every printed figure that the default does not reach, strictly or not, by the part's id.
 
-    Figures of one part that another repeats are given once.
+    Figures that several parts have are given once.
     """
     seen = set()
     for part in sections:
         for one in part.compared:
-            what = (one.group, one.column, one.who, one.source, one.ours)
+            what = (one.group, one.column, one.who, one.source)
             if one.who in MAIN_ROWS and one.is_below and what not in seen:
                 seen.add(what)
                 yield part.id, one
