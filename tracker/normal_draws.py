@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import ctypes
 import math
+from collections.abc import Callable
 from functools import lru_cache
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 from llvmlite import ir
@@ -120,10 +121,12 @@ def _call(_context: Any, builder: Any, _signature: Any, addresses: Any) -> Any:
     return builder.call(builder.inttoptr(addresses[0], kind), [builder.inttoptr(addresses[1], pointer)])
 
 
-@intrinsic
-def _next_word(_: Any, function: Any, state: Any) -> Any:
-    """Draw 32 bits, as `source_of` says."""
+def _next(_: Any, function: Any, state: Any) -> Any:
     return types.uint32(function, state), _call
+
+
+_next_word = cast(Callable[[int, int], np.uint32], intrinsic(_next))
+"""Draws 32 bits, by what `source_of` gives; for kernels."""
 
 
 @lru_cache(maxsize=16)
@@ -152,7 +155,7 @@ def standard_normals(function: int, state: int, count: int) -> Floats:
         # No number takes less than a word, so that these are never too many.
         more = np.empty(count - done, dtype=np.uint32)
         for i in range(len(more)):
-            more[i] = _next_word(function, state)  # type: ignore[call-arg]
+            more[i] = _next_word(function, state)
         words = np.concatenate((words, more))
         filled, used = _fill(result[done:], words, _EDGES, _REACH, _HEIGHTS)
         done, words = done + filled, words[used:]
