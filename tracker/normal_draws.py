@@ -8,11 +8,16 @@ Source: Marsaglia and Tsang, The Ziggurat Method for Generating Random Variables
 
 from __future__ import annotations
 
+import ctypes
 import math
-from typing import Final
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any, Final, cast
 
 import numpy as np
-from numba import njit
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float32]
@@ -109,14 +114,48 @@ def _fraction(word: np.uint32) -> np.float32:
     return np.float32(word >> np.uint32(8)) * np.float32(1 / 16777216)
 
 
+def _call(_context: Any, builder: Any, _signature: Any, addresses: Any) -> Any:
+    """Call a function of a pointer that gives 32 bits; both are told by their addresses."""
+    pointer = ir.IntType(8).as_pointer()
+    kind = ir.FunctionType(ir.IntType(32), [pointer]).as_pointer()
+    return builder.call(builder.inttoptr(addresses[0], kind), [builder.inttoptr(addresses[1], pointer)])
+
+
+def _next(_: Any, function: Any, state: Any) -> Any:
+    return types.uint32(function, state), _call
+
+
+_next_word = cast(Callable[[int, int], np.uint32], intrinsic(_next))
+"""Draws 32 bits, by what `source_of` gives; for kernels."""
+
+
+@lru_cache(maxsize=16)
+def source_of(rng: np.random.Generator) -> tuple[int, int]:
+    """Give the addresses of the function by which a generator draws 32 bits, and of its state.
+
+    A kernel that takes the generator itself spends as long on finding them as on a thousand numbers. They
+    are remembered with the generator, which therefore lives on.
+    """
+    drawn = rng.bit_generator.ctypes
+    return ctypes.cast(drawn.next_uint32, ctypes.c_void_p).value or 0, int(drawn.state_address)
+
+
 @njit(cache=True, nogil=True)
-def standard_normals(rng: np.random.Generator, count: int) -> Floats:
-    """Draw (count,) what `rng.standard_normal` would of float32, and leave the generator as that does."""
+def standard_normals(function: int, state: int, count: int) -> Floats:
+    """Draw (count,) what `rng.standard_normal` would of float32, and leave the generator as that does.
+
+    Args:
+        function: of `source_of` that generator.
+        state: of the same.
+        count: how many.
+    """
     result, words = np.empty(count, dtype=np.float32), np.empty(0, dtype=np.uint32)
     done = np.int64(0)
     while done < count:
         # No number takes less than a word, so that these are never too many.
-        more = rng.integers(0, 1 << 32, size=count - done, dtype=np.uint32)
+        more = np.empty(count - done, dtype=np.uint32)
+        for i in range(len(more)):
+            more[i] = _next_word(function, state)
         words = np.concatenate((words, more))
         filled, used = _fill(result[done:], words, _EDGES, _REACH, _HEIGHTS)
         done, words = done + filled, words[used:]

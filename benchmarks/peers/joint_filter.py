@@ -30,7 +30,7 @@ from peopleboy.tracker.thermal.particle_filter import (
 from peopleboy.tracker.thermal.particles import Floats, equally_weighted, mean_state, uncertainty_px2
 from peopleboy.tracker.thermal.tracked_person import is_born, is_kept
 from peopleboy.tracker.thermal.variants import THESIS
-from peopleboy.tracker.thermal.whereabouts import box_of, detector_factor, least_overlaps, regions_of
+from peopleboy.tracker.thermal.whereabouts import box_of, detector_factor, regions_of
 
 # Of the chain for each person. It rejects most proposals: with 1000, as many as the literal tracker has
 # samples, it finds half as many people.
@@ -89,7 +89,7 @@ class JointFilter:
             return
         state = advance(self._detector.particles, view, THESIS.detector, THESIS, self._rng)
         known = regions_of([belief.estimate for belief in beliefs.values()], THESIS)
-        factor = detector_factor(least_overlaps(state, known, THESIS), THESIS.interaction)
+        factor = detector_factor(state, known, THESIS)
         self._detector = weigh(state, view, THESIS.detector, THESIS, factor)
         if is_born(self._detector, view, THESIS.life):
             self._born += 1

@@ -66,7 +66,7 @@ def detail_times(name: str, instants: int | None = None) -> DetailTimes:
             for world, spent in zip((plain_world, full_world), times, strict=True):
                 start = time.process_time()
                 world.truth()
-                dict(world.observe().images)  # made only when asked for
+                dict(world.take_images())  # made only when asked for
                 spent.append(time.process_time() - start)
                 world.step(command.linear_m_s, command.angular_rad_s)
     spent_ms = 1000.0 * np.array(times)[:, _COMPILED:]

@@ -69,7 +69,7 @@ def render_times(instants: int = 40) -> RenderTimes:
                 start = time.process_time()
                 world.truth()
                 middle = time.process_time()
-                dict(world.observe().images)  # made only when asked for
+                dict(world.take_images())  # made only when asked for
                 times[name].append((time.process_time() - start, middle - start))
     # The first instants compile the kernels.
     raycast, bullet, finest = (1000.0 * np.median(times[name][2:], axis=0) for name in cases)

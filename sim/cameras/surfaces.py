@@ -153,7 +153,7 @@ def rays_through(camera: Pinhole) -> Matrix:
 
 @njit(cache=True, fastmath=True)
 def surface_point(
-    matrices: NDArray[np.float64], part: int, u: float, v: float, z: float
+    matrices: NDArray[np.float64], part: int, u: float | np.int32, v: float, z: float
 ) -> tuple[float, float, float]:
     """Return the point [m] in the part's frame that pixel (u, v) sees at depth z."""
     m, a, b = matrices, u * z, v * z

@@ -87,8 +87,11 @@ def _look_up(table: NDArray[np.float64], low: float, high: float, value: float) 
     """Interpolate a table over an evenly spaced grid low..high; values outside take the table's ends."""
     last = table.shape[0] - 1
     position = min(max((value - low) / (high - low) * last, 0.0), last - 1e-9)
-    index = int(position)
-    result: float = table[index] + (position - index) * (table[index + 1] - table[index])
+    # Of 32 bits, as processors cut several numbers at once to; unsigned, as numba would ask of every other
+    # number whether it counts from the end.
+    whole = np.int32(position)
+    below, above = table[np.uint64(whole)], table[np.uint64(whole) + np.uint64(1)]
+    result: float = below + (position - whole) * (above - below)
     return result
 
 
@@ -234,14 +237,14 @@ def _radiate_plain_row(
             emitted = thermal[p, 1] * _look_up(table, span[0], span[1], base)
             image[first:end] = np.float32(emitted + (1.0 - thermal[p, 1]) * surroundings)
             continue
-        for u in range(first, end):
-            x, y, z = surface_point(matrices, p, u, v, depths[u])
+        for u in range(np.uint64(first), np.uint64(end)):
+            x, y, z = surface_point(matrices, p, np.int32(u), v, depths[u])
             temperatures[u] = base + varies * smooth_variation(x, y, z, waves, phase, p)
         if contrast != 0.0:
-            for u in range(first, end):
-                x, y, z = surface_point(matrices, p, u, v, depths[u])
+            for u in range(np.uint64(first), np.uint64(end)):
+                x, y, z = surface_point(matrices, p, np.int32(u), v, depths[u])
                 temperatures[u] += contrast * pattern_value(kind[p, 0], period[p, 0], x, y, z, phase, p)
-        for u in range(first, end):
+        for u in range(np.uint64(first), np.uint64(end)):
             emitted = _look_up(table, span[0], span[1], temperatures[u])
             image[u] = thermal[p, 1] * emitted + (1.0 - thermal[p, 1]) * surroundings
 

@@ -110,7 +110,7 @@ def fill_polygon(
 ) -> None:
     """Fill the pixels inside all edges with the plane g . p = 1."""
     edges = _edges_across(edges, lens, area, canvas)
-    slope = g[0] / lens.focal
+    slope, own = g[0] / lens.focal, np.int32(surface)
     for v in range(area[1], area[3] + 1):
         y = (v - lens.centre_v) / lens.focal
         low, high = float(area[0]), float(area[2])
@@ -129,11 +129,11 @@ def fill_polygon(
         first, end = math.ceil(low), math.floor(high) + 1
         if bit != 0:
             cover[first:end] |= bit
-        for u in range(first, end):
-            here = slope * u + base
-            if here > nearness[u]:
-                nearness[u] = here
-                surfaces[u] = surface
+        for u in range(np.uint64(first), np.uint64(end)):
+            here = slope * np.int32(u) + base
+            is_nearer = here > nearness[u]
+            nearness[u] = here if is_nearer else nearness[u]
+            surfaces[u] = own if is_nearer else surfaces[u]
 
 
 @njit(cache=True, error_model="numpy")
@@ -180,7 +180,7 @@ def fill_conic(
         area: the pixels to look at.
         canvas: what to draw on.
     """
-    scale = 1.0 / lens.focal
+    scale, nobody, own = 1.0 / lens.focal, np.uint64(0), np.int32(surface)
     for v in range(area[1], area[3] + 1):
         y = (v - lens.centre_v) * scale
         a, b = form[0], form[1] * y + form[2]
@@ -188,18 +188,17 @@ def fill_conic(
         first, last = _outline(a, b, c, lens, area)
         line_0, axis_0 = line[1] * y + line[2], axis[1] * y + axis[2]
         nearness, surfaces, cover = canvas.nearness[v], canvas.surface[v], canvas.cover[v]
-        for u in range(first, last + 1):
-            x = (u - lens.centre_u) * scale
+        for u in range(np.uint64(first), np.uint64(last + 1)):
+            x = (np.int32(u) - lens.centre_u) * scale
             square = (a * x + 2.0 * b) * x + c
             here = line[0] * x + line_0 + root * math.sqrt(max(square, 0.0))
             along = axis[0] * x + axis_0
             hit = (square >= 0.0) & (along >= here * low) & (along <= here * high)
             hit &= (here >= 1.0 / FAR_M) & (here <= 1.0 / NEAR_M)
-            if hit:
-                cover[u] |= bit
-                if here > nearness[u]:
-                    nearness[u] = here
-                    surfaces[u] = surface
+            cover[u] |= bit if hit else nobody
+            is_nearer = hit & (here > nearness[u])
+            nearness[u] = here if is_nearer else nearness[u]
+            surfaces[u] = own if is_nearer else surfaces[u]
 
 
 @njit(cache=True, error_model="numpy")

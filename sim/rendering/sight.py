@@ -6,14 +6,15 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
 from peopleboy.sim.rendering.cover import Cover, count_cover
-from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bounds
+from peopleboy.sim.rendering.silhouette import bounds_before, silhouette_area
 from peopleboy.sim.rendering.view import NOBODY, View
 from peopleboy.sim.shapes.shape_table import ShapeTable
 
@@ -83,6 +84,10 @@ class Sight(ABC):
 class Flat(Sight):
     """How a pinhole camera sees; its outlines go on beyond the image."""
 
+    def __init__(self) -> None:
+        # Poses in a camera's frame, of each scene that is still looked at: all boxes of a scene want them.
+        self._poses: WeakKeyDictionary[Scene, dict[bytes, Matrix]] = WeakKeyDictionary()
+
     def view(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix) -> View:
         """Draw by the scene's renderer."""
         from peopleboy.sim.rendering.render import render  # here, as kinds are told without PyBullet
@@ -94,7 +99,10 @@ class Flat(Sight):
 
     def bounds(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> Edges:
         """See `silhouette_bounds`."""
-        return silhouette_bounds(scene.table, scene.world_from_part, camera, world_from_camera, parts)
+        known, key = self._poses.setdefault(scene, {}), world_from_camera.tobytes()
+        if key not in known:
+            known[key] = invert_pose(world_from_camera) @ scene.world_from_part
+        return bounds_before(camera, scene.table, known[key], parts)
 
     def area(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> int:
         """See `silhouette_area`."""

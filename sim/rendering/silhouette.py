@@ -40,7 +40,14 @@ def silhouette_bounds(
     Returns:
         left, top, right, bottom [px]; all NaN if nothing of them lies before the camera.
     """
-    left, top, right, bottom = _bounds(table, invert_pose(world_from_camera) @ world_from_part, parts)
+    return bounds_before(camera, table, invert_pose(world_from_camera) @ world_from_part, parts)
+
+
+def bounds_before(
+    camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: NDArray[np.bool_]
+) -> tuple[float, float, float, float]:
+    """Find what `silhouette_bounds` does of parts whose poses (P, 4, 4) in the optical frame are known."""
+    left, top, right, bottom = _bounds(table, camera_from_part, parts)
     if left > right:
         return math.nan, math.nan, math.nan, math.nan
     u, v, focal = *camera.centre_px, camera.focal_px

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from peopleboy.tracker.normal_draws import standard_normals
+from peopleboy.tracker.normal_draws import source_of, standard_normals
 
 
 @pytest.mark.parametrize("count", [0, 1, 5000, 40_000])
@@ -14,6 +14,7 @@ def test_numbers_and_the_generator_after_them_are_numpys_to_the_bit(count: int, 
         ours, numpys = np.random.default_rng(seed), np.random.default_rng(seed)
         if is_within_word:  # of 64 bits
             assert ours.random(dtype=np.float32) == numpys.random(dtype=np.float32)
-        drawn, meant = standard_normals(ours, count), numpys.standard_normal(count, dtype=np.float32)
+        drawn = standard_normals(*source_of(ours), count)
+        meant = numpys.standard_normal(count, dtype=np.float32)
         assert np.array_equal(drawn.view(np.uint32), meant.view(np.uint32))
         assert ours.bit_generator.state == numpys.bit_generator.state

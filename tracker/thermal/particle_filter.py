@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -37,14 +35,13 @@ from peopleboy.tracker.thermal.particles import (
     draw_prior,
     estimated,
     floor_rows,
+    limits_px,
     predict,
     resample,
     turned,
 )
 from peopleboy.tracker.thermal.weights import NOTHING, shared_out, sharp_weights
 from peopleboy.tracker.thermal.whereabouts import Regions
-
-Ends = tuple[float, float]
 
 STANDING = Odometry()
 RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
@@ -202,42 +199,30 @@ def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np
 
     Source: thesis, section 4.2 and the table of section 4.4.
     """
-    ends = _ends(height_px, limits.ratio_wh, limits.ratio_dw, limits.y, limits.h)
-    if math.isinf(limits.y_below_horizon[0]) and math.isinf(limits.y_below_horizon[1]):
-        anywhere = np.full(1, -np.inf, np.float32), np.full(1, np.inf, np.float32)
-        inside: NDArray[np.bool_] = _is_between(state, *anywhere, ends)
-    else:
-        inside = _is_between(state, *floor_rows(height_px, state[:, H], limits), ends)
+    inside: NDArray[np.bool_] = _is_between(state, limits_px(height_px, limits))
     return inside
 
 
-@lru_cache(maxsize=8)
-def _ends(height_px: int, ratio_wh: Ends, ratio_dw: Ends, y: Ends, h: Ends) -> Floats:
-    """Give the ends (8,) of w / h, d / w, y and h [px]; the last two come in image heights."""
-    return np.array((*ratio_wh, *ratio_dw, *(height_px * end for end in (*y, *h))), dtype=np.float32)
-
-
 @njit(cache=True, nogil=True)
-def _is_between(state: Floats, above: Floats, below: Floats, ends: Floats) -> NDArray[np.bool_]:
-    """Compare w / h, d / w, y and h of samples (N, 9) with their ends (8,), and y with rows [px].
-
-    The rows are those of each sample (N,), or of all (1,).
-    """
-    inside, one_each = np.empty(len(state), dtype=np.bool_), len(above) == len(state)
+def _is_between(state: Floats, limits: Floats) -> NDArray[np.bool_]:
+    """Compare w / h, d / w, y and h of samples (N, 9) with limits of `limits_px`, and y with the floor's."""
+    inside = np.empty(len(state), dtype=np.bool_)
+    is_anywhere = np.isinf(limits[9]) and np.isinf(limits[10])
     for i in range(len(state)):
         y, w, h, d = state[i, Y], state[i, W], state[i, H], state[i, D]
         inside[i] = (
-            (w > ends[0] * h)
-            & (w < ends[1] * h)
-            & (d > ends[2] * w)
-            & (d < ends[3] * w)
-            & (y > ends[4])
-            & (y < ends[5])
-            & (y > above[i * one_each])
-            & (y < below[i * one_each])
-            & (h > ends[6])
-            & (h < ends[7])
+            (w > limits[0] * h)
+            & (w < limits[1] * h)
+            & (d > limits[2] * w)
+            & (d < limits[3] * w)
+            & (y > limits[4])
+            & (y < limits[5])
+            & (h > limits[6])
+            & (h < limits[7])
         )
+        if not is_anywhere:
+            above, below = floor_rows(h, limits)
+            inside[i] &= (y > above) & (y < below)
     return inside
 
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.elementary import exponentials
-from peopleboy.tracker.normal_draws import standard_normals
+from peopleboy.tracker.elementary import exponential, exponentials
+from peopleboy.tracker.normal_draws import source_of, standard_normals
 from peopleboy.tracker.thermal.config import (
     REFERENCE_HEIGHT_PX,
     FilterConfig,
@@ -41,6 +42,7 @@ BOX_SPREAD = 0.05  # of a person within a box that is known, as a share of its s
 
 Floats = NDArray[np.float32]
 Columns = NDArray[np.floating[Any]]
+Ends = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,52 +79,98 @@ def draw_prior(
     Source: thesis, section 4.1, "in our case uniform".
     """
     height, width = shape
-    limits = filter_config.limits
+    limits, is_log_uniform = filter_config.limits, filter_config.log_uniform_h
     chance = rng.random((count, 5), dtype=np.float32)
-    velocity = rng.standard_normal((count, 4), dtype=np.float32)
-    state = np.empty((count, STATE_SIZE), dtype=np.float32)
-    state[:, X] = width * chance[:, 0]
-    state[:, H] = height * _heights(limits.h, chance[:, 2], filter_config.log_uniform_h)
-    state[:, Y] = _rows(height, state[:, H], limits, chance[:, 1])
-    state[:, W] = state[:, H] * _between(limits.ratio_wh, chance[:, 3])
-    state[:, D] = state[:, W] * _between(limits.ratio_dw, chance[:, 4])
+    velocity = standard_normals(*source_of(rng), 4 * count).reshape(-1, 4)
     noise = (motion.noise_x, motion.noise_y, motion.noise_w, motion.noise_h)
     amplitude = np.array(noise if motion.fresh_speed is None else motion.fresh_speed, dtype=np.float32)
-    state[:, [VX, VY, VW, VH]] = height / REFERENCE_HEIGHT_PX * amplitude * velocity
+    speed = height / REFERENCE_HEIGHT_PX * amplitude
+    sizes = (math.log(limits.h[0]), math.log(limits.h[1])) if is_log_uniform else limits.h
+    state: Floats = _laid_out(
+        chance, velocity, width, height, sizes, is_log_uniform, limits.ratio_wh, limits.ratio_dw,
+        limits_px(height, limits), speed,
+    )  # fmt: skip
     return state
 
 
-def _heights(limits: tuple[float, float], chance: Floats, is_log_uniform: bool) -> Floats:
-    """Draw h in image heights; log-uniform, small and far people are as many as large and near ones."""
-    if not is_log_uniform:
-        return _between(limits, chance)
-    h: Floats = exponentials(_between((math.log(limits[0]), math.log(limits[1])), chance))
-    return h
+def limits_px(height: int, limits: LimitsConfig) -> Floats:
+    """Lay limits out for kernels, for images of so many rows: (15,).
+
+    Ends of w / h, d / w, y and h [px]; then, for `floor_rows`, the row of the horizon, the two ends below it,
+    the three terms of the variance, and the rows.
+    """
+    ends = (limits.ratio_wh, limits.ratio_dw, limits.y, limits.h)
+    return _limits_px(height, ends, limits.horizon, limits.y_below_horizon, limits.floor_variance)
 
 
-def _rows(height: int, h: Floats, limits: LimitsConfig, chance: Floats) -> Floats:
-    """Draw y [px] between the limits, those of the floor included."""
-    above, below = floor_rows(height, h, limits)
-    low, high = np.maximum(limits.y[0] * height, above), np.minimum(limits.y[1] * height, below)
-    y: Floats = low + (high - low) * chance
-    return y
+@lru_cache(maxsize=16)
+def _limits_px(
+    height: int,
+    ends: tuple[Ends, Ends, Ends, Ends],
+    horizon: float,
+    y_below_horizon: Ends,
+    variance: tuple[float, float, float],
+) -> Floats:
+    ratio_wh, ratio_dw, y, h = ends
+    in_px = (height * end for end in (*y, *h))
+    laid_out = np.array(
+        (*ratio_wh, *ratio_dw, *in_px, horizon * height, *y_below_horizon, *variance, height), np.float32
+    )
+    laid_out.setflags(write=False)
+    return laid_out
 
 
-def floor_rows(height: int, h: Floats, limits: LimitsConfig) -> tuple[Floats, Floats]:
-    """Give the rows (N,) [px] between which the centres of people of semi-height h (N,) on the floor are."""
-    horizon = limits.horizon * height
-    low, high = horizon + limits.y_below_horizon[0] * h, horizon + limits.y_below_horizon[1] * h
-    if any(limits.floor_variance):
-        first, second, third = limits.floor_variance
-        size = h / np.float32(height)
-        more = height * np.sqrt(np.maximum(first + size * (second + size * third), 0))
+@njit(cache=True, nogil=True, error_model="numpy")
+def floor_rows(h: np.float32, limits: Floats) -> tuple[np.float32, np.float32]:
+    """Give the rows [px] between which the centre of a person of semi-height h on the floor is.
+
+    The limits are those of `limits_px`.
+    """
+    horizon, rows = limits[8], limits[14]
+    low, high = horizon + limits[9] * h, horizon + limits[10] * h
+    if limits[11] != 0 or limits[12] != 0 or limits[13] != 0:
+        size = h / rows
+        variance = limits[11] + size * (limits[12] + size * limits[13])
+        more = rows * np.sqrt(max(variance, np.float32(0)))
         low, high = low - more, high + more
-    return low.astype(np.float32), high.astype(np.float32)
+    return low, high
 
 
-def _between(limits: tuple[float, float], chance: Floats) -> Floats:
-    drawn: Floats = np.float32(limits[0]) + np.float32(limits[1] - limits[0]) * chance
-    return drawn
+@njit(cache=True, nogil=True, error_model="numpy")
+def _laid_out(
+    chance: Floats,
+    velocity: Floats,
+    width: int,
+    height: int,
+    sizes: Ends,
+    is_log_uniform: bool,
+    ratio_wh: Ends,
+    ratio_dw: Ends,
+    limits: Floats,
+    speed: Floats,
+) -> Floats:
+    """Lay samples (N, 9) out by chance (N, 5) for place and size and (N, 4) for the velocities.
+
+    Log-uniform, small and far people are as many as large and near ones. Of the columns of `limits_px`,
+    those for y and for the floor are asked.
+    """
+    state, wide, tall = np.empty((len(chance), STATE_SIZE), np.float32), np.float32(width), np.float32(height)
+    for i in range(len(chance)):
+        size = _between(sizes, chance[i, 2])
+        h = tall * (exponential(size) if is_log_uniform else size)
+        above, below = floor_rows(h, limits)
+        low, high = max(limits[4], above), min(limits[5], below)
+        w = h * _between(ratio_wh, chance[i, 3])
+        state[i, X], state[i, Y] = wide * chance[i, 0], low + (high - low) * chance[i, 1]
+        state[i, W], state[i, H], state[i, D] = w, h, w * _between(ratio_dw, chance[i, 4])
+        for k in range(4):
+            state[i, VX + k] = speed[k] * velocity[i, k]
+    return state
+
+
+@njit(cache=True, nogil=True)
+def _between(ends: Ends, chance: np.float32) -> np.float32:
+    return np.float32(ends[0]) + np.float32(ends[1] - ends[0]) * chance
 
 
 def draw_around(
@@ -162,7 +210,7 @@ def predict(
 
     Source: thesis, equations 4.7 and 4.8.
     """
-    noise = standard_normals(rng, 5 * len(state)).reshape(-1, 5)
+    noise = standard_normals(*source_of(rng), 5 * len(state)).reshape(-1, 5)
     amplitude = noise_per_step(dt_s, size, config)
     memory = np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
     moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, memory)

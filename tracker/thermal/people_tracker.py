@@ -42,7 +42,6 @@ from peopleboy.tracker.thermal.whereabouts import (
     Regions,
     box_of,
     detector_factor,
-    least_overlaps,
     overlap_shares,
     person_factor,
     places_on_floor,
@@ -271,7 +270,7 @@ class PeopleTracker:
                 state = draw_fresh(config.detector.count, view, config.detector, config, rng)
             else:
                 state = advance(belief.particles, moved, config.detector, config, rng)
-            factor = detector_factor(least_overlaps(state, regions, config), config.interaction)
+            factor = detector_factor(state, regions, config)
             belief = weigh(state, view, config.detector, config, factor)
             moved = replace(view, turn_rad=0.0)  # the camera has turned once
         assert belief is not None

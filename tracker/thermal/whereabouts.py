@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.elementary import exponential, logarithm
 from peopleboy.tracker.frame import Calibration
-from peopleboy.tracker.thermal.config import BoxConfig, InteractionConfig, TrackerConfig
+from peopleboy.tracker.thermal.config import BoxConfig, TrackerConfig
 from peopleboy.tracker.thermal.particles import CROWN, Floats, H, W, X, Y
 from peopleboy.tracker.track import Box, FloorPlace, Status
 
@@ -80,19 +80,16 @@ def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Fl
     return shared_parts(_regions(state, *_proportions(config.box)), regions)
 
 
-def least_overlaps(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
-    """Measure (N, M) the intersection of a sample and a region as a share of the smaller of the two."""
-    samples = _regions(state, *_proportions(config.box))
-    return np.maximum(shared_parts(samples, regions), shared_parts(regions, samples).T)
-
-
-def detector_factor(shares: Floats, config: InteractionConfig) -> Floats:
+def detector_factor(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
     """Give the factor (N,) on a detector's samples: psi_D, once, for those that overlap anybody.
+
+    How much is told by the intersection of sample and region as a share of the smaller of the two.
 
     Source: thesis, equation 5.1.
     """
-    overlaps = (shares > config.detector_overlap).any(axis=1)
-    return np.where(overlaps, np.float32(config.detector_penalty), np.float32(1))
+    samples, interaction = _regions(state, *_proportions(config.box)), config.interaction
+    factor: Floats = _kept_off(samples, regions, interaction.detector_overlap, interaction.detector_penalty)
+    return factor
 
 
 def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
@@ -204,6 +201,23 @@ def _regions(state: Floats, width_per_w: float, height_per_h: float, top_per_h: 
         regions[i, 2] = width
         regions[i, 3] = height_per_h * state[i, H]
     return regions
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _kept_off(samples: Regions, regions: Regions, overlap: float, penalty: float) -> Floats:
+    """Give 1, or the penalty, (N,) to samples by whether they share more than that with any region (M, 4)."""
+    factor, most = np.ones(len(samples), dtype=np.float32), np.float32(overlap)
+    for i in range(len(samples)):
+        left, top, width, height = samples[i]
+        for j in range(len(regions)):
+            across = min(left + width, regions[j, 0] + regions[j, 2]) - max(left, regions[j, 0])
+            down = min(top + height, regions[j, 1] + regions[j, 3]) - max(top, regions[j, 1])
+            if not (across > 0 and down > 0):
+                continue
+            if across * down / min(width * height, regions[j, 2] * regions[j, 3]) > most:
+                factor[i] = penalty
+                break
+    return factor
 
 
 @njit(cache=True, nogil=True)

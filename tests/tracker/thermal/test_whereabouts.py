@@ -95,11 +95,20 @@ def test_alone_nobody_is_penalised():
     assert (person_factor(np.zeros((4, 0), dtype=np.float32), np.zeros(0)) == 1).all()
 
 
-def test_a_detectors_samples_are_penalised_once_however_many_they_overlap():
-    shares = np.array([[0.0, 0.0], [0.01, 0.0], [0.4, 0.9]], dtype=np.float32)
-    assert detector_factor(shares, InteractionConfig()) == pytest.approx([1.0, 0.01, 0.01])
-    lenient = InteractionConfig(detector_overlap=0.3)
-    assert detector_factor(shares, lenient) == pytest.approx([1.0, 1.0, 0.01])
+@pytest.mark.parametrize("overlap", [0.0, 0.3])
+def test_a_detectors_samples_are_penalised_once_however_many_they_overlap(overlap):
+    config = TrackerConfig(interaction=InteractionConfig(detector_overlap=overlap))
+    rng = np.random.default_rng(3)
+    samples = np.array([state(*row) for row in rng.uniform([0, 0, 2, 5], [320, 240, 40, 90], (200, 4))])
+    people = list(samples[:3] + rng.normal(0.0, 4.0, (3, 9)).astype(np.float32))
+    regions = regions_of(people, config)
+    ours = overlap_shares(samples, regions, config)
+    drawn = regions_of(list(samples), config)
+    theirs = np.stack([overlap_shares(each[None], drawn, config)[0] for each in people], axis=1)
+    overlaps = (np.maximum(ours, theirs) > np.float32(overlap)).any(axis=1)
+    factor = detector_factor(samples, regions, config)
+    assert 0 < overlaps.sum() < len(samples)
+    assert np.array_equal(factor, np.where(overlaps, np.float32(0.01), np.float32(1)))
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ def write_part_means(
     state: Floats,
     alignment: Floats,
     integral: NDArray[np.integer[Any]],
+    channels: tuple[int, ...],
     scale: Floats,
     least_seen: float,
 ) -> None:
@@ -42,30 +43,31 @@ def write_part_means(
         state: (N, 9) contours in the thermal image.
         alignment: (2, 4) from the thermal image to this one.
         integral: (H + 1, W + 1, C, K) of `PowerSums`.
+        channels: where the first power of each channel is among those of a pixel.
         scale: (3, F) by which the means, 0..1, are multiplied.
         least_seen: share of the part's area that must lie in the image.
     """
-    height, width, channels, degree = integral.shape
-    sums, step, first_column = integral.reshape(-1), channels * degree, np.uint64(column)
+    height, width = integral.shape[:2]
+    sums, step = integral.reshape(-1), integral.shape[2] * integral.shape[3]
     twin, bodies = bodies_of(state)
     corners, share = np.empty((4, len(state)), dtype=np.int32), np.empty(len(state))
+    total = np.empty((len(channels), len(state)), dtype=sums.dtype)
+    mean = np.empty(len(state), dtype=np.float32)
     for first, end, rows in ((HEAD, TORSO, np.arange(len(state))), (TORSO, PARTS, bodies)):
         shape = _columns(state, rows)
         for part in range(first, end):
             _locate(corners, share, shape, part, alignment, width - 1, height - 1, least_seen)
-            for n in range(np.uint64(len(rows))):
-                row = np.uint64(rows[n])
-                plus, minus = (corners[0, n], corners[1, n]), (corners[2, n], corners[3, n])
-                for c in range(np.uint64(channels)):
-                    at = np.int64(c) * degree
-                    total = _sum_at(sums, plus[0] * step + at) + _sum_at(sums, plus[1] * step + at)
-                    total -= _sum_at(sums, minus[0] * step + at) + _sum_at(sums, minus[1] * step + at)
-                    mean = np.float32(total * share[n] / WHITE)
-                    means[row, part, first_column + c] = mean * scale[part, first_column + c]
+            _add_up(total, sums, corners, step, channels, len(rows))
+            for c in range(len(channels)):
+                factor, counted = scale[part, column + c], total[c]
+                for n in range(np.uint64(len(rows))):
+                    mean[n] = np.float32(counted[n] * share[n] / WHITE) * factor
+                for n in range(np.uint64(len(rows))):
+                    means[np.uint64(rows[n]), part, column + c] = mean[n]
     for i in range(len(state)):
         if twin[i] >= 0:  # nothing but the head lies elsewhere for another d
             for part in range(TORSO, PARTS):
-                for c in range(column, column + channels):
+                for c in range(column, column + len(channels)):
                     means[i, part, c] = means[twin[i], part, c]
 
 
@@ -81,9 +83,22 @@ def _columns(state: Floats, rows: NDArray[np.int64]) -> Floats:
 
 
 @njit(cache=True, nogil=True)
-def _sum_at(sums: NDArray[np.integer[Any]], at: int) -> int:
+def _add_up(
+    total: NDArray[np.integer[Any]],
+    sums: NDArray[np.integer[Any]],
+    corners: NDArray[np.int32],
+    step: int,
+    channels: tuple[int, ...],
+    count: int,
+) -> None:
+    """Sum channels (C, M) over the first parts (M,), whose corners are those of `_locate`."""
     # Unsigned, as numba would ask of every other number whether it counts from the end.
-    return int(sums[np.uint64(at)])
+    for n in range(np.uint64(count)):
+        a, b = np.uint64(corners[0, n]) * np.uint64(step), np.uint64(corners[1, n]) * np.uint64(step)
+        c, d = np.uint64(corners[2, n]) * np.uint64(step), np.uint64(corners[3, n]) * np.uint64(step)
+        for k in range(len(channels)):
+            at = np.uint64(channels[k])
+            total[np.uint64(k), n] = sums[a + at] + sums[b + at] - (sums[c + at] + sums[d + at])
 
 
 # Without numpy's rules a kernel would test every division.

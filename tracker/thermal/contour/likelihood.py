@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.thermal.config import REFERENCE_HEIGHT_PX, ContourConfig, LikelihoodConfig
+from peopleboy.tracker.thermal.contour.clutter import differences_in, least_above
 from peopleboy.tracker.thermal.contour.contour import (
     FEET,
     GREYS,
@@ -27,7 +28,6 @@ from peopleboy.tracker.thermal.contour.contour import (
     section_weights,
 )
 from peopleboy.tracker.thermal.contour.measure_sections import (
-    count_differences,
     fill_unknown,
     locate_points,
     logistic,
@@ -144,8 +144,7 @@ def clutter_of(image: NDArray[np.uint8]) -> float:
     Raised by noise, texture and sharp gain; people, lamps and windows take too little of an image to count.
     """
     apart = max(round(_APART_PX * image.shape[0] / REFERENCE_HEIGHT_PX), 1)
-    counts = count_differences(image, apart, _STRIDE)
-    return float(np.searchsorted(np.cumsum(counts), _SHARE * counts.sum()))
+    return float(least_above(differences_in(image, apart, _STRIDE), _SHARE))
 
 
 def settled_clutter(before: float | None, now: float, dt_s: float) -> float:

@@ -14,7 +14,7 @@ from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y, bodies_of
 
 ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
 UNKNOWN: Final = 1e-4  # share of a section's weight that is none
-LANES: Final = 32  # samples that are measured side by side, a few vectors of any processor
+LANES: Final = 64  # samples that are measured side by side, a few vectors of any processor
 
 
 @njit(cache=True, nogil=True)
@@ -254,24 +254,6 @@ def logistic(fit: Floats, slope: float, threshold: float, most: float) -> Floats
     for i in range(len(fit)):
         chance[i] = one / (one + exponential(-min(max(steep * (fit[i] - middle), -end), end)))
     return chance
-
-
-@njit(cache=True, nogil=True)
-def count_differences(image: NDArray[np.uint8], apart: int, stride: int) -> NDArray[np.int64]:
-    """Count (256,) by how much pixels of an image (H, W) differ from those so far to the right, and below.
-
-    Of the rows for the one, and of the columns for the other, every `stride`-th is looked at.
-    """
-    height, width = image.shape
-    counts = np.zeros((2, GREYS), dtype=np.int64)
-    for v in range(0, height, stride):
-        for u in range(width - apart):
-            counts[u & 1, abs(np.int64(image[v, u + apart]) - np.int64(image[v, u]))] += 1
-    for v in range(height - apart):
-        for u in range(0, width, stride):
-            counts[v & 1, abs(np.int64(image[v + apart, u]) - np.int64(image[v, u]))] += 1
-    both: NDArray[np.int64] = counts[0] + counts[1]
-    return both
 
 
 @njit(cache=True, nogil=True)
