@@ -5,6 +5,10 @@ horizon, as a slope, and the head is (S - h) / r above it. Both tell 1 / r: feet
 the head by a stature that is not known. All errors grow with the apparent height S / r, so that the best mix
 of the two is the same at every distance (weighted least squares), and the error of the distance is a share of
 it.
+
+In the image of a camera that looks down or up, who stands upright leans, the more so the farther aside. The
+middle column of a box is that of the body's middle; head and feet lie where the line of the plumb through it
+meets the box's ends.
 """
 
 from __future__ import annotations
@@ -38,6 +42,7 @@ FOOT_SD: Final = 0.057  # error of the row of the feet, in box heights
 HEAD_SD: Final = 0.02  # error of the row of the head
 CORRELATION: Final = 0.5  # of the two: a box that is too high at one end is at the other
 FARTHEST_M: Final = 30.0
+PLUMB_M: Final = 0.05  # of a plumb line, at a depth of 1 m
 
 WIDTH_M: Final = 0.5  # of who has no box
 WIDEST_RAD: Final = math.radians(75.0)
@@ -122,8 +127,7 @@ def places_on_floor(
         statuses: how well each is seen, which decides how sure its place is.
         calibration: of the camera that the boxes are seen by.
     """
-    ends = [(left + width / 2.0, row) for left, top, width, height in boxes for row in _ends(top, height)]
-    rays = calibration.rays(np.array(ends).reshape(-1, 2)).tolist()
+    rays = calibration.rays(_ends(np.array(boxes).reshape(-1, 4), calibration)).tolist()
     return [
         _place(head, foot, *ERRORS[status], calibration.position_m)
         for head, foot, status in zip(rays[::2], rays[1::2], statuses, strict=True)
@@ -140,14 +144,27 @@ def standing_box(place: FloorPlace, calibration: Calibration) -> Box:
     away = max(math.hypot(forward, aside), NEAREST_M)
     bearing = max(-WIDEST_RAD, min(math.atan2(aside, forward), WIDEST_RAD))
     x, y = camera_x + away * math.cos(bearing), camera_y + away * math.sin(bearing)
-    (u, top), (_, bottom) = calibration.project(np.array([[x, y, PERSON_M], [x, y, 0.0]])).tolist()
+    (head, top), (foot, bottom) = calibration.project(np.array([[x, y, PERSON_M], [x, y, 0.0]])).tolist()
     width = (bottom - top) * WIDTH_M / PERSON_M
-    return u - width / 2.0, top, width, bottom - top
+    return (head + foot) / 2.0 - width / 2.0, top, width, bottom - top
 
 
-def _ends(top: float, height: float) -> tuple[float, float]:
-    """Give the rows of head and feet."""
-    return top, top + (1.0 - FOOT_BELOW) * height
+def _ends(boxes: NDArray[np.float64], calibration: Calibration) -> NDArray[np.float64]:
+    """Give the pixels (2 K, 2) of head and feet of each of the boxes (K, 4), whose people stand upright."""
+    left, top, width, height = boxes.T
+    middle, foot = left + width / 2.0, top + (1.0 - FOOT_BELOW) * height
+    waist = (top + foot) / 2.0
+    lean = _lean(np.column_stack([middle, waist]), calibration)
+    columns = [middle + lean * (row - waist) for row in (top, foot)]
+    return np.column_stack([columns[0], top, columns[1], foot]).reshape(-1, 2)
+
+
+def _lean(pixels: NDArray[np.float64], calibration: Calibration) -> NDArray[np.float64]:
+    """Tell by how many columns a plumb line through pixels (K, 2) moves on from one row to the next, (K,)."""
+    here = calibration.rays(pixels) + calibration.position_m
+    below, above = (calibration.project(here + (0.0, 0.0, step)) for step in (-PLUMB_M, PLUMB_M))
+    across, down = (below - above).T
+    return np.divide(across, down, out=np.zeros(len(pixels)), where=down > 0.0)
 
 
 def _place(
