@@ -7,8 +7,8 @@ of the two is the same at every distance (weighted least squares), and the error
 it.
 
 In the image of a camera that looks down or up, who stands upright leans, the more so the farther aside. The
-middle column of a box is that of the body's middle; head and feet lie where the line of the plumb through it
-meets the box's ends.
+middle column of a box is that of the torso; head and feet lie where a plumb line through the torso meets the
+box's ends.
 """
 
 from __future__ import annotations
@@ -42,6 +42,11 @@ FOOT_SD: Final = 0.057  # error of the row of the feet, in box heights
 HEAD_SD: Final = 0.02  # error of the row of the head
 CORRELATION: Final = 0.5  # of the two: a box that is too high at one end is at the other
 FARTHEST_M: Final = 30.0
+
+# Chosen on a scene each with cameras that look down by 8 and 18 degrees.
+TORSO_ROW: Final = 0.38  # of the way from head to feet: its column is that of the box
+LEAN_SD: Final = 0.1  # error of that, which shifts those who lean, in box heights
+
 PLUMB_M: Final = 0.05  # of a plumb line, at a depth of 1 m
 
 WIDTH_M: Final = 0.5  # of who has no box
@@ -127,11 +132,13 @@ def places_on_floor(
         statuses: how well each is seen, which decides how sure its place is.
         calibration: of the camera that the boxes are seen by.
     """
-    rays = calibration.rays(_ends(np.array(boxes).reshape(-1, 4), calibration)).tolist()
-    return [
-        _place(head, foot, *ERRORS[status], calibration.position_m)
-        for head, foot, status in zip(rays[::2], rays[1::2], statuses, strict=True)
-    ]
+    ends, leans = _ends(np.array(boxes).reshape(-1, 4), calibration)
+    rays = calibration.rays(ends).tolist()
+    places = []
+    for head, foot, lean, status in zip(rays[::2], rays[1::2], leans, statuses, strict=True):
+        along, across = ERRORS[status]
+        places.append(_place(head, foot, along, math.hypot(across, LEAN_SD * lean), calibration.position_m))
+    return places
 
 
 def standing_box(place: FloorPlace, calibration: Calibration) -> Box:
@@ -146,17 +153,18 @@ def standing_box(place: FloorPlace, calibration: Calibration) -> Box:
     x, y = camera_x + away * math.cos(bearing), camera_y + away * math.sin(bearing)
     (head, top), (foot, bottom) = calibration.project(np.array([[x, y, PERSON_M], [x, y, 0.0]])).tolist()
     width = (bottom - top) * WIDTH_M / PERSON_M
-    return (head + foot) / 2.0 - width / 2.0, top, width, bottom - top
+    return head + TORSO_ROW * (foot - head) - width / 2.0, top, width, bottom - top
 
 
-def _ends(boxes: NDArray[np.float64], calibration: Calibration) -> NDArray[np.float64]:
-    """Give the pixels (2 K, 2) of head and feet of each of the boxes (K, 4), whose people stand upright."""
+def _ends(boxes: NDArray[np.float64], calibration: Calibration) -> tuple[NDArray[np.float64], list[float]]:
+    """Give the pixels (2 K, 2) of head and feet of people with these boxes (K, 4), and how each leans (K)."""
     left, top, width, height = boxes.T
     middle, foot = left + width / 2.0, top + (1.0 - FOOT_BELOW) * height
-    waist = (top + foot) / 2.0
-    lean = _lean(np.column_stack([middle, waist]), calibration)
-    columns = [middle + lean * (row - waist) for row in (top, foot)]
-    return np.column_stack([columns[0], top, columns[1], foot]).reshape(-1, 2)
+    torso = top + TORSO_ROW * (foot - top)
+    lean = _lean(np.column_stack([middle, torso]), calibration)
+    head_column, foot_column = (middle + lean * (row - torso) for row in (top, foot))
+    ends = np.column_stack([head_column, top, foot_column, foot]).reshape(-1, 2)
+    return ends, lean.tolist()
 
 
 def _lean(pixels: NDArray[np.float64], calibration: Calibration) -> NDArray[np.float64]:

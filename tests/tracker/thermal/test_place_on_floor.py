@@ -20,6 +20,7 @@ from peopleboy.tracker.thermal.whereabouts import (
     HEAD_SD,
     PERSON_M,
     STATURE_SD_M,
+    TORSO_ROW,
     _ends,
     places_on_floor,
 )
@@ -32,10 +33,10 @@ def calibrate(camera: Pinhole) -> PinholeCalibration:
 
 
 def box_of(x: float, y: float, calibration: PinholeCalibration, stature_m: float = PERSON_M) -> Box:
-    """The tracker's box of somebody who stands at a place, as wide about the head as about the feet."""
+    """The tracker's box of somebody who stands at a place, 20 px wide about the torso."""
     (head, top), (sole, foot) = calibration.project(np.array([[x, y, stature_m], [x, y, 0.0]])).tolist()
     height = (foot - top) / (1.0 - FOOT_BELOW)
-    return (head + sole) / 2.0 - 10.0, top, 20.0, height
+    return head + TORSO_ROW * (sole - head) - 10.0, top, 20.0, height
 
 
 @given(
@@ -63,7 +64,21 @@ def test_a_level_camera_reads_the_middle_column_at_both_ends_to_the_last_bit(sha
     camera = Pinhole(width=2 * rows, height=rows, position_m=(0.2, -0.1, up), yaw_rad=yaw)
     left, top, width, height = box = (share * rows + rows / 3, rows * 0.3, rows * 0.1, rows * 0.5)
     ends = np.array([[left + width / 2, top], [left + width / 2, top + (1.0 - FOOT_BELOW) * height]])
-    assert (_ends(np.array([box]), calibrate(camera)) == ends).all()
+    found, [lean] = _ends(np.array([box]), calibrate(camera))
+    assert (found == ends).all()
+    assert lean == 0.0
+
+
+def test_who_leans_more_in_the_image_is_placed_less_surely_across():
+    calibration = calibrate(Pinhole(pitch_rad=0.3, position_m=(0.0, 0.0, 1.2)))
+    spreads = []
+    for aside in (0.0, 1.0, 2.0):
+        [place] = places_on_floor([box_of(6.0, aside, calibration)], [Status.TRACKED], calibration)
+        xx, xy, yy = place.covariance_m2
+        spreads.append(float(np.linalg.eigvalsh([[xx, xy], [xy, yy]])[0]))
+    assert spreads[0] == pytest.approx((ERRORS[Status.TRACKED][1] * PERSON_M) ** 2, rel=1e-4)
+    assert spreads == sorted(spreads)
+    assert spreads[2] > 1.5 * spreads[0]
 
 
 @given(st.floats(2.0, 10.0), st.floats(-math.pi, math.pi))
