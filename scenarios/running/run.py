@@ -144,7 +144,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         comfort = None
         if scenario.robot.behaviour != "stand" and config.people:
             comfort = watchers.comfort.score()
-        scores = score_run(options.out, frames, following, corridor, comfort, options.boxes)
+        scores = score_run(options.out, frames, following, corridor, comfort, options.boxes, name)
         watchers.save(options.out)
         folder.complete(scores.to_json())
     return scores
