@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
@@ -34,6 +35,7 @@ from peopleboy.scenarios.export.from_corner import (
     keypoints_from_corner,
 )
 from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.gains import thermal_span_c
@@ -41,10 +43,10 @@ from peopleboy.scenarios.run_folder.image_files import image_file, make_image_fo
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import image_folders, with_boxes
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.people.body.joints import JOINT_NAMES
 from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 
 _PERSON = 1
 _LICENCE: Final = {"id": 1, "name": "MIT", "url": "https://opensource.org/license/mit"}  # the project's
@@ -215,14 +217,9 @@ def _camera(camera: CameraGeometry) -> dict[str, Any]:
     about: dict[str, Any] = {"width": camera.width, "height": camera.height}
     if isinstance(camera, Pinhole):
         about["intrinsics"] = _intrinsics(camera).tolist()
-    if isinstance(camera, Panorama):
-        mirror = camera.mirror
-        about["panorama"] = {
-            "focal_px": camera.focal_px,
-            "axis_rad": mirror.axis_rad,
-            "ring_radius_m": mirror.ring_radius_m,
-            "ring_height_m": mirror.ring_height_m,
-        }
+    calibration = calibration_of(camera)
+    if isinstance(calibration, PanoramaCalibration):
+        about["panorama"] = asdict(calibration)
     return about | {"robot_from_camera": camera.robot_from_camera.tolist()}
 
 

@@ -124,7 +124,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
                     is_lossless=options.lossless,
                 )
             )
-        watchers = Watchers(config, title, recorder, options.boxes)
+        watchers = Watchers(config, title, recorder, options.boxes, is_secret=scenario.drive is not None)
         frames = round(scenario.duration_s * config.control_hz)
         stage = FaultySensors(world, scenario.spec.faults, config.robot.sonar.farthest_m)
         checked = CheckedTracker(tracker, f"tracker {name!r}", config.robot.cameras)

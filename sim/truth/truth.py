@@ -51,7 +51,7 @@ class PersonTruth:
         visible_fraction: visible_px / whole_px; 0 when whole_px is 0.
         hidden_by: share of the whole silhouette hidden by each thing or person, by name, "border" being what
             lies outside the image; with visible_fraction they sum to 1. A pixel counts for the foremost.
-            Empty when whole_px is 0.
+            Empty when whole_px is 0, where both sum to 0.
         part_temperature_c: [degC] mean surface temperature by part name.
         joints_m: (17, 3) [m] COCO keypoints, world frame.
         joints_px: (17, 2) [px] u, v of the same; NaN behind the camera.

@@ -20,6 +20,7 @@ from rerun.chunk import RrdReader
 from peopleboy.scenarios.drawing.overlay import box_parts
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.scenarios.report.findings.summary import look_into
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
@@ -30,6 +31,7 @@ from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.evaluation.table import to_json
 from peopleboy.tracker.footage.box_kinds import BoxKind
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.exported import SCENE, export, run_cli
@@ -176,6 +178,12 @@ def test_exports_say_the_truth_of_who_stands_across_the_seam(tracked: Path, tmp_
     ]
     assert across
     coco = COCO(export(tracked, "coco", tmp_path / "coco") / "annotations/panorama/person_keypoints.json")
+    (video,) = coco.dataset["videos"]
+    assert video["thermal_span_c"] is None
+    told = PanoramaCalibration(**video["cameras"]["panorama"]["panorama"])
+    assert told == calibration_of(Panorama())
+    thermal = json.loads((tmp_path / "coco/annotations/person_keypoints.json").read_text())["videos"][0]
+    assert thermal["thermal_span_c"] == [24.0, 36.0]
     for frame, row in across:
         (image,) = (image for image in coco.imgs.values() if image["frame_id"] == frame)
         (label,) = (one for one in coco.anns.values() if one["image_id"] == image["id"])
@@ -195,7 +203,7 @@ def test_exports_say_the_truth_of_who_stands_across_the_seam(tracked: Path, tmp_
     for theirs, ours in ((told, "truth/panorama.gt.txt"), (given, "tracks/panorama.txt")):
         assert boxes_in(theirs) == {(k - 1) // 5 + 1: box for k, box in boxes_in(tracked / ours).items()}
 
-    assert run_cli("export", tracked, "--format", "yolo-pose", *out, tmp_path / "yolo") == 0
+    assert run_cli("export", tracked, "--format", "yolo-pose", "--least-px", 0, *out, tmp_path / "yolo") == 0
     for frame, row in across:
         file = tmp_path / "yolo" / "labels" / "all" / f"{tracked.name}_{(frame - 1) // 5 + 1:06d}.txt"
         labels = np.loadtxt(file, ndmin=2)

@@ -170,9 +170,11 @@ def _ends(boxes: NDArray[np.float64], calibration: Calibration) -> tuple[NDArray
 def _lean(pixels: NDArray[np.float64], calibration: Calibration) -> NDArray[np.float64]:
     """Tell by how many columns a plumb line through pixels (K, 2) moves on from one row to the next, (K,)."""
     here = calibration.rays(pixels) + calibration.position_m
-    below, above = (calibration.project(here + (0.0, 0.0, step)) for step in (-PLUMB_M, PLUMB_M))
+    plumb = np.array([0.0, 0.0, PLUMB_M])
+    below, above = (calibration.project(here + way) for way in (-plumb, plumb))
     across, down = (below - above).T
-    return np.divide(across, down, out=np.zeros(len(pixels)), where=down > 0.0)
+    lean: NDArray[np.float64] = np.divide(across, down, out=np.zeros(len(pixels)), where=down > 0.0)
+    return lean
 
 
 def _place(

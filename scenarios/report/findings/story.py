@@ -126,8 +126,7 @@ class RunStory:
 
     @cached_property
     def seen(self) -> pa.Table:
-        """What is true of people in the images of that camera; of who is scored on the floor, in those by
-        which the tracker sees."""
+        """What is true of people in that camera's images; if scored on the floor, in those with boxes."""
         camera = self.yardstick.camera
         if self.is_on_floor:
             camera, *_ = (*boxed_cameras(self.run.folder), THERMAL)

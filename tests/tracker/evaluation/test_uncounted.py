@@ -67,7 +67,7 @@ def test_ignoring_takes_out_what_trackeval_takes_out_as_on_distractors(sequence)
 
 
 def kept_by_trackeval(truth: TrueBoxes, tracks: TrackBoxes) -> list[int]:
-    """Let the package prepare a sequence, with uncounted people as distractors, and tell which tracks stay."""
+    """Let the package prepare a sequence, uncounted people as distractors, and tell which tracks stay."""
     data = MotChallenge2DBox.__new__(MotChallenge2DBox)  # its constructor wants files
     data.benchmark, data.do_preproc = "MOT17", True
     data.class_name_to_class_id = {
