@@ -23,6 +23,7 @@ from peopleboy.tracker.thermal.whereabouts import (
     TORSO_ROW,
     _ends,
     places_on_floor,
+    standing_box,
 )
 from peopleboy.tracker.track import Box, Status
 from tests.helpers.calls.refused import refused
@@ -57,6 +58,10 @@ def test_a_person_of_the_usual_stature_is_where_it_stands(
     x, y = 0.2 + away * math.cos(yaw + bearing), -0.1 + away * math.sin(yaw + bearing)
     [place] = places_on_floor([box_of(x, y, calibrate(camera))], [Status.TRACKED], calibrate(camera))
     assert place.position_m == pytest.approx((x, y), abs=1e-6)
+    left, _, width, height = box_of(x, y, calibrate(camera))
+    stands = standing_box(place, calibrate(camera))
+    assert stands[0] + stands[2] / 2 == pytest.approx(left + width / 2, abs=1e-6)
+    assert stands[3] == pytest.approx(height * (1.0 - FOOT_BELOW))
 
 
 @given(st.floats(-0.5, 0.5), st.floats(0.4, 1.8), st.integers(60, 480), st.floats(-math.pi, math.pi))
