@@ -19,12 +19,24 @@ FORMATS = ("mot", "coco", "images", "yolo", "yolo-pose", "viper", "mcap", "mp4")
     help="Whose images and boxes mot, yolo, viper or mp4 tell.  [default: thermal; mp4: thermal and colour]",
 )
 @click.option(
+    "--least-px",
+    type=click.FloatRange(0.0),
+    help="How wide and high boxes of yolo and yolo-pose are at least, in pixels; 0 for all.  [default: 3]",
+)
+@click.option(
     "--out",
     type=click.Path(path_type=Path),
     help="Folder to leave.  [default: beside the run, RUN-FORMAT(-CAMERA); of several, export-FORMAT]",
 )
 @click.option("--overwrite", is_flag=True, help="Replace an earlier export in the folder.")
-def export(runs: Sequence[Path], form: str, camera: str | None, out: Path | None, overwrite: bool) -> None:
+def export(
+    runs: Sequence[Path],
+    form: str,
+    camera: str | None,
+    least_px: float | None,
+    out: Path | None,
+    overwrite: bool,
+) -> None:
     """Hand runs over to other tools; a folder that holds folders of runs stands for all of them.
 
     Runs of a rendered set go to coco, yolo and mot split by split, as its folder `splits` says; export.json
@@ -51,5 +63,5 @@ def export(runs: Sequence[Path], form: str, camera: str | None, out: Path | None
     frames = sum(run.frames for run in opened)
     with progress_bar(form, unit="frames") as show:
         play = counted(lambda frame: show(frame, frames))
-        write(opened, form, folder, play, camera=camera, overwrite=overwrite)
+        write(opened, form, folder, play, camera=camera, least_px=least_px, overwrite=overwrite)
     click.echo(folder)

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
@@ -34,6 +35,7 @@ from peopleboy.scenarios.export.from_corner import (
     keypoints_from_corner,
 )
 from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.gains import thermal_span_c
@@ -44,6 +46,7 @@ from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.people.body.joints import JOINT_NAMES
 from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 
 _PERSON = 1
 _LICENCE: Final = {"id": 1, "name": "MIT", "url": "https://opensource.org/license/mit"}  # the project's
@@ -104,7 +107,7 @@ class _Annotations:
 
 
 def _content(runs: Sequence[FinishedRun], camera: str, own: _Annotations) -> dict[str, Any]:
-    videos = [_video(k, run) for k, run in enumerate(runs, start=1) if camera in run.robot.cameras]
+    videos = [_video(k, run, camera) for k, run in enumerate(runs, start=1) if camera in run.robot.cameras]
     return {
         "info": {"description": "people seen by a simulated robot, with exact truth", "version": "1"},
         "licenses": [_LICENCE],
@@ -191,9 +194,9 @@ def _file_name(run: FinishedRun, folder: str, tick: Tick) -> str:
     return f"{run.name}/{folder}/{image_file(tick.frame)}"
 
 
-def _video(number: int, run: FinishedRun) -> dict[str, Any]:
-    thermal = run.robot.cameras["thermal"]
-    assert isinstance(thermal, ThermalConfig)
+def _video(number: int, run: FinishedRun, camera: str) -> dict[str, Any]:
+    """Describe a run as the images of one camera show it."""
+    config = run.robot.cameras[camera]
     return {
         "id": number,
         "name": run.name,
@@ -201,19 +204,23 @@ def _video(number: int, run: FinishedRun) -> dict[str, Any]:
         "seed": run.about.seed,
         "frames": run.frames,
         "rate_hz": run.rate_hz,
-        "thermal_span_c": thermal_span_c(thermal),
+        "thermal_span_c": thermal_span_c(config) if isinstance(config, ThermalConfig) else None,
         "cameras": {name: _camera(camera.camera) for name, camera in run.robot.cameras.items()},
     }
 
 
 def _camera(camera: CameraGeometry) -> dict[str, Any]:
-    """Give size, a pinhole's matrix with pixels counted from the corner, and where a camera sits."""
-    return {
-        "width": camera.width,
-        "height": camera.height,
-        **({"intrinsics": _intrinsics(camera).tolist()} if isinstance(camera, Pinhole) else {}),
-        "robot_from_camera": camera.robot_from_camera.tolist(),
-    }
+    """Give size, what pixels see, and where a camera sits.
+
+    Pixels of a pinhole's matrix are counted from the corner. A panorama has what `PanoramaCalibration` wants.
+    """
+    about: dict[str, Any] = {"width": camera.width, "height": camera.height}
+    if isinstance(camera, Pinhole):
+        about["intrinsics"] = _intrinsics(camera).tolist()
+    calibration = calibration_of(camera)
+    if isinstance(calibration, PanoramaCalibration):
+        about["panorama"] = asdict(calibration)
+    return about | {"robot_from_camera": camera.robot_from_camera.tolist()}
 
 
 def _intrinsics(camera: Pinhole) -> Matrix:

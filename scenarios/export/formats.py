@@ -30,6 +30,7 @@ WRITERS: dict[str, Callable[..., None]] = {
     "mcap": write_mcap,
     "mp4": write_mp4,
 }
+OF_BOXES = ("yolo", "yolo-pose")  # for training; slivers can be left out
 OF_ONE_CAMERA = ("mot", "yolo", "yolo-pose", "viper", "mp4")  # the others tell of all
 
 
@@ -40,6 +41,7 @@ def export(
     play: Play,
     *,
     camera: str | None = None,
+    least_px: float | None = None,
     overwrite: bool,
 ) -> None:
     """Write runs in one of `WRITERS`, whole or not at all.
@@ -50,6 +52,7 @@ def export(
         out: the folder to leave.
         play: gives a run's ticks, as `replay` does.
         camera: whose images and boxes, for a format `OF_ONE_CAMERA`; None for what it usually tells.
+        least_px: how wide and high boxes must be [px], for a format `OF_BOXES`; None for what is usual.
         overwrite: whether an earlier export there may be replaced.
 
     Raises:
@@ -57,9 +60,14 @@ def export(
     """
     if camera is not None and form not in OF_ONE_CAMERA:
         raise BadInput(f"--camera {camera}: {form} has the images of every camera; leave it out")
+    if least_px is not None and form not in OF_BOXES:
+        raise BadInput(
+            f"--least-px {least_px:g}: {form} has everybody of whom a pixel is visible; leave it out"
+        )
     about: dict[str, Any] = {"format": form, "runs": [run.name for run in runs], "versions": versions()}
     splits = {split: [run.name for run in own] for split, own in by_split(runs).items() if split}
     about |= {"splits": splits} if splits else {}
-    chosen = {} if camera is None else {"camera": camera}
+    asked: dict[str, Any] = {"camera": camera, "least_px": least_px}
+    chosen = {name: value for name, value in asked.items() if value is not None}
     with whole_folder(out, about | chosen, overwrite=overwrite) as folder:
         WRITERS[form](runs, folder, play, **chosen)

@@ -7,7 +7,8 @@ labels/train/RUN_000001.txt    class, and middle, width and height of the visibl
 
 Runs that lie in no rendered set have no splits: they are in images/all, which data.yaml names for training
 and for validation, as YOLO wants both. Somebody across a panorama's seam has two boxes; each keypoint goes
-with the nearer one.
+with the nearer one. Slivers are left out: boxes narrower or lower than 3 px, or what is asked for, as
+Ultralytics drops those up to 2 px of the images that it alters.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import yaml
@@ -36,42 +37,65 @@ from peopleboy.sim.truth.boxes import Box
 
 EVERYTHING: Final = "all"
 
+LEAST_PX: Final = 3.0
 _PERSON: Final = 0  # YOLO counts classes from 0
 _EDGES: Final = tuple(f"visible_{edge}_px" for edge in ("left", "top", "width", "height"))
 _COLUMNS: Final = ("frame", "id", *_EDGES, "joints_px", "joint_is_visible")
 
 
-def write_yolo(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str = "thermal") -> None:
-    """Write boxes round what is visible of people.
+def write_yolo(
+    runs: Sequence[FinishedRun],
+    folder: Path,
+    play: Play,
+    camera: str = "thermal",
+    least_px: float = LEAST_PX,
+) -> None:
+    """Write boxes round what is visible of people, but for those narrower or lower than `least_px`.
 
     Raises:
         BadInput: the runs cannot be sorted by split, or one has no such camera of 8 bits.
     """
-    _write(runs, folder, play, camera, has_poses=False)
+    _write(runs, folder, play, _Labels(camera, least_px, has_poses=False))
 
 
-def write_yolo_pose(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str = "thermal") -> None:
+def write_yolo_pose(
+    runs: Sequence[FinishedRun],
+    folder: Path,
+    play: Play,
+    camera: str = "thermal",
+    least_px: float = LEAST_PX,
+) -> None:
     """Write the same boxes with the 17 keypoints of COCO.
 
     Raises:
         BadInput: as for `write_yolo`.
     """
-    _write(runs, folder, play, camera, has_poses=True)
+    _write(runs, folder, play, _Labels(camera, least_px, has_poses=True))
 
 
-def _write(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str, *, has_poses: bool) -> None:
+class _Labels(NamedTuple):
+    """Of whose images, of boxes how large at least [px], and whether of poses, too."""
+
+    camera: str
+    least_px: float
+    has_poses: bool
+
+
+def _write(runs: Sequence[FinishedRun], folder: Path, play: Play, what: _Labels) -> None:
     sorted_runs = {
-        split or EVERYTHING: [_eight_bits(run, camera) for run in own]
+        split or EVERYTHING: [_eight_bits(run, what.camera) for run in own]
         for split, own in by_split(runs).items()
     }
-    settings = yaml.safe_dump(_settings(sorted_runs, has_poses), sort_keys=False, default_flow_style=None)
+    settings = yaml.safe_dump(
+        _settings(sorted_runs, what.has_poses), sort_keys=False, default_flow_style=None
+    )
     (folder / "data.yaml").write_text(settings, encoding="utf-8")
     for split, every in sorted_runs.items():
         images, labels = (folder / kind / split for kind in ("images", "labels"))
         for place in (images, labels):
             place.mkdir(parents=True)
         for shots in every:
-            for number, text in _labels(shots, has_poses=has_poses):
+            for number, text in _labels(shots, what):
                 (labels / f"{_stem(shots, number)}.txt").write_text(text, encoding="utf-8")
             _write_images(shots, images, play)
 
@@ -110,7 +134,7 @@ def _mirrored() -> list[int]:
     return [JOINT_NAMES.index(name.translate(swapped)) for name in marked]
 
 
-def _labels(shots: OneCamera, *, has_poses: bool) -> Iterator[tuple[int, str]]:
+def _labels(shots: OneCamera, what: _Labels) -> Iterator[tuple[int, str]]:
     """Yield the labels of each image, a line a box; of an image without people, none."""
     name = "truth.parquet" if shots.name == "thermal" else f"truth/{shots.name}.parquet"
     people: dict[int, list[Row]] = defaultdict(list)
@@ -118,17 +142,18 @@ def _labels(shots: OneCamera, *, has_poses: bool) -> Iterator[tuple[int, str]]:
         if row[_EDGES[0]] is not None:
             people[row["frame"]].append(row)
     for frame in shots.frames:
-        lines = [line for row in people[frame] for line in _lines(row, shots, has_poses=has_poses)]
+        lines = [line for row in people[frame] for line in _lines(row, shots, what)]
         yield shots.number(frame), "".join(f"{line}\n" for line in lines)
 
 
-def _lines(row: Row, shots: OneCamera, *, has_poses: bool) -> Iterator[str]:
+def _lines(row: Row, shots: OneCamera, what: _Labels) -> Iterator[str]:
     left, top, width, height = (row[edge] for edge in _EDGES)
     parts = box_parts((left, top, width, height), shots.camera)
     joints = np.reshape(row["joints_px"], (-1, 2)).tolist()
-    points = keypoints_from_corner(joints, row["joint_is_visible"], shots.size) if has_poses else []
+    points = keypoints_from_corner(joints, row["joint_is_visible"], shots.size) if what.has_poses else []
     for part in parts:
-        yield " ".join([str(_PERSON), *_middle(part, shots), *_poses(points, part, parts, shots)])
+        if min(part[2:]) >= what.least_px:
+            yield " ".join([str(_PERSON), *_middle(part, shots), *_poses(points, part, parts, shots)])
 
 
 def _middle(box: Box, shots: OneCamera) -> Iterator[str]:

@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.run_files import read_table
@@ -19,8 +20,8 @@ from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.track import Status
 
 POSE: Final = ("frame", "x_m", "y_m", "heading_rad")
-VIEW: Final = ("frame", "id", "visible_fraction")
-PEOPLE: Final = (*VIEW, "x_m", "y_m", "is_counted")
+VIEW: Final = ("frame", "id", "visible_fraction", "is_counted")
+PEOPLE: Final = (*VIEW, "x_m", "y_m")
 BELIEFS: Final = ("frame", "id", "confidence", "status", "left_px", *PLACE)
 """The columns of robot.parquet, truth.parquet and tracks.parquet that are needed here."""
 
@@ -63,8 +64,8 @@ def as_squares(
 ) -> tuple[TrueBoxes, TrackBoxes]:
     """Put squares on the floor [m] for the boxes of everybody who is there, and of confirmed tracks.
 
-    How much of a person is visible is told by the cameras in whose images the tracker gave boxes, or else by
-    the thermal one; who is in no image is nobody to find, and no false alarm either.
+    Who counts, and how much of a person is visible, is told by the cameras in whose images the tracker gave
+    boxes, or else by the thermal one; who is in no image is nobody to find, and no false alarm either.
 
     Args:
         folder: of the run.
@@ -73,12 +74,13 @@ def as_squares(
         robot: its robot.parquet.
     """
     standing, believed = places_of_people(people, robot), places_of_tracks(beliefs)
+    visible, counted = _viewed(folder, people)
     return TrueBoxes(
         frame=standing.frame,
         id=standing.id,
         box=floor_squares(standing.position_m),
-        counted=people["is_counted"].to_numpy(zero_copy_only=False),
-        visible=_visible(folder, people),
+        counted=counted,
+        visible=visible,
     ), TrackBoxes(
         frame=believed.frame,
         id=believed.id,
@@ -87,16 +89,18 @@ def as_squares(
     )
 
 
-def _visible(folder: Path, people: pa.Table) -> Floats:
-    """Tell how much of people is visible (N,), in the image that shows most of them."""
+def _viewed(folder: Path, people: pa.Table) -> tuple[Floats, NDArray[np.bool_]]:
+    """Tell how much of people is visible (N,), in the image that shows most, and whether any counts them."""
     boxed = [folder / "truth" / f"{path.stem}.parquet" for path in sorted((folder / "tracks").glob("*.txt"))]
     views = [read_table(path, TRUTH, VIEW) for path in boxed] or [people]
     most: dict[tuple[int, int], float] = defaultdict(float)
+    counted: set[tuple[int, int]] = set()
     for view in views:
-        for frame, number, visible in zip(*(view[name].to_pylist() for name in VIEW), strict=True):
+        for frame, number, visible, counts in zip(*(view[name].to_pylist() for name in VIEW), strict=True):
             most[frame, number] = max(most[frame, number], visible)
-    rows = zip(people["frame"].to_pylist(), people["id"].to_pylist(), strict=True)
-    return np.array([most[row] for row in rows], np.float64)
+            counted |= {(frame, number)} if counts else set()
+    rows = list(zip(people["frame"].to_pylist(), people["id"].to_pylist(), strict=True))
+    return np.array([most[row] for row in rows], np.float64), np.array([row in counted for row in rows], bool)
 
 
 def _placed(beliefs: pa.Table) -> pa.Table:

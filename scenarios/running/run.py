@@ -124,7 +124,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
                     is_lossless=options.lossless,
                 )
             )
-        watchers = Watchers(config, title, recorder, options.boxes)
+        watchers = Watchers(config, title, recorder, options.boxes, is_secret=scenario.drive is not None)
         frames = round(scenario.duration_s * config.control_hz)
         stage = FaultySensors(world, scenario.spec.faults, config.robot.sonar.farthest_m)
         checked = CheckedTracker(tracker, f"tracker {name!r}", config.robot.cameras)
@@ -144,7 +144,7 @@ def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], N
         comfort = None
         if scenario.robot.behaviour != "stand" and config.people:
             comfort = watchers.comfort.score()
-        scores = score_run(options.out, frames, following, corridor, comfort, options.boxes)
+        scores = score_run(options.out, frames, following, corridor, comfort, options.boxes, name)
         watchers.save(options.out)
         folder.complete(scores.to_json())
     return scores

@@ -23,10 +23,17 @@ class Watchers:
         title: of the run.
         recorder: of it, if there is one.
         boxes: what the tracker's boxes are drawn round.
+        is_secret: whether nobody knows whom the robot goes after, as commands alone do not tell.
     """
 
     def __init__(
-        self, config: WorldConfig, title: str, recorder: Recorder | None, boxes: BoxKind = BoxKind.TORSO
+        self,
+        config: WorldConfig,
+        title: str,
+        recorder: Recorder | None,
+        boxes: BoxKind = BoxKind.TORSO,
+        *,
+        is_secret: bool = False,
     ) -> None:
         self.following = FollowingLog()
         self.corridor = CorridorLog()
@@ -35,11 +42,13 @@ class Watchers:
         self._sheet = ContactSheet(title, config.robot)
         self._recorder = recorder
         self._boxes = boxes
+        self._is_secret = is_secret
 
     def update(self, tick: Tick) -> list[LogLine]:
         """Look at one tick and return what happened at it."""
         events = self._events.update(tick)
-        self.following.add(tick.truth, *whose_tracks(tick, self._boxes))
+        track, is_wrong = whose_tracks(tick, self._boxes)
+        self.following.add(tick.truth, track, None if self._is_secret else is_wrong)
         self.corridor.add(tick.truth)
         self.comfort.add(tick.truth)
         self._sheet.add(tick, events)

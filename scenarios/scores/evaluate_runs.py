@@ -10,7 +10,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.run_folder.run_files import check_end, check_whole
 from peopleboy.scenarios.scores.people_scores import ScoredPeople, score_people
-from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, own_camera
+from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, kind_of_boxes, own_camera
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
@@ -66,7 +66,8 @@ def _evaluate_run(
     about = read_run(folder)
     if "footage" in about or not (folder / "truth.parquet").is_file():
         return _evaluate_texts(folder, about["frames"], min_visible, camera, boxes)
-    by = Yardstick(camera or own_camera(folder), boxes or _said(folder, about))
+    image = camera or own_camera(folder)
+    by = Yardstick(image, boxes or _said(folder, image, about))
     if by == Yardstick():
         given, found = _read_texts(folder, about["frames"])
         held = (given.truth, found)
@@ -96,14 +97,15 @@ def _read_texts(folder: Path, frames: int) -> tuple[GivenTruth, TrackBoxes]:
     return given, found
 
 
-def _said(folder: Path, about: Mapping[str, Any]) -> BoxKind:
+def _said(folder: Path, camera: str, about: Mapping[str, Any]) -> BoxKind:
     """What a run was scored by; runs of earlier versions do not say so, and had torsos."""
     said = about.get("boxes", BoxKind.TORSO)
     if said not in set(BoxKind):
         raise BadInput(
             f"{folder / 'run.json'}: boxes: must be {' or '.join(BoxKind)}, got {said!r}; run it again"
         )
-    return BoxKind(said)
+    tracker = None if about.get("adopted") else about.get("tracker")
+    return kind_of_boxes(folder, camera, tracker, BoxKind(said))
 
 
 def _score(given: GivenTruth, found: TrackBoxes, frames: int | None, min_visible: float) -> Scores:

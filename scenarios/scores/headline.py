@@ -24,7 +24,8 @@ def _people(scores: Scores) -> str:
     counts, thesis, mot = scores.counts, scores.thesis, scores.mot
     false = _some(counts.false_tracks, "false track")
     if not counts.targets:
-        return f"Nobody was there to be found in {counts.frames} frames; {false}."
+        near = "3 to 10 m away, in a panorama 1.1 to 7 m"
+        return f"Nobody was to be found in {counts.frames} frames, which is who is seen {near}; {false}."
     right = "no box given" if math.isnan(thesis.cp) else f"{_percent(thesis.cp)} of the boxes given are right"
     return (
         f"People were found in {_percent(thesis.cr)} of {counts.targets} cases, {right}; "

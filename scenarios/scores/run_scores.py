@@ -14,7 +14,7 @@ from peopleboy.scenarios.scores.following_metrics import (
     FollowingScore,
 )
 from peopleboy.scenarios.scores.people_scores import ScoredPeople, score_people
-from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, own_camera
+from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, kind_of_boxes, own_camera
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.table import to_json
 from peopleboy.tracker.footage.box_kinds import BoxKind
@@ -65,11 +65,15 @@ def score_run(
     corridor: CorridorScore | None = None,
     comfort: ComfortScore | None = None,
     boxes: BoxKind = BoxKind.TORSO,
+    tracker: str | None = None,
 ) -> RunScores:
-    """Score a run from the truth and tracks in its folder; `boxes` says what the truth's are drawn round."""
+    """Score a run from the truth and tracks in its folder.
+
+    `boxes` says what the tracker's are drawn round; with its name it is known of ours (`kind_of_boxes`).
+    """
 
     def scored(camera: str) -> ScoredPeople:
-        by = Yardstick(camera, boxes)
+        by = Yardstick(camera, kind_of_boxes(folder, camera, tracker, boxes))
         return score_people(folder, boxes_held(folder, by), frames, by)
 
     people = scored(own_camera(folder))

@@ -18,6 +18,7 @@ from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind, width_per_height
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.trackers import TRACKERS
 
 # The way from the width of the truth's boxes to that of those of the other kind from which on boxes are such;
 # trackers of torsos come to 0.45 of it in 210 runs, and to 0.52 if their ellipses are wide.
@@ -62,6 +63,24 @@ def boxes_held(folder: Path, by: Yardstick) -> tuple[TrueBoxes, TrackBoxes]:
             raise BadInput(f"{path}: there is no such file; no boxes were given in camera {by.camera!r}")
     around = around_px(cameras_of(folder)[by.camera].camera)
     return replace(true_boxes(text, table, by.boxes), around_px=around), read_tracks(given)
+
+
+def kind_of_boxes(folder: Path, camera: str, tracker: str | None, said: BoxKind) -> BoxKind:
+    """Tell what a tracker's boxes in a camera's images are drawn round: as it was said of the run.
+
+    Ours are said to be round torsos, and are so in flat images; in panoramas they are round whole people.
+
+    Args:
+        folder: of the run.
+        camera: its name.
+        tracker: its name; None for one that is not told by its name.
+        said: of the run.
+    """
+    if tracker not in TRACKERS or camera == THERMAL:
+        return said
+    config = cameras_of(folder).get(camera)
+    is_round = config is not None and math.isfinite(around_px(config.camera))
+    return BoxKind.WHOLE if is_round else said
 
 
 def own_camera(folder: Path) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.truth.boxes import Box
@@ -17,6 +18,9 @@ from peopleboy.sim.truth.things import Owners, ThingTruth
 # Persons nearer than 3 m or farther than 10 m are not counted (T 3.3).
 COUNTED_NEAREST_M = 3.0
 COUNTED_FARTHEST_M = 10.0
+# All round, the lens's rim cuts off nearer people, and a row is too much of a metre for farther ones.
+ROUND_NEAREST_M = 1.1
+ROUND_FARTHEST_M = 7.0
 
 # What the border of the image cuts off is hidden by this.
 BORDER = "border"
@@ -36,7 +40,7 @@ class PersonTruth:
         velocity_m_s: (x, y) [m/s] world frame.
         posture: such as "standing".
         distance_m: [m] on the floor from the camera.
-        is_counted: whether that distance is one at which the sources count persons (T 3.3).
+        is_counted: whether that distance is one at which persons are to be found (`is_counted`).
         box: head to feet, and as wide as the torso without arms, as if nothing hid it (T 3.3); None when
             nothing of it is in front of the camera.
         whole_box: the whole silhouette as if nothing hid it, also outside the image; None as above.
@@ -47,7 +51,7 @@ class PersonTruth:
         visible_fraction: visible_px / whole_px; 0 when whole_px is 0.
         hidden_by: share of the whole silhouette hidden by each thing or person, by name, "border" being what
             lies outside the image; with visible_fraction they sum to 1. A pixel counts for the foremost.
-            Empty when whole_px is 0.
+            Empty when whole_px is 0, where both sum to 0.
         part_temperature_c: [degC] mean surface temperature by part name.
         joints_m: (17, 3) [m] COCO keypoints, world frame.
         joints_px: (17, 2) [px] u, v of the same; NaN behind the camera.
@@ -133,6 +137,11 @@ class Truth:
     background_m: Callable[[], NDArray[np.float32]]
 
 
-def is_counted(distance_m: float) -> bool:
-    """Whether the sources count a person at this distance (T 3.3)."""
+def is_counted(distance_m: float, camera: CameraGeometry) -> bool:
+    """Whether a person at this distance from a camera is to be found: where the sources count (T 3.3).
+
+    They had no panorama; there it is where trackers of panoramas find people.
+    """
+    if isinstance(camera, Panorama):
+        return ROUND_NEAREST_M <= distance_m <= ROUND_FARTHEST_M
     return COUNTED_NEAREST_M <= distance_m <= COUNTED_FARTHEST_M

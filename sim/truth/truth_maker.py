@@ -116,7 +116,7 @@ class TruthMaker:
             velocity_m_s=(float(person.velocity[0]), float(person.velocity[1])),
             posture=str(person.posture),
             distance_m=distance,
-            is_counted=is_counted(distance),
+            is_counted=is_counted(distance, seen.camera),
             box=_thesis_box(seen, outline),
             whole_box=box_between(whole),
             visible_box=box_of_pixels(*map(float, cover.bounds[k])) if visible else None,

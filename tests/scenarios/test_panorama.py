@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import shutil
 from pathlib import Path
@@ -19,11 +20,18 @@ from rerun.chunk import RrdReader
 from peopleboy.scenarios.drawing.overlay import box_parts
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibration_of
+from peopleboy.scenarios.report.findings.summary import look_into
+from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
+from peopleboy.scenarios.scores.yardstick import Yardstick
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.mirror import MIRRORS
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.tracker.evaluation.table import to_json
+from peopleboy.tracker.footage.box_kinds import BoxKind
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.exported import SCENE, export, run_cli
@@ -116,7 +124,7 @@ def test_a_box_across_the_seam_is_drawn_in_two_parts() -> None:
 def tracked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Carl comes when the background is learned, and walks over the seam."""
     carl = {"name": "carl", "enter_s": 1.8, "path": [{"at_m": [0.5, -0.9]}, {"at_m": [0.7, 1.6]}]}
-    robot = {"at_m": [4.0, 0.0], "cameras": {"panorama": {"kind": "panorama", "rate_hz": 3}}}
+    robot = {"at_m": [3.0, 0.0], "cameras": {"panorama": {"kind": "panorama", "rate_hz": 3}}}
     folder = tmp_path_factory.mktemp("tracked")
     path, run = folder / "scene.yaml", folder / "run"
     path.write_text(
@@ -139,11 +147,26 @@ def test_tracks_on_the_other_side_of_the_seam_match_all_the_same(tracked: Path, 
     text = [f"{frame},7,{float(left) - 480.0},{','.join(box)},1,-1,-1,-1" for frame, _, left, *box in
             (line[:6] for line in lines)]  # fmt: skip
     (run / "tracks" / "panorama.txt").write_text("".join(f"{line}\n" for line in text), encoding="utf-8")
-    (people,) = evaluate_runs([run], camera="panorama")
+    (people,) = evaluate_runs([run], camera="panorama", boxes=BoxKind.TORSO)
     scores = people.scores
     assert scores.counts.targets > 3
     assert scores.thesis.ca == scores.thesis.aa == pytest.approx(100.0)
     assert scores.mot.hota.hota == pytest.approx(100.0)
+
+
+def test_who_is_near_counts_all_round_and_our_own_boxes_there_are_whole_ones(tracked: Path) -> None:
+    """Nearer than 3 m, where the thermal camera's truth counts nobody."""
+    rows = pq.read_table(tracked / "truth" / "panorama.parquet").to_pylist()
+    assert all(row["is_counted"] and row["distance_m"] < 3.0 for row in rows)
+    (on_floor,) = evaluate_runs([tracked])
+    assert on_floor.scores.counts.targets == len(rows)
+    (in_panorama,) = evaluate_runs([tracked], camera="panorama")
+    assert in_panorama.by == Yardstick("panorama", BoxKind.WHOLE)
+    (asked,) = evaluate_runs([tracked], camera="panorama", boxes=BoxKind.TORSO)
+    assert asked.by == Yardstick("panorama", BoxKind.TORSO)
+    metrics = json.loads((tracked / "metrics.json").read_text(encoding="utf-8"))
+    assert metrics["cameras"]["panorama"] == to_json(in_panorama.scores)
+    assert look_into(open_run(tracked)).due == 1
 
 
 @pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")
@@ -155,6 +178,12 @@ def test_exports_say_the_truth_of_who_stands_across_the_seam(tracked: Path, tmp_
     ]
     assert across
     coco = COCO(export(tracked, "coco", tmp_path / "coco") / "annotations/panorama/person_keypoints.json")
+    (video,) = coco.dataset["videos"]
+    assert video["thermal_span_c"] is None
+    told = PanoramaCalibration(**video["cameras"]["panorama"]["panorama"])
+    assert told == calibration_of(Panorama())
+    thermal = json.loads((tmp_path / "coco/annotations/person_keypoints.json").read_text())["videos"][0]
+    assert thermal["thermal_span_c"] == [24.0, 36.0]
     for frame, row in across:
         (image,) = (image for image in coco.imgs.values() if image["frame_id"] == frame)
         (label,) = (one for one in coco.anns.values() if one["image_id"] == image["id"])
@@ -174,7 +203,7 @@ def test_exports_say_the_truth_of_who_stands_across_the_seam(tracked: Path, tmp_
     for theirs, ours in ((told, "truth/panorama.gt.txt"), (given, "tracks/panorama.txt")):
         assert boxes_in(theirs) == {(k - 1) // 5 + 1: box for k, box in boxes_in(tracked / ours).items()}
 
-    assert run_cli("export", tracked, "--format", "yolo-pose", *out, tmp_path / "yolo") == 0
+    assert run_cli("export", tracked, "--format", "yolo-pose", "--least-px", 0, *out, tmp_path / "yolo") == 0
     for frame, row in across:
         file = tmp_path / "yolo" / "labels" / "all" / f"{tracked.name}_{(frame - 1) // 5 + 1:06d}.txt"
         labels = np.loadtxt(file, ndmin=2)

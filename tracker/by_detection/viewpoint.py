@@ -89,11 +89,19 @@ class Viewpoint:
     def feet(self, boxes: Floats) -> Floats:
         """Tell where people with these boxes (K, 4) stand, (K, 3), if they are of the usual stature."""
         left, top, width, height = boxes.T
-        rays = self._rays(np.stack([left + width / 2.0, top + height], axis=1))
-        heads = self._rays(np.stack([left + width / 2.0, top], axis=1))
+        aside = self._lean(boxes) * height / 2.0
+        rays = self._rays(np.stack([left + width / 2.0 + aside, top + height], axis=1))
+        heads = self._rays(np.stack([left + width / 2.0 - aside, top], axis=1))
         # Both rays meet the upright line at one distance z: STATURE_M = z (slope of feet - slope of head).
         ahead = STATURE_M / np.maximum(rays[:, 1] - heads[:, 1], 1e-3)
         return rays * np.maximum(ahead, NEAREST_M)[:, None]
+
+    def _lean(self, boxes: Floats) -> Floats:
+        """Tell by how many columns a plumb line through middles of boxes moves on from row to row, (K,)."""
+        middle = (boxes[:, :2] + boxes[:, 2:] / 2.0 - self.centre_px) / self.focal_px
+        plumb = self.camera_from_level[:, 1]
+        across, down = (plumb[:2] - plumb[2] * middle).T
+        return np.asarray(across / np.maximum(down, 1e-3) * self.focal_px[0] / self.focal_px[1])
 
     def _pixels(self, points_m: Floats) -> Floats:
         turned = points_m @ self.camera_from_level.T

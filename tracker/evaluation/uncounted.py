@@ -76,16 +76,14 @@ def settle_uncounted(
 def ignore_uncounted(truth: TrueBoxes, tracks: TrackBoxes, gate: float = GATE) -> Judged:
     """Take out the uncounted people, and the candidates on them.
 
-    Counted targets choose first. Of the candidates that they leave, each uncounted person takes out at most
-    one, that with more IoU than the gate; two candidates on one uncounted person leave one false alarm.
-    """
-    counted = truth.take(truth.counted)
-    pairs = pair_up(counted, tracks)
-    is_free = np.ones(len(tracks), dtype=np.bool_)
-    is_free[pairs.candidate[associate(pairs, gate)]] = False
-    free = np.flatnonzero(is_free)
+    All people choose together, so that the sum of overlaps is largest: where somebody uncounted and a target
+    stand at one place, a candidate is on the one whom it overlaps more. Each uncounted person takes out at
+    most one; two candidates on one uncounted person leave one false alarm.
 
-    pairs = pair_up(truth.take(~truth.counted), tracks.take(free))
+    Source: TrackEval 1.0, `MotChallenge2DBox.get_preprocessed_seq_data`, of distractors.
+    """
+    pairs = pair_up(truth, tracks)
+    chosen = associate(pairs, gate)
     is_ignored = np.zeros(len(tracks), dtype=np.bool_)
-    is_ignored[free[pairs.candidate[associate(pairs, gate)]]] = True
-    return Judged(counted, tracks.take(~is_ignored), tracks.take(is_ignored))
+    is_ignored[pairs.candidate[chosen][~truth.counted[pairs.target[chosen]]]] = True
+    return Judged(truth.take(truth.counted), tracks.take(~is_ignored), tracks.take(is_ignored))

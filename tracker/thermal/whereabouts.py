@@ -5,6 +5,10 @@ horizon, as a slope, and the head is (S - h) / r above it. Both tell 1 / r: feet
 the head by a stature that is not known. All errors grow with the apparent height S / r, so that the best mix
 of the two is the same at every distance (weighted least squares), and the error of the distance is a share of
 it.
+
+In the image of a camera that looks down or up, who stands upright leans, the more so the farther aside. The
+middle column of a box is that of the torso; head and feet lie where a plumb line through the torso meets the
+box's ends.
 """
 
 from __future__ import annotations
@@ -38,6 +42,12 @@ FOOT_SD: Final = 0.057  # error of the row of the feet, in box heights
 HEAD_SD: Final = 0.02  # error of the row of the head
 CORRELATION: Final = 0.5  # of the two: a box that is too high at one end is at the other
 FARTHEST_M: Final = 30.0
+
+# Chosen on a scene each with cameras that look down by 8 and 18 degrees.
+TORSO_ROW: Final = 0.38  # of the way from head to feet: its column is that of the box
+LEAN_SD: Final = 0.1  # error of that, which shifts those who lean, in box heights
+
+PLUMB_M: Final = 0.05  # of a plumb line, at a depth of 1 m
 
 WIDTH_M: Final = 0.5  # of who has no box
 WIDEST_RAD: Final = math.radians(75.0)
@@ -119,12 +129,13 @@ def places_on_floor(
         statuses: how well each is seen, which decides how sure its place is.
         calibration: of the camera that the boxes are seen by.
     """
-    ends = [(left + width / 2.0, row) for left, top, width, height in boxes for row in _ends(top, height)]
-    rays = calibration.rays(np.array(ends).reshape(-1, 2)).tolist()
-    return [
-        _place(head, foot, *ERRORS[status], calibration.position_m)
-        for head, foot, status in zip(rays[::2], rays[1::2], statuses, strict=True)
-    ]
+    ends, leans = _ends(np.array(boxes).reshape(-1, 4), calibration)
+    rays = calibration.rays(ends).tolist()
+    places = []
+    for head, foot, lean, status in zip(rays[::2], rays[1::2], leans, statuses, strict=True):
+        along, across = ERRORS[status]
+        places.append(_place(head, foot, along, math.hypot(across, LEAN_SD * lean), calibration.position_m))
+    return places
 
 
 def standing_box(place: FloorPlace, calibration: Calibration) -> Box:
@@ -137,14 +148,30 @@ def standing_box(place: FloorPlace, calibration: Calibration) -> Box:
     away = max(math.hypot(forward, aside), NEAREST_M)
     bearing = max(-WIDEST_RAD, min(math.atan2(aside, forward), WIDEST_RAD))
     x, y = camera_x + away * math.cos(bearing), camera_y + away * math.sin(bearing)
-    (u, top), (_, bottom) = calibration.project(np.array([[x, y, PERSON_M], [x, y, 0.0]])).tolist()
+    (head, top), (foot, bottom) = calibration.project(np.array([[x, y, PERSON_M], [x, y, 0.0]])).tolist()
     width = (bottom - top) * WIDTH_M / PERSON_M
-    return u - width / 2.0, top, width, bottom - top
+    return head + TORSO_ROW * (foot - head) - width / 2.0, top, width, bottom - top
 
 
-def _ends(top: float, height: float) -> tuple[float, float]:
-    """Give the rows of head and feet."""
-    return top, top + (1.0 - FOOT_BELOW) * height
+def _ends(boxes: NDArray[np.float64], calibration: Calibration) -> tuple[NDArray[np.float64], list[float]]:
+    """Give the pixels (2 K, 2) of head and feet of people with these boxes (K, 4), and how each leans (K)."""
+    left, top, width, height = boxes.T
+    middle, foot = left + width / 2.0, top + (1.0 - FOOT_BELOW) * height
+    torso = top + TORSO_ROW * (foot - top)
+    lean = _lean(np.column_stack([middle, torso]), calibration)
+    head_column, foot_column = (middle + lean * (row - torso) for row in (top, foot))
+    ends = np.column_stack([head_column, top, foot_column, foot]).reshape(-1, 2)
+    return ends, lean.tolist()
+
+
+def _lean(pixels: NDArray[np.float64], calibration: Calibration) -> NDArray[np.float64]:
+    """Tell by how many columns a plumb line through pixels (K, 2) moves on from one row to the next, (K,)."""
+    here = calibration.rays(pixels) + calibration.position_m
+    plumb = np.array([0.0, 0.0, PLUMB_M])
+    below, above = (calibration.project(here + way) for way in (-plumb, plumb))
+    across, down = (below - above).T
+    lean: NDArray[np.float64] = np.divide(across, down, out=np.zeros(len(pixels)), where=down > 0.0)
+    return lean
 
 
 def _place(

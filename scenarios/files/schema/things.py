@@ -86,7 +86,8 @@ class ThingSpec(Strict):
     )
     size_m: Size | None = Field(default=None, description="depth, width, height")
     temperature_c: Celsius | None = Field(
-        default=None, description="of its main surface; left out, the kind's own"
+        default=None,
+        description="of its main surface; left out, the kind's own; thermal cameras read 160 at most",
     )
     emissivity: float = Field(
         default=0.93,

@@ -26,7 +26,7 @@ from peopleboy.scenarios.report.findings.story import Hold, PersonView, Story
 from peopleboy.scenarios.report.findings.summary import RunFindings
 from peopleboy.tracker.evaluation.occlusion_scores import TOTAL_ENDS, TOTAL_STARTS
 
-ASIDE: Final = ", not counted (nearer than 3 m or farther than 10 m)"
+ASIDE: Final = ", not counted (too near or too far away)"
 _LOOKS: Final[dict[str, dict[str, Any]]] = {
     "seen": {"fc": "#cfdce8"},
     "uncounted": {"fc": "#f1f4f7", "ec": "#b9c4cf", "lw": 0.8},

@@ -17,7 +17,13 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.on_floor import as_squares, is_on_floor_alone
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_table
 from peopleboy.scenarios.run_folder.tables import TRUTH
-from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, own_camera
+from peopleboy.scenarios.scores.yardstick import (
+    Yardstick,
+    boxed_cameras,
+    boxes_held,
+    kind_of_boxes,
+    own_camera,
+)
 from peopleboy.sim.truth.events import (
     LEAVES_INSIDE,
     OCCLUSION_ENDS,
@@ -114,14 +120,19 @@ class RunStory:
     @cached_property
     def yardstick(self) -> Yardstick:
         """What the tracker's boxes are held against, as in the scores of the run."""
-        return Yardstick(own_camera(self.run.folder), BoxKind(self.run.about.boxes))
+        about, camera = self.run.about, own_camera(self.run.folder)
+        tracker = None if about.adopted else about.tracker
+        return Yardstick(camera, kind_of_boxes(self.run.folder, camera, tracker, BoxKind(about.boxes)))
 
     @cached_property
     def seen(self) -> pa.Table:
-        """What is true of people in the images of that camera."""
-        if self.yardstick.camera == THERMAL:
+        """What is true of people in that camera's images; if scored on the floor, in those with boxes."""
+        camera = self.yardstick.camera
+        if self.is_on_floor:
+            camera, *_ = (*boxed_cameras(self.run.folder), THERMAL)
+        if camera == THERMAL:
             return self.files.people
-        _, table = truth_files(self.run.folder, self.yardstick.camera)
+        _, table = truth_files(self.run.folder, camera)
         return read_table(table, TRUTH, _PEOPLE)
 
     @cached_property

@@ -45,6 +45,7 @@ def test_its_figures_are_those_of_the_episode_and_it_is_looked_into_as_any_run(
     env.save(tmp_path / "saved", record=False)
     metrics = json.loads((tmp_path / "saved" / "metrics.json").read_text(encoding="utf-8"))
     figures = env.metrics()["following"]
+    assert metrics["following"]["wrong_person_s"] is None
     for name in ("min_distance_m", "collisions"):
         assert metrics["following"][name] == pytest.approx(figures[name], abs=1e-9), name
     for name in ("jerk_m_s3", "personal_s", "personal_intrusions"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import pytest
 import yaml
 from supervision import DetectionDataset
 
-from peopleboy.scenarios.export.yolo import EVERYTHING
+from peopleboy.scenarios.export.yolo import EVERYTHING, LEAST_PX
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.exported import SCENE, make_run
@@ -26,12 +27,12 @@ def export(run: Path, form: str, camera: str, out: Path) -> Path:
     return out
 
 
-def rows_of(run: Path, camera: str) -> dict[int, list[dict[str, Any]]]:
-    """People of whom something is visible in a camera's image, by frame."""
+def rows_of(run: Path, camera: str, least_px: float = LEAST_PX) -> dict[int, list[dict[str, Any]]]:
+    """People of whom something is visible in a camera's image, this wide and high or more, by frame."""
     table = "truth.parquet" if camera == "thermal" else f"truth/{camera}.parquet"
     found: dict[int, list[dict[str, Any]]] = {}
     for row in pq.read_table(run / table).to_pylist():
-        if row["visible_px"]:
+        if row["visible_px"] and min(row["visible_width_px"], row["visible_height_px"]) >= least_px:
             found.setdefault(row["frame"], []).append(row)
     return found
 
@@ -96,6 +97,31 @@ def test_images_are_those_of_the_run_and_each_has_its_labels(crossing: Path, pos
     for number in (1, 33):
         stored = cv2.imread(str(crossing / "colour" / f"{number:06d}.png"))
         assert np.array_equal(cv2.imread(str(images[number - 1])), stored)
+
+
+@pytest.mark.parametrize(
+    ("least_px", "asked"), [(3.0, ()), (0.0, ("--least-px", 0)), (30, ("--least-px", 30))]
+)
+def test_slivers_are_left_out_and_no_more_than_is_asked_for(
+    least_px: float, asked: tuple[object, ...], crossing: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "boxes"
+    assert run_cli("export", crossing, "--format", "yolo", *asked, "--out", out) == 0
+    written = sum(path.read_text().count("\n") for path in (out / "labels" / EVERYTHING).iterdir())
+    assert written == sum(map(len, rows_of(crossing, "thermal", least_px).values()))
+    everybody = sum(map(len, rows_of(crossing, "thermal", 0.0).values()))
+    assert (written < everybody) is (least_px > 0)
+    said = json.loads((out / "export.json").read_text())
+    assert said.get("least_px") == (least_px if asked else None)
+
+
+def test_only_boxes_for_training_leave_out_slivers(
+    crossing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    told = refusal(
+        capsys, "export", crossing, "--format", "coco", "--least-px", 3, "--out", tmp_path / "coco"
+    )
+    assert_names(told, "--least-px 3", "coco")
 
 
 def test_a_camera_of_16_bits_or_none_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

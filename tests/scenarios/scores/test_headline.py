@@ -32,6 +32,14 @@ def scores_of(folder: Path, found: int, false: int = 0) -> Scores:
     return evaluate(read_truth(truth), read_tracks(tracks), frames=200)
 
 
+def test_who_counts_is_said_where_nobody_does(tmp_path: Path) -> None:
+    scores = scores_of(tmp_path, 200)
+    (tmp_path / "gt.txt").write_text("1,1,10,10,20,60,0,1,1.0\n")
+    nobody = evaluate(read_truth(tmp_path / "gt.txt"), read_tracks(tmp_path / "tracks.txt"), frames=200)
+    assert "3 to 10 m" in headline(RunScores(nobody, None))
+    assert "3 to 10 m" not in headline(RunScores(scores, None))
+
+
 @pytest.mark.parametrize(
     ("found", "false", "clues"),
     [

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
+from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.people.person import PART_CLASSES
 from peopleboy.sim.physics.bullet import Bullet
@@ -217,7 +218,12 @@ def test_depth_and_distance_are_those_of_the_person(scene: Scene) -> None:
     ("distance", "counted"), [(2.99, False), (3.0, True), (6.0, True), (10.0, True), (10.01, False)]
 )
 def test_people_from_3_to_10_m_are_counted(distance: float, counted: bool) -> None:
-    assert is_counted(distance) is counted
+    assert is_counted(distance, Pinhole()) is counted
+
+
+@pytest.mark.parametrize(("distance", "counted"), [(1.0, False), (1.1, True), (7.0, True), (7.1, False)])
+def test_people_all_round_are_counted_where_panoramas_show_them(distance: float, counted: bool) -> None:
+    assert is_counted(distance, Panorama()) is counted
 
 
 def test_parts_have_temperatures_of_a_body(scene: Scene) -> None:

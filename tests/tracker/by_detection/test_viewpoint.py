@@ -60,8 +60,7 @@ def test_a_box_tells_where_somebody_of_the_usual_stature_stands(
     column, head, foot = view.seen(feet, np.zeros(1))[0]
     height = foot - head
     box = np.array([[column - 5.0, foot - height, 10.0, height]])
-    # The middle of head and feet is not quite the feet's column where the camera is tilted.
-    assert view.feet(box)[0] == pytest.approx(feet[0], abs=0.04 * away_m)
+    assert view.feet(box)[0] == pytest.approx(feet[0], abs=1e-6)
 
 
 def test_slopes_are_the_derivatives_of_what_is_seen() -> None:

@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 from hypothesis import given
+from trackeval.datasets import MotChallenge2DBox
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.evaluation.association import associate, pair_up
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.evaluation.uncounted import ignore_uncounted, settle_uncounted
 from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
@@ -28,11 +29,14 @@ def test_a_candidate_that_hardly_overlaps_an_uncounted_person_stays():
     assert len(judged.ignored) == 0
 
 
-def test_a_counted_person_chooses_before_a_nearer_uncounted_one():
+def test_a_candidate_is_on_the_one_whom_it_overlaps_more_counted_or_not():
     truth = truth_of([(1, 1, 0, 0, 100, 10), (1, 2, 20, 0, 100, 10)], [True, False])
     judged = ignore_uncounted(truth, tracks_of([(1, 7, 18, 0, 100, 10)]))
+    assert judged.ignored.id.tolist() == [7]
+    judged = ignore_uncounted(truth, tracks_of([(1, 7, 2, 0, 100, 10)]))
     assert judged.tracks.id.tolist() == [7]
-    assert len(judged.ignored) == 0
+    both = ignore_uncounted(truth, tracks_of([(1, 7, 18, 0, 100, 10), (1, 8, 2, 0, 100, 10)]))
+    assert (both.tracks.id.tolist(), both.ignored.id.tolist()) == ([8], [7])
 
 
 def test_absent_leaves_candidates_on_uncounted_people_in():
@@ -51,14 +55,45 @@ def test_people_count_only_if_more_of_them_is_visible_than_the_least(visible, mi
 
 
 @given(sequences())
-def test_ignoring_loses_no_match_and_no_candidate(sequence):
+def test_ignoring_takes_out_what_trackeval_takes_out_as_on_distractors(sequence):
     truth, tracks = sequence
     judged = ignore_uncounted(truth, tracks)
-    before = pair_up(truth.take(truth.counted), tracks)
-    after = pair_up(judged.truth, judged.tracks)
     assert judged.truth.counted.all()
     assert len(judged.tracks) + len(judged.ignored) == len(tracks)
-    assert np.array_equal(before.iou[associate(before)], after.iou[associate(after)])
+    is_kept = np.zeros(len(tracks), dtype=np.bool_)
+    is_kept[kept_by_trackeval(truth, tracks)] = True
+    assert np.array_equal(judged.tracks.box, tracks.box[is_kept])
+    assert np.array_equal(judged.ignored.box, tracks.box[~is_kept])
+
+
+def kept_by_trackeval(truth: TrueBoxes, tracks: TrackBoxes) -> list[int]:
+    """Let the package prepare a sequence, uncounted people as distractors, and tell which tracks stay."""
+    data = MotChallenge2DBox.__new__(MotChallenge2DBox)  # its constructor wants files
+    data.benchmark, data.do_preproc = "MOT17", True
+    data.class_name_to_class_id = {
+        "pedestrian": 1, "person_on_vehicle": 2, "static_person": 7, "distractor": 8, "reflection": 12
+    }  # fmt: skip
+    data.valid_class_numbers = list(data.class_name_to_class_id.values())
+    frames = range(1, max(truth.last_frame, tracks.last_frame) + 1)
+    there, here = ([np.flatnonzero(rows.frame == frame) for frame in frames] for rows in (truth, tracks))
+    raw = {
+        "num_timesteps": len(frames),
+        "seq": "drawn",
+        "gt_ids": [truth.id[rows] for rows in there],
+        "gt_classes": [np.where(truth.counted[rows], 1, 8) for rows in there],
+        "gt_extras": [{"zero_marked": truth.counted[rows]} for rows in there],
+        "gt_dets": [truth.box[rows] for rows in there],
+        "tracker_ids": [tracks.id[rows] for rows in here],
+        "tracker_classes": [np.ones(len(rows), int) for rows in here],
+        "tracker_confidences": here,  # which it hands through
+        "tracker_dets": [tracks.box[rows] for rows in here],
+        "similarity_scores": [
+            data._calculate_similarities(truth.box[t], tracks.box[c])
+            for t, c in zip(there, here, strict=True)
+        ],
+    }
+    ready = data.get_preprocessed_seq_data(raw, "pedestrian")
+    return [row for rows in ready["tracker_confidences"] for row in rows.tolist()]
 
 
 @pytest.mark.parametrize("bad", [{"rule": "drop"}, {"min_visible": -0.1}, {"min_visible": float("nan")}])

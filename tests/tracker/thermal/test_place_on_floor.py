@@ -20,7 +20,10 @@ from peopleboy.tracker.thermal.whereabouts import (
     HEAD_SD,
     PERSON_M,
     STATURE_SD_M,
+    TORSO_ROW,
+    _ends,
     places_on_floor,
+    standing_box,
 )
 from peopleboy.tracker.track import Box, Status
 from tests.helpers.calls.refused import refused
@@ -31,34 +34,56 @@ def calibrate(camera: Pinhole) -> PinholeCalibration:
 
 
 def box_of(x: float, y: float, calibration: PinholeCalibration, stature_m: float = PERSON_M) -> Box:
-    """The tracker's box of somebody who stands at a place, in an upright camera."""
-    (u, top), (_, foot) = calibration.project(np.array([[x, y, stature_m], [x, y, 0.0]])).tolist()
+    """The tracker's box of somebody who stands at a place, 20 px wide about the torso."""
+    (head, top), (sole, foot) = calibration.project(np.array([[x, y, stature_m], [x, y, 0.0]])).tolist()
     height = (foot - top) / (1.0 - FOOT_BELOW)
-    return u - 10.0, top, 20.0, height
+    return head + TORSO_ROW * (sole - head) - 10.0, top, 20.0, height
 
 
 @given(
     st.floats(1.5, 12.0), st.floats(-0.4, 0.4), st.floats(0.4, 1.8), st.floats(-0.3, 0.3),
-    st.integers(60, 960), st.floats(0.3, 1.2),
+    st.integers(60, 960), st.floats(0.3, 1.2), st.floats(-0.35, 0.35),
 )  # fmt: skip
-def test_a_person_of_the_usual_stature_is_where_it_stands(away, bearing, up, yaw, height, field_of_view):
+def test_a_person_of_the_usual_stature_is_where_it_stands(
+    away, bearing, up, yaw, height, field_of_view, pitch
+):
     camera = Pinhole(
         width=height * 2,
         height=height,
         vertical_fov_rad=field_of_view,
         position_m=(0.2, -0.1, up),
         yaw_rad=yaw,
+        pitch_rad=pitch,
     )
     x, y = 0.2 + away * math.cos(yaw + bearing), -0.1 + away * math.sin(yaw + bearing)
     [place] = places_on_floor([box_of(x, y, calibrate(camera))], [Status.TRACKED], calibrate(camera))
     assert place.position_m == pytest.approx((x, y), abs=1e-6)
+    left, _, width, height = box_of(x, y, calibrate(camera))
+    stands = standing_box(place, calibrate(camera))
+    assert stands[0] + stands[2] / 2 == pytest.approx(left + width / 2, abs=1e-6)
+    assert stands[3] == pytest.approx(height * (1.0 - FOOT_BELOW))
 
 
-def test_a_camera_that_looks_down_or_up_changes_nothing_but_rounding():
-    for pitch in (-0.15, 0.15):
-        calibration = calibrate(Pinhole(pitch_rad=pitch))
-        [place] = places_on_floor([box_of(6.0, 0.0, calibration)], [Status.TRACKED], calibration)
-        assert place.position_m == pytest.approx((6.0, 0.0), abs=0.02)
+@given(st.floats(-0.5, 0.5), st.floats(0.4, 1.8), st.integers(60, 480), st.floats(-math.pi, math.pi))
+def test_a_level_camera_reads_the_middle_column_at_both_ends_to_the_last_bit(share, up, rows, yaw):
+    camera = Pinhole(width=2 * rows, height=rows, position_m=(0.2, -0.1, up), yaw_rad=yaw)
+    left, top, width, height = box = (share * rows + rows / 3, rows * 0.3, rows * 0.1, rows * 0.5)
+    ends = np.array([[left + width / 2, top], [left + width / 2, top + (1.0 - FOOT_BELOW) * height]])
+    found, [lean] = _ends(np.array([box]), calibrate(camera))
+    assert (found == ends).all()
+    assert lean == 0.0
+
+
+def test_who_leans_more_in_the_image_is_placed_less_surely_across():
+    calibration = calibrate(Pinhole(pitch_rad=0.3, position_m=(0.0, 0.0, 1.2)))
+    spreads = []
+    for aside in (0.0, 1.0, 2.0):
+        [place] = places_on_floor([box_of(6.0, aside, calibration)], [Status.TRACKED], calibration)
+        xx, xy, yy = place.covariance_m2
+        spreads.append(float(np.linalg.eigvalsh([[xx, xy], [xy, yy]])[0]))
+    assert spreads[0] == pytest.approx((ERRORS[Status.TRACKED][1] * PERSON_M) ** 2, rel=1e-4)
+    assert spreads == sorted(spreads)
+    assert spreads[2] > 1.5 * spreads[0]
 
 
 @given(st.floats(2.0, 10.0), st.floats(-math.pi, math.pi))

@@ -17,7 +17,7 @@ from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.scenarios.scores.suite_table import count
 from peopleboy.scenarios.studies.reproduce.measuring.tracker_settings import Setting
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.truth.truth import is_counted
+from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
 from peopleboy.tracker.evaluation.metrics.sums import Sums
@@ -157,7 +157,8 @@ def _is_in_range(track: Track, frame: Frame) -> bool:
     if track.place is None:
         return True
     x, y, _ = frame.calibrations[THERMAL].position_m
-    return is_counted(math.hypot(track.place.position_m[0] - x, track.place.position_m[1] - y))
+    distance_m = math.hypot(track.place.position_m[0] - x, track.place.position_m[1] - y)
+    return COUNTED_NEAREST_M <= distance_m <= COUNTED_FARTHEST_M
 
 
 def restored(kind: type[Record], data: dict[str, Any]) -> Record:

@@ -65,11 +65,10 @@ def repeat(path: Path, commands: list[Command], tracker: str, out: Path) -> dict
 
 
 def known(figures: dict[str, Any]) -> dict[str, Any]:
-    """Give figures as JSON holds them, but for what no environment knows: whom the robot went after."""
+    """Give figures as JSON holds them."""
     return {
         name: None if isinstance(value, float) and math.isnan(value) else value
         for name, value in figures.items()
-        if name != "wrong_person_s"
     }
 
 
