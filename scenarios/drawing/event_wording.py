@@ -16,6 +16,8 @@ def describe(line: LogLine) -> str:
         return _describe_thing(line)
     if not line.other:
         return f"{line.who}: {line.kind}"
+    if line.kind == "re-identified":
+        return f"{line.who}: {line.kind} as {line.other}"
     if line.kind in ("occluded", "hidden"):
         return f"{line.who}: {line.kind} by {line.other}"
     what, _, turn = line.kind.rpartition(" ")

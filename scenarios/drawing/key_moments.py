@@ -15,6 +15,7 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import shown_to_people
+from peopleboy.sim.truth.events import TOTAL_STARTS
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.track import Status, Track
 
@@ -109,7 +110,7 @@ class KeyMoments:
         self._kept: dict[tuple[str, int], tuple[Moment, Words]] = {}
         self._newest: dict[str, Shot] = {}
         self._counts: Counter[str] = Counter()
-        self._occlusions: dict[str, _Occlusion] = {}
+        self._occlusions: dict[tuple[str, str], _Occlusion] = {}
         self._closest_m = np.inf
         self._spare: list[Moment] = []
         self._stride = 1
@@ -154,20 +155,23 @@ class KeyMoments:
         return slot
 
     def _follow_occlusion(self, line: LogLine) -> None:
+        pair = (line.who, line.other)
         if line.kind == "occlusion starts":
             number = self._counts["most hidden"]
             if number < _KINDS["most hidden"]:
                 self._counts["most hidden"] += 1
-                self._occlusions[line.who] = _Occlusion(("most hidden", number))
-        elif line.kind in ("occlusion ends", "leaves view"):
-            self._occlusions.pop(line.who, None)
+                self._occlusions[pair] = _Occlusion(("most hidden", number))
+        elif line.kind == "occlusion ends":
+            self._occlusions.pop(pair, None)
 
     def _look_for_worst(self, moment: Moment) -> None:
-        for person in moment.people:
-            occlusion = self._occlusions.get(person.name)
-            if occlusion is not None and person.occluded_fraction > occlusion.hidden:
-                occlusion.hidden = person.occluded_fraction
-                self._kept[occlusion.slot] = (moment, partial(_hidden, person))
+        people = {person.name: person for person in moment.people}
+        for (name, other), occlusion in self._occlusions.items():
+            person = people.get(name)
+            hidden = 0.0 if person is None else person.hidden_inside(other)
+            if person is not None and hidden > occlusion.hidden:
+                occlusion.hidden = hidden
+                self._kept[occlusion.slot] = (moment, partial(_hidden, person, other))
 
     def _look_for_closest(self, moment: Moment) -> None:
         for person in moment.people:
@@ -197,11 +201,13 @@ def _always(text: str, moment: Moment) -> str:  # noqa: ARG001
     return text
 
 
-def _hidden(person: PersonTruth, moment: Moment) -> str:
-    """Say how much of a person is hidden at a moment, which may be shown instead of the worst one."""
-    shown = next((other for other in moment.people if other.name == person.name), person)
-    by = f" by {shown.occluder}" if shown.occluder else ""
-    return f"{shown.name}: {shown.occluded_fraction:.0%} hidden{by}"
+def _hidden(person: PersonTruth, other: str, moment: Moment) -> str:
+    """Say how much one hides of another at a moment, which may be shown instead of the worst one."""
+    shown = next((one for one in moment.people if one.name == person.name), person)
+    hidden = shown.hidden_inside(other)
+    if hidden > TOTAL_STARTS:
+        return f"{shown.name}: out of sight behind {other}"
+    return f"{shown.name}: {hidden:.0%} hidden by {other}"
 
 
 def _further(tick: Tick, cameras: Mapping[str, CameraConfig]) -> Iterator[Shot]:

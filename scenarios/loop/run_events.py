@@ -22,7 +22,8 @@ class LogLine:
         kind: what happened; those of `peopleboy.sim.truth.events.Event`, `ThingEvent` and `TrackEvent`, and
             "mode".
         who: a person, a thing, "robot", or "track 3".
-        other: who or what else takes part: an occluder, what is touched, who moves it, or the new mode.
+        other: who or what else takes part: an occluder, what is touched, who moves it, the new mode, or under
+            which number a track goes on that is somebody known again.
         why: of a change of mode and of a lost track, the reason; of a re-identified one, since when.
         move: of a thing that was moved, from where to where.
     """

@@ -74,9 +74,9 @@ def _learned(found: RunFindings) -> _Learned | None:
 def _absence(found: RunFindings, learned: _Learned) -> dict[int, str]:
     """Name the frames of the person's longest absence: its start, its middle, and its end."""
     who = f"track {learned.number}"
-    lines = [line for line in found.run.events if line.who == who and line.frame > learned.frame]
-    ends = [line.frame for line in lines if line.kind == "re-identified"]
-    lost = [line.frame for line in lines if line.kind == "lost"]
+    lines = [line for line in found.run.events if line.frame > learned.frame]
+    ends = [one.frame for one in lines if one.kind == "re-identified" and who == (one.other or one.who)]
+    lost = [one.frame for one in lines if one.kind == "lost" and one.who == who]
     away = [(next((end for end in ends if end > start), found.run.frames), start) for start in lost]
     if not away:
         return {found.run.frames: "at the end"}

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.report.findings.summary import RunFindings, headline, headline_of_many, look_into
+from peopleboy.scenarios.report.findings.summary import RunFindings, look_into
+from peopleboy.scenarios.report.findings.verdict import headline, headline_of_many
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_run, runs_in
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 from peopleboy.scenarios.scores.same_scenes import check_same_scenes
@@ -54,9 +55,11 @@ class Column:
         return headline(self.found) if self.is_single else headline_of_many(self.runs)
 
     def by_badness(self) -> list[tuple[RunFindings, Scores]]:
-        """Its runs with their scores, most lost identities first."""
+        """Its runs with their scores: most numbers on somebody else first, then most lost identities."""
         pairs = zip(self.runs, self.scores, strict=True)
-        return sorted(pairs, key=lambda pair: (-len(pair[0].lost), pair[1].mot.identity.idf1))
+        return sorted(
+            pairs, key=lambda pair: (-len(pair[0].passings), -len(pair[0].lost), pair[1].mot.identity.idf1)
+        )
 
 
 def read_columns(paths: Sequence[Path]) -> list[Column]:

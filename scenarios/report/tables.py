@@ -15,7 +15,8 @@ from peopleboy.scenarios.drawing.event_wording import describe_move
 from peopleboy.scenarios.report.charts.thing_timelines import THING
 from peopleboy.scenarios.report.columns import Column
 from peopleboy.scenarios.report.findings.sentences import seconds, spoken
-from peopleboy.scenarios.report.findings.summary import RunFindings, headline
+from peopleboy.scenarios.report.findings.summary import RunFindings
+from peopleboy.scenarios.report.findings.verdict import headline
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortScore
@@ -90,7 +91,7 @@ def runs_of(column: Column) -> PageTable:
     rows = [
         (
             *(found.run.title, number(scores.thesis.cr, "%"), number(scores.mot.identity.idf1, "%")),
-            Bad(headline(found)) if found.lost else headline(found),
+            Bad(headline(found)) if found.faults else headline(found),
         )
         for found, scores in column.by_badness()[:LONGEST]
     ]

@@ -7,8 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.truth.thing_events import Move
+from peopleboy.sim.truth.thing_events import ThingEvent
 from peopleboy.tracker.scene_model.scene import Happening
 
 KINDS: Final = ("thing moved", "thing appeared", "thing vanished")
@@ -30,24 +31,34 @@ class TrueEvent:
         thing: its name.
         by: name of who did it; empty for nobody.
         from_s, to_s: when it began and ended [s].
-        places_m: (x, y) where the thing was, and is, in the world [m].
+        from_m: (x, y) where the thing was, in the world [m]; None if it was not there.
+        to_m: (x, y) where it is; None if it is there no more.
     """
 
     thing: str
     by: str
     from_s: float
     to_s: float
-    places_m: tuple[tuple[float, float], ...]
+    from_m: tuple[float, float] | None = None
+    to_m: tuple[float, float] | None = None
 
     @classmethod
-    def of(
-        cls, thing: str, by: str, time_s: float, move: Move | None, place_m: tuple[float, float]
-    ) -> TrueEvent:
+    def of(cls, line: ThingEvent | LogLine, thing: str, by: str, place_m: tuple[float, float]) -> TrueEvent:
         """Read it from a line of the log; `place_m` is where the thing is if it was not moved."""
-        if move is None:
-            return cls(thing=thing, by=by, from_s=time_s, to_s=time_s, places_m=(place_m,))
-        places = move.from_m[:2], move.to_m[:2]
-        return cls(thing=thing, by=by, from_s=move.from_s, to_s=move.to_s, places_m=places)
+        if line.move is not None:
+            ends = {"from_m": line.move.from_m[:2], "to_m": line.move.to_m[:2]}
+            return cls(thing=thing, by=by, from_s=line.move.from_s, to_s=line.move.to_s, **ends)
+        end = {"from_m" if line.kind == "thing vanished" else "to_m": place_m}
+        return cls(thing=thing, by=by, from_s=line.time_s, to_s=line.time_s, **end)
+
+    @property
+    def places_m(self) -> tuple[tuple[float, float], ...]:
+        """Where the thing was, and is: one or two places."""
+        return tuple(place for place in (self.from_m, self.to_m) if place is not None)
+
+    def is_about(self, time_s: float) -> bool:
+        """Whether what is told of a time may be this."""
+        return self.from_s - EARLY_S <= time_s <= self.to_s + LATE_S
 
 
 def matching(
@@ -71,7 +82,7 @@ def matching(
 
 def _apart_m(happening: Happening, event: TrueEvent, first: Planar) -> float:
     """Give the distance of the nearest ends; infinity if it was at another time."""
-    if not event.from_s - EARLY_S <= happening.time_s <= event.to_s + LATE_S:
+    if not event.is_about(happening.time_s):
         return math.inf
     ends = [end[:2] for end in (happening.from_m, happening.to_m) if end is not None]
     return min(math.dist(end, first.locate(place)) for end in ends for place in event.places_m)

@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 from peopleboy.scenarios.recording.scene.scene_layer import SceneRecording
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.watching.bodies import Bodies
 from peopleboy.scenarios.watching.run_frames import check_frames, run_frames
 from peopleboy.scenarios.watching.scene_files import (
     BACKGROUND,
@@ -24,7 +25,8 @@ from peopleboy.scenarios.watching.scene_files import (
     write_map,
 )
 from peopleboy.scenarios.watching.tell import sentence
-from peopleboy.scenarios.watching.true_events import KINDS, TrueEvent, WhoIsWho, matching
+from peopleboy.scenarios.watching.thing_names import thing_names
+from peopleboy.scenarios.watching.true_events import KINDS, TrueEvent, WhoIsWho
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.frame import DEPTH
 from peopleboy.tracker.scene_model.scene import Change, Happening
@@ -82,7 +84,7 @@ def _watched(
     people = {k: [(row["name"], first.locate((row["x_m"], row["y_m"]))) for row in rows]
               for k, rows in files.people_by_frame().items()}  # fmt: skip
     model = SceneModel(SceneConfig(people=PeopleMaskConfig(has_heat=options.has_heat)))
-    who, happenings = WhoIsWho(), list[Happening]()
+    who, bodies, happenings = WhoIsWho(), Bodies(), list[Happening]()
     with ExitStack() as stack:
         lines = stack.enter_context((folder / LINES).open("w", encoding="utf-8"))
         layer = None
@@ -93,6 +95,7 @@ def _watched(
             scene = model.update(frame)
             lines.write(scene_line(scene))
             who.look([(one.id, one.place_m) for one in scene.persons], people.get(number, []))
+            bodies.look(frame.time_s, [one.place_m for one in scene.persons])
             happenings += scene.happenings
             if layer is not None:
                 depth = (frame.depth(DEPTH) / 1000.0).astype(np.float32)
@@ -101,7 +104,7 @@ def _watched(
         happenings += model.finish()
         write_map(model.static_map(), folder / MAP)
         write_background(scene.background_m, folder / BACKGROUND)
-        told = _told(happenings, who, true_events(run), first)
+        told = _told(happenings, who, bodies, true_events(run), first)
         if layer is not None:
             layer.log_map(model.static_map())
             layer.log_events([(happening.told_s, line) for happening, line in told])
@@ -116,21 +119,15 @@ def true_events(run: FinishedRun) -> list[TrueEvent]:
         return []
     table = pq.read_table(path, columns=["frame", "name", "x_m", "y_m"]).to_pylist()
     places = {(row["frame"], row["name"]): (row["x_m"], row["y_m"]) for row in table}
-    return [
-        TrueEvent.of(one.who, one.other, one.time_s, one.move, places[one.frame, one.who]) for one in lines
-    ]
+    return [TrueEvent.of(one, one.who, one.other, places[one.frame, one.who]) for one in lines]
 
 
 def _told(
-    happenings: Sequence[Happening], who: WhoIsWho, events: Sequence[TrueEvent], first: Planar
+    happenings: Sequence[Happening], who: WhoIsWho, bodies: Bodies, events: Sequence[TrueEvent], first: Planar
 ) -> list[tuple[Happening, str]]:
     """Put what happened into words, with the names of the things that it truly happened to."""
-    happenings = _without_halves(happenings)
-    found = matching(happenings, events, first)
-    names: dict[int, str] = {}
-    for k, happening in enumerate(happenings):
-        if k in found:
-            names.setdefault(happening.object, events[found[k][0]].thing)
+    happenings = [one for one in _without_halves(happenings) if not bodies.are_at(one)]
+    names = thing_names(happenings, events, first)
     return [(one, sentence(one, who.name, names.get(one.object))) for one in happenings]
 
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from peopleboy.sim.truth.truth import PersonTruth, Truth
+from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth
+
+_Told = tuple[str, str, str]  # what, to whom, by whom
 
 # Somebody enters the view when more than this share of the whole silhouette is seen, and leaves it when less
 # than the second lies inside the image, hidden or not.
 ENTERS_SEEN = 0.05
 LEAVES_INSIDE = 0.02
-# An occlusion starts when more than this share of what lies inside the image is hidden. Each ends at a lower
-# share than it starts at, and a contact after some time apart: swinging arms and bounces are no news.
+# An occlusion starts when one occluder hides more than the first share of what lies inside the image, a total
+# one when all together hide more than the third. Each ends at a lower share than it starts at, and a contact
+# after some time apart: swinging arms and bounces are no news.
 OCCLUSION_STARTS = 0.15
 OCCLUSION_ENDS = 0.05
 TOTAL_STARTS = 0.98
@@ -29,7 +32,8 @@ class Event:
         kind: "enters view", "leaves view", "occlusion starts", "total occlusion starts",
             "total occlusion ends", "occlusion ends", "contact starts" or "contact ends".
         person: whom it happens to; the robot for contacts.
-        other: who or what hides or touches them; empty if nobody.
+        other: who or what hides or touches them; of a total occlusion who or what hides most as it starts,
+            with which it ends, too; empty if nobody.
     """
 
     time_s: float
@@ -41,58 +45,70 @@ class Event:
 class EventLog:
     """Turns a sequence of truths into events, each told once, when it happens.
 
-    A person that leaves the view takes its occlusions along: their ends are not told.
+    Each occluder has an occlusion of its own, which ends at the latest when the hidden person leaves the view
+    or the image. Who has not entered the view yet is hidden by people alone: whoever waits behind a wall is
+    no news.
     """
 
     def __init__(self) -> None:
         self._in_view: set[str] = set()
-        self._hidden_by: dict[str, str] = {}
-        self._total: set[str] = set()
+        self._hidden: dict[str, list[str]] = {}
+        self._total: dict[str, str] = {}
         self._last_touch_s: dict[str, float] = {}
 
     def update(self, truth: Truth) -> list[Event]:
         """Compare with the truth before, and return what is new."""
-        found: list[tuple[str, str, str]] = []
+        found: list[_Told] = []
         people = {person.name: person for person in truth.people}
-        for name in sorted(self._in_view - people.keys()):
+        for name in sorted((self._in_view | self._hidden.keys() | self._total.keys()) - people.keys()):
             found += self._leave(name)
         for person in truth.people:
-            found += self._look_at(person)
+            found += self._look_at(person, people.keys())
         found += self._touch(truth.time_s, truth.contacts)
         return [Event(time_s=truth.time_s, kind=kind, person=who, other=other) for kind, who, other in found]
 
-    def _look_at(self, person: PersonTruth) -> list[tuple[str, str, str]]:
-        name = person.name
-        if name in self._in_view:
-            return self._leave(name) if person.inside_fraction < LEAVES_INSIDE else self._occlusion(person)
-        if person.visible_fraction <= ENTERS_SEEN:
-            return []
-        self._in_view.add(name)
-        return [("enters view", name, ""), *self._occlusion(person)]
+    def _look_at(self, person: PersonTruth, people: Collection[str]) -> list[_Told]:
+        name, found = person.name, list[_Told]()
+        if person.inside_fraction < LEAVES_INSIDE:
+            return self._leave(name)
+        if name not in self._in_view and person.visible_fraction > ENTERS_SEEN:
+            self._in_view.add(name)
+            found.append(("enters view", name, ""))
+        shares = {
+            other: person.hidden_inside(other)
+            for other in person.hidden_by
+            if other != BORDER and (name in self._in_view or other in people)
+        }
+        return found + self._occlusions(name, shares)
 
-    def _occlusion(self, person: PersonTruth) -> list[tuple[str, str, str]]:
-        name, hidden, occluder = person.name, person.occluded_fraction, person.occluder or ""
-        found = []
-        if name not in self._hidden_by and hidden > OCCLUSION_STARTS:
-            self._hidden_by[name] = occluder
-            found.append(("occlusion starts", name, occluder))
-        if name not in self._total and hidden > TOTAL_STARTS:
-            self._total.add(name)
-            found.append(("total occlusion starts", name, occluder))
-        if name in self._total and hidden < TOTAL_ENDS:
-            self._total.remove(name)
-            found.append(("total occlusion ends", name, self._hidden_by[name]))
-        if name in self._hidden_by and hidden < OCCLUSION_ENDS:
-            found.append(("occlusion ends", name, self._hidden_by.pop(name)))
+    def _occlusions(self, name: str, shares: Mapping[str, float]) -> list[_Told]:
+        """Tell what is new of an occlusion by the share that each occluder hides."""
+        found: list[_Told] = []
+        hidden, total = self._hidden.setdefault(name, []), sum(shares.values())
+        most = max(shares, key=lambda other: shares[other], default="")
+        starts = [
+            other for other, share in shares.items() if share > OCCLUSION_STARTS and other not in hidden
+        ]
+        hidden += starts
+        found += [("occlusion starts", name, other) for other in starts]
+        if name not in self._total and total > TOTAL_STARTS:
+            self._total[name] = most
+            found.append(("total occlusion starts", name, most))
+        elif name in self._total and total < TOTAL_ENDS:
+            found.append(("total occlusion ends", name, self._total.pop(name)))
+        ends = [other for other in hidden if shares.get(other, 0.0) < OCCLUSION_ENDS]
+        self._hidden[name] = [other for other in hidden if other not in ends]
+        return found + [("occlusion ends", name, other) for other in ends]
+
+    def _leave(self, name: str) -> list[_Told]:
+        found = self._occlusions(name, {})
+        if name in self._in_view:
+            self._in_view.remove(name)
+            found.append(("leaves view", name, ""))
+        del self._hidden[name]
         return found
 
-    def _leave(self, name: str) -> list[tuple[str, str, str]]:
-        self._in_view.remove(name)
-        self._hidden_by.pop(name, None)
-        self._total.discard(name)
-        return [("leaves view", name, "")]
-
-    def _touch(self, time_s: float, contacts: Sequence[str]) -> list[tuple[str, str, str]]:
+    def _touch(self, time_s: float, contacts: Sequence[str]) -> list[_Told]:
         last = self._last_touch_s
         found = [("contact starts", "robot", other) for other in contacts if other not in last]
         last.update(dict.fromkeys(contacts, time_s))

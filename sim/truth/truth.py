@@ -92,7 +92,12 @@ class PersonTruth:
     def occluded_fraction(self) -> float:
         """Share of the silhouette inside the image that others hide; 1 when none of it is in the image."""
         inside = self.inside_fraction
-        return 1.0 - self.visible_fraction / inside if inside > 0.0 else 1.0
+        return max(0.0, 1.0 - self.visible_fraction / inside) if inside > 0.0 else 1.0
+
+    def hidden_inside(self, other: str) -> float:
+        """Share of the silhouette inside the image that one person or thing hides."""
+        inside = self.inside_fraction
+        return self.hidden_by.get(other, 0.0) / inside if inside > 0.0 else 0.0
 
     @property
     def occluder(self) -> str | None:

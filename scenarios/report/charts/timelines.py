@@ -125,8 +125,14 @@ def track_row(found: RunFindings, person: Story) -> TimelineRow:
         for change in found.changes
         if change.person == person.name
     ]
+    changed = {time_s for time_s, _ in marks}
+    marks += [
+        (one.time_s, f"{one.time_s:.1f} s: has number {one.number}, which was {spoken(one.from_person)}'s")
+        for one in found.passings
+        if one.to_person == person.name and one.time_s not in changed
+    ]
     looks = map(look, person.hold.tolist(), person.track.tolist())
-    return TimelineRow("track", _bars(found, looks), tuple(marks))
+    return TimelineRow("track", _bars(found, looks), tuple(sorted(marks)))
 
 
 def stray_row(found: RunFindings) -> TimelineRow:

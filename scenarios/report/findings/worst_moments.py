@@ -19,7 +19,7 @@ _APART_S = 1.0  # two moments of one person nearer than this are one
 class BadMoment(NamedTuple):
     """What went wrong, and when."""
 
-    # To choose by: a lost identity is worst, then contacts, tracks on nobody, people not found.
+    # To choose by: a number on somebody else is worst, then a lost identity, contacts, tracks on nobody, ...
     badness: float
     frames: tuple[int, ...]  # one or two to look at, from 1
     title: str
@@ -29,7 +29,7 @@ class BadMoment(NamedTuple):
 
 def worst_moments(found: RunFindings, count: int) -> list[BadMoment]:
     """Choose at most `count` moments, in time; where nothing went wrong, the boxes that fit worst."""
-    moments = [*_changes(found), *_contacts(found), *_strays(found)]
+    moments = [*_passings(found), *_changes(found), *_contacts(found), *_strays(found)]
     for person in found.people:
         moments += _gaps(found, person)
     if len(moments) < count:
@@ -46,11 +46,18 @@ def _is_same(found: RunFindings, one: BadMoment, other: BadMoment) -> bool:
     return one.who == other.who and gap < _APART_S
 
 
+def _passings(found: RunFindings) -> Iterator[BadMoment]:
+    for one in found.passings:
+        name, other = spoken(one.from_person), spoken(one.to_person)
+        text = f"{name} {one.why}; from then on {other} was number {one.number}."
+        title = f"Number {one.number} goes from {name} to {other}"
+        yield BadMoment(200.0, (one.last_frame, one.first_frame), title, text, one.to_person)
+
+
 def _changes(found: RunFindings) -> Iterator[BadMoment]:
-    for change in found.changes:
-        whose = f", which was {spoken(change.taken_from)}'s" if change.taken_from else ""
+    for change in found.lost:
         name, badness = spoken(change.person), 40.0 if change.is_return else 100.0
-        text = f"{name} {change.why}, and was then number {change.new}{whose}."
+        text = f"{name} {change.why}, and was then number {change.new}."
         frames = (change.last_frame, change.first_frame)
         yield BadMoment(badness, frames, f"{name} loses number {change.old}", text, change.person)
 

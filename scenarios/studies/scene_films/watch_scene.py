@@ -124,9 +124,7 @@ def _plain(
 
 def _new_events(log: ThingLog, truth: Truth) -> list[TrueEvent]:
     places = {thing.name: thing.position_m[:2] for thing in truth.things}
-    return [
-        TrueEvent.of(one.thing, one.by, one.time_s, one.move, places[one.thing]) for one in log.update(truth)
-    ]
+    return [TrueEvent.of(one, one.thing, one.by, places[one.thing]) for one in log.update(truth)]
 
 
 def _true_masks(truth: Truth, backgrounds: Backgrounds, frame: Frame) -> TrueMasks:

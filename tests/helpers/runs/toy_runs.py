@@ -55,6 +55,26 @@ def away_and_back(frame: int) -> Boxes:
     return {1: ANNA} | ({2: BEN} if frame < 35 else {5: BEN} if frame > 70 else {})
 
 
+def known_late(frame: int) -> Boxes:
+    """The same, but he has number 5 for seven frames only, and then 2 again."""
+    return {1: ANNA} | ({2: BEN} if frame < 35 or frame > 77 else {5: BEN} if frame > 70 else {})
+
+
+def passed_on(frame: int) -> Boxes:
+    """Anna's number is gone from frame 40 on, and on Ben, who had none, from 46 on."""
+    return {1: ANNA} if frame < 40 else {1: BEN} if frame >= 46 else {}
+
+
+def swapped_for_a_moment(frame: int) -> Boxes:
+    """The two numbers change places at frame 46, and back at 56."""
+    return swapped(frame) if frame < 56 else steady(frame)
+
+
+def again_on_nobody(frame: int) -> Boxes:
+    """Ben's number is gone from frame 30 to 39, and then lies on nobody."""
+    return {1: ANNA} | ({2: BEN} if frame < 30 else {2: NOWHERE} if frame >= 40 else {})
+
+
 def flickering(frame: int) -> Boxes:
     """Ben's number is away from 30 to 31 and from 50 to 59; number 9 lies on nobody at 70 and 71."""
     is_away = 30 <= frame < 32 or 50 <= frame < 60

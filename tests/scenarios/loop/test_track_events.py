@@ -47,6 +47,28 @@ def test_a_lost_track_left_the_image_or_its_contour_is_gone() -> None:
     assert_names(play((made.TRACK,), (weak,))[1][0].why, "contour", "0.12")
 
 
+def test_who_is_known_again_after_some_images_goes_on_under_the_old_number_and_is_not_lost() -> None:
+    late = replace(made.TRACK, id=3)
+    found = play((made.TRACK,), (), (), (late,), (made.TRACK,), (made.TRACK,))
+    known = TrackEvent(kind="re-identified", track=3, by=1, why="after 3.0 s")
+    assert found[3:] == [[TrackEvent(kind="detected", track=3)], [known], []]
+
+
+def test_who_comes_back_elsewhere_is_no_other_track_that_ends() -> None:
+    aside = replace(made.with_box((20.0, 47.3, 40.0, 175.0)), id=3)
+    found = play((made.TRACK,), (), (aside,), (made.TRACK,))
+    assert [(event.kind, event.track, event.by) for event in found[3]] == [
+        ("re-identified", 1, None),
+        ("lost", 3, None),
+    ]
+
+
+def test_a_track_that_goes_on_under_a_new_number_did_not_lose_its_contour() -> None:
+    found = play((made.TRACK,), (replace(made.TRACK, id=7),))[1]
+    assert [(event.kind, event.track) for event in found] == [("lost", 1), ("detected", 7)]
+    assert found[0].why == "track 7 is there instead"
+
+
 def test_an_occlusion_is_told_once_per_pair_however_often_it_flickers() -> None:
     events = TrackEvents()
     found = [

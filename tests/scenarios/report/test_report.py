@@ -28,10 +28,12 @@ from peopleboy.scenarios.report.charts.timelines import (
     truth_row,
 )
 from peopleboy.scenarios.report.columns import are_same_scene, lacking, read_columns
-from peopleboy.scenarios.report.findings.losses_and_swaps import Ending
+from peopleboy.scenarios.report.findings.changes import Turn
+from peopleboy.scenarios.report.findings.endings import Ending
 from peopleboy.scenarios.report.findings.spans import between, settle, spans
 from peopleboy.scenarios.report.findings.story import Hold, PersonView
-from peopleboy.scenarios.report.findings.summary import RunFindings, headline_of_many, look_into
+from peopleboy.scenarios.report.findings.summary import RunFindings, look_into
+from peopleboy.scenarios.report.findings.verdict import headline, headline_of_many
 from peopleboy.scenarios.report.findings.worst_moments import worst_moments
 from peopleboy.scenarios.report.page import write_report
 from peopleboy.scenarios.report.tables import drive_figures, plain_figures
@@ -57,6 +59,10 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 def found_in(folder: Path) -> RunFindings:
     return look_into(open_run(folder))
+
+
+def plain(words: str) -> str:
+    return words.replace("\N{NO-BREAK SPACE}", " ")
 
 
 def endings(found: RunFindings) -> list[list[str]]:
@@ -121,13 +127,59 @@ def test_a_lost_number_tells_who_hid_the_person_and_what_came_then(folders: dict
     assert [(stray.track, stray.first_frame, stray.last_frame) for stray in found.strays] == [(4, 70, 79)]
 
 
-def test_a_new_number_after_a_long_absence_is_no_lost_identity(tmp_path: Path) -> None:
+def test_a_new_number_for_good_is_a_lost_identity_after_an_absence_too(tmp_path: Path) -> None:
     found = found_in(toy.write_run(tmp_path / "run", toy.away_and_back, toy.behind_from_35_to_70))
     assert endings(found) == [["Anna", "Ben"], [], []]
-    assert (len(found.lost), len(found.returned)) == (0, 1)
+    (change,) = found.lost
+    assert change.is_return
     (loss,) = found.losses
     assert loss.why.startswith("left the image")
-    assert not loss.is_bad
+    assert loss.is_bad
+    assert "identity lost once, at 4.7" in plain(headline(found))
+
+
+def test_who_is_known_again_within_a_second_is_not_lost(tmp_path: Path) -> None:
+    found = found_in(toy.write_run(tmp_path / "run", toy.known_late, toy.behind_from_35_to_70))
+    assert (found.lost, found.passings) == ([], [])
+    (change,) = found.known_again
+    assert (change.old, change.new, change.known_after_s) == (5, 2, pytest.approx(7 / 15))
+    assert [(loss.track, loss.is_bad) for loss in found.losses] == [(2, False)]  # 5 went on as 2
+    assert plain(headline(found)).endswith(
+        "no identity lost; Ben was known again as number 2 after 0.5 s as number 5."
+    )
+    lost = found_in(toy.write_run(tmp_path / "lost", toy.away_and_back, toy.behind_from_35_to_70))
+    assert found.faults < lost.faults
+
+
+def test_a_number_that_goes_to_somebody_else_comes_first(tmp_path: Path) -> None:
+    found = found_in(toy.write_run(tmp_path / "run", toy.passed_on))
+    (one,) = found.passings
+    assert (one.number, one.from_person, one.to_person, one.first_frame) == (1, "anna", "ben", 46)
+    assert plain(headline(found)).startswith("Number 1 went from Anna to Ben at 3.0 s, when Anna was ")
+    assert "no identity lost" not in headline(found)
+    (loss,) = found.losses
+    assert plain(loss.afterwards).startswith("shown again after 0.4 s, on Ben; Anna was ")
+    assert loss.is_bad
+    assert "a number went to somebody else once, in 1 run" in headline_of_many([found])
+    assert max(worst_moments(found, 3)).title == "Number 1 goes from Anna to Ben"
+    assert "which was Anna's" in track_row(found, found.called("ben")).words
+
+
+def test_a_number_that_is_back_at_once_went_to_nobody(tmp_path: Path) -> None:
+    found = found_in(toy.write_run(tmp_path / "run", toy.swapped_for_a_moment))
+    assert found.passings == []
+    assert [change.turn for change in found.changes] == [Turn.TAKEN, Turn.TAKEN, Turn.BACK, Turn.BACK]
+
+
+def test_a_track_that_is_shown_again_on_nobody_is_said_to_be(tmp_path: Path) -> None:
+    (loss,) = found_in(toy.write_run(tmp_path / "run", toy.again_on_nobody)).losses
+    assert plain(loss.afterwards) == "shown again after 0.7 s, on nobody; Ben was not found again"
+    assert loss.is_bad
+
+
+def test_a_reason_is_true_of_its_moment_and_what_was_just_before_is_said_to_be(tmp_path: Path) -> None:
+    (loss,) = found_in(toy.write_run(tmp_path / "run", toy.until_75, lambda f: 0.5 * (f == 72))).losses
+    assert loss.why.startswith("was in plain sight, but had just been hidden to 50% by Anna; ")
 
 
 def test_losses_that_are_listed_and_left_out_are_those_of_the_log(tmp_path: Path) -> None:
@@ -273,7 +325,9 @@ def test_a_run_is_not_held_against_itself(folders: dict[str, Path]) -> None:
 def test_a_folder_of_runs_is_one_column_with_mean_and_spread(folders: dict[str, Path]) -> None:
     (column,) = read_columns([folders["steady"].parent])
     assert len(column.runs) == 3
-    assert column.headline.startswith("3 runs: of 6 people 6 tracked to the end; ")
+    assert column.headline.startswith(
+        "3 runs: a number went to somebody else twice, in 1 run; of 6 people 6 tracked to the end; "
+    )
     row = next(row for row in plain_figures([column]).rows if "(CR)" in row[0])
     values = [scores.thesis.cr for scores in column.scores]
     assert row[1] == f"{fmean(values):.1f} ± {stdev(values):.1f} %"

@@ -11,7 +11,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from peopleboy.scenarios.report.findings.summary import headline, look_into
+from peopleboy.scenarios.report.findings.summary import look_into
+from peopleboy.scenarios.report.findings.verdict import headline
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.scores.following_score import whose_tracks
 from peopleboy.tracker.footage.box_kinds import BoxKind

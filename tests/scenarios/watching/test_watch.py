@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -13,7 +14,9 @@ from click.testing import CliRunner
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.cli import cli
+from peopleboy.scenarios.watching.bodies import Bodies
 from peopleboy.scenarios.watching.tell import sentence
+from peopleboy.scenarios.watching.thing_names import thing_names
 from peopleboy.scenarios.watching.true_events import TrueEvent, WhoIsWho, matching
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.scene_model.scene import Change, Happening
@@ -106,10 +109,33 @@ def test_sentences_have_names_where_they_are_known() -> None:
 
 def test_a_happening_is_of_the_event_that_was_there_then() -> None:
     first = Planar(0.8, 0.0, 0.0)
-    event = TrueEvent(thing="box", by="anna", from_s=3.5, to_s=3.5, places_m=((3.6, 0.0),))
-    later = TrueEvent(thing="box", by="", from_s=13.5, to_s=13.5, places_m=((3.6, 0.0),))
-    aside = TrueEvent(thing="bag", by="", from_s=3.5, to_s=3.5, places_m=((3.6, 1.0),))
+    event = TrueEvent(thing="box", by="anna", from_s=3.5, to_s=3.5, from_m=(3.6, 0.0))
+    later = TrueEvent(thing="box", by="", from_s=13.5, to_s=13.5, from_m=(3.6, 0.0))
+    aside = TrueEvent(thing="bag", by="", from_s=3.5, to_s=3.5, from_m=(3.6, 1.0))
     assert matching([GONE], [later, aside, event], first) == {0: (2,)}
+
+
+def test_a_true_name_goes_to_what_matches_it_alone_and_only_once() -> None:
+    first = Planar(0.8, 0.0, 0.0)
+    teddy = TrueEvent(thing="teddy", by="anna", from_s=5.0, to_s=7.4, from_m=(4.6, -0.8), to_m=(4.5, 0.3))
+    fern = TrueEvent(thing="fern", by="", from_s=12.0, to_s=12.0, to_m=(6.0, 0.4))
+    moved = Happening(
+        time_s=5.4, told_s=10.9, change=Change.MOVED, object=1, from_m=(3.7, -0.8, 0.9), to_m=(3.6, 0.3, 0.2)
+    )
+    gone = replace(GONE, time_s=8.8, object=5, from_m=(3.375, -0.19, 1.06))
+    taken = replace(GONE, time_s=12.0, object=6, from_m=(5.1, 0.4, 0.8))
+    assert thing_names([gone, moved, taken], [teddy, fern], first) == {1: "teddy"}
+    halves = [replace(GONE, time_s=5.4, object=k, from_m=(3.7 + 0.1 * k, -0.8, 0.9)) for k in range(3)]
+    assert thing_names(halves, [teddy], first) == {1: "teddy"}
+
+
+def test_what_vanishes_where_somebody_stood_was_no_thing() -> None:
+    bodies = Bodies()
+    bodies.look(2.0, [(2.8, 0.1)])
+    bodies.look(3.0, [(2.8, 0.35)])
+    assert bodies.are_at(GONE)
+    assert not bodies.are_at(replace(GONE, time_s=4.5))
+    assert not bodies.are_at(replace(GONE, change=Change.APPEARED, from_m=None, to_m=GONE.from_m))
 
 
 def test_who_is_who_is_told_by_most_instants() -> None:

@@ -1,3 +1,4 @@
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,13 +14,15 @@ class Seen:
     """As much of a person's truth as the event log looks at."""
 
     name: str = "a"
-    occluded_fraction: float = 0.0
     inside_fraction: float = 1.0
-    occluder: str | None = None
-    visible_fraction: float = field(init=False)
+    hidden_by: Mapping[str, float] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        self.visible_fraction = self.inside_fraction * (1.0 - self.occluded_fraction)
+    @property
+    def visible_fraction(self) -> float:
+        return self.inside_fraction - sum(share for by, share in self.hidden_by.items() if by != "border")
+
+    def hidden_inside(self, other: str) -> float:
+        return self.hidden_by[other] / self.inside_fraction
 
 
 @dataclass
@@ -36,7 +39,7 @@ def tell(*instants: Instant) -> list[tuple[str, str]]:
 
 def hidden(*shares: float, occluder: str = "b") -> list[Instant]:
     return [
-        Instant(k / 15.0, (Seen(occluded_fraction=share, occluder=occluder if share else None),))
+        Instant(k / 15.0, (Seen(hidden_by={occluder: share} if share else {}),))
         for k, share in enumerate(shares)
     ]
 
@@ -78,14 +81,59 @@ def test_who_is_hidden_at_once_and_seen_at_once_has_all_events_in_order() -> Non
     ]
 
 
-def test_nobody_enters_unseen_and_nobody_leaves_while_hidden() -> None:
-    unseen = Instant(0.0, (Seen(occluded_fraction=1.0, occluder="wall"),))
+def test_each_occluder_has_an_occlusion_of_its_own_and_a_total_one_ends_with_whom_it_started() -> None:
+    shares = [
+        {"seat": 0.2},
+        {"seat": 0.2, "b": 0.1},
+        {"b": 0.92},
+        {"b": 0.4, "c": 0.6},
+        {"seat": 0.2, "c": 0.1},
+        {"c": 0.04},
+    ]
+    assert tell(*[Instant(k / 15.0, (Seen(hidden_by=by),)) for k, by in enumerate(shares)]) == [
+        ("enters view", ""),
+        ("occlusion starts", "seat"),
+        ("occlusion starts", "b"),
+        ("occlusion ends", "seat"),
+        ("occlusion starts", "c"),
+        ("total occlusion starts", "c"),
+        ("occlusion starts", "seat"),
+        ("total occlusion ends", "c"),
+        ("occlusion ends", "b"),
+        ("occlusion ends", "c"),
+        ("occlusion ends", "seat"),
+    ]
+
+
+def test_whom_a_person_hides_from_the_start_is_told_before_entering_the_view() -> None:
+    front = Seen(name="front")
+    behind = Seen(name="behind", hidden_by={"front": 0.99, "border": 0.01}, inside_fraction=0.99)
+    told = tell(Instant(0.0, (front, behind)), Instant(1.0, (front, Seen(name="behind"))))
+    assert told == [
+        ("enters view", ""),
+        ("occlusion starts", "front"),
+        ("total occlusion starts", "front"),
+        ("enters view", ""),
+        ("total occlusion ends", "front"),
+        ("occlusion ends", "front"),
+    ]
+
+
+def test_shares_are_of_what_lies_inside_the_image() -> None:
+    at_border = Seen(inside_fraction=0.5, hidden_by={"border": 0.5, "b": 0.1})
+    assert tell(Instant(0.0, (at_border,))) == [("enters view", ""), ("occlusion starts", "b")]
+
+
+def test_nobody_enters_unseen_and_who_leaves_while_hidden_is_hidden_no_more() -> None:
+    unseen = Instant(0.0, (Seen(hidden_by={"wall": 1.0}),))
     assert tell(unseen) == []
     inside, gone = Instant(1.0, (Seen(),)), Instant(3.0, (Seen(inside_fraction=0.0),))
     assert tell(inside, unseen, gone, gone) == [
         ("enters view", ""),
         ("occlusion starts", "wall"),
         ("total occlusion starts", "wall"),
+        ("total occlusion ends", "wall"),
+        ("occlusion ends", "wall"),
         ("leaves view", ""),
     ]
 
