@@ -5,7 +5,10 @@ INSTALLED := $(VENV)/.installed# what `peopleboy` needs
 READY := $(VENV)/.ready# and what its development does
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
+# Bytecode that is kept saves each of the processes that tests start some of its start.
+unexport PYTHONDONTWRITEBYTECODE
+
+.PHONY: demo test test-thorough test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
 
 demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -13,6 +16,10 @@ demo: $(INSTALLED)
 # A file's tests in one process: what they share is made, and compiled, once.
 test: $(READY)
 	$(BIN)/python -m pytest -n 2 --dist loadfile
+
+# What tests do with a few, with all: scenarios of the library, long films, whole studies.
+test-thorough: $(READY)
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m thorough
 
 # All that the README, the tutorials and the pages on tasks tell their readers to type.
 test-pages: $(READY)

@@ -1,5 +1,9 @@
-import os
+from __future__ import annotations
 
+import os
+from typing import Any
+
+import pytest
 from hypothesis import settings
 
 # A busy machine is no failure, and a change is judged by the same examples as the one before it;
@@ -7,3 +11,13 @@ from hypothesis import settings
 settings.register_profile("repeat", deadline=None, derandomize=True)
 settings.register_profile("explore", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeat"))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Let workers that get whole files begin at both ends; any other --dist is xdist's own."""
+    if config.getoption("dist") != "loadfile":
+        return None
+    from tests.helpers.from_both_ends import FromBothEnds  # xdist may not be there
+
+    return FromBothEnds(config, log)

@@ -1,5 +1,6 @@
 import ast
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -14,11 +15,11 @@ from tests.helpers.import_graph import (
     module_name,
     reach,
     room_files,
+    statements,
+    tree,
 )
 
 FILES = room_files()
-ARROWS = graph(FILES)
-AT_LOAD = graph(FILES, only_at_load=True)
 ALLOWED = {"sim": set(), "tracker": set(), "behaviours": set(), "scenarios": {"sim", "tracker", "behaviours"}}
 SHARED = {"peopleboy.bad_input", "peopleboy.own_code", "peopleboy.wording"}
 FOLDERS = sorted({str(path.parent.relative_to(ROOT)) for path in FILES.values()})
@@ -60,6 +61,12 @@ WITHOUT_PHYSICS = (
 NEEDS_PHYSICS = "scenarios.export.dataset"
 
 
+@cache
+def arrows(*, only_at_load: bool = False) -> dict[str, set[str]]:
+    """Who imports whom; the files are read when a test first asks."""
+    return graph(FILES, only_at_load=only_at_load)
+
+
 def lies_in(module: str, folder: str) -> bool:
     return module == folder or module.startswith(f"{folder}.")
 
@@ -73,7 +80,7 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
     others = set(ROOMS) - {room} - ALLOWED[room]
     intruders = {
         module: found
-        for module, names in ARROWS.items()
+        for module, names in arrows().items()
         if library_of(module) == room and (found := {name for name in names if library_of(name) in others})
     }
     assert not intruders
@@ -81,7 +88,7 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_no_room_takes_the_public_names_which_would_lead_round_the_rule_above(room: str) -> None:
-    names = {name for module in ARROWS if library_of(module) == room for name in ARROWS[module]}
+    names = {name for module in arrows() if library_of(module) == room for name in arrows()[module]}
     public = {name for name in names if library_of(name) == "peopleboy"}
     assert {name for name in public if name.rpartition(".")[0] not in SHARED} <= {
         f"peopleboy.{other}" for other in ROOMS
@@ -102,7 +109,7 @@ def test_nobody_imports_a_room_but_through_the_package() -> None:
     ("library", "home"), [("pybullet", "sim.physics.bullet"), ("rerun", "scenarios.recording")]
 )
 def test_a_library_is_imported_in_one_place_only(library: str, home: str) -> None:
-    users = {module for module, names in ARROWS.items() if library in map(library_of, names)}
+    users = {module for module, names in arrows().items() if library in map(library_of, names)}
     assert users
     assert not {user for user in users if not lies_in(user, home)}
 
@@ -116,13 +123,13 @@ def test_nothing_that_needs_no_physics_loads_it_not_even_through_others() -> Non
     assert {
         folder for folder in WITHOUT_PHYSICS if not any(lies_in(module, folder) for module in start)
     } == set()
-    found = reach(start, AT_LOAD)
+    found = reach(start, arrows(only_at_load=True))
     assert {name: found[name] for name in found if library_of(name) in ("pybullet", "pybullet_data")} == {}
 
 
 def test_the_tracker_loads_no_viewer_and_no_environment() -> None:
     start = [module for module in FILES if library_of(module) in ("tracker", "behaviours")]
-    assert not {library_of(name) for name in reach(start, ARROWS)} & {"rerun", "gymnasium", "matplotlib"}
+    assert not {library_of(name) for name in reach(start, arrows())} & {"rerun", "gymnasium", "matplotlib"}
 
 
 def test_no_module_has_a_name_that_says_nothing() -> None:
@@ -131,12 +138,12 @@ def test_no_module_has_a_name_that_says_nothing() -> None:
 
 
 def test_no_module_imports_itself_by_way_of_others() -> None:
-    assert list(circles(ARROWS)) == []
+    assert list(circles(arrows())) == []
 
 
 @pytest.mark.parametrize("folder", FOLDERS)
 def test_what_lies_side_by_side_is_imported_in_one_direction(folder: str) -> None:
-    assert list(circles(children(folder.replace("/", "."), ARROWS))) == []
+    assert list(circles(children(folder.replace("/", "."), arrows()))) == []
 
 
 def test_no_folder_has_more_modules_than_a_newcomer_can_take_in() -> None:
@@ -152,7 +159,7 @@ def test_no_class_name_stands_twice_in_a_room(room: str) -> None:
     homes: dict[str, list[str]] = {}
     for module, path in FILES.items():
         if library_of(module) == room:
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            for node in statements(tree(path)):
                 if isinstance(node, ast.ClassDef):
                     homes.setdefault(node.name, []).append(module)
     assert {name: found for name, found in homes.items() if len(found) > 1} == {}
@@ -160,8 +167,8 @@ def test_no_class_name_stands_twice_in_a_room(room: str) -> None:
 
 @pytest.mark.parametrize("folder", FOLDERS)
 def test_every_folder_says_in_a_line_what_it_is_about(folder: str) -> None:
-    tree = ast.parse((ROOT / folder / "__init__.py").read_text(encoding="utf-8"))
-    assert (ast.get_docstring(tree) or "").split("\n")[0].endswith((".", ":"))
+    said = ast.get_docstring(tree(ROOT / folder / "__init__.py")) or ""
+    assert said.split("\n")[0].endswith((".", ":"))
 
 
 def test_a_circle_is_found_with_its_way() -> None:

@@ -12,6 +12,8 @@ PACKAGE = "peopleboy"
 
 Graph = Mapping[str, Collection[str]]
 
+_BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
+
 
 def room_files() -> dict[str, Path]:
     """Every module of the rooms by its name within the package, such as sim.world."""
@@ -24,6 +26,10 @@ def module_name(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def imported(path: Path, *, only_at_load: bool = False) -> set[str]:
     """Whole names of what a file imports: modules, or names in them.
 
@@ -32,7 +38,7 @@ def imported(path: Path, *, only_at_load: bool = False) -> set[str]:
         only_at_load: leave out what is imported inside functions, or for type checkers alone.
     """
     found: set[str] = set()
-    for node in _nodes(ast.parse(path.read_text(encoding="utf-8")), only_at_load):
+    for node in statements(tree(path), only_at_load=only_at_load):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -97,11 +103,12 @@ def _module_of(name: str, files: Mapping[str, Path]) -> str:
     return outer if outer in files else name
 
 
-def _nodes(node: ast.AST, only_at_load: bool) -> Iterator[ast.AST]:
-    for child in ast.iter_child_nodes(node):
+def statements(node: ast.AST, *, only_at_load: bool = False) -> Iterator[ast.AST]:
+    """Everything in a file that is no expression, in which nobody imports and no class is."""
+    for child in (child for block in _BLOCKS for child in getattr(node, block, ())):
         if only_at_load and isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef):
             continue
         if only_at_load and isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
             continue
         yield child
-        yield from _nodes(child, only_at_load)
+        yield from statements(child, only_at_load=only_at_load)

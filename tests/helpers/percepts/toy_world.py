@@ -21,6 +21,7 @@ SONAR_ANGLE = np.radians(np.array(SONAR_DEG, float))
 SONAR_X = (
     np.array([69, 114, 148, 166, 166, 148, 114, 69, -157, -203, -237, -255, -255, -237, -203, -157]) / 1e3
 )
+_AHEAD, _LEFT = np.cos(SONAR_ANGLE)[:, None], np.sin(SONAR_ANGLE)[:, None]
 SONAR_Y = np.array([136, 119, 78, 27, -27, -78, -119, -136, -136, -119, -78, -27, 27, 78, 119, 136]) / 1e3
 HALF_VIEW = math.atan(4.0 / 3.0 * math.tan(math.radians(22.0)))
 CAMERA_X, IMAGE_SPAN = 0.14, 2.0 * math.tan(math.radians(22.0))
@@ -71,8 +72,9 @@ class Toy:
     def sonar(self) -> Array:
         points = self.obstacles()
         dx, dy = points[:, 0] - SONAR_X[:, None], points[:, 1] - SONAR_Y[:, None]  # (16, M)
-        off = np.abs(np.angle(np.exp(1j * (np.arctan2(dy, dx) - SONAR_ANGLE[:, None]))))
-        ranges = np.where(off < math.radians(7.5), np.hypot(dx, dy), 5.0).min(axis=1)
+        far = np.sqrt(dx * dx + dy * dy)
+        is_in_cone = _AHEAD * dx + _LEFT * dy > math.cos(math.radians(7.5)) * far
+        ranges = np.where(is_in_cone, far, 5.0).min(axis=1)
         if self.rng is not None:
             ranges = np.where(self.rng.random(16) < 0.01, 5.0, ranges + self.rng.normal(0.0, 0.01, 16))
         return np.clip(ranges, 0.15, 5.0)
@@ -107,9 +109,10 @@ class Toy:
 
     def _is_walled_off(self, depth: float, y: float) -> bool:
         ahead = self.local(self.walls) - (CAMERA_X, 0.0)
-        near = np.hypot(ahead[:, 0], ahead[:, 1]) < math.hypot(depth, y) - 0.05
-        off = np.abs(np.arctan2(ahead[:, 1], ahead[:, 0]) - math.atan2(y, depth))
-        return bool(np.any(near & (off < 0.02)))
+        far = math.hypot(depth, y)
+        along, aside = ahead @ (depth / far, y / far), ahead @ (-y / far, depth / far)
+        is_near = along * along + aside * aside < max(far - 0.05, 0.0) ** 2
+        return bool(np.any(is_near & (np.abs(aside) < math.tan(0.02) * along)))
 
     def percept(self) -> Percept:
         return Percept(
@@ -141,9 +144,9 @@ class Toy:
 
     def _move(self, wanted: Command, step_s: float) -> None:
         most = 0.6 * step_s
-        self.speed += float(np.clip(wanted.linear_m_s - self.speed, -most, most))
+        self.speed += min(max(wanted.linear_m_s - self.speed, -most), most)
         most = math.radians(200.0) * step_s
-        self.turn += float(np.clip(wanted.angular_rad_s - self.turn, -most, most))
+        self.turn += min(max(wanted.angular_rad_s - self.turn, -most), most)
         heading = self.pose[2] + 0.5 * self.turn * step_s
         forward = self.speed * step_s
         self.pose = self.pose + np.array(

@@ -151,7 +151,7 @@ def test_threads_change_no_byte_and_cameras_take_images_at_rates_of_their_own(tm
 
 
 def test_images_made_together_are_there_by_all_their_names_until_their_instant_is_over() -> None:
-    config = replace(load_scenario("single_follow").world(3), physics="kinematic")
+    config = replace(load_scenario("crossing_2").world(3), physics="kinematic")
     with World(config) as world, World(config) as other:
         together = Together([world], Crew(1))
         only, command = np.array([0]), np.array([[0.3, 0.2]])

@@ -10,12 +10,13 @@ import pyarrow.parquet as pq
 import pytest
 import yaml
 
-from peopleboy.scenarios.files.load import library, load_scenario, parse_scenario
+from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
 from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names, refused
+from tests.helpers.some_of import some_of
 
 SCENE = {
     "name": "tiny",
@@ -281,14 +282,7 @@ def test_an_earlier_run_is_replaced_only_when_asked_and_other_folders_never(
     assert json.loads((out / "run.json").read_text())["seed"] == 1
 
 
-# Every sixth at once, and all with the heavy ones.
-@pytest.mark.parametrize(
-    "name",
-    [
-        name if k % 6 == 0 else pytest.param(name, marks=pytest.mark.heavy)
-        for k, name in enumerate(sorted(library()))
-    ],
-)
+@pytest.mark.parametrize("name", some_of(sorted(path.stem for path in LIBRARY.glob("*.yaml")), 16))
 def test_every_library_scenario_runs_a_little(name: str, tmp_path: Path) -> None:
     loaded = load_scenario(name)
     short = replace(loaded, spec=loaded.spec.model_copy(update={"duration_s": 0.2}))

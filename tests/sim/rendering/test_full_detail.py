@@ -21,7 +21,7 @@ from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 CAMERA = Pinhole(width=80, height=60)
-POSE = CAMERA.robot_from_camera
+POSE = CAMERA.robot_from_camera.copy()  # which may be written to, as that of a world
 
 
 def at(x: float, y: float, z: float) -> np.ndarray:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
@@ -90,18 +91,23 @@ class LateSetting(Setting):
         return Late(film(PLAY.scenario, PLAY.seed, self.films).truth())
 
 
-def test_frames_are_counted_from_the_start_to_the_first_that_is_claimed(tmp_path: Path) -> None:
-    result = DelayUnit(PLAY, tmp_path, LateSetting("late", films=tmp_path), 0).run()
+@pytest.fixture(scope="module")
+def films(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("films")
+
+
+def test_frames_are_counted_from_the_start_to_the_first_that_is_claimed(films: Path) -> None:
+    result = DelayUnit(PLAY, films, LateSetting("late", films=films), 0).run()
     assert result["starts"] >= 3
     assert result["needed"] == [3] * result["starts"]
 
 
-def test_means_are_over_all_starts_and_the_blind_find_nobody(tmp_path: Path) -> None:
+def test_means_are_over_all_starts_and_the_blind_find_nobody(films: Path) -> None:
     late, blind = (
-        LateSetting("late", films=tmp_path),
+        LateSetting("late", films=films),
         Setting("peopleboy", (("life.birth_frames", 99), ("search.clear_frames", 99))),
     )
-    plan = Plan(cache=tmp_path, suites={"dataset1": (PLAY,)}, repeats=2)
+    plan = Plan(cache=films, suites={"dataset1": (PLAY,)}, repeats=2)
     experiment = Delay(("dataset1",), {"late": late, "blind": blind})
     done: dict[str, dict[str, object]] = {}
     while wanted := experiment.wants(plan, done):

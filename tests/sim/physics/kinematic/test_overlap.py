@@ -49,6 +49,13 @@ def test_apart_the_depth_is_the_distance(seed: int, corners: int) -> None:
     assert 5.0 - depth == pytest.approx(away, abs=2e-3)
 
 
+def as_kept(size: tuple[float, float, float]) -> np.ndarray:
+    """A size as tables of shapes keep it, which cannot be written to: kernels are compiled for that."""
+    array = np.array(size)
+    array.setflags(write=False)
+    return array
+
+
 @pytest.mark.parametrize(
     ("kind", "size", "area"),
     [
@@ -62,7 +69,7 @@ def test_a_shape_upright_has_its_own_cross_section_where_it_reaches(
 ) -> None:
     outline = np.empty((MOST_POINTS + 1, 2))
     pose = pose_matrices((1.0, 2.0, 0.0), (0.0, 0.0, math.sin(0.3), math.cos(0.3)))
-    count, radius = footprint(int(kind), np.array(size), pose, 0.1, 0.3, outline)
+    count, radius = footprint(int(kind), as_kept(size), pose, 0.1, 0.3, outline)
     if size[2] == 0.05:
         assert count == 0
     elif area is None:
@@ -79,7 +86,7 @@ def test_a_leaning_box_has_what_lies_between_the_heights() -> None:
     outline = np.empty((MOST_POINTS + 1, 2))
     half = math.radians(45.0) / 2.0
     pose = pose_matrices((0.0, 0.0, 0.0), (0.0, math.sin(half), 0.0, math.cos(half)))
-    count, _ = footprint(int(ShapeKind.BOX), np.array([0.2, 0.4, 4.0]), pose, 0.5, 0.7, outline)
+    count, _ = footprint(int(ShapeKind.BOX), as_kept((0.2, 0.4, 4.0)), pose, 0.5, 0.7, outline)
     wide = 0.1 * math.sqrt(2.0)
     assert outline[:count, 0].min() == pytest.approx(0.5 - wide)
     assert outline[:count, 0].max() == pytest.approx(0.7 + wide)
@@ -89,5 +96,5 @@ def test_a_leaning_box_has_what_lies_between_the_heights() -> None:
 def test_a_ball_is_as_wide_as_it_is_at_the_nearest_height() -> None:
     outline = np.empty((MOST_POINTS + 1, 2))
     pose = pose_matrices((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
-    count, radius = footprint(int(ShapeKind.SPHERE), np.array([0.5, 0.0, 0.0]), pose, 0.3, 0.9, outline)
+    count, radius = footprint(int(ShapeKind.SPHERE), as_kept((0.5, 0.0, 0.0)), pose, 0.3, 0.9, outline)
     assert (count, radius) == (1, pytest.approx(0.4))
