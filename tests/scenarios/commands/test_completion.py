@@ -25,9 +25,12 @@ def test_commands_are_completed() -> None:
     assert asked([], "sh") == ["show"]
 
 
+def test_all_scenarios_and_suites_are_offered() -> None:
+    assert asked(["run"], "") == sorted([*library(), *suite_names()])
+
+
 @pytest.mark.parametrize("command", ["run", "show", "sweep", "render"])
 def test_scenarios_and_suites_are_completed_and_else_files(command: str) -> None:
-    assert asked([command], "") == sorted([*library(), *suite_names()])
     assert asked([command], "crossing_p") == ["crossing_pair"]
     assert asked([command], "./my") == ["file:./my"]
 

@@ -17,8 +17,13 @@ from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.exported import SCENE, export
 
-FRAMES = 6
-SHORT = SCENE | {"name": "short", "duration_s": FRAMES / 15}
+FRAMES = 3
+SMALL = {kind: {"kind": kind, "width_px": 96, "height_px": 72} for kind in ("thermal", "colour")}
+SHORT = SCENE | {
+    "name": "short",
+    "duration_s": FRAMES / 15,
+    "robot": SCENE["robot"] | {"cameras": SMALL},
+}
 SEEDS = {"train": range(5), "val": [5], "test": [6]}
 NAMES = {split: [f"short-{seed}" for seed in seeds] for split, seeds in SEEDS.items()}
 

@@ -18,9 +18,11 @@ from peopleboy.scenarios.files.schema.scenario_file import json_schema
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.timetable import timetable
 from tests.helpers.calls.refused import refused
+from tests.helpers.some_of import some_of
 
 NAMES = sorted(path.stem for path in LIBRARY.glob("*.yaml"))
 every_scenario = pytest.mark.parametrize("name", NAMES)
+some_scenarios = pytest.mark.parametrize("name", some_of(NAMES, 4))
 
 
 @cache
@@ -59,7 +61,7 @@ def test_a_file_is_called_as_its_scenario(name: str) -> None:
     assert loaded(name).name == name
 
 
-@every_scenario
+@some_scenarios
 def test_a_scenario_repeats_with_its_seed_and_varies_with_another(name: str) -> None:
     world = loaded(name).world(3)
     assert same(world, load_scenario(LIBRARY / f"{name}.yaml").world(3))
@@ -70,7 +72,7 @@ def test_a_scenario_repeats_with_its_seed_and_varies_with_another(name: str) -> 
         assert len({repr(config.people) for config in (world, *others)}) == 3
 
 
-@every_scenario
+@some_scenarios
 def test_a_resolved_scenario_gives_the_same_world_from_its_file(name: str, tmp_path: Path) -> None:
     scenario = loaded(name)
     path = tmp_path / "scenario.yaml"
@@ -84,20 +86,21 @@ def test_a_resolved_scenario_gives_the_same_world_from_its_file(name: str, tmp_p
 @every_scenario
 def test_people_get_to_the_end_of_their_paths_in_time(name: str) -> None:
     scenario = loaded(name)
-    for seed in range(3):
+    for seed in range(2):
         for person in scenario.world(seed).people:
             assert timetable(person)[-1].time_s < scenario.duration_s + 3.0
 
 
+@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(1, 10), marks=pytest.mark.thorough)], ids=str)
 @every_scenario
-def test_every_seed_keeps_people_clear_of_walls_and_things(name: str) -> None:
+def test_every_seed_keeps_people_clear_of_walls_and_things(name: str, seeds: range) -> None:
     scenario = loaded(name)
-    for seed in range(10):
+    for seed in seeds:
         for person in scenario.people(seed):
             assert scenario.ground.fault(person) is None
 
 
-@pytest.mark.parametrize("name", NAMES[::8])
+@pytest.mark.parametrize("name", some_of(NAMES[::8], 4))
 def test_a_plan_is_drawn(name: str, tmp_path: Path) -> None:
     draw_plan(loaded(name), 0, tmp_path / "plan.png")
     assert (tmp_path / "plan.png").read_bytes()[:4] == b"\x89PNG"

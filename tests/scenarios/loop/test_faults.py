@@ -10,16 +10,17 @@ from peopleboy.scenarios.loop.faults import active
 from peopleboy.scenarios.running.run import RunOptions, run
 from tests.helpers.calls.refused import refused
 
-FROM_S = 8.0
+FROM_S = 5.0
+SMALL = {kind: {"kind": kind, "width_px": 80, "height_px": 60} for kind in ("thermal", "colour")}
 SCENE = {
     "name": "broken",
     "description": "Somebody walks ahead of a robot in which something breaks.",
-    "duration_s": 14.0,
+    "duration_s": 9.0,
     "place": {"kind": "room", "length_m": 14.0, "width_m": 7.0},
     "people": [
         {"name": "anna", "path": [{"at_m": [5.0, 0.0]}, {"at_m": [12.5, 0.3], "speed_m_s": 0.7}]},
     ],
-    "robot": {"at_m": [1.0, 0.0], "behaviour": "follow_person"},
+    "robot": {"at_m": [1.0, 0.0], "behaviour": "follow_person", "cameras": SMALL},
 }  # fmt: skip
 KINDS = ("camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps")
 

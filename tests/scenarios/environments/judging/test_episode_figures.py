@@ -76,7 +76,7 @@ def known(figures: dict[str, Any]) -> dict[str, Any]:
     ("like", "duration_s", "tracker"),
     [
         pytest.param("follow_occluded", 27.0, "peopleboy", marks=pytest.mark.heavy),
-        ("single_follow", 12.0, "truth"),
+        ("single_follow", 6.0, "truth"),
     ],
 )
 def test_an_episode_has_the_truth_and_the_figures_of_a_run_of_its_commands(
