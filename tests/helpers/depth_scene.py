@@ -9,6 +9,7 @@ import numpy as np
 
 from peopleboy.tracker.frame import PinholeCalibration
 from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
+from tests.helpers.images.as_taken import as_taken
 
 FOCAL_PX = 300.0
 WIDTH, HEIGHT = 320, 240
@@ -56,4 +57,4 @@ def depth_of(
         is_in = np.abs(across * block.z_m - block.x_m) <= block.width_m / 2
         is_in &= (down * block.z_m >= top) & (down * block.z_m <= bottom) & (block.z_m < depth)
         depth = np.where(is_in, block.z_m, depth)
-    return np.round(1000.0 * depth).astype(np.uint16)
+    return as_taken(np.round(1000.0 * depth).astype(np.uint16))

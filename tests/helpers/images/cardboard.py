@@ -25,6 +25,7 @@ from peopleboy.tracker.panoramic.people.figure_patch import (
 )
 from peopleboy.tracker.panoramic.people.place_model import Sightings
 from peopleboy.tracker.panoramic.people.scene import Scene
+from tests.helpers.images.as_taken import as_taken
 
 WIDTH, HEIGHT = 480, 120
 CAMERA = PanoramaCalibration(
@@ -66,12 +67,12 @@ def panorama(people: Sequence[Cardboard] = (), light: float = 1.0) -> NDArray[np
         mask, height = mask_of(one)
         image[mask & (height >= 0.9)[:, None]] = one.shirt
         image[mask & (height < 0.9)[:, None]] = one.trousers
-    return np.rint(image * light).astype(np.uint8)
+    return as_taken(np.rint(image * light).astype(np.uint8))
 
 
 def scene_of(people: Sequence[Cardboard], columns: int = 0) -> Scene:
     """A scene in which nobody has been found yet, turned by so many columns."""
-    image = np.roll(panorama(people), columns, axis=1)
+    image = as_taken(np.roll(panorama(people), columns, axis=1))
     shown = is_cardboard(image)
     return Scene.of(image, shown, shown, CAMERA)
 

@@ -119,7 +119,7 @@ def make_tick(frame: int, track: Track | None = TRACK, hidden: float = 0.0, mode
     cloud = Particles(state, np.float32(np.full(300, 1 / 300)))
     images = {
         "thermal": thermal, "thermal_c": np.zeros((240, 320), np.float32), "thermal_scene": thermal,
-        "colour": rng.integers(90, 110, (240, 320, 3), np.uint8),
+        "colour": rng.integers(90, 110, (30, 40, 3), np.uint8).repeat(8, axis=0).repeat(8, axis=1),
     }  # fmt: skip
     observation = Observation(
         time_s=time_s, images=images, sonar_m=np.full(16, 5.0),

@@ -15,6 +15,7 @@ from peopleboy.tracker.panoramic.foreground.memory import (
     learn,
     move_along,
 )
+from tests.helpers.images.as_taken import as_taken
 
 CAMERA = PanoramaCalibration(
     width=480,
@@ -72,7 +73,7 @@ def test_an_empty_scene_is_known_within_seconds_whatever_the_rate_of_images(rate
     memory, nobody = first_memory(np.full((120, 480, 3), 90, np.uint8)), np.zeros((120, 480), np.float32)
     for _ in range(12 * rate_hz):
         noisy = np.clip(np.rint(scene + rng.normal(0, 3, scene.shape)), 0, 255).astype(np.uint8)
-        learn(memory, noisy, nobody, 1 / rate_hz)
+        learn(memory, as_taken(noisy), nobody, 1 / rate_hz)
     assert np.abs(memory[:3] - scene.transpose(2, 0, 1)).mean() < 5
     assert memory[AGE] == pytest.approx(12, rel=0.01)
 
@@ -83,10 +84,10 @@ def test_what_people_hide_stays_and_is_absorbed_only_within_a_minute():
     red = np.zeros((120, 480, 3), np.uint8)
     red[..., 0] = 200
     for _ in range(15):
-        learn(memory, red, someone, 0.2)
+        learn(memory, as_taken(red), someone, 0.2)
     assert memory[0, 0, 0] < 110
     for _ in range(600):
-        learn(memory, red, someone, 0.2)
+        learn(memory, as_taken(red), someone, 0.2)
     assert memory[0, 0, 0] > 190
 
 
@@ -95,7 +96,7 @@ def test_unlikeness_is_in_standard_deviations():
     memory = first_memory(image)
     memory[3] = 25.0
     image[50, 100] = 100 + 15  # three of them
-    unlike = compare(image, memory)[0].reshape(BLOCK, BLOCK, 6, 30, 120)[:, :, 3]
+    unlike = compare(as_taken(image), memory)[0].reshape(BLOCK, BLOCK, 6, 30, 120)[:, :, 3]
     assert unlike[50 % 4, 0, 50 // 4, 25] == pytest.approx(math.log(1 + 9) / 2, rel=1e-4)
     assert np.count_nonzero(unlike) == 1
 
@@ -106,7 +107,7 @@ def novelty_of(off_sd, age_s=1e9):
     memory = first_memory(image)
     memory[3], memory[AGE] = 25.0, age_s
     image[50, 101] = 100 + round(5 * off_sd)
-    _, told = compare(image, memory)
+    _, told = compare(as_taken(image), memory)
     assert told.shape == (120, 480)
     assert np.count_nonzero(told) <= 1
     return float(told[50, 101])
@@ -133,7 +134,7 @@ def test_before_a_patterned_floor_somebody_is_as_new_after_a_drive_as_before():
     told = {}
     for doubt_px in (0.0, 25.0):
         memory[DOUBT] = doubt_px
-        _, told[doubt_px] = compare(someone, memory)
+        _, told[doubt_px] = compare(as_taken(someone), memory)
     assert np.array_equal(told[0.0], told[25.0])
     assert (told[25.0][20:80, 200:220] > 0.5).mean() > 0.99
     assert np.count_nonzero(told[25.0]) == np.count_nonzero(told[25.0][20:80, 200:220])

@@ -16,6 +16,7 @@ from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.detection.walls import bands_mm, find_walls, without
 from peopleboy.tracker.rgbd.rgbd_config import PRINTED
 from tests.helpers.depth_scene import FOCAL_PX, HEIGHT, WIDTH, depth_of, make_view
+from tests.helpers.images.as_taken import as_taken
 
 ABOVE = UDepthConfig()
 DETECT, LEFT_IN = (PreDetector(HumanSize(), replace(ABOVE, has_walls=walls)) for walls in (True, False))
@@ -51,7 +52,9 @@ def box_before_wall(deg: float, away_m: float, before_m: float) -> np.ndarray:
 def room_with(*surfaces: np.ndarray) -> np.ndarray:
     """Depth image (H, W) [mm] of floor, ceiling and surfaces."""
     room = depth_of(wall_m=60.0).astype(float)
-    return np.round(np.minimum.reduce([room, *(1000.0 * one for one in surfaces)])).astype(np.uint16)
+    return as_taken(
+        np.round(np.minimum.reduce([room, *(1000.0 * one for one in surfaces)])).astype(np.uint16)
+    )
 
 
 @pytest.mark.parametrize("deg", [-45.0, -40.0, 40.0, 45.0])
@@ -107,7 +110,7 @@ def test_readings_off_the_wall_stay() -> None:
     (wall,) = find_walls(tall, VIEW)
     near, far = bands_mm((wall,), tall, 0.1, VIEW)
     depth = np.tile(np.array([[4700], [4950], [5050], [5300]], np.uint16), WIDTH)
-    assert without(depth, near, far)[:, 50].tolist() == [4700, 0, 0, 5300]
+    assert without(as_taken(depth), near, far)[:, 50].tolist() == [4700, 0, 0, 5300]
 
 
 def test_the_printed_tracker_leaves_walls_in() -> None:

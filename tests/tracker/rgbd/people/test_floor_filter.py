@@ -14,6 +14,7 @@ from peopleboy.tracker.rgbd.people.floor_filter import FloorFilter, carried, tur
 from peopleboy.tracker.rgbd.people.look_at import Body, RgbdView, looks_in
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
+from tests.helpers.images.as_taken import as_taken
 
 CONFIG = FloorFilterConfig()
 small = st.floats(-0.3, 0.3)
@@ -25,7 +26,7 @@ def view_of(*blocks: Block) -> RgbdView:
     colour = np.full((HEIGHT, WIDTH, 3), 120, np.uint8)
     for block in blocks:
         colour[depth == round(1000 * block.z_m)] = (200, 30, 30)
-    return RgbdView(depth, colour, make_view(), 0.0)
+    return RgbdView(depth, as_taken(colour), make_view(), 0.0)
 
 
 def body_in(view: RgbdView) -> Body:
