@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import atexit
+import json
+import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
+from uuid import uuid4
 
 from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
 from peopleboy.scenarios.loop.loop import Tick
@@ -26,6 +32,11 @@ Hidden = Callable[[int], float]  # share of ben that anna hides, by frame; more 
 def steady(frame: int) -> Boxes:  # noqa: ARG001
     """Everybody has one number."""
     return {1: ANNA, 2: BEN}
+
+
+def never(frame: int) -> float:  # noqa: ARG001
+    """Nobody hides anybody."""
+    return 0.0
 
 
 def swapped(frame: int) -> Boxes:
@@ -104,12 +115,11 @@ def behind_from_35_to_70(frame: int) -> float:
 def write_run(
     folder: Path,
     boxes: Callable[[int], Boxes] = steady,
-    hidden: Hidden = lambda _frame: 0.0,
+    hidden: Hidden = never,
     scenario: Mapping[str, Any] | None = None,
     **about: Any,
 ) -> Path:
     """Write a complete run and return its folder; `about` goes into run.json."""
-    folder.mkdir(parents=True)
     known = {
         "scenario": "toy",
         "seed": 0,
@@ -118,8 +128,17 @@ def write_run(
         "rate_hz": 15,
     } | about
     played = {"name": "toy", "description": "Two people stand."} if scenario is None else dict(scenario)
+    shutil.copytree(_written(boxes, hidden, json.dumps(played), json.dumps(known)), folder)
+    return folder
+
+
+@cache
+def _written(boxes: Callable[[int], Boxes], hidden: Hidden, played: str, known: str) -> Path:
+    """Write a run once, which is a picture of a dozen tiles; most tests want one that another had, too."""
+    folder = _made() / str(uuid4())
     events, sheet = RunEvents(), ContactSheet("toy")
-    with RunFolder(folder, played, known, RobotConfig().cameras, frames=False) as run:
+    folder.mkdir()
+    with RunFolder(folder, json.loads(played), json.loads(known), RobotConfig().cameras, frames=False) as run:
         for frame in range(1, FRAMES + 1):
             tick = _tick(frame, boxes(frame), hidden(frame))
             lines = events.update(tick)
@@ -128,6 +147,13 @@ def write_run(
         run.flush()
         sheet.save(folder / "contact_sheet.png")
         run.complete(score_run(folder, FRAMES, None).to_json())
+    return folder
+
+
+@cache
+def _made() -> Path:
+    folder = Path(mkdtemp(prefix="toy_runs_"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
 
 
