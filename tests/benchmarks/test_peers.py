@@ -62,6 +62,7 @@ def test_results_are_kept_and_the_oracle_is_right_about_everybody_it_tracks(tmp_
     assert len(first[0].occlusions) > 0
 
 
+@pytest.mark.thorough
 def test_what_is_kept_of_the_peers_can_be_taken_into_the_tables_of_results(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

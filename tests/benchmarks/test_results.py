@@ -42,6 +42,7 @@ def test_figures_of_a_json_file_are_taken_in_and_gaps_stay(tmp_path: Path) -> No
     assert taken.recorded == date.today().isoformat()
 
 
+@pytest.mark.thorough
 def test_runs_are_scored_together_and_their_drives_averaged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -10,6 +10,7 @@ from examples import price_of_perception
 from examples.follower_view import SIZE, FollowerView
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from tests.helpers.runs.exported import make_run
+from tests.helpers.some_of import some_of
 
 SCENE = """
 name: tiny
@@ -85,7 +86,7 @@ def test_a_follower_is_trained_kept_without_pickles_and_compared(scene: Path, tm
         assert all(weights[name].dtype == np.float32 for name in weights)
 
 
-@pytest.mark.parametrize("name", ["BackgroundSort", "HogByteTrack"])
+@pytest.mark.parametrize("name", some_of(["BackgroundSort", "HogByteTrack"], 2))
 def test_trackers_of_others_find_somebody_who_walks_across(name: str, tmp_path: Path) -> None:
     pytest.importorskip("trackers")
     walk = [{"at_m": [4.5, -1.2]}, {"at_m": [4.5, 1.2], "speed_m_s": 1.0}]

@@ -14,7 +14,7 @@ from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.exported import SCENE, export, make_run
 
-BRIEF: dict[str, Any] = SCENE | {"duration_s": 1.0}
+BRIEF: dict[str, Any] = SCENE | {"duration_s": 0.6}
 SEQUENCES = ("tiny-0", "tiny-1")
 
 

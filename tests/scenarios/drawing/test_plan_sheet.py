@@ -49,6 +49,7 @@ def test_nothing_is_written_of_what_lies_outside_a_section() -> None:
     assert [text.get_text() for text in first.texts[count:]] == ["here"]
 
 
+@pytest.mark.thorough
 def test_the_plan_of_a_long_corridor_is_no_strip(tmp_path: Path) -> None:
     draw_plan(load_scenario("corridor_patrol"), 0, tmp_path / "plan.png")
     with Image.open(tmp_path / "plan.png") as picture:

@@ -15,6 +15,7 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from tests.helpers.calls.command_line import run_cli
 from tests.helpers.calls.refused import refused
 from tests.helpers.runs.exported import SCENE
+from tests.helpers.some_of import some_of
 
 STEPS = 20
 LATE = {"name": "clara", "enter_s": 1.6, "path": [{"at_m": [6.5, 1.0]}]}
@@ -37,7 +38,7 @@ def played(folder: Path, observation: str, steps: int = STEPS, **changes: Any) -
     return env
 
 
-@pytest.mark.parametrize("observation", ["tracks", "truth"])
+@pytest.mark.parametrize("observation", some_of(["tracks", "truth"], 2))
 def test_its_figures_are_those_of_the_episode_and_it_is_looked_into_as_any_run(
     observation: str, tmp_path: Path
 ) -> None:

@@ -15,6 +15,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.together import Together
 from peopleboy.sim.world import World
+from tests.helpers.some_of import some_of
 
 SLOW_REAR = """
 name: slow_rear
@@ -87,15 +88,21 @@ def test_each_world_is_to_the_byte_a_single_environment_over_its_end_and_a_new_b
         env.close()
 
 
-@pytest.mark.parametrize("observation", ["truth", "pixels"])
 @pytest.mark.parametrize(
-    "scenario",
-    [
-        "crowd_8",  # they come in one after the other, and make way
-        "reacts_blocks",
-        "tidying_1",  # things are moved
-        "single_stationary",  # the robot drives into her
-    ],
+    ("scenario", "observation"),
+    some_of(
+        [
+            ("tidying_1", "pixels"),  # things are moved
+            ("crowd_8", "pixels"),  # they come in one after the other, and make way
+            ("single_stationary", "truth"),  # the robot drives into her
+            ("crowd_8", "truth"),
+            ("reacts_blocks", "truth"),
+            ("tidying_1", "truth"),
+            ("reacts_blocks", "pixels"),
+            ("single_stationary", "pixels"),
+        ],
+        2,
+    ),
 )
 def test_fleets_are_to_the_byte_single_worlds_whatever_people_do(scenario: str, observation: str) -> None:
     settings = {"observation": observation, "physics": "kinematic", "physics_hz": 60, "normalise": True}

@@ -235,6 +235,7 @@ def _written(path: Path, config: WorldConfig, ticks: list[Tick]) -> int:
     return path.stat().st_size
 
 
+@pytest.mark.thorough
 def test_a_minute_with_four_people_fits_into_eleven_megabytes(tmp_path: Path) -> None:
     scenario = load_scenario("crossing_4")
     config = scenario.world(0)

@@ -60,7 +60,7 @@ def march(
     return np.where(hit, way, np.inf), (hit & (gap < 1e-9)) | (missed & (nearest > 1e-3))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
     kind=st.sampled_from([ShapeKind.SPHERE, ShapeKind.CAPSULE, ShapeKind.CYLINDER, ShapeKind.BOX]),

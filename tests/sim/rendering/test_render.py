@@ -20,6 +20,7 @@ from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import make_shape_table
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
 from tests.helpers.calls.refused import refused
+from tests.helpers.some_of import some_of
 
 ROOM = {
     "floor": ((0.0, 0.0, -0.05), (30.0, 6.0, 0.1)),
@@ -119,7 +120,7 @@ def rock(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", some_of(range(25), 3))
 def test_both_renderers_agree_on_random_worlds(seed: int, rock: Path) -> None:
     rng = np.random.default_rng(seed)
     with Bullet() as bullet:
@@ -136,7 +137,7 @@ def test_both_renderers_agree_on_random_worlds(seed: int, rock: Path) -> None:
     assert np.mean(alike > 0.98) > 0.9
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", some_of(MODELS, 3))
 def test_both_renderers_agree_on_models_of_pybullet_data(model: str) -> None:
     with Bullet() as bullet:
         bullet.add_urdf(

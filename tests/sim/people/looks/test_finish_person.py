@@ -31,6 +31,7 @@ def finish_of(material: Material) -> Finish:
     return material.finish
 
 
+@pytest.mark.thorough
 def test_in_a_room_people_are_on_average_as_warm_as_without() -> None:
     plain, fine = crowd(None), crowd(21.0)
     for part in plain[0].keys() - {"pelvis"}:  # over which shirts hang, some of them
