@@ -99,6 +99,7 @@ def test_numbers_are_single_and_tentative_people_have_the_next_one():
     assert len({one.id for one in told}) == 2
 
 
+@pytest.mark.thorough
 def test_attention_as_printed_tells_people_too():
     film = Film(ByFocus(PRINTED), AS_FOUND)
     film.play(1.0, (1, 60.0, RED))

@@ -13,6 +13,7 @@ from peopleboy.tracker.frame import DEPTH, Frame, Odometry
 from peopleboy.tracker.scene_model.scene import Change, Happening, State, VistaScene
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneConfig
 from peopleboy.tracker.scene_model.scene_model import SceneModel
+from tests.helpers.some_of import some_of
 from tests.helpers.still_room import WALL_M, Screen, room_frame, true_depth
 
 BOX = Screen(3.5, 0.2, -0.2, 0.0, 0.5)
@@ -43,7 +44,7 @@ def told(scenes: Sequence[VistaScene]) -> list[Happening]:
     return [one for scene in scenes for one in scene.happenings]
 
 
-@pytest.mark.parametrize("has_heat", [True, False])
+@pytest.mark.parametrize("has_heat", some_of([True, False], 2))
 def test_what_somebody_puts_down_is_told_with_time_place_and_person(has_heat: bool) -> None:
     scenes = watch(SceneModel(SceneConfig()), visit([], [BOX]), has_heat=has_heat)
     (one,) = told(scenes)
@@ -70,12 +71,14 @@ def test_what_vanishes_here_and_appears_there_was_moved() -> None:
     assert moved[0].person == 1
 
 
+@pytest.mark.thorough
 def test_things_that_look_different_are_not_one_that_was_moved() -> None:
     green = replace(AWAY, rgb=(40, 200, 40))
     happenings = told(watch(SceneModel(SceneConfig()), visit([BOX], [green])))
     assert {one.change for one in happenings} == {Change.VANISHED, Change.APPEARED}
 
 
+@pytest.mark.thorough
 def test_what_swings_to_another_place_bit_by_bit_is_told_to_have_moved() -> None:
     swing = [Screen(far, 1.0, 0.55 - 1.05 / far, 0.0, 1.0) for far in np.linspace(3.5, 4.6, 25)]
     film = [[]] * 20 + [[swing[0]]] * 40 + [[one] for one in swing] + [[swing[-1]]] * 60

@@ -17,6 +17,7 @@ from peopleboy.scenarios.running.engine.workers import Workers, chosen_workers
 from tests.helpers.calls.processes import start
 from tests.helpers.calls.refused import refused
 from tests.helpers.runs.toy_tasks import ToyTask, diary, diary_lines, squares, toys, work
+from tests.helpers.some_of import some_of
 
 ALL = {number: number**2 for number in range(12)}
 
@@ -72,6 +73,7 @@ def test_a_process_that_is_killed_loses_nothing_and_nothing_is_done_twice(
     assert len(list(tmp_path.glob("died-*"))) == 1
 
 
+@pytest.mark.thorough
 def test_a_task_that_kills_every_process_fails_alone(tmp_path: Path, store: Store) -> None:
     tasks = [ToyTask(number, tmp_path, deaths=99 if number == 0 else 0) for number in range(6)]
     with pytest.raises(TasksFailed, match=r"1 of 6 failed(.|\n)*toy 0: its process was killed 3 times"):
@@ -80,7 +82,7 @@ def test_a_task_that_kills_every_process_fails_alone(tmp_path: Path, store: Stor
 
 
 @pytest.mark.parametrize(
-    ("number", "code"), [(signal.SIGKILL, -9), (signal.SIGTERM, 143), (signal.SIGINT, -2)]
+    ("number", "code"), some_of([(signal.SIGTERM, 143), (signal.SIGKILL, -9), (signal.SIGINT, -2)], 3)
 )
 def test_who_is_ended_midway_takes_its_workers_along_and_goes_on_from_there(
     tmp_path: Path, store: Store, number: int, code: int

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import cv2
+import pytest
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.studies.depth_drives.sliding_windows import (
@@ -11,6 +12,7 @@ from peopleboy.scenarios.studies.depth_drives.sliding_windows import (
 )
 
 
+@pytest.mark.thorough
 def test_windows_on_what_has_a_humans_size_are_quicker_and_err_less() -> None:
     threads = cv2.getNumThreads()
     found = compare_windows([(load_scenario("crossing_2_moving").lasting(1.0), 0)], every=7)

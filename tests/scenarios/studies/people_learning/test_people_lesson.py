@@ -25,7 +25,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(people_lesson, "ROUNDS", dict.fromkeys(Kind, rounds))
     monkeypatch.setattr(people_lesson, "TESTS", 2)
     monkeypatch.setattr(cut_off, "_TALL_PX", 40.0)
-    monkeypatch.setattr(PeopleFilmTask, "__call__", lambda task, _: drawn_film(task.seed).save(task.film))
+    monkeypatch.setattr(PeopleFilmTask, "__call__", lambda task, _: drawn_film(task.seed, 3).save(task.film))
 
 
 @pytest.mark.usefixtures("quick")

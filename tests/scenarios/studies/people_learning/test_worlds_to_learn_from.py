@@ -66,6 +66,7 @@ def test_a_crowded_world_can_be_played_and_some_walk_side_by_side(seed: int) -> 
         assert 0.43 < math.hypot(*aside[0]) < 0.92
 
 
+@pytest.mark.thorough
 def test_crowds_are_larger_than_worlds_as_drawn() -> None:
     drawn, crowded = (
         np.mean([len(draw(seed).get("people", ())) for seed in range(5)])

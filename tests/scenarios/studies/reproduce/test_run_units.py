@@ -4,6 +4,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
@@ -34,6 +36,7 @@ def test_what_several_ask_for_is_done_once_and_what_is_there_not_again(tmp_path:
     assert (tmp_path / "notes").read_text() == "0\n1\n2\n3\n"
 
 
+@pytest.mark.thorough
 def test_work_that_measures_time_runs_in_this_process_after_all_others(tmp_path: Path) -> None:
     notes = [Note(number, tmp_path / "notes", is_timing=number == 0) for number in range(3)]
     store = open_store(tmp_path / "units.jsonl")

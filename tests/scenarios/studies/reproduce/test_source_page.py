@@ -54,6 +54,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import refused
+from tests.helpers.some_of import some_of
 from tests.helpers.visible_text import assert_reads_as
 
 FIGURES = (
@@ -171,7 +172,9 @@ def test_numbers_stand_for_all_that_have_them() -> None:
     assert [one.id for one in choose([])] == list(EXPERIMENTS)
 
 
-@pytest.mark.parametrize("number", [f"situation-{name}" for name in SITUATION if name.startswith("figure")])
+@pytest.mark.parametrize(
+    "number", some_of([f"situation-{name}" for name in SITUATION if name.startswith("figure")], 4)
+)
 def test_figures_of_drives_are_drawn(number: str) -> None:
     experiment = EXPERIMENTS[number]
     assert isinstance(experiment, Depicted)
@@ -347,6 +350,7 @@ def read(page: Path) -> tuple[str, Addresses]:
     return text, addresses
 
 
+@pytest.mark.thorough
 def test_the_page_holds_everything_and_fetches_nothing(tmp_path: Path) -> None:
     results = [section(Outcome(one, made_up(one), PICTURE.get(one.id))) for one in EXPERIMENTS.values()]
     about = PageHead(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
