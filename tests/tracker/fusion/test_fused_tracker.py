@@ -147,7 +147,7 @@ class Scene:
         self.clothes = {block: colour for block in blocks for one, colour in deep if is_at(one, block)}
         images: dict[str, Any] = {
             THERMAL: np.full((HEIGHT, WIDTH), grey, np.uint8),
-            DEPTH: depth_of(list(blocks)),
+            DEPTH: depth_of(list(blocks)).copy(),  # to be drawn into
             DEPTH_COLOUR: np.full((HEIGHT, WIDTH, 3), 120, np.uint8),
         }
         for block, colour in self.clothes.items():
