@@ -8,18 +8,15 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constr
 # Bytecode that is kept saves each of the processes that tests start some of its start.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-thorough test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
+.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
 
 demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
 
-# A file's tests in one process: what they share is made, and compiled, once.
+# A file's tests in one process: what they share is made, and compiled, once. `make test THOROUGH=1` does
+# besides what tests do with a few with all: scenarios of the library, long films, whole studies.
 test: $(READY)
-	$(BIN)/python -m pytest -n 2 --dist loadfile
-
-# What tests do with a few, with all: scenarios of the library, long films, whole studies.
-test-thorough: $(READY)
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m thorough
+	$(BIN)/python -m pytest -n 2 --dist loadfile $(if $(THOROUGH),-m 'not heavy and not install and not pages')
 
 # All that the README, the tutorials and the pages on tasks tell their readers to type.
 test-pages: $(READY)
