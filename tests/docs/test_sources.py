@@ -20,10 +20,10 @@ def test_a_run_is_kept_as_it_was_read(tmp_path: Path) -> None:
 
 
 def test_the_page_says_when_by_which_versions_and_what_is_missing() -> None:
-    facts = SourceRun.read().head.facts
-    assert {"Recorded", "Versions", "Seeds", "Machine", "Code"} <= facts.keys()
+    head = SourceRun.read().head
+    assert {"Recorded", "Versions", "Seeds", "Machine", "Code"} <= head.facts.keys()
     page = (FOLDER / PAGE).read_text(encoding="utf-8")
-    assert all(f"<dt>{name}</dt><dd>" in page for name in facts)
+    assert all(f"<dt>{name}</dt><dd>{fact}</dd>" in page for name, fact in head.lines)
 
 
 def test_parts_of_a_later_run_take_their_places_and_are_said_to_be_later() -> None:
@@ -39,3 +39,12 @@ def test_parts_of_a_later_run_take_their_places_and_are_said_to_be_later() -> No
     assert joined.head.facts[number] == "of a later run: recorded 2030-01-02; machine a toaster; code abc"
     assert number not in joined.without([part]).head.facts
     assert {**shipped.head.facts, number: joined.head.facts[number]} == joined.head.facts
+    assert ("Parts", f"{joined.head.facts[number]} ({number})") in joined.head.lines
+
+
+def test_what_a_run_took_as_a_whole_is_not_said_once_parts_of_another_are_there() -> None:
+    shipped = SourceRun.read()
+    part = shipped.outcomes[:1]
+    first = SourceRun(replace(shipped.head, facts={**shipped.head.facts, "Time": "an hour"}), part)
+    assert "Time" in first.head.facts
+    assert "Time" not in first.with_later(shipped).head.facts

@@ -27,6 +27,7 @@ FOLDER: Final = Path(__file__).parents[2] / "sources"
 RUN: Final = "run.json"
 _DIGITS: Final = 6  # significant ones of each figure
 _OF_A_PART: Final = ("Recorded", "Machine", "Code")  # what is said of a part of a later run
+_OF_A_RUN: Final = ("Time", "Results")  # which no longer hold once parts of another run are there
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,11 +58,14 @@ class SourceRun:
         return SourceRun(replace(self.head, facts=facts), kept)
 
     def with_later(self, later: SourceRun) -> SourceRun:
-        """Take in tables and figures of a later run, and say of each when and with what it was made."""
+        """Take in tables and figures of a later run, and say of each when and with what it was made.
+
+        What the first run took as a whole is left out: each part says that for itself.
+        """
         said = "; ".join(f"{name.lower()} {later.head.facts[name]}" for name in _OF_A_PART)
         kept = self.without(later.outcomes)
         facts = {
-            **kept.head.facts,
+            **{name: fact for name, fact in kept.head.facts.items() if name not in _OF_A_RUN},
             **{one.experiment.id: f"of a later run: {said}" for one in later.outcomes},
         }
         places = list(EXPERIMENTS)

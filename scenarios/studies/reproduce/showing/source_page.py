@@ -12,7 +12,7 @@ import jinja2
 
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.studies.distance_learning.image_errors import ImageErrors
-from peopleboy.scenarios.studies.reproduce.experiments.catalogue import paper_of
+from peopleboy.scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS, paper_of
 from peopleboy.scenarios.studies.reproduce.experiments.experiment import Effort, Outcome, Samples
 from peopleboy.scenarios.studies.reproduce.showing.against_source import (
     MUCH,
@@ -117,13 +117,23 @@ class PageHead:
         command: by which it can be repeated.
         is_quick: whether only a little was done.
         amount: what was done, in words.
-        facts: further lines: versions, machine, time.
+        facts: further lines: versions, machine, time; by a part's id, what holds for it alone.
     """
 
     command: str
     is_quick: bool
     amount: str
     facts: Mapping[str, str]
+
+    @property
+    def lines(self) -> list[tuple[str, str]]:
+        """Give the facts as they are listed: parts of which the same is said have one line."""
+        alike: dict[str, list[str]] = {}
+        for name, fact in self.facts.items():
+            if name in EXPERIMENTS:
+                alike.setdefault(fact, []).append(name)
+        whole = [(name, fact) for name, fact in self.facts.items() if name not in EXPERIMENTS]
+        return [*whole, *(("Parts", f"{fact} ({', '.join(parts)})") for fact, parts in alike.items())]
 
 
 def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None:
