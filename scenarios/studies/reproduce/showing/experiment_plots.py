@@ -101,7 +101,7 @@ def _bars(columns: Sequence[str], samples: Samples, table: SourceTable) -> Figur
         _finish(axes, with_legend=False)
         if number == 0:
             handles, labels = axes.get_legend_handles_labels()
-            columns_of_names = 3 if len(labels) > 6 else 4
+            columns_of_names = 3 if len(labels) > 4 else 4
             figure.legend(
                 handles, labels, fontsize=8, frameon=False, ncols=columns_of_names, loc="outside upper left"
             )

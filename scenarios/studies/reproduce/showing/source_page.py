@@ -127,11 +127,11 @@ class PageHead:
 
     @property
     def lines(self) -> list[tuple[str, str]]:
-        """Give the facts as they are listed: parts of which the same is said have one line."""
+        """Give the facts as they are listed: parts of which the same is said share a line, as they come."""
         alike: dict[str, list[str]] = {}
-        for name, fact in self.facts.items():
-            if name in EXPERIMENTS:
-                alike.setdefault(fact, []).append(name)
+        for name in EXPERIMENTS:
+            if name in self.facts:
+                alike.setdefault(self.facts[name], []).append(name)
         whole = [(name, fact) for name, fact in self.facts.items() if name not in EXPERIMENTS]
         return [*whole, *(("Parts", f"{fact} ({', '.join(parts)})") for fact, parts in alike.items())]
 
