@@ -133,12 +133,18 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
     show_default=True,
     help="Teach trees for people who are mostly in the image, or cut off; the others stay as they are.",
 )
+@click.option(
+    "--only-places",
+    is_flag=True,
+    help="Teach where in windows people are; trees that tell whether anybody is there stay as they are.",
+)
 @workers_options
 def train_detector(
     worlds: int,
     out: Path,
     ship: bool,
     windows: tuple[str, ...],
+    only_places: bool,
     workers: int | None,
     scheduler: str | None,
 ) -> None:
@@ -153,4 +159,6 @@ def train_detector(
     from peopleboy.tracker.proposals.window import Kind
 
     chosen, kinds = chosen_workers(workers, scheduler), [kind for kind in Kind if kind in windows]
-    click.echo(give_people_lesson(out, chosen, worlds=worlds, kinds=kinds, ship=ship))
+    click.echo(
+        give_people_lesson(out, chosen, worlds=worlds, kinds=kinds, only_places=only_places, ship=ship)
+    )

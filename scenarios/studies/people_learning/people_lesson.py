@@ -25,9 +25,11 @@ from peopleboy.scenarios.studies.people_learning.teach_placing import teach_plac
 from peopleboy.scenarios.studies.people_learning.window_mining import (
     mistakes,
     windows_anywhere,
+    windows_let_through,
     windows_with_people,
 )
 from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
+from peopleboy.tracker.proposals.cascade import Cascade
 from peopleboy.tracker.proposals.model import WEIGHTS, PeopleModel, PeopleTrees, shipped_model
 from peopleboy.tracker.proposals.window import Kind
 
@@ -52,6 +54,7 @@ ROUNDS: Final = {
 """After each but the last, mistakes are collected, and learned from in the next."""
 
 _SEED_OF_PEOPLE: Final = 0
+_SEED_OF_PLACES: Final = 1
 _SEED_OF_OTHERS: Final = 100
 _HELD_BACK: Final = 10  # of so many worlds one is not learned from
 _MISTAKES: Final = 16000  # a round
@@ -60,7 +63,7 @@ _FIRST_OTHERS: Final = 16000
 
 
 def give_people_lesson(
-    out: Path, workers: Workers, *, worlds: int, kinds: Sequence[Kind], ship: bool
+    out: Path, workers: Workers, *, worlds: int, kinds: Sequence[Kind], only_places: bool, ship: bool
 ) -> Path:
     """Learn what people look like to a thermal camera, and leave films and trees in a folder.
 
@@ -72,6 +75,7 @@ def give_people_lesson(
         worlds: how many to learn from, one of each kind at least; a tenth is held back, to make scores log
             odds.
         kinds: of windows that are taught; trees for others stay the tracker's own.
+        only_places: whether trees that tell whether somebody is in a window stay so, too.
         ship: whether to put the trees in the place of the tracker's own.
 
     Returns:
@@ -90,10 +94,15 @@ def give_people_lesson(
     work_through([task for task in (*tests, *tasks) if not task.film.is_file()], workers, "films")
     held = tasks[_HELD_BACK - 1 :: _HELD_BACK] or tasks[-1:]
     lessons = [task.film for task in tasks if task not in held]
-    taught = teach(list(shots_of(lessons)), list(shots_of(task.film for task in held)), kinds)
+    shots = list(shots_of(lessons))
+    if only_places:
+        taught = {kind: placed_anew(shots, shipped_model().trees[kind].cascade, kind) for kind in kinds}
+    else:
+        taught = teach(shots, list(shots_of(task.film for task in held)), kinds)
     drawn = ", ".join(f"{len(kind.seeds(worlds))} {kind.words} from seed {kind.first_seed}" for kind in KINDS)
-    learned_from = {f"{kind} people": f"{drawn}; {len(held)} of them held back" for kind in kinds}
-    before = shipped_model() if len(taught) < len(Kind) else PeopleModel({})
+    what = "where {} people are" if only_places else "{} people"
+    learned_from = {what.format(kind): f"{drawn}; {len(held)} of them held back" for kind in kinds}
+    before = shipped_model() if only_places or len(taught) < len(Kind) else PeopleModel({})
     model = PeopleModel({**before.trees, **taught}, {**before.about, **learned_from})
     path = WEIGHTS if ship else out / WEIGHTS.name
     with writing_to(path.parent), whole(path) as part:
@@ -120,7 +129,7 @@ def teach(
 
 
 def _taught(shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot], kind: Kind) -> PeopleTrees:
-    people, places = windows_with_people(shots, np.random.default_rng(_SEED_OF_PEOPLE), kind)
+    people = windows_with_people(shots, np.random.default_rng(_SEED_OF_PEOPLE), kind)
     rng = np.random.default_rng(_SEED_OF_OTHERS)
     patches = patch_pool()
     others = windows_anywhere(shots, rng, _FIRST_OTHERS, kind)
@@ -132,8 +141,19 @@ def _taught(shots: Sequence[PeopleShot], others_of: Sequence[PeopleShot], kind: 
             found = mistakes(shots, cascade, rng, _MISTAKES, kind)
             _say(f"round {number} of {len(rounds)}: {len(others)} windows without, {len(found)} mistakes")
             others = _some(np.concatenate([others, found]), _OTHERS, rng)
-    trees = PeopleTrees(cascade, teach_placing(people, places, patches))
+    trees = placed_anew(shots, cascade, kind)
     return trees._replace(cascade=cascade.calibrated(*log_odds_line(kind, trees, others_of)))
+
+
+def placed_anew(shots: Sequence[PeopleShot], cascade: Cascade, kind: Kind) -> PeopleTrees:
+    """Teach where people are in the windows that trees take for such.
+
+    Windows that people fill would not do: of those that are let through many are too small or too large,
+    and would be believed.
+    """
+    windows, places = windows_let_through(shots, cascade, np.random.default_rng(_SEED_OF_PLACES), kind)
+    _say(f"{len(windows)} windows taken for {kind} people, where some are")
+    return PeopleTrees(cascade, teach_placing(windows, places, cascade.patches))
 
 
 def _some(windows: NDArray[np.float16], most: int, rng: np.random.Generator) -> NDArray[np.float16]:

@@ -1,10 +1,10 @@
-"""Windows with people, and such without as are taken for people."""
+"""Windows with people, such as trees take for people, and such without that they take for some."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,23 +31,49 @@ _VARIETIES: Final = 2  # of each image
 _FITS: Final = 1.1 * math.log2(STEP) / 2.0  # a person is looked for in the level, or two, of about their size
 _BESIDE: Final = 0.3  # IoU with a person from which on a window is no example of what is none
 _ALIKE: Final = 0.6  # IoU of windows of which one is enough
-_LEAST_SCORE: Final = -1.0  # of a mistake that there is something to learn from
+_LEAST_SCORE: Final = -1.0  # of a window that there is something to learn from
+_A_PERSON: Final = 6  # windows that are let through
+_SURENESS: Final = 0.5  # boxes are means that weigh exp(score); with less, there is more to learn from
+_HARDLY: Final = 1e-4  # share of such weights that is nothing
 _A_LEVEL: Final = 6  # windows that are placed anywhere
 _AN_IMAGE: Final = 12  # of what is none
 
 
-def windows_with_people(
-    shots: Sequence[PeopleShot], rng: np.random.Generator, kind: Kind
+class _Hits(NamedTuple):
+    """Windows that trees take for people: boxes (N, 4), scores (N,), and where in which cells each begins."""
+
+    box: Floats
+    score: Floats
+    place: list[tuple[Cells, int, int]]
+
+
+def windows_with_people(shots: Sequence[PeopleShot], rng: np.random.Generator, kind: Kind) -> Windows:
+    """Collect windows (N, 1800) that people fill, in images that are varied, each also a cell off."""
+    found = [each for windows in in_threads(_filled, _with_people(shots, rng, kind)) for each in windows]
+    return np.array(found, np.float16).reshape(-1, CELLS)
+
+
+def windows_let_through(
+    shots: Sequence[PeopleShot], cascade: Cascade, rng: np.random.Generator, kind: Kind
 ) -> tuple[Windows, Floats]:
-    """Collect windows (N, 1800) that people fill, in images that are varied, each also a cell off.
+    """Collect windows (N, 1800) that trees take for people who are there, however badly those fill them.
 
     Returns:
         The windows, and what is to be known of each (N, 4): see `placing.offsets`.
     """
-    good = [shot for shot in shots if has_people(shot, kind) for _ in range(_VARIETIES)]
-    found = [example for examples in in_threads(_filled, _varied(good, rng, kind)) for example in examples]
+    drawn = _with_people(shots, rng, kind)
+    found = [
+        each for some in in_threads(lambda one: _let_through(*one, cascade, kind), drawn) for each in some
+    ]
     windows = np.array([window for window, _ in found], np.float16).reshape(-1, CELLS)
     return windows, np.array([offset for _, offset in found]).reshape(-1, 4)
+
+
+def _with_people(
+    shots: Sequence[PeopleShot], rng: np.random.Generator, kind: Kind
+) -> Iterator[tuple[PeopleShot, np.random.Generator]]:
+    """Give images with somebody to learn from, varied, with random numbers of their own."""
+    return _varied((shot for shot in shots if has_people(shot, kind) for _ in range(_VARIETIES)), rng, kind)
 
 
 def _varied(
@@ -59,7 +85,7 @@ def _varied(
         yield varied(shot, own, kind), own
 
 
-def _filled(drawn: tuple[PeopleShot, np.random.Generator]) -> list[tuple[Windows, Floats]]:
+def _filled(drawn: tuple[PeopleShot, np.random.Generator]) -> list[Windows]:
     shot, rng = drawn
     box, found = shot.box[shot.is_good], []
     for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
@@ -67,9 +93,25 @@ def _filled(drawn: tuple[PeopleShot, np.random.Generator]) -> list[tuple[Windows
         for own in box[off < _FITS]:
             row, column = level.windows(own[None])[0].round().astype(int).tolist()
             aside = rng.integers(-1, 2, 2).tolist()
-            for place in sorted({(row, column), (row + aside[0], column + aside[1])}):
-                window = level.boxes(*(np.array([index]) for index in place))
-                found.append((_cut(level.cells, *place), offsets(window, own[None])[0]))
+            places = sorted({(row, column), (row + aside[0], column + aside[1])})
+            found += [_cut(level.cells, *place) for place in places]
+    return found
+
+
+def _let_through(
+    shot: PeopleShot, rng: np.random.Generator, cascade: Cascade, kind: Kind
+) -> list[tuple[Windows, Floats]]:
+    hits, found = _hits(shot, cascade, kind), []
+    overlap = iou(hits.box[:, None], shot.box[None])
+    for person in np.flatnonzero(shot.is_good).tolist():
+        is_own = overlap[:, person] >= overlap.max(axis=1)
+        own = np.flatnonzero(is_own & (overlap[:, person] > _BESIDE))
+        if len(own):
+            weight = np.exp(_SURENESS * (hits.score[own] - hits.score[own].max()))
+            most = min(_A_PERSON, int((weight > _HARDLY * weight.sum()).sum()))
+            chosen = rng.choice(own, most, replace=False, p=weight / weight.sum()).tolist()
+            told = offsets(hits.box[chosen], shot.box[person][None])
+            found += [(_cut(*hits.place[k]), offset) for k, offset in zip(chosen, told, strict=True)]
     return found
 
 
@@ -118,24 +160,28 @@ def mistakes(
 
 
 def _mistakes(shot: PeopleShot, cascade: Cascade, kind: Kind) -> list[Windows]:
-    boxes, scores, cuts = [np.empty((0, 4))], [np.empty(0)], []
+    hits = _hits(shot, cascade, kind)
+    is_left = _is_clear(hits.box, shot)
+    chosen: list[int] = []
+    for k in np.argsort(-hits.score, kind="stable").tolist():
+        if is_left[k] and len(chosen) < _AN_IMAGE:
+            chosen.append(k)
+            is_left &= iou(hits.box[k], hits.box) < _ALIKE
+    return [_cut(*hits.place[k]) for k in chosen]
+
+
+def _hits(shot: PeopleShot, cascade: Cascade, kind: Kind) -> _Hits:
+    boxes, scores, places = [np.empty((0, 4))], [np.empty(0)], []
     for level in levels(shot.grey, shot.change, None, SMALLEST_PX):
         sums = summed(level.cells)
         for rows in level.rows[kind]:
             hits = cascade.scan(sums, rows)
-            is_bad = hits.score >= _LEAST_SCORE
-            boxes.append(level.boxes(hits.row[is_bad], hits.column[is_bad]))
-            scores.append(hits.score[is_bad])
-            places = zip(hits.row[is_bad].tolist(), hits.column[is_bad].tolist(), strict=True)
-            cuts += [(level.cells, row, column) for row, column in places]
-    box, score = np.concatenate(boxes), np.concatenate(scores)
-    is_left = _is_clear(box, shot)
-    chosen: list[int] = []
-    for k in np.argsort(-score, kind="stable").tolist():
-        if is_left[k] and len(chosen) < _AN_IMAGE:
-            chosen.append(k)
-            is_left &= iou(box[k], box) < _ALIKE
-    return [_cut(*cuts[k]) for k in chosen]
+            is_some = hits.score >= _LEAST_SCORE
+            row, column = hits.row[is_some], hits.column[is_some]
+            boxes.append(level.boxes(row, column))
+            scores.append(hits.score[is_some])
+            places += [(level.cells, *place) for place in zip(row.tolist(), column.tolist(), strict=True)]
+    return _Hits(np.concatenate(boxes), np.concatenate(scores), places)
 
 
 def _without(

@@ -65,6 +65,19 @@ def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("quick")
+def test_places_alone_are_taught_for_the_trees_that_are_there(tmp_path: Path) -> None:
+    chosen = ("--worlds", 5, "--windows", "whole", "--only-places", "--workers", 1)
+    assert run_cli("train-detector", *chosen, "--out", tmp_path) == 0
+    taught, shipped = PeopleModel.load(tmp_path / "people.npz"), shipped_model()
+    before, after = (model.trees[Kind.WHOLE] for model in (shipped, taught))
+    np.testing.assert_array_equal(after.cascade.leaf, before.cascade.leaf, strict=True)
+    assert not np.array_equal(after.placing.leaf, before.placing.leaf)
+    np.testing.assert_array_equal(taught.trees[Kind.CUT].placing.leaf, shipped.trees[Kind.CUT].placing.leaf)
+    assert taught.about["whole people"] == shipped.about["whole people"]
+    assert taught.about["where whole people are"].startswith("2 random worlds")
+
+
+@pytest.mark.usefixtures("quick")
 @pytest.mark.parametrize(("worlds", "held"), [(5, 1), (10, 1), (40, 4)])
 def test_a_tenth_of_the_worlds_is_held_back_and_at_least_one(
     worlds: int, held: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -6,6 +6,9 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.people_learning import window_mining
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.proposals.cascade import Cascade
+from peopleboy.tracker.proposals.placing import moved
 from peopleboy.tracker.proposals.window import Kind
 from tests.helpers.images.drawn_films import WIDTH_PER_HEIGHT
 from tests.helpers.images.drawn_trees import drawn_cascade
@@ -13,23 +16,38 @@ from tests.helpers.images.drawn_trees import drawn_cascade
 Floats = NDArray[np.float64]
 
 
-def test_windows_with_people_come_with_where_in_them_they_are(shots: list[PeopleShot]) -> None:
-    windows, offsets = window_mining.windows_with_people(shots[:6], np.random.default_rng(0), Kind.WHOLE)
+def test_windows_with_people_are_varied_in_a_level_or_two_and_a_cell_off(shots: list[PeopleShot]) -> None:
+    windows = window_mining.windows_with_people(shots[:6], np.random.default_rng(0), Kind.WHOLE)
     assert windows.shape == (len(windows), window_mining.CELLS)
-    assert offsets.shape == (len(windows), 4)
-    assert 2 * 6 < len(windows) <= 2 * 6 * 2 * 2  # varied twice, in a level or two, and a cell off
-    aside, down, larger, wide = offsets.T
-    assert (np.abs(np.stack([aside, down])) <= 1.5 * 2.0 / 32.0 + 1e-9).all()  # a cell and a half
-    assert (np.abs(larger) < 0.55 * np.log(2.0) / 3.0).all()  # about half a step of the sizes
+    assert 2 * 6 < len(windows) <= 2 * 6 * 2 * 2
+
+
+def test_windows_let_through_come_with_where_in_them_people_are(shots: list[PeopleShot]) -> None:
+    def through(cascade: Cascade) -> tuple[NDArray[np.float16], Floats]:
+        return window_mining.windows_let_through(shots[:6], cascade, np.random.default_rng(0), Kind.WHOLE)
+
+    windows, offsets = through(drawn_cascade())
+    assert windows.shape == (len(windows), window_mining.CELLS)
+    assert 2 * 6 < len(windows) <= 2 * 6 * 6
+    _, _, larger, wide = offsets.T
     np.testing.assert_allclose(wide / np.exp(larger), WIDTH_PER_HEIGHT)
+    assert np.ptp(larger) > np.log(2.0) / 3.0  # more than a step of the sizes: they fill them well and badly
+    window = np.array([[0.0, 0.0, 0.41, 1.0]])
+    assert (iou(moved(window, offsets), window) > 0.3).all()
+    strict = drawn_cascade(least=1e6)
+    assert len(through(strict)[0]) == 0
 
 
 @pytest.mark.parametrize("kind", Kind)
 def test_who_cannot_be_learned_from_fills_no_window(kind: Kind, shots: list[PeopleShot]) -> None:
     nobody = np.zeros(1, np.bool_)
     hidden = replace(shots[0], is_good=nobody, is_clear=nobody)
-    windows, offsets = window_mining.windows_with_people([hidden], np.random.default_rng(0), kind)
-    assert (windows.shape, offsets.shape) == ((0, window_mining.CELLS), (0, 4))
+    none = (0, window_mining.CELLS)
+    assert window_mining.windows_with_people([hidden], np.random.default_rng(0), kind).shape == none
+    windows, offsets = window_mining.windows_let_through(
+        [hidden], drawn_cascade(), np.random.default_rng(0), kind
+    )
+    assert (windows.shape, offsets.shape) == (none, (0, 4))
 
 
 @pytest.mark.parametrize("kind", Kind)
