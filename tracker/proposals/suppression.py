@@ -13,6 +13,8 @@ Floats = NDArray[np.float64]
 
 _SHARED: Final = 0.65  # of the smaller box: from then on two boxes are of one person
 _ALIKE: Final = 0.5  # IoU of boxes of whom the mean is taken
+_TOUCHED: Final = 0.12  # share of a box that is somebody's to its left, and another one's to its right, at least
+_BETWEEN: Final = 0.6  # share of it that is one's or the other's
 
 
 class Proposals(NamedTuple):
@@ -30,7 +32,8 @@ class Proposals(NamedTuple):
 def suppress(box: Floats, score: Floats) -> Proposals:
     """Keep the best of boxes that share much of the smaller one's area, each the mean of those like it.
 
-    Greedy (Dollár et al., PAMI 2012). A box weighs exp(score) in the mean.
+    Greedy (Dollár et al., PAMI 2012). A box weighs exp(score) in the mean. Of those kept, one is left out
+    that lies between two surer ones and is mostly theirs.
 
     Args:
         box: (N, 4) [px].
@@ -47,4 +50,16 @@ def suppress(box: Floats, score: Floats) -> Proposals:
         means.append(weight @ box / weight.sum())
         kept.append(k)
         is_left &= shared <= _SHARED
-    return Proposals(np.array(means).reshape(-1, 4), score[kept])
+    found = Proposals(np.array(means).reshape(-1, 4), score[kept])
+    is_own = ~_is_between(found)
+    return Proposals(found.box[is_own], found.score[is_own])
+
+
+def _is_between(found: Proposals) -> NDArray[np.bool_]:
+    """Tell which of N boxes show but the arm of somebody to the left, and of another one to the right."""
+    share = cover(intersection(found.box[:, None], found.box[None]), area(found.box)[:, None])
+    share *= found.score[None] > found.score[:, None]
+    middle = found.box[:, 0] + found.box[:, 2] / 2.0
+    is_left = middle[None] < middle[:, None]
+    left, right = ((share * side).max(axis=1, initial=0.0) for side in (is_left, ~is_left))
+    return np.asarray((np.minimum(left, right) > _TOUCHED) & (left + right > _BETWEEN))

@@ -11,7 +11,7 @@ from peopleboy.scenarios.studies.people_learning.boosting import Binned, Boostin
 from peopleboy.tracker.proposals.patches import Patches, summed_windows
 from peopleboy.tracker.proposals.placing import Placing
 
-_BOOSTING: Final = Boosting(trees=80, rate=0.15, features=300)
+_BOOSTING: Final = Boosting(trees=160, rate=0.1, features=300)
 _FAR: Final = (
     0.9  # of all windows are nearer to the median; how far off the others are does not count (Huber)
 )

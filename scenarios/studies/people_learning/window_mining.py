@@ -19,7 +19,7 @@ from peopleboy.tracker.proposals.detector import SMALLEST_PX
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.placing import offsets
 from peopleboy.tracker.proposals.pyramid import STEP, Level, levels
-from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS, Kind
+from peopleboy.tracker.proposals.window import CELL_PX, COLUMNS, PERSON_PX, ROWS, Kind
 
 Floats = NDArray[np.float64]
 Windows = NDArray[np.float16]
@@ -35,6 +35,7 @@ _LEAST_SCORE: Final = -1.0  # of a window that there is something to learn from
 _A_PERSON: Final = 6  # windows that are let through
 _SURENESS: Final = 0.5  # boxes are means that weigh exp(score); with less, there is more to learn from
 _HARDLY: Final = 1e-4  # share of such weights that is nothing
+_ASIDE: Final = 1.5 * CELL_PX / PERSON_PX  # heights; boxes that are moved by more end up on somebody else
 _A_LEVEL: Final = 6  # windows that are placed anywhere
 _AN_IMAGE: Final = 12  # of what is none
 
@@ -104,14 +105,14 @@ def _let_through(
     hits, found = _hits(shot, cascade, kind), []
     overlap = iou(hits.box[:, None], shot.box[None])
     for person in np.flatnonzero(shot.is_good).tolist():
-        is_own = overlap[:, person] >= overlap.max(axis=1)
-        own = np.flatnonzero(is_own & (overlap[:, person] > _BESIDE))
+        told = offsets(hits.box, shot.box[person][None])
+        is_own = (overlap[:, person] >= overlap.max(axis=1)) & (overlap[:, person] > _BESIDE)
+        own = np.flatnonzero(is_own & (np.abs(told[:, 0]) <= _ASIDE))
         if len(own):
             weight = np.exp(_SURENESS * (hits.score[own] - hits.score[own].max()))
             most = min(_A_PERSON, int((weight > _HARDLY * weight.sum()).sum()))
             chosen = rng.choice(own, most, replace=False, p=weight / weight.sum()).tolist()
-            told = offsets(hits.box[chosen], shot.box[person][None])
-            found += [(_cut(*hits.place[k]), offset) for k, offset in zip(chosen, told, strict=True)]
+            found += [(_cut(*hits.place[k]), told[k]) for k in chosen]
     return found
 
 

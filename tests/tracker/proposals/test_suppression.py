@@ -27,6 +27,15 @@ def test_those_side_by_side_are_two() -> None:
     assert len(suppress(box, np.array([2.0, 1.0])).score) == 2
 
 
+def test_between_two_who_are_surer_nobody_is_seen_in_their_arms() -> None:
+    abreast = np.array([[10.0, 10.0, 20.0, 50.0], [33.0, 10.0, 20.0, 50.0]])
+    between = np.array([[21.0, 10.0, 20.0, 50.0]])  # of whom 9 px are of the left one, 8 px of the right one
+    box = np.concatenate([abreast, between])
+    np.testing.assert_allclose(suppress(box, np.array([4.0, 3.0, 1.0])).box, abreast)
+    assert len(suppress(box, np.array([4.0, 2.0, 3.0])).box) == 3  # is surer than one of them
+    assert len(suppress(box[[0, 2]], np.array([4.0, 1.0])).box) == 2  # hidden by one, seen beside
+
+
 def test_nothing_stays_nothing() -> None:
     found = suppress(np.empty((0, 4)), np.empty(0))
     assert found.box.shape == (0, 4)
