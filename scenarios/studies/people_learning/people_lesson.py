@@ -100,8 +100,10 @@ def give_people_lesson(
     else:
         taught = teach(shots, list(shots_of(task.film for task in held)), kinds)
     drawn = ", ".join(f"{len(kind.seeds(worlds))} {kind.words} from seed {kind.first_seed}" for kind in KINDS)
-    what = "where {} people are" if only_places else "{} people"
-    learned_from = {what.format(kind): f"{drawn}; {len(held)} of them held back" for kind in kinds}
+    what = ("where {} people are",) if only_places else ("{} people", "where {} people are")
+    learned_from = {
+        each.format(kind): f"{drawn}; {len(held)} of them held back" for each in what for kind in kinds
+    }
     before = shipped_model() if only_places or len(taught) < len(Kind) else PeopleModel({})
     model = PeopleModel({**before.trees, **taught}, {**before.about, **learned_from})
     path = WEIGHTS if ship else out / WEIGHTS.name
