@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 _SHARED: Final = 0.65  # of the smaller box: from then on two boxes are of one person
 _ALIKE: Final = 0.5  # IoU of boxes of whom the mean is taken
-_TOUCHED: Final = 0.12  # share of a box that is somebody's to its left, and another one's to its right, at least
+_TOUCHED: Final = 0.12  # share of a box that is theirs who are to its left and right, each at least
 _BETWEEN: Final = 0.6  # share of it that is one's or the other's
 
 
