@@ -16,20 +16,32 @@ from peopleboy.tracker.thermal.variants import PEOPLEBOY
 SHAPE = (240, 320)
 
 
-def step_time_ms(count: int, steps: int = 300) -> float:
-    """Return the median time [ms] of one step with this many samples, on a drawn person at 320x240.
+class FilterStep:
+    """Follows a drawn person at 320x240 by so many samples; each call is a step.
 
     What is prepared once a frame for all filters is not in it.
     """
-    config = replace(PEOPLEBOY, person=replace(PEOPLEBOY.person, count=count))
-    rng = np.random.default_rng(0)
-    frame = Frame(images={THERMAL: _drawn_person()}, time_s=0.0, odometry=Odometry(turn_rad=0.01))
-    view = view_frame(frame, 1 / 15, ContourModel.build(SHAPE, config.contour), config)
-    belief = begin(view, config.detector, config, rng)
-    times = []
+
+    def __init__(self, count: int) -> None:
+        self._config = replace(PEOPLEBOY, person=replace(PEOPLEBOY.person, count=count))
+        self._rng = np.random.default_rng(0)
+        frame = Frame(images={THERMAL: _drawn_person()}, time_s=0.0, odometry=Odometry(turn_rad=0.01))
+        model = ContourModel.build(SHAPE, self._config.contour)
+        self._view = view_frame(frame, 1 / 15, model, self._config)
+        self._belief = begin(self._view, self._config.detector, self._config, self._rng)
+        self()  # which may compile
+
+    def __call__(self) -> None:
+        """Follow the person for one more frame."""
+        self._belief = step(self._belief.core, self._view, self._config.person, self._config, self._rng)
+
+
+def step_time_ms(count: int, steps: int = 300) -> float:
+    """Return the median CPU time [ms] of one step with this many samples."""
+    follow, times = FilterStep(count), []
     for _ in range(steps):
         start = time.process_time()
-        belief = step(belief.core, view, config.person, config, rng)
+        follow()
         times.append(time.process_time() - start)
     return 1000.0 * median(times[10:])
 

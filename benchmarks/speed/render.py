@@ -34,6 +34,9 @@ class RenderTimes:
         raycast_truth_ms: [ms] of these, one camera's view and its truth by the ray caster.
         bullet_truth_ms: [ms] the same by TinyRenderer.
         full_ms: [ms] both images and full truth by the ray caster with full detail.
+        ratio: how many times as long TinyRenderer takes at the same instant as the ray caster for both
+            images and the truth, which a machine that is now busy and now idle disturbs less.
+        full_ratio: likewise, the ray caster with full detail.
     """
 
     raycast_ms: float
@@ -41,16 +44,8 @@ class RenderTimes:
     raycast_truth_ms: float
     bullet_truth_ms: float
     full_ms: float
-
-    @property
-    def ratio(self) -> float:
-        """How many times faster the ray caster gives both images and the truth."""
-        return self.bullet_ms / self.raycast_ms
-
-    @property
-    def full_ratio(self) -> float:
-        """How many times as long the ray caster takes with full detail."""
-        return self.full_ms / self.raycast_ms
+    ratio: float
+    full_ratio: float
 
 
 def render_times(instants: int = 40) -> RenderTimes:
@@ -72,13 +67,17 @@ def render_times(instants: int = 40) -> RenderTimes:
                 dict(world.take_images())  # made only when asked for
                 times[name].append((time.process_time() - start, middle - start))
     # The first instants compile the kernels.
-    raycast, bullet, finest = (1000.0 * np.median(times[name][2:], axis=0) for name in cases)
+    spent_ms = [1000.0 * np.array(times[name][2:]) for name in cases]
+    raycast, bullet, finest = (np.median(ms, axis=0) for ms in spent_ms)
+    ratio, full_ratio = (np.median(ms[:, 0] / spent_ms[0][:, 0]) for ms in spent_ms[1:])
     return RenderTimes(
         raycast_ms=float(raycast[0]),
         bullet_ms=float(bullet[0]),
         raycast_truth_ms=float(raycast[1]),
         bullet_truth_ms=float(bullet[1]),
         full_ms=float(finest[0]),
+        ratio=float(ratio),
+        full_ratio=float(full_ratio),
     )
 
 

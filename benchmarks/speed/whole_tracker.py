@@ -10,7 +10,6 @@ from statistics import mean, median
 
 import numpy as np
 
-from benchmarks.peers.detectors import Hog
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
@@ -57,13 +56,11 @@ class WholeTracker:
     Attributes:
         crowds: by the number of people, from 0.
         prepare_ms: [ms] of a frame before the first filter, for all.
-        hog_ms: [ms] OpenCV's people detector on frames of the largest crowd, median.
         parts_ms: [ms] of the parts, for one person of 1000 samples in the largest crowd.
     """
 
     crowds: tuple[CrowdTime, ...]
     prepare_ms: float
-    hog_ms: float
     parts_ms: Mapping[str, float]
 
     @property
@@ -71,23 +68,18 @@ class WholeTracker:
         """What each further person costs: the slope over the crowds."""
         return float(np.polyfit([c.people for c in self.crowds], [c.frame_ms for c in self.crowds], 1)[0])
 
-    @property
-    def hog_ratio(self) -> float:
-        """How many times longer HOG takes."""
-        return self.hog_ms / self.crowds[-1].frame_ms
+
+def films() -> tuple[Sequence[Frame], ...]:
+    """Shoot crowds of nobody to four people."""
+    return tuple(list(shoot(SCENARIO, people)) for people in range(MOST + 1))
 
 
-def whole_tracker() -> WholeTracker:
+def whole_tracker(crowds: Sequence[Sequence[Frame]]) -> WholeTracker:
     """Track crowds of nobody to four people, and time it."""
-    crowds = []
-    for people in range(MOST + 1):
-        film = list(shoot(SCENARIO, people))
-        crowds.append(_crowd_time(film, people))
-    hog = Hog(uses_colour=True)
+    film = crowds[-1]
     return WholeTracker(
-        crowds=tuple(crowds),
+        crowds=tuple(_crowd_time(film, people) for people, film in enumerate(crowds)),
         prepare_ms=_milliseconds([partial(_view_of, frame) for frame in film]),
-        hog_ms=_milliseconds([partial(hog.detect, frame) for frame in film[::20]]),
         parts_ms=_parts_ms(film),
     )
 
@@ -113,13 +105,14 @@ def _crowd_time(film: Sequence[Frame], people: int) -> CrowdTime:
         start = time.process_time()
         tracks = tracker.update(frame)
         spent = time.process_time() - start
-        if len(_people_in(tracker)) == people:
+        if len(people_in(tracker)) == people:
             times.append(1000.0 * spent)
             tracked.append(sum(track.status is not Status.TENTATIVE for track in tracks))
     return CrowdTime(people=people, frame_ms=median(times), frames=len(times), tracked=mean(tracked))
 
 
-def _people_in(tracker: PeopleTracker) -> list[int]:
+def people_in(tracker: PeopleTracker) -> list[int]:
+    """Give the numbers of those who have a filter."""
     return [key for key in tracker.explanation.particles if key != DETECTOR_KEY]
 
 
@@ -129,7 +122,7 @@ def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
     for frame in film[: len(film) // 2]:
         tracker.update(frame)
     view = _view_of(film[len(film) // 2])
-    each = [_person_works(tracker, number, view) for number in _people_in(tracker)]
+    each = [_person_works(tracker, number, view) for number in people_in(tracker)]
     parts = {name: _milliseconds([works[name] for works in each] * 50) for name in each[0]}
     # Weighing measures first.
     parts["weights, estimate"] -= parts["measure contour"]
@@ -151,7 +144,7 @@ def _person_works(tracker: PeopleTracker, number: int, view: FrameView) -> dict[
     clouds = tracker.explanation.particles
     cloud, state = clouds[number], clouds[number].state
     estimate = mean_state(cloud)
-    others = [mean_state(clouds[other]) for other in _people_in(tracker) if other != number]
+    others = [mean_state(clouds[other]) for other in people_in(tracker) if other != number]
     appearance, colour = view.appearance, config.colour
     assert appearance is not None
     assert colour is not None

@@ -1,0 +1,95 @@
+"""The whole tracker and a step of its filter beside OpenCV's HOG detector, by turns.
+
+A machine that does other work is now quick and now slow: what takes turns within a second meets the same.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from statistics import median
+from typing import Final
+
+import cv2
+
+from benchmarks.peers.detectors import Hog
+from benchmarks.speed.filter_step import FilterStep
+from benchmarks.speed.whole_tracker import MOST, people_in
+from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
+
+COUNT: Final = 1000
+_TURN: Final = 10  # frames, as many steps, and then HOG once
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Turn:
+    """CPU times [ms] within a second or less; those of tracker and filter are medians.
+
+    Attributes:
+        frame_ms: of the tracker, of those frames in which each person has a filter.
+        step_ms: of a filter with 1000 samples.
+        hog_ms: of HOG, once.
+    """
+
+    frame_ms: float
+    step_ms: float
+    hog_ms: float
+
+
+@dataclass(frozen=True, slots=True)
+class BesideHog:
+    """All turns of a film."""
+
+    turns: tuple[Turn, ...]
+
+    @property
+    def hog_ms(self) -> float:
+        """What HOG takes [ms], median."""
+        return median(turn.hog_ms for turn in self.turns)
+
+    @property
+    def frame_ratio(self) -> float:
+        """How many times longer HOG takes than the whole tracker, median over the turns."""
+        return median(turn.hog_ms / turn.frame_ms for turn in self.turns)
+
+    @property
+    def step_ratio(self) -> float:
+        """How many times longer HOG takes than a step of a filter, likewise."""
+        return median(turn.hog_ms / turn.step_ms for turn in self.turns)
+
+
+def beside_hog(film: Sequence[Frame]) -> BesideHog:
+    """Track four people, and let a filter and HOG, which has one thread, take turns with that."""
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        return BesideHog(tuple(_turns(film)))
+    finally:
+        cv2.setNumThreads(threads)
+
+
+def _turns(film: Sequence[Frame]) -> list[Turn]:
+    tracker = make_tracker(DEFAULT_TRACKER, stream(0, "tracker"))
+    hog, step = Hog(uses_colour=True), FilterStep(COUNT)
+    hog.detect(film[0])
+    turns = []
+    for first in range(0, len(film), _TURN):
+        frames_ms, steps_ms = [], []
+        for frame in film[first : first + _TURN]:
+            spent_ms = _spent_ms(lambda frame=frame: tracker.update(frame))
+            if len(people_in(tracker)) == MOST:
+                frames_ms.append(spent_ms)
+            steps_ms.append(_spent_ms(step))
+        hog_ms = _spent_ms(lambda first=first: hog.detect(film[first]))
+        if frames_ms:
+            turns.append(Turn(frame_ms=median(frames_ms), step_ms=median(steps_ms), hog_ms=hog_ms))
+    return turns
+
+
+def _spent_ms(work: Callable[[], object]) -> float:
+    start = time.process_time()
+    work()
+    return 1000.0 * (time.process_time() - start)
