@@ -62,6 +62,10 @@ class Crowd:
         self._is_shown = dict.fromkeys((person.name for person in self.people), True)
         self._solid: set[str] = set()
         self._before: dict[str, NDArray[np.float64]] = {}
+        self._part_names = {
+            person.name: tuple(f"{person.name}/{part.name}" for part in person.parts)
+            for person in self.people
+        }
         for person in self.people:
             self._add(person)
 
@@ -191,10 +195,7 @@ class Crowd:
         if not self._is_visible:
             return
         poses = person.poses()
-        orientations = quaternions(poses).tolist()
-        positions = poses[:, :3, 3].tolist()
-        for part, position, orientation in zip(person.parts, positions, orientations, strict=True):
-            self._physics.set_pose(f"{person.name}/{part.name}", tuple(position), tuple(orientation))
+        self._physics.set_poses(self._part_names[person.name], poses[:, :3, 3], quaternions(poses))
 
     def _place_solid(self, person: Person, position: NDArray[np.float64]) -> None:
         at = (float(position[0]), float(position[1]), person.config.height_m / 2.0)

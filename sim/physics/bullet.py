@@ -89,6 +89,9 @@ class Bullet:
         self._poses = np.zeros((0, 4, 4))
         self._moved: dict[str, Body] = {}
         self._known: dict[str, Matrix] = {}  # poses of bodies since they last moved
+        self._untold: dict[
+            str, Body
+        ] = {}  # bodies that PyBullet has elsewhere, as only TinyRenderer would see
         self._solids = SolidBoxes(self._client.getAABB)
         self._client.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1
@@ -183,6 +186,12 @@ class Bullet:
         else:
             self._put(body, (position, orientation))
 
+    def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
+        """Put base frames of N bodies at positions (N, 3) [m] and orientations (N, 4), as `set_pose` does."""
+        rows = np.asarray(positions, np.float64).tolist(), np.asarray(orientations, np.float64).tolist()
+        for name, position, orientation in zip(names, *rows, strict=True):
+            self.set_pose(name, position, orientation)
+
     def set_hidden(self, name: str, hidden: bool) -> None:
         """Take a body out of images, rays and contacts, or put it back where it was last placed.
 
@@ -257,7 +266,11 @@ class Bullet:
         """(P, 4, 4) world from part, a copy; hidden parts are far below the floor."""
         moved = list(self._moved.values())
         if moved:
-            places = [place for body in moved for place in (self._base_place(body), *self._link_places(body))]
+            places = []
+            for body in moved:
+                places.append(self._base_place(body))
+                if len(body.parts) > 1:
+                    places += self._link_places(body)
             numbers = [part for body in moved for part in body.parts]
             self._poses[numbers] = pose_matrices(*zip(*places, strict=True))
             self._moved.clear()
@@ -317,6 +330,9 @@ class Bullet:
             part: (H, W) number of the part seen at each pixel centre, -1 where none.
             depth: (H, W) [m] along the optical axis, inf where none.
         """
+        for body in self._untold.values():
+            self._tell(body)
+        self._untold.clear()
         absent = [body for body in self._bodies if only is not None and body.name not in only]
         self._set_opacity(absent, 0.0)
         image = self._client.getCameraImage(
@@ -364,6 +380,8 @@ class Bullet:
         joints = [
             self._client.getJointInfo(ids[0], link) for link in range(self._client.getNumJoints(ids[0]))
         ]
+        links = [(number, link) for number in ids for link in range(-1, len(joints))]
+        solid = [link for link in links if self._client.getCollisionShapeData(*link)]
         names = [self._client.getBodyInfo(ids[0])[0].decode(), *(joint[12].decode() for joint in joints)]
         first = len(self._bodies.parts)
         body = Body(
@@ -374,34 +392,46 @@ class Bullet:
             base_from_inertia=self._client.getDynamicsInfo(ids[0], -1)[3:5],
             moves_by_itself=moves_by_itself,
             visible_links=[(row[0], row[1]) for row in self._visual_rows(ids)],
+            is_solid=bool(solid),
         )
         self._bodies.add(body, names)
-        links = [(number, link) for number in ids for link in range(-1, len(joints))]
-        self._solids.add(name, [link for link in links if self._client.getCollisionShapeData(*link)])
+        self._solids.add(name, solid)
         self._poses = np.concatenate([self._poses, np.zeros((len(names), 4, 4))])
 
     def _put(self, body: Body, base: Place) -> None:
-        place = base
+        body.put_at = base
+        if body.is_solid or len(body.parts) > 1:
+            self._tell(body)
+        else:
+            self._untold[body.name] = body
+        if body.moves_by_itself:
+            body.put_at = None
+        self._note_move(body)
+
+    def _tell(self, body: Body) -> None:
+        """Let PyBullet put a body where it was put."""
+        assert body.put_at is not None
+        place = body.put_at
         if body.base_from_inertia != _HERE:
-            place = pybullet.multiplyTransforms(*base, *body.base_from_inertia)
+            place = pybullet.multiplyTransforms(*place, *body.base_from_inertia)
         for number in body.ids:
             self._client.resetBasePositionAndOrientation(number, *place)
-        self._note_move(body)
 
     def _note_move(self, body: Body) -> None:
         self._moved[body.name] = body
         self._known.pop(body.name, None)
-        self._solids.forget(body.name)
+        if body.is_solid:
+            self._solids.forget(body.name)
 
     def _base_place(self, body: Body) -> Place:
+        if body.put_at is not None:
+            return body.put_at
         place: Place = self._client.getBasePositionAndOrientation(body.ids[0])
         if body.base_from_inertia != _HERE:
             place = pybullet.multiplyTransforms(*place, *pybullet.invertTransform(*body.base_from_inertia))
         return place
 
     def _link_places(self, body: Body) -> list[Place]:
-        if len(body.parts) == 1:
-            return []
         links = range(len(body.parts) - 1)
         states = self._client.getLinkStates(body.ids[0], links, computeForwardKinematics=1)
         return [state[4:6] for state in states]

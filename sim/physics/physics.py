@@ -81,6 +81,10 @@ class Physics(Protocol):
         """Put a body's base frame at `position` [m] and `orientation` in the world, at rest."""
         ...
 
+    def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
+        """Put base frames of N bodies at positions (N, 3) [m] and orientations (N, 4), as `set_pose` does."""
+        ...
+
     def set_hidden(self, name: str, hidden: bool) -> None:
         """Take a body out of images, rays and contacts, or put it back where it was last placed.
 

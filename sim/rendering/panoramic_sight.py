@@ -12,7 +12,7 @@ from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix, invert_pose
 from peopleboy.sim.rendering.cover import Cover, count_cover
 from peopleboy.sim.rendering.ring import Outline, draw_ring, make_drawing, outline, ring_of
-from peopleboy.sim.rendering.sight import Edges, Mask, Scene, Sight
+from peopleboy.sim.rendering.sight import Mask, Scene, Sight
 from peopleboy.sim.rendering.view import NOBODY, View, person_bits
 
 _Key = tuple[Panorama, bytes, bytes]
@@ -46,15 +46,17 @@ class PanoramicSight(Sight):
         depth += np.float32(camera.mirror.ring_radius_m)
         return View(part, depth, normal, np.ascontiguousarray(drawing.cover.T))
 
-    def bounds(self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask) -> Edges:
-        """Find the rectangle around all pixels that some parts (P,) would fill if nothing hid them."""
-        filled, wanted = self._outline(scene, camera, world_from_camera, parts)
-        rows, columns = np.flatnonzero(filled.rows & wanted), filled.columns & wanted
-        if not len(rows):
-            return math.nan, math.nan, math.nan, math.nan
-        first, last = first_and_last(columns != 0)
-        top, bottom = int(rows[0]) + filled.first_row, int(rows[-1]) + filled.first_row
-        return first - 0.5, top - 0.5, last + 0.5, bottom + 0.5
+    def bounds(self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask) -> Matrix:
+        """Find rectangles (N, 4) around all pixels that some parts (N, P) would fill if nothing hid them."""
+        bounds = np.full((len(parts), 4), math.nan)
+        for one, own in zip(bounds, parts, strict=True):
+            filled, wanted = self._outline(scene, camera, world_from_camera, own)
+            rows, columns = np.flatnonzero(filled.rows & wanted), filled.columns & wanted
+            if len(rows):
+                first, last = first_and_last(columns != 0)
+                top, bottom = int(rows[0]) + filled.first_row, int(rows[-1]) + filled.first_row
+                one[:] = first - 0.5, top - 0.5, last + 0.5, bottom + 0.5
+        return bounds
 
     def area(self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask) -> int:
         """Count the pixels that some parts (P,) would fill if nothing hid them."""

@@ -21,7 +21,6 @@ from peopleboy.sim.shapes.shape_table import ShapeTable
 if TYPE_CHECKING:
     from peopleboy.sim.physics.physics import Physics
 
-Edges = tuple[float, float, float, float]
 Mask = NDArray[np.bool_]
 
 
@@ -61,16 +60,18 @@ class Sight(ABC):
     def view(self, scene: Scene, camera: Any, world_from_camera: Matrix) -> View:
         """Draw what a camera sees of a scene; its pose is (4, 4), optical frame to world."""
 
-    def bounds(self, scene: Scene, camera: Any, world_from_camera: Matrix, parts: Mask) -> Edges:
-        """Find the rectangle around all that a camera would see of some parts (P,) if nothing hid them.
+    def bounds(self, scene: Scene, camera: Any, world_from_camera: Matrix, parts: Mask) -> Matrix:
+        """Find rectangles around all that a camera would see of some parts (N, P) if nothing hid them.
 
         Returns:
-            left, top, right, bottom [px]; all NaN if it would see nothing of them.
+            (N, 4) left, top, right, bottom [px]; all NaN where it would see nothing of them.
         """
-        v, u = np.nonzero(self.view(scene.only(parts), camera, world_from_camera).cover)
-        if not len(u):
-            return math.nan, math.nan, math.nan, math.nan
-        return float(u.min()) - 0.5, float(v.min()) - 0.5, float(u.max()) + 0.5, float(v.max()) + 0.5
+        bounds = np.full((len(parts), 4), math.nan)
+        for one, own in zip(bounds, parts, strict=True):
+            v, u = np.nonzero(self.view(scene.only(own), camera, world_from_camera).cover)
+            if len(u):
+                one[:] = u.min() - 0.5, v.min() - 0.5, u.max() + 0.5, v.max() + 0.5
+        return bounds
 
     def area(self, scene: Scene, camera: Any, world_from_camera: Matrix, parts: Mask) -> int:
         """Count the pixels that some parts (P,) would fill if nothing hid them."""
@@ -97,7 +98,7 @@ class Flat(Sight):
             scene.person_of_part, scene.hidden,
         )  # fmt: skip
 
-    def bounds(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> Edges:
+    def bounds(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> Matrix:
         """See `silhouette_bounds`."""
         known, key = self._poses.setdefault(scene, {}), world_from_camera.tobytes()
         if key not in known:
@@ -130,8 +131,8 @@ class Seen:
     world_from_camera: Matrix
     view: View
 
-    def bounds(self, parts: Mask) -> Edges:
-        """The rectangle around some parts (P,), as in `Sight.bounds`."""
+    def bounds(self, parts: Mask) -> Matrix:
+        """The rectangles (N, 4) around some parts (N, P), as in `Sight.bounds`."""
         return self.sight.bounds(self.scene, self.camera, self.world_from_camera, parts)
 
     def area(self, parts: Mask) -> int:

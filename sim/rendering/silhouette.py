@@ -12,7 +12,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
 from peopleboy.sim.geometry.vectors import compose
 from peopleboy.sim.rendering.canvas import Lens, make_canvas
 from peopleboy.sim.rendering.raycast import draw
-from peopleboy.sim.shapes.bounds import EMPTY, Bounds, shape_bounds, unite
+from peopleboy.sim.shapes.bounds import EMPTY, shape_bounds, unite
 from peopleboy.sim.shapes.shape_table import ShapeTable
 
 Array = NDArray[np.float64]
@@ -40,18 +40,29 @@ def silhouette_bounds(
     Returns:
         left, top, right, bottom [px]; all NaN if nothing of them lies before the camera.
     """
-    return bounds_before(camera, table, invert_pose(world_from_camera) @ world_from_part, parts)
+    camera_from_part = invert_pose(world_from_camera) @ world_from_part
+    left, top, right, bottom = bounds_before(camera, table, camera_from_part, parts[None])[0].tolist()
+    return left, top, right, bottom
 
 
-def bounds_before(
-    camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: NDArray[np.bool_]
-) -> tuple[float, float, float, float]:
-    """Find what `silhouette_bounds` does of parts whose poses (P, 4, 4) in the optical frame are known."""
-    left, top, right, bottom = _bounds(table, camera_from_part, parts)
-    if left > right:
-        return math.nan, math.nan, math.nan, math.nan
-    u, v, focal = *camera.centre_px, camera.focal_px
-    return u + focal * left, v + focal * top, u + focal * right, v + focal * bottom
+def bounds_before(camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask) -> Array:
+    """Find what `silhouette_bounds` does, of several at once.
+
+    Args:
+        camera: the pinhole camera.
+        table: the world's shapes.
+        camera_from_part: (P, 4, 4) poses in the optical frame.
+        parts: (N, P) which parts.
+
+    Returns:
+        (N, 4) left, top, right, bottom [px]; NaN where nothing lies before the camera.
+    """
+    found = np.empty((len(parts), 4))
+    _bounds(table, camera_from_part, parts, found)
+    (u, v), focal = camera.centre_px, camera.focal_px
+    found[found[:, 0] > found[:, 2]] = math.nan
+    bounds: Array = (u, v, u, v) + focal * found
+    return bounds
 
 
 def silhouette_area(
@@ -87,13 +98,18 @@ def _within(low: float, high: float, size: int) -> tuple[int, int]:
 
 
 @njit(cache=True)
-def _bounds(table: ShapeTable, camera_from_part: Array, parts: Mask) -> Bounds:
+def _bounds(table: ShapeTable, camera_from_part: Array, parts: Mask, found: Array) -> None:
+    """Write the bounds (N, 4) of several sets of parts (N, P) at a distance of 1."""
     pose = np.empty((3, 4))
-    bounds = EMPTY
+    for n in range(len(parts)):
+        found[n] = EMPTY
     for shape in range(len(table.kind)):
-        if parts[table.part[shape]]:
-            compose(camera_from_part[table.part[shape]], table.part_from_shape[shape], pose)
-            first, end = table.triangle_range[shape]
-            triangles = table.triangles[first:end]
-            bounds = unite(bounds, shape_bounds(table.kind[shape], table.size[shape], pose, triangles))
-    return bounds
+        part = table.part[shape]
+        if not parts[:, part].any():
+            continue
+        compose(camera_from_part[part], table.part_from_shape[shape], pose)
+        first, end = table.triangle_range[shape]
+        own = shape_bounds(table.kind[shape], table.size[shape], pose, table.triangles[first:end])
+        for n in range(len(parts)):
+            if parts[n, part]:
+                found[n] = unite((found[n, 0], found[n, 1], found[n, 2], found[n, 3]), own)

@@ -7,11 +7,12 @@ left, top, right, bottom [px], all NaN where nothing is before the camera.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.rendering.sight import Edges
 
 Box = tuple[float, float, float, float]
+Edges = Sequence[float]
 
 
 def box_between(bounds: Edges) -> Box | None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,18 +13,20 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.pinhole import Matrix, invert_pose, transform
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.people.crowd import Crowd
-from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS, Person
+from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS
 from peopleboy.sim.physics.bodies import PartKey
 from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.rendering.cover import Cover
-from peopleboy.sim.rendering.sight import Edges, Seen
+from peopleboy.sim.rendering.sight import Seen
 from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.truth.boxes import Box, box_between, box_of_pixels, is_cut_off
+from peopleboy.sim.truth.boxes import Box, Edges, box_between, box_of_pixels, is_cut_off
 from peopleboy.sim.truth.things import NOTHING, Owners, things_truth
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
 
 A = TypeVar("A", bound=NDArray[Any])
 Depth = NDArray[np.float32]
+
+_WHOLE: Final = 0  # of the outlines of a person: the silhouette
 
 
 class TruthMaker:
@@ -53,10 +55,10 @@ class TruthMaker:
         # The last entry is for part -1, where nothing is seen.
         self._class_of_part = np.array([*classes, 0], np.uint8)
         self._id_of_part = np.array([*(self.person_of_part + 1), 0], np.uint8)
-        self._outlines = [_Outline(k, parts, self.person_of_part) for k in range(len(names))]
+        self._outlines = _outlines(parts, self.person_of_part, len(names))
         self._temperatures = [
-            {parts[p]: materials[p].temperature_c for p in np.flatnonzero(outline.whole).tolist()}
-            for outline in self._outlines
+            {parts[p]: materials[p].temperature_c for p in np.flatnonzero(whole).tolist()}
+            for whole, *_ in self._outlines
         ]
 
     def make(
@@ -74,9 +76,7 @@ class TruthMaker:
         whose = Owners(tuple(self._owner_names), self._owner_or_nothing, view.part)
         return Truth(
             time_s=time_s,
-            people=tuple(
-                self._person(k, cover, seen) for k, person in enumerate(self._people) if person.present
-            ),
+            people=self._everybody(cover, seen),
             instance=_frozen(self._id_of_part[view.part]),
             body_part=_frozen(self._class_of_part[view.part]),
             depth_m=_frozen(view.depth),
@@ -99,82 +99,103 @@ class TruthMaker:
     def box(self, person: int, seen: Seen) -> Box | None:
         """Tell the truth box of one person alone, by its number from 1; None as in `PersonTruth`."""
         k = person - 1
-        return _thesis_box(seen, self._outlines[k]) if self._people[k].present else None
+        if not self._people[k].present:
+            return None
+        _, height, torso = seen.bounds(self._outlines[k]).tolist()
+        return _thesis_box(height, torso)
 
-    def _person(self, k: int, cover: Cover, seen: Seen) -> PersonTruth:
-        person, outline = self._people[k], self._outlines[k]
-        distance = float(np.hypot(*(person.position - seen.world_from_camera[:2, 3])))
-        whole = seen.bounds(outline.whole)
-        visible = int(cover.seen[k, k])
-        area = self._whole_area(k, cover, seen, whole)
-        joints, pixels, is_visible = self._joints(k, person, seen)
+    def _everybody(self, cover: Cover, seen: Seen) -> tuple[PersonTruth, ...]:
+        here = [k for k, person in enumerate(self._people) if person.present]
+        if not here:
+            return ()
+        bounds = seen.bounds(self._outlines[here].reshape(3 * len(here), -1)).reshape(-1, 3, 4).tolist()
+        shown, visible = cover.seen[here].tolist(), cover.bounds[here].tolist()
+        people = zip(here, shown, visible, bounds, self._joints(here, seen), strict=True)
+        return tuple(self._person(seen, *one) for one in people)
+
+    def _person(
+        self, seen: Seen, k: int, shown: list[int], pixels: Edges, edges: Sequence[Edges], joints: _Joints
+    ) -> PersonTruth:
+        """Tell of a person, at whose pixels so many of each owner's are `shown`, and in which are its own."""
+        person, (whole, height, torso) = self._people[k], edges
+        (x, y), (u, v) = person.position.tolist(), person.velocity.tolist()
+        camera_x, camera_y = seen.world_from_camera[:2, 3].tolist()
+        distance = float(np.hypot(x - camera_x, y - camera_y))
+        visible, area = shown[k], self._whole_area(k, sum(shown), seen, whole)
         return PersonTruth(
             id=k + 1,
             name=person.name,
-            position_m=(float(person.position[0]), float(person.position[1])),
+            position_m=(x, y),
             heading_rad=float(person.heading),
-            velocity_m_s=(float(person.velocity[0]), float(person.velocity[1])),
+            velocity_m_s=(u, v),
             posture=str(person.posture),
             distance_m=distance,
             is_counted=is_counted(distance, seen.camera),
-            box=_thesis_box(seen, outline),
+            box=_thesis_box(height, torso),
             whole_box=box_between(whole),
-            visible_box=box_of_pixels(*map(float, cover.bounds[k])) if visible else None,
+            visible_box=box_of_pixels(*pixels) if visible else None,
             whole_px=area,
             visible_px=visible,
             visible_fraction=visible / area if area else 0.0,
-            hidden_by=self._hidden_by(k, cover, area),
+            hidden_by=self._hidden_by(k, shown, area),
             part_temperature_c=self._temperatures[k],
-            joints_m=_frozen(joints),
-            joints_px=_frozen(pixels),
-            joint_is_visible=_frozen(is_visible),
+            joints_m=_frozen(joints.place_m),
+            joints_px=_frozen(joints.pixel),
+            joint_is_visible=_frozen(joints.is_visible),
         )
 
-    def _whole_area(self, k: int, cover: Cover, seen: Seen, whole: Edges) -> int:
+    def _whole_area(self, k: int, inside: int, seen: Seen, whole: Edges) -> int:
         """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
-        inside = int(cover.seen[k].sum())
         if not is_cut_off(whole, seen.camera):
             return inside
         # TinyRenderer's silhouettes may be a few pixels larger.
-        return max(inside, seen.area(self._outlines[k].whole))
+        return max(inside, seen.area(self._outlines[k, _WHOLE]))
 
-    def _hidden_by(self, k: int, cover: Cover, area: int) -> dict[str, float]:
+    def _hidden_by(self, k: int, shown: list[int], area: int) -> dict[str, float]:
         """Share of the whole silhouette that each other owner, or the border, hides."""
         if not area:
             return {}
-        seen = cover.seen[k]
         shares = {
-            self._owner_names[owner]: int(seen[owner]) / area for owner in np.flatnonzero(seen) if owner != k
+            self._owner_names[owner]: pixels / area
+            for owner, pixels in enumerate(shown)
+            if pixels and owner != k
         }
-        outside = area - int(seen.sum())
+        outside = area - sum(shown)
         return shares | {BORDER: outside / area} if outside > 0 else shares
 
-    def _joints(self, k: int, person: Person, seen: Seen) -> tuple[Matrix, Matrix, NDArray[np.bool_]]:
-        joints = person.joints()
-        pixels = seen.camera.project(transform(invert_pose(seen.world_from_camera), joints))
+    def _joints(self, here: Sequence[int], seen: Seen) -> Iterator[_Joints]:
+        """Tell the joints of some people, by their numbers from 0."""
+        places = np.concatenate([self._people[k].joints() for k in here])
+        pixels = seen.camera.project(transform(invert_pose(seen.world_from_camera), places))
         size = np.array([seen.camera.width, seen.camera.height])
         is_inside = np.all((pixels > -0.5) & (pixels < size - 0.5), axis=1)
         u, v = np.rint(pixels[is_inside]).astype(np.int64).T
-        is_visible = np.zeros(len(joints), np.bool_)
-        is_visible[is_inside] = self._id_of_part[seen.view.part[v, u]] == k + 1
-        return joints, pixels, is_visible
+        ids = np.repeat(np.array(here) + 1, len(places) // len(here))
+        is_visible = np.zeros(len(places), np.bool_)
+        is_visible[is_inside] = self._id_of_part[seen.view.part[v, u]] == ids[is_inside]
+        shape = len(here), -1
+        return map(_Joints, places.reshape(*shape, 3), pixels.reshape(*shape, 2), is_visible.reshape(shape))
 
 
-class _Outline:
-    """The parts of one person that make up each edge of the boxes, as (P,) masks."""
+class _Joints(NamedTuple):
+    """A person's joints: places (17, 3) [m], pixels (17, 2), and whether each is seen (17,)."""
 
-    def __init__(self, person: int, parts: Sequence[str], person_of_part: NDArray[np.int64]) -> None:
-        is_arm, is_torso, is_body = (
-            np.isin(parts, names) for names in (ARM_PARTS, TORSO_PARTS, list(PART_CLASSES))
-        )
-        self.whole = (person_of_part == person) & is_body
-        self.height = self.whole & ~is_arm
-        self.torso = self.whole & is_torso
+    place_m: Matrix
+    pixel: Matrix
+    is_visible: NDArray[np.bool_]
 
 
-def _thesis_box(seen: Seen, outline: _Outline) -> Box | None:
-    """Head to feet, as wide as the torso without arms (T 3.3)."""
-    height, torso = seen.bounds(outline.height), seen.bounds(outline.torso)
+def _outlines(parts: Sequence[str], person_of_part: NDArray[np.int64], people: int) -> NDArray[np.bool_]:
+    """Tell which parts of each person make up what edges of the boxes, (N, 3, P): whole, height, torso."""
+    is_arm, is_torso, is_body = (
+        np.isin(parts, names) for names in (ARM_PARTS, TORSO_PARTS, list(PART_CLASSES))
+    )
+    whole = (person_of_part == np.arange(people)[:, None]) & is_body
+    return np.stack([whole, whole & ~is_arm, whole & is_torso], axis=1)
+
+
+def _thesis_box(height: Edges, torso: Edges) -> Box | None:
+    """Head to feet, as wide as the torso without arms (T 3.3), of the edges of both."""
     return box_between((torso[0], height[1], torso[2], height[3]))
 
 

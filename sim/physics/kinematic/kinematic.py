@@ -147,6 +147,12 @@ class Kinematic:
         self._places[number] = (*position, *orientation)
         self._mark(number)
 
+    def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
+        """See `Physics.set_poses`; not of the vehicle."""
+        numbers = [self.number_of(name) for name in names]
+        self._places[numbers, :3], self._places[numbers, 3:] = positions, orientations
+        self._stale[numbers] = self._is_stale = True
+
     def set_hidden(self, name: str, hidden: bool) -> None:
         """See `Physics.set_hidden`."""
         number = self.number_of(name)
