@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -37,6 +38,7 @@ _HERE: Place = ((0.0, 0.0, 0.0), UPRIGHT)
 _PARKED: Place = ((0.0, 0.0, -500.0), UPRIGHT)
 _ALL = -1
 _ALL_BUT_STATIC = -3
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -399,7 +401,7 @@ class Bullet:
         self._poses = np.concatenate([self._poses, np.zeros((len(names), 4, 4))])
 
     def _put(self, body: Body, base: Place) -> None:
-        body.put_at = base
+        body.put_at = (base[0], _unit(base[1]))
         if body.is_solid or len(body.parts) > 1:
             self._tell(body)
         else:
@@ -455,3 +457,10 @@ class Bullet:
             for number, link in [(number, link) for number in body.ids for link in links]:
                 self._client.setCollisionFilterGroupMask(number, link, body.group, mask)
         return body.group
+
+
+def _unit(orientation: Quaternion) -> Quaternion:
+    """Give a quaternion its length of 1, as PyBullet does."""
+    x, y, z, w = orientation
+    length = math.sqrt(x * x + y * y + z * z + w * w)
+    return orientation if abs(length - 1.0) < _ROUNDING else (x / length, y / length, z / length, w / length)
