@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Final, SupportsFloat
 import gymnasium
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import Command
+from peopleboy.scenarios.environments.arguments import check_actions, check_size, check_word, shown_cameras
 from peopleboy.scenarios.environments.judging.episode_figures import Figures, track_in
 from peopleboy.scenarios.environments.judging.episodes import LiveEpisodes, Terms, Verdicts
 from peopleboy.scenarios.environments.judging.rewards import TASKS, TERMS
@@ -51,8 +52,6 @@ from peopleboy.tracker.trackers import Tracker, explanation_of
 if TYPE_CHECKING:
     from peopleboy.scenarios.recording.live_picture import LivePicture
 
-SMALLEST_PX: Final = (64, 48)
-LARGEST_PX: Final = (1280, 960)
 DEFAULT_PX: Final = (320, 240)
 _SEEDS: Final = 2**31
 _RANDOM_S: Final = 30.0  # episodes in random worlds
@@ -112,10 +111,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     ) -> None:
         self._world: World | None = None
         self._viewer: LivePicture | None = None
-        _check_word("task", task, TASKS)
-        _check_word("observation", observation, KINDS)
-        _check_word("render_mode", render_mode, (None, *self.metadata["render_modes"]))
-        _check_size(image_size)
+        check_word("task", task, TASKS)
+        check_word("observation", observation, KINDS)
+        check_word("render_mode", render_mode, (None, *self.metadata["render_modes"]))
+        check_size(image_size)
         self._draws_worlds, self._physics = scenario is None, physics
         self.vary_by({} if randomise is None else randomise)
         first = self._moved(_random_episode(0) if scenario is None else load_scenario(scenario))
@@ -128,7 +127,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         replace(usual, physics_hz=self._physics_hz)  # refuses a rate that does not fit now
         self._take(first)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
-        shown = _shown(cameras, observation, self._robot)
+        shown = shown_cameras(cameras, observation, self._robot)
         normaliser = Normaliser(self._robot) if normalise else None
         self.teller = Teller(observation, self._robot, shown, normaliser)
         space = observation_space(observation, self._robot, shown)
@@ -386,50 +385,6 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
 def _random_episode(seed: int, distribution: Distribution | None = None) -> Scenario:
     return random_scenario(seed, _RANDOM_S, distribution)
-
-
-def _check_word(name: str, word: str | None, known: Sequence[str | None]) -> None:
-    if word not in known:
-        raise BadInput(f"{name} {word!r}: there is no such; choose from {', '.join(map(str, known))}")
-
-
-def _check_size(size: tuple[int, int]) -> None:
-    is_fine = len(size) == 2 and all(
-        isinstance(got, int) and low <= got <= high
-        for got, low, high in zip(size, SMALLEST_PX, LARGEST_PX, strict=True)
-    )
-    if not is_fine:
-        (narrow, flat), (wide, tall) = SMALLEST_PX, LARGEST_PX
-        raise BadInput(
-            f"image_size {size!r} must be width and height [px], {narrow} x {flat} to {wide} x {tall}"
-        )
-
-
-def _shown(cameras: Sequence[str] | None, observation: str, robot: RobotConfig) -> tuple[str, ...]:
-    """Names of the cameras whose images are given."""
-    if cameras is None:
-        return tuple(robot.cameras)
-    if observation != "pixels":
-        raise BadInput(f"cameras {cameras!r}: observation {observation!r} has no images; leave them out")
-    if isinstance(cameras, str) or not cameras or len(set(cameras)) < len(cameras):
-        raise BadInput(f"cameras {cameras!r} must be one or more different names, such as ('thermal',)")
-    for name in cameras:
-        _check_word("cameras", name, tuple(robot.cameras))
-    return tuple(cameras)
-
-
-def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """Give the two shares of each of some actions, clipped: (G, 2).
-
-    Raises:
-        BadInput: they have not that shape, or not all numbers are finite.
-    """
-    shares = np.asarray(actions, np.float64)
-    if shares.shape != shape:
-        raise BadInput(f"actions of shape {shares.shape}: must be {shape}, two finite numbers each")
-    if not np.isfinite(shares).all():
-        raise BadInput(f"action {actions!r} must be two finite numbers: shares of speed and turn rate")
-    return np.clip(shares, -1.0, 1.0).reshape(-1, 2)
 
 
 def _resize(robot: RobotConfig, size: tuple[int, int]) -> RobotConfig:

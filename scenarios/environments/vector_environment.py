@@ -11,7 +11,8 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.environments.environment import PeopleBoyEnv, check_actions
+from peopleboy.scenarios.environments.arguments import check_actions
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.join_infos import Infos, join_infos
 from peopleboy.scenarios.environments.judging.episodes import LiveEpisodes
 from peopleboy.scenarios.environments.observations import Arrays
