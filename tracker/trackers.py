@@ -50,31 +50,11 @@ class Tracker(Protocol):
 
 
 @runtime_checkable
-class Explains(Protocol):
-    """A tracker that tells more than its tracks."""
-
-    @property
-    def explanation(self) -> object:
-        """What it believes beyond the tracks of the last frame; others draw it by its type."""
-        ...
-
-
-@runtime_checkable
 class Introducible(Protocol):
     """A tracker that can be told where a person is."""
 
     def introduce(self, box: Box) -> None:
         """Tell that a person is at this box [px] of the thermal image in the next frame."""
-        ...
-
-
-@runtime_checkable
-class KnowsAgain(Protocol):
-    """A tracker that knows people again by itself, however long they were away."""
-
-    @property
-    def knows_again(self) -> bool:
-        """Whether whoever has a new number is somebody else."""
         ...
 
 
@@ -100,13 +80,19 @@ FOOTAGE_TRACKER: Final = "anywhere"
 
 
 def explanation_of(tracker: Tracker) -> object:
-    """Ask a tracker what it believes beyond its tracks; None where it tells nothing."""
-    return tracker.explanation if isinstance(tracker, Explains) else None
+    """Ask a tracker what it believes beyond its tracks, its `explanation`; None where it has none.
+
+    A check of a protocol would work it out once more, and take longer than many a tracker.
+    """
+    return getattr(tracker, "explanation", None)
 
 
 def knows_again(tracker: Tracker) -> bool:
-    """Tell whether a person who comes back has the old number, and whoever has a new one is somebody else."""
-    return isinstance(tracker, KnowsAgain) and tracker.knows_again
+    """Tell whether a tracker knows people again by itself, however long they were away: its `knows_again`.
+
+    Then whoever has a new number is somebody else. None has it unless it says so.
+    """
+    return bool(getattr(tracker, "knows_again", False))
 
 
 def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
