@@ -84,7 +84,9 @@ def sweep_weights(sweep: NDArray[np.float64]) -> Image:
             is_inside = 0 <= u + away < columns
             area = hat_integral(half - away) - hat_integral(-half - away)
             column[k] = area / sweep[u] if is_inside else 0.0
-        weights[:, u] = column / column.sum()
+        total = column.sum()
+        for k in range(2 * farthest + 1):
+            weights[k, u] = column[k] / total
     return weights
 
 

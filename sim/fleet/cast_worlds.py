@@ -39,7 +39,8 @@ def hear_worlds(
     for row in range(len(going)):
         bodies, solids = world_in(joined, going[row])
         for ray in range(sonars * rays):
-            begin[ray] = starts[row, ray // rays]
+            for i in range(3):
+                begin[ray, i] = starts[row, ray // rays, i]
         fraction[:] = 1.0
         cast_into(begin, ends[row], bodies, solids, joined.own[going[row]], fraction, part)
         for sonar in range(sonars):
@@ -68,6 +69,8 @@ def cast_eyes(
     starts, part = np.empty((count, 3)), np.empty(count, np.int64)
     for person in looked:
         bodies, solids = world_in(joined, world[person])
-        starts[:] = eyes[person]
+        for n in range(count):
+            for i in range(3):
+                starts[n, i] = eyes[person, i]
         own = joined.own[world[person]]
         cast_into(starts, points[person], bodies, solids, own, fraction[person], part)

@@ -77,7 +77,8 @@ def drive_worlds(
             refresh(bodies, solids)
             met[:] = False
             _roll(joined, world, vehicle, bodies, solids, dt_s, met)
-            touched[first:end] |= met
+            for body in range(end - first):
+                touched[first + body] |= met[body]
         bodies.stale[joined.own[world]] = True
         _count(gears, world, noise_m[row], joined.motion.angles[world])
         _put_people(people, world, bodies)

@@ -32,8 +32,12 @@ def _poses(positions: Array, orientations: Array) -> Array:
         pose[2, 0] = 2.0 * (x * z - y * w)
         pose[2, 1] = 2.0 * (y * z + x * w)
         pose[2, 2] = 1.0 - 2.0 * (x * x + y * y)
-        pose[:3, 3] = positions[n]
-        pose[3, 3] = 1.0
+        pose[0, 3], pose[1, 3], pose[2, 3], pose[3, 3] = (
+            positions[n, 0],
+            positions[n, 1],
+            positions[n, 2],
+            1.0,
+        )
     return poses
 
 

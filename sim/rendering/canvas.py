@@ -128,7 +128,8 @@ def fill_polygon(
         nearness, surfaces, cover = canvas.nearness[v], canvas.surface[v], canvas.cover[v]
         first, end = math.ceil(low), math.floor(high) + 1
         if bit != 0:
-            cover[first:end] |= bit
+            for u in range(np.uint64(first), np.uint64(end)):
+                cover[u] |= bit
         for u in range(np.uint64(first), np.uint64(end)):
             here = slope * np.int32(u) + base
             is_nearer = here > nearness[u]

@@ -125,22 +125,32 @@ def _find_mirrors(
         offset = 0.0
         for i in range(3):
             offset += normal[v, u, i] * ((eye[i, 0] * across + eye[i, 1] * down + eye[i, 2]) * z + eye[i, 3])
-        k = 0
-        while k < found:
-            cosine = 0.0
-            for i in range(3):
-                cosine += planes[k, i] * normal[v, u, i]
-            if cosine > _SAME_COS and abs(planes[k, 3] - offset) < _SAME_M:
-                break
-            k += 1
+        k = _same_plane(planes[:found], normal[v, u], offset)
         if k == found:
-            planes[k, :3], planes[k, 3], windows[k] = normal[v, u], offset, window[s]
+            for i in range(3):
+                planes[k, i] = normal[v, u, i]
+            for i in range(4):
+                windows[k, i] = window[s, i]
+            planes[k, 3] = offset
             found += 1
-        windows[k, :2] = np.minimum(windows[k, :2], window[s, :2])
-        windows[k, 2:] = np.maximum(windows[k, 2:], window[s, 2:])
+        for i in range(2):
+            windows[k, i] = min(windows[k, i], window[s, i])
+            windows[k, 2 + i] = max(windows[k, 2 + i], window[s, 2 + i])
         is_surface[k, s] = True
     most = min(found, _MOST)
     return planes[:most], windows[:most], is_surface[:most]
+
+
+@njit(cache=True)
+def _same_plane(planes: Array, normal: Image, offset: float) -> int:
+    """Number of the plane (K, 4) that has this normal (3,) and offset [m], K for none."""
+    for k in range(len(planes)):
+        cosine = 0.0
+        for i in range(3):
+            cosine += planes[k, i] * normal[i]
+        if cosine > _SAME_COS and abs(planes[k, 3] - offset) < _SAME_M:
+            return k
+    return len(planes)
 
 
 @njit(cache=True, error_model="numpy")

@@ -198,7 +198,9 @@ def draw_ring(
                     turned[i, j] += rotation[i, k] * ring.column_from_ring[u, j, k]
         row = slice(u, u + 1)
         shade(table.surface_part, ring.lens, canvas, turned, part.T[row], depth.T[row], column)
-        normal[:, u] = column[0]
+        for v in range(normal.shape[0]):
+            for i in range(3):
+                normal[v, u, i] = column[0, v, i]
 
 
 @njit(cache=True, error_model="numpy")
@@ -254,8 +256,11 @@ def _before(table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], r
         for face in range(first, end):
             if face >= 0 and not _may_face(pose, table.size[shape], face, radius):
                 continue
-            number[count], faces[count], poses[count] = shape, face, pose
-            spans[count] = _span(table, shape, face, pose, width)
+            number[count], faces[count] = shape, face
+            for i in range(3):
+                for j in range(4):
+                    poses[count, i, j] = pose[i, j]
+            spans[count, 0], spans[count, 1] = _span(table, shape, face, pose, width)
             if spans[count, 1] > 0:
                 count += 1
     return Pieces(number, faces, poses, *_by_column(spans[:count], width))

@@ -159,7 +159,8 @@ def _spread(cells: Cells) -> None:  # pragma: no cover
     quarter, half = np.float32(0.25), np.float32(0.5)
     line, above = np.empty(columns + 2, np.float32), np.empty(columns, np.float32)
     for channel in range(count):
-        above[:] = cells[channel, OVER, BESIDE : BESIDE + columns]
+        for j in range(columns):
+            above[j] = cells[channel, OVER, BESIDE + j]
         for i in range(OVER, rows + OVER):
             here, below = cells[channel, i], cells[channel, min(i + 1, rows + OVER - 1)]
             for j in range(columns):
@@ -170,6 +171,8 @@ def _spread(cells: Cells) -> None:  # pragma: no cover
                 here[j + BESIDE] = quarter * (line[j] + line[j + 2]) + half * line[j + 1]
             for j in range(BESIDE):
                 here[j], here[columns + BESIDE + j] = here[BESIDE], here[columns + BESIDE - 1]
+        upper, lower = cells[channel, OVER], cells[channel, rows + OVER - 1]
         for i in range(OVER):
-            cells[channel, i] = cells[channel, OVER]
-            cells[channel, rows + OVER + i] = cells[channel, rows + OVER - 1]
+            before, after = cells[channel, i], cells[channel, rows + OVER + i]
+            for j in range(cells.shape[2]):
+                before[j], after[j] = upper[j], lower[j]

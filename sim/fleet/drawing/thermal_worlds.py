@@ -58,13 +58,15 @@ def radiate_worlds(
         matrices = look_into(worlds[row], row, table, scenery.part, poses, eye, canvas)
         locate(table.surface_part, eye.lens, canvas, view.part, view.depth)
         radiance = sheet[row - first]
-        radiance[margin : margin + eye.lens.height] = radiance_image(
+        image = radiance_image(
             view.part, view.depth, matrices, looks.thermal, looks.kind, looks.period, looks.phase,
             looks.finish, looks.texels, looks.paint, looks.paint_texels, tables.radiance, surroundings[row],
             tables.span_c,
         )  # fmt: skip
-        for k in range(margin):
-            radiance[k], radiance[-1 - k] = radiance[margin], radiance[-1 - margin]
+        for v in range(len(radiance)):
+            from_row = min(max(v - margin, 0), eye.lens.height - 1)
+            for u in range(eye.lens.width):
+                radiance[v, u] = image[from_row, u]
 
 
 class Detectors(NamedTuple):

@@ -63,7 +63,8 @@ def put_on_floor(
             for k in range(3):
                 height = fma(body[foot, 2, k], sole[k], height)
             lowest = min(lowest, height + body[foot, 2, 3])
-    body[:, 2, 3] -= lowest
+    for bone in range(len(body)):
+        body[bone, 2, 3] -= lowest
     cos, sin = math.cos(place[2]), math.sin(place[2])
     world[0, 0], world[0, 1], world[1, 0], world[1, 1] = cos, -sin, sin, cos
     world[0, 3], world[1, 3] = place[0], place[1]
@@ -76,6 +77,8 @@ def carry(bones: Array, bone: NDArray[np.int64], offset_m: Array, poses: Array) 
     """Put P parts where bones (17, 4, 4) carry them, each by its `bone`, `offset_m` from the joint."""
     for p in range(len(bone)):
         own, pose, (x, y, z) = bones[bone[p]], poses[p], offset_m[p]
-        pose[:] = own
+        for i in range(4):
+            for j in range(4):
+                pose[i, j] = own[i, j]
         for i in range(3):
             pose[i, 3] += (own[i, 0] * x + own[i, 2] * z) + own[i, 1] * y

@@ -130,8 +130,10 @@ def chain(rotations: Array, offsets: Array, parents: NDArray[np.int64]) -> Array
         parent = parents[i]
         poses[i, 3, 3] = 1.0
         if parent < 0:
-            poses[i, :3, :3] = local
-            poses[i, :3, 3] = offsets[i]
+            for row in range(3):
+                poses[i, row, 3] = offsets[i, row]
+                for column in range(3):
+                    poses[i, row, column] = local[row, column]
             continue
         for row in range(3):
             poses[i, row, 3] = poses[parent, row, 3]

@@ -156,21 +156,25 @@ def _keep_arms(builds: Builds, q: int, share: float, turns: Array) -> None:
     standing = _ROTATIONS[_STANDING]
     for bone in range(_BONES):
         if builds.is_held[q, bone]:
-            turns[bone] = builds.held[q, bone] + _HELD_SWING * (turns[bone] - standing[bone])
+            for k in range(3):
+                turns[bone, k] = builds.held[q, bone, k] + _HELD_SWING * (turns[bone, k] - standing[bone, k])
     for bone in _ARMS:
-        turns[bone] += share * (standing[bone] - turns[bone])
+        for k in range(3):
+            turns[bone, k] += share * (standing[bone, k] - turns[bone, k])
     if builds.has_bag[q]:
         for bone in _BAG_ARM:
-            turns[bone] = standing[bone] + _BAG_SWING * (turns[bone] - standing[bone])
+            for k in range(3):
+                turns[bone, k] = standing[bone, k] + _BAG_SWING * (turns[bone, k] - standing[bone, k])
 
 
 @njit(cache=True)
 def _sway(time_s: float, sway_phase: float, looks_about_rad: float, turns: Array) -> None:
     """Lean a little about the ankles."""
     angle = 2.0 * math.pi * (_SWAY_HZ * time_s + sway_phase)
-    lean = np.zeros(3)
-    lean[0], lean[1] = _SWAY_RAD * math.sin(angle), _SWAY_RAD * math.cos(0.71 * angle)
-    turns[_PELVIS] += lean
+    lean = _SWAY_RAD * math.sin(angle), _SWAY_RAD * math.cos(0.71 * angle)
+    for k in range(2):
+        turns[_PELVIS, k] += lean[k]
     turns[_HEAD, 2] += looks_about_rad * math.sin(_LOOK_RATIO * angle)
     for foot in _FEET:
-        turns[foot] -= lean
+        for k in range(2):
+            turns[foot, k] -= lean[k]

@@ -137,13 +137,15 @@ def _clip(corners: Array, edges: NDArray[np.int64], low_m: float, high_m: float,
         return 0
     for k in range(len(corners)):
         if low_m <= corners[k, 2] <= high_m:
-            points[count] = corners[k, :2]
+            points[count, 0], points[count, 1] = corners[k, 0], corners[k, 1]
             count += 1
     for e in range(len(edges)):
         a, b = corners[edges[e, 0]], corners[edges[e, 1]]
         for level in (low_m, high_m):
             if (a[2] - level) * (b[2] - level) < 0.0:
-                points[count] = a[:2] + (level - a[2]) / (b[2] - a[2]) * (b[:2] - a[:2])
+                share = (level - a[2]) / (b[2] - a[2])
+                points[count, 0] = a[0] + share * (b[0] - a[0])
+                points[count, 1] = a[1] + share * (b[1] - a[1])
                 count += 1
     return _hull(points[:count], outline)
 
@@ -157,7 +159,7 @@ def _hull(points: Array, outline: Array) -> int:
     for k in range(1, len(points)):  # sorted by x, then y
         x, y, at = points[k, 0], points[k, 1], k
         while at > 0 and (points[at - 1, 0], points[at - 1, 1]) > (x, y):
-            points[at] = points[at - 1]
+            points[at, 0], points[at, 1] = points[at - 1, 0], points[at - 1, 1]
             at -= 1
         points[at, 0], points[at, 1] = x, y
     count = 0
@@ -167,7 +169,7 @@ def _hull(points: Array, outline: Array) -> int:
             p = points[k] if chain == 0 else points[len(points) - 1 - k]
             while count > least and _turns(outline[count - 2], outline[count - 1], p) <= 1e-12:
                 count -= 1
-            outline[count] = p
+            outline[count, 0], outline[count, 1] = p[0], p[1]
             count += 1
         count -= 1  # it begins the other chain
     return max(count, 1)

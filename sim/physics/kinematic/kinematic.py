@@ -350,7 +350,9 @@ def turn_wheels(poses: Matrix, wheels: NDArray[np.int64], angles: Matrix) -> Non
     for k in range(len(wheels)):
         cos, sin = math.cos(angles[k]), math.sin(angles[k])
         turn[0, 0], turn[0, 2], turn[1, 1], turn[2, 0], turn[2, 2] = cos, sin, 1.0, -sin, cos
-        before[:] = poses[wheels[k], :3, :3]
+        for i in range(3):
+            for j in range(3):
+                before[i, j] = poses[wheels[k], i, j]
         multiply(before, turn, poses[wheels[k], :3, :3])
 
 

@@ -82,7 +82,7 @@ def _place(place: Array, base_from_part: Array, pose: Array) -> None:
     base[0, 0], base[0, 1], base[0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)
     base[1, 0], base[1, 1], base[1, 2] = 2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)
     base[2, 0], base[2, 1], base[2, 2] = 2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)
-    base[:, 3] = place[:3]
+    base[0, 3], base[1, 3], base[2, 3] = place[0], place[1], place[2]
     compose(base, base_from_part, pose)
     pose[3, :3] = 0.0
     pose[3, 3] = 1.0
@@ -94,14 +94,17 @@ def _box_around(kind: int, size: Array, extent: Array, pose: Array, box: Array) 
     if kind == _PLANE:
         box[0], box[1] = -math.inf, math.inf
         return
-    low, high = -0.5 * size, 0.5 * size
-    if kind == _SPHERE:
-        low[:], high[:] = -size[0], size[0]
-    elif kind == _MESH:
-        low[:], high[:] = extent[0], extent[1]
-    elif kind != _BOX:
-        half = size[0] / 2.0 + (size[1] if kind == _CAPSULE else 0.0)
-        low[0], low[1], low[2], high[0], high[1], high[2] = -size[1], -size[1], -half, size[1], size[1], half
+    low, high = np.empty(3), np.empty(3)
+    for k in range(3):
+        if kind == _MESH:
+            low[k], high[k] = extent[0, k], extent[1, k]
+            continue
+        half = 0.5 * size[k]
+        if kind == _SPHERE:
+            half = size[0]
+        elif kind != _BOX:
+            half = size[1] if k < 2 else size[0] / 2.0 + (size[1] if kind == _CAPSULE else 0.0)
+        low[k], high[k] = -half, half
     box[0], box[1] = math.inf, -math.inf
     for corner in range(8):
         point = map_point(

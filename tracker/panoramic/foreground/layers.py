@@ -248,6 +248,10 @@ def _close(units: Linear, rows: int) -> None:
     columns = units.shape[2] - 2 * _BORDER
     units[:, :_BORDER] = 0.0
     units[:, rows + _BORDER :] = 0.0
-    inner = units[:, _BORDER : rows + _BORDER]
-    inner[:, :, :_BORDER] = inner[:, :, columns : columns + _BORDER]
-    inner[:, :, columns + _BORDER :] = inner[:, :, _BORDER : 2 * _BORDER]
+    for unit in range(units.shape[0]):
+        for row in range(_BORDER, rows + _BORDER):
+            line = units[unit, row]
+            for k in range(_BORDER):
+                line[k] = line[columns + k]
+            for k in range(_BORDER):
+                line[columns + _BORDER + k] = line[_BORDER + k]
