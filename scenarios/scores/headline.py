@@ -48,9 +48,11 @@ def _following(score: FollowingScore) -> str:
     if not score.found:
         return "The person to follow was never found."
     end = "to the end" if score.followed_to_end else "but not to the end"
+    astray = f"the robot went after somebody else for {score.wrong_person_s:.1f} s; "
     return (
         f"The person to follow was found after {score.time_to_find_s:.1f} s and tracked for "
-        f"{_percent(100.0 * score.followed)} of the time since, {end}; {_some(score.collisions, 'contact')}."
+        f"{_percent(100.0 * score.followed)} of the time since, {end}; "
+        f"{astray if score.wrong_person_s > 0.0 else ''}{_some(score.collisions, 'contact')}."
     )
 
 
