@@ -51,8 +51,9 @@ class CorridorConfig:
         lost_s: [s] without sight of walls for this long, the corridor is looked for anew.
         image_s: [s] without a corridor in the image for this long, the mode says that sonars have taken over.
         stop_m: [m] before people in the way the robot stops, from its middle to the echo.
-        near_m: [m] the same where nobody has been seen for unseen_s: it may be a wall. Where the sides are
-            nearer than the end, as in a narrow corridor, two sonars alone hear the end, like a person.
+        near_m: [m] the same in a narrow corridor where nobody has been seen for unseen_s: it may be the end.
+        narrow_m: [m] width up to which the sides are nearer than the end to all but two sonars when the robot
+            stops, so that the end sounds like a person.
         unseen_s: [s] nobody has been seen for this long.
         patience_s: [s] it waits there for them to go on.
         turn_at_m: [m] least distance to a wall ahead at which the robot turns; else half the width.
@@ -77,6 +78,7 @@ class CorridorConfig:
     image_s: float = 0.5
     stop_m: float = 1.5
     near_m: float = 0.7
+    narrow_m: float = 2.3
     unseen_s: float = 2.0
     patience_s: float = 4.0
     turn_at_m: float = 0.8
@@ -297,14 +299,14 @@ def _wait(
     is_free: bool,
     config: CorridorConfig,
 ) -> tuple[CorridorState, Command]:
-    """Stop before who is in the way; go on, but slowly, up to what nobody has been seen at."""
-    is_seen = state.time_s - state.people_s <= config.unseen_s
-    if is_seen or is_free:
-        reason = "somebody is in the way" if is_free else "people stand across the way"
-        stop_m, fastest_m_s = config.stop_m, config.cruise_m_s
-    else:
+    """Stop before who is in the way; in a narrow corridor go on slowly to what nobody was seen at."""
+    is_unseen = state.time_s - state.people_s > config.unseen_s
+    if is_unseen and not is_free and corridor.width_m < config.narrow_m:
         reason = "something unseen is across the way"
         stop_m, fastest_m_s = config.near_m, config.pass_m_s
+    else:
+        reason = "somebody is in the way" if is_free else "people stand across the way"
+        stop_m, fastest_m_s = config.stop_m, config.cruise_m_s
     speed = min(config.brake_gain * max(nearest_m - stop_m, 0.0), fastest_m_s)
     here = Lane(offset_m=corridor.offset_m, clearance_m=0.0)
     state = replace(state, mode="wait", reason=reason, side=0)
