@@ -23,7 +23,7 @@ _ARRIVED_M = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Way:
-    """Where a person that nobody disturbs is: times (T,) [s], places (T, 2) [m]; and whether it leaves then."""
+    """Where somebody undisturbed is: times (T,) [s], places (T, 2) [m]; and whether that one then leaves."""
 
     times: NDArray[np.float64]
     places: NDArray[np.float64]
