@@ -32,7 +32,7 @@ BODY_M = 0.2  # clearance that the middle of a person keeps from walls and thing
 ROBOT_M = 0.27  # radius of the circle around the robot
 
 # Names that cameras must leave to other folders, entities and arrays.
-_TAKEN = ("truth", "tracks", "body", "sonar", "odometry")
+_TAKEN = ("truth", "tracks", "scene", "body", "sonar", "odometry")
 _MOST_PIXELS = 1 << 23  # that trackers sum up
 
 

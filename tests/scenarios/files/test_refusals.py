@@ -68,6 +68,10 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d["people"][1].update(name="border"),
         ("people[1]: name 'border' is taken",),
     ),
+    "a camera whose images would lie where watch writes": (
+        lambda d: d["robot"].update(cameras={"scene": {"kind": "colour"}}),
+        ("robot.cameras.scene: the name is taken in what a run leaves",),
+    ),
     "less than a frame": (
         lambda d: d.update(duration_s=0.03, people=[]),
         ("duration_s: 0.03 is less than a frame", "1/15 s"),
