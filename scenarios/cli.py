@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 from collections.abc import Sequence
 from typing import Any
@@ -32,6 +33,7 @@ from peopleboy.scenarios.running.engine.task import TasksFailed
 
 FAILED = 1
 BAD_INPUT = 2
+_FULL = (errno.ENOSPC, errno.EDQUOT)
 COMMANDS = (
     list_command,
     show,
@@ -85,6 +87,11 @@ def main(arguments: Sequence[str] | None = None) -> Any:
         code = _complain(str(error))
     except (OwnCodeFailed, TasksFailed) as error:
         click.echo(f"peopleboy: {error}", err=True)
+        code = FAILED
+    except OSError as error:
+        if error.errno not in _FULL:
+            raise
+        click.echo(f"peopleboy: the disk is full: {error}; make room and give the command again", err=True)
         code = FAILED
     sys.exit(code if isinstance(code, int) else 0)
 

@@ -51,6 +51,10 @@ class CorridorConfig:
         lost_s: [s] without sight of walls for this long, the corridor is looked for anew.
         image_s: [s] without a corridor in the image for this long, the mode says that sonars have taken over.
         stop_m: [m] before people in the way the robot stops, from its middle to the echo.
+        near_m: [m] the same in a narrow corridor where nobody has been seen for unseen_s: it may be the end.
+        narrow_m: [m] width up to which the sides are nearer than the end to all but two sonars when the robot
+            stops, so that the end sounds like a person.
+        unseen_s: [s] nobody has been seen for this long.
         patience_s: [s] it waits there for them to go on.
         turn_at_m: [m] least distance to a wall ahead at which the robot turns; else half the width.
         brake_gain: [1/s] speed per metre to such a place.
@@ -73,6 +77,9 @@ class CorridorConfig:
     lost_s: float = 8.0
     image_s: float = 0.5
     stop_m: float = 1.5
+    near_m: float = 0.7
+    narrow_m: float = 2.3
+    unseen_s: float = 2.0
     patience_s: float = 4.0
     turn_at_m: float = 0.8
     brake_gain: float = 0.8
@@ -100,6 +107,7 @@ class CorridorState:
         seen_s: [s] when walls were last seen by any sense ...
         image_s: [s] ... and when by the image.
         image_fault: why the image could not tell, empty if it could.
+        people_s: [s] when anybody was last in the image.
         blocked_s: [s] since when people have been in the middle lane; None if nobody is.
         side: +1 while it passes people on their left, -1 on their right, 0 while it does not.
         ended_s: [s] since when the robot has stood before a wall; None if it does not.
@@ -114,6 +122,7 @@ class CorridorState:
     seen_s: float = -math.inf
     image_s: float = -math.inf
     image_fault: str = ""
+    people_s: float = -math.inf
     blocked_s: float | None = None
     side: int = 0
     ended_s: float | None = None
@@ -159,7 +168,8 @@ def follow_corridor(
     step_s = percept.time_s - state.time_s
     if not (percept.is_sound and step_s > 0.0):
         return replace(state, mode="blind", reason="no new input"), STOP
-    state = replace(_locate(state, percept, step_s, config), time_s=percept.time_s)
+    people_s = percept.time_s if percept.people else state.people_s
+    state = replace(_locate(state, percept, step_s, config), time_s=percept.time_s, people_s=people_s)
     corridor = state.corridor
     if corridor is None:
         turning = Command(linear_m_s=0.0, angular_rad_s=config.search_rad_s)
@@ -278,11 +288,28 @@ def _go_along(
         side = state.side or (1 if lane.offset_m > 0.0 else -1)
         state = replace(state, mode="pass", reason="somebody stays in the way", side=side)
         return state, _steer(corridor, lane, config.pass_m_s, ahead_m, config)
-    reason = "somebody is in the way" if is_free else "people stand across the way"
-    state = replace(state, mode="wait", reason=reason, side=0)
-    nearest_m = float(np.min(ahead[:, 0]))
-    speed = min(config.brake_gain * max(nearest_m - config.stop_m, 0.0), config.cruise_m_s)
+    return _wait(state, corridor, float(np.min(ahead[:, 0])), ahead_m, is_free, config)
+
+
+def _wait(
+    state: CorridorState,
+    corridor: Corridor,
+    nearest_m: float,
+    ahead_m: float | None,
+    is_free: bool,
+    config: CorridorConfig,
+) -> tuple[CorridorState, Command]:
+    """Stop before who is in the way; in a narrow corridor go on slowly to what nobody was seen at."""
+    is_unseen = state.time_s - state.people_s > config.unseen_s
+    if is_unseen and not is_free and corridor.width_m < config.narrow_m:
+        reason = "something unseen is across the way"
+        stop_m, fastest_m_s = config.near_m, config.pass_m_s
+    else:
+        reason = "somebody is in the way" if is_free else "people stand across the way"
+        stop_m, fastest_m_s = config.stop_m, config.cruise_m_s
+    speed = min(config.brake_gain * max(nearest_m - stop_m, 0.0), fastest_m_s)
     here = Lane(offset_m=corridor.offset_m, clearance_m=0.0)
+    state = replace(state, mode="wait", reason=reason, side=0)
     return state, _steer(corridor, here, speed, ahead_m, config)
 
 

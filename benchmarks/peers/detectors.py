@@ -19,7 +19,7 @@ from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal.colour_config import ROBOT_AFFINE
 
 Boxes = NDArray[np.float64]
-TORSO_PER_HEIGHT = 0.27  # width of a truth box over its height, mean of the library
+TRUTH_PER_HEIGHT = 0.27  # width of a box of the truth over its height, mean of the library
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,7 +53,7 @@ class Hog:
         self,
         *,
         uses_colour: bool,
-        width_per_height: float = TORSO_PER_HEIGHT,
+        width_per_height: float = TRUTH_PER_HEIGHT,
         enlarged: float = 2.0,
         weakest: float = -0.3,
     ) -> None:
@@ -95,7 +95,7 @@ class Blobs:
         boxes = boxes[
             (boxes[:, 3] >= self._SMALLEST_PX) & (ratio >= self._UPRIGHT[0]) & (ratio <= self._UPRIGHT[1])
         ]
-        return Detections(_shaped(boxes, 1.0, TORSO_PER_HEIGHT), np.ones(len(boxes)))
+        return Detections(_shaped(boxes, 1.0, TRUTH_PER_HEIGHT), np.ones(len(boxes)))
 
 
 class Oracle:

@@ -26,12 +26,13 @@ from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rectangle import Rectangle
 from peopleboy.sim.places.thing_kinds import KINDS
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.truth.truth import BORDER
 
 BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
 ROBOT_M = 0.27  # radius of the circle around the robot
 
 # Names that cameras must leave to other folders, entities and arrays.
-_TAKEN = ("truth", "tracks", "body", "sonar", "odometry")
+_TAKEN = ("truth", "tracks", "scene", "body", "sonar", "odometry")
 _MOST_PIXELS = 1 << 23  # that trackers sum up
 
 
@@ -123,7 +124,8 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]],
     Raises:
         BadInput: with the key of what it is.
     """
-    _check_names(people)
+    _check_duration(spec.duration_s)
+    _check_names(people, ground.moved.place)
     _check_groups(people)
     _check_robot(spec, ground)
     _check_cameras(spec.robot)
@@ -155,9 +157,22 @@ def crosses(box: Rectangle, start: tuple[float, float], end: tuple[float, float]
     return first < last
 
 
-def _check_names(people: Sequence[tuple[Key, PersonSpec]]) -> None:
+def _check_duration(duration_s: float) -> None:
+    if round(duration_s * CONTROL_HZ) < 1:
+        raise BadInput(
+            f"{duration_s:g} is less than a frame; give 1/{CONTROL_HZ} s at least", key=("duration_s",)
+        )
+
+
+def _check_names(people: Sequence[tuple[Key, PersonSpec]], place: Place) -> None:
+    """Refuse people whom the truth could not tell from each other, or from what else it names."""
+    standing = {fixture.name.split("/")[0] for fixture in place.fixtures}
     seen: dict[str, Key] = {}
     for key, person in people:
+        if person.name in standing:
+            raise BadInput(f"name {person.name!r} is that of something in the place; choose another", key=key)
+        if person.name == BORDER:
+            raise BadInput(f"name {BORDER!r} is taken by the image's border; choose another", key=key)
         if person.name == "robot":
             raise BadInput("name 'robot' is taken by the robot; choose another", key=key)
         if person.name in seen:

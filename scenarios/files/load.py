@@ -56,7 +56,7 @@ def _filled_in(data: dict[Any, Any], via: tuple[str, ...] = ()) -> dict[Any, Any
     if not isinstance(data.get("like"), str):
         return data
     with found_in("like"):
-        path = _find_in_library(data["like"])
+        path = _find_in_library(data["like"], "only those can be named here, no file")
         if path.stem in via:
             raise BadInput(f"{path.stem!r} is like itself, by way of {', '.join(via)}; leave it out of one")
     model = _filled_in(read_yaml(path), (*via, path.stem))
@@ -67,15 +67,16 @@ def _find(name_or_path: str | Path) -> Path:
     text = str(name_or_path)
     if "/" in text or text.endswith((".yaml", ".yml")) or isinstance(name_or_path, Path):
         return Path(name_or_path)
-    return _find_in_library(text)
+    return _find_in_library(text, "a file's path ends in .yaml")
 
 
-def _find_in_library(name: str) -> Path:
+def _find_in_library(name: str, otherwise: str) -> Path:
     known = [path.stem for path in LIBRARY.glob("*.yaml")]
     if (SUITES / f"{name}.yaml").is_file():
         raise BadInput(f"{name} is a suite of scenarios, which only `peopleboy run` takes whole")
     if name not in known:
-        raise BadInput(f"unknown scenario {name!r}; {hint(name, known)}; a file's path ends in .yaml")
+        which = hint(name, known, "`peopleboy list` names those that there are")
+        raise BadInput(f"unknown scenario {name!r}; {which}; {otherwise}")
     return LIBRARY / f"{name}.yaml"
 
 

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import yaml
 
 from peopleboy.bad_input import BadInput, found_in
 
 _LARGEST_BYTES = 1_000_000
+# As in YAML 1.2: in plain YAML 1.1, 045 is thirty-seven, 1:30 is ninety, and 1e3 is a word.
+_WHOLE: Final = r"[-+]?(0|[1-9][0-9]*)"
+_NUMBERS: Final = {
+    "tag:yaml.org,2002:int": re.compile(rf"{_WHOLE}$"),
+    "tag:yaml.org,2002:float": re.compile(
+        rf"({_WHOLE}?\.[0-9]+|{_WHOLE}\.)([eE][-+]?[0-9]+)?$|{_WHOLE}[eE][-+]?[0-9]+$"
+        r"|[-+]?\.(inf|Inf|INF)$|\.(nan|NaN|NAN)$"
+    ),
+}
 
 
 class _Loader(yaml.SafeLoader):
@@ -48,7 +58,7 @@ def _is_plain(tag: str, letter: str) -> bool:
 
 
 _Loader.yaml_implicit_resolvers = {
-    letter: [(tag, pattern) for tag, pattern in resolvers if _is_plain(tag, letter)]
+    letter: [(tag, _NUMBERS.get(tag, pattern)) for tag, pattern in resolvers if _is_plain(tag, letter)]
     for letter, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
 }
 

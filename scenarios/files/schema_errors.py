@@ -60,11 +60,13 @@ def _explain(error: ValidationError, model: type[BaseModel]) -> BadInput:
     return BadInput("; ".join(lines[:_MOST_FAULTS]) + more)
 
 
-def hint(word: str, known: Iterable[str]) -> str:
-    """Say which known word was probably meant, or list them."""
+def hint(word: str, known: Iterable[str], listed: str | None = None) -> str:
+    """Say which known word was probably meant; or list them, or say where they are listed."""
     words = sorted(known)
     close = difflib.get_close_matches(word, words, n=1, cutoff=0.6)
-    return f"did you mean {close[0]!r}?" if close else f"choose from {', '.join(words)}"
+    if close:
+        return f"did you mean {close[0]!r}?"
+    return f"choose from {', '.join(words)}" if listed is None else listed
 
 
 def _is_echo(fault: Any, faults: Sequence[Any]) -> bool:

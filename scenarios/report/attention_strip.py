@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.report.charts.thermal_stills import images_of
+from peopleboy.scenarios.report.charts.stills import images_of
 from peopleboy.scenarios.report.findings.sentences import seconds
 from peopleboy.scenarios.report.findings.summary import RunFindings
 from peopleboy.scenarios.report.pictures import PagePicture, page_jpeg

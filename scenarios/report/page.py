@@ -14,7 +14,7 @@ from peopleboy.scenarios.export.image_words import describe_images
 from peopleboy.scenarios.report import tables
 from peopleboy.scenarios.report.attention_strip import attention_strip
 from peopleboy.scenarios.report.charts.error_curves import draw_error_curves
-from peopleboy.scenarios.report.charts.thermal_stills import Origin
+from peopleboy.scenarios.report.charts.stills import Origin
 from peopleboy.scenarios.report.charts.thing_timelines import draw_things
 from peopleboy.scenarios.report.charts.timelines import swatch, timelines
 from peopleboy.scenarios.report.charts.ways import draw_ways
@@ -24,6 +24,7 @@ from peopleboy.scenarios.report.page_file import check_place, write_page
 from peopleboy.scenarios.report.pictures import PicturedMoment, contact_sheet, pictured_moments
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.yardstick import Yardstick
+from peopleboy.tracker.frame import THERMAL
 
 HERE = Path(__file__).parent
 _NAMED = 4  # scenarios in a title
@@ -73,6 +74,7 @@ def render(columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: 
         description=_said(columns[0].found.run).get("description", "") if len(singles) == 1 else "",
         lacking=lines,
         moments=moments,
+        is_thermal=all(found.camera == THERMAL for column in columns for found in column.runs),
         timelines=timelines(columns),
         swatch=swatch,
         repeated=_first_repeated(singles),

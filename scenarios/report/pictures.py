@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.contact_sheet import read_tiles
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
-from peopleboy.scenarios.report.charts.thermal_stills import DrawnFrame, Origin, show_frames
+from peopleboy.scenarios.report.charts.stills import DrawnFrame, Origin, show_frames
 from peopleboy.scenarios.report.columns import Column, are_same_scene
 from peopleboy.scenarios.report.findings.sentences import seconds
 from peopleboy.scenarios.report.findings.summary import RunFindings
 from peopleboy.scenarios.report.findings.worst_moments import BadMoment, worst_moments
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.tracker.frame import THERMAL
 
 _JPEG_QUALITY, _TILE_QUALITY = 80, 72
 _MOMENTS = 6  # of one run; of two side by side, each has half as many
@@ -95,8 +96,9 @@ def _pictured(moment: BadMoment, whose: str, stills: _Stills, is_beside: bool) -
     seen = [(label, of[frame]) for frame in moment.frames for label, of in stills.items() if frame in of]
     pictures = []
     for label, still in seen:
-        words = f"{moment.title}, thermal image at {still.time_s:.1f} s, {label}"
+        words = f"{moment.title}, {still.camera} image at {still.time_s:.1f} s, {label}"
         caption = f"{seconds(still.time_s)}{f', {label}' if is_beside else ''}"
+        caption += "" if still.camera == THERMAL else f", {still.camera}"
         pictures.append(PagePicture(page_jpeg(still.picture, _JPEG_QUALITY), words, caption))
     return PicturedMoment(moment, whose, pictures, list(dict.fromkeys(still.origin for _, still in seen)))
 

@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
 from peopleboy.scenarios.scores.run_scores import RunScores
+from peopleboy.sim.truth.truth import (
+    COUNTED_FARTHEST_M,
+    COUNTED_NEAREST_M,
+    ROUND_FARTHEST_M,
+    ROUND_NEAREST_M,
+)
 from peopleboy.tracker.evaluation.evaluate import Scores
+
+_NEAR: Final = (
+    f"{COUNTED_NEAREST_M:g} to {COUNTED_FARTHEST_M:g} m away, "
+    f"in a panorama {ROUND_NEAREST_M:g} to {ROUND_FARTHEST_M:g} m"
+)
 
 
 def headline(scores: RunScores) -> str:
@@ -24,8 +36,7 @@ def _people(scores: Scores) -> str:
     counts, thesis, mot = scores.counts, scores.thesis, scores.mot
     false = _some(counts.false_tracks, "false track")
     if not counts.targets:
-        near = "3 to 10 m away, in a panorama 1.1 to 7 m"
-        return f"Nobody was to be found in {counts.frames} frames, which is who is seen {near}; {false}."
+        return f"Nobody was to be found in {counts.frames} frames, which is who is seen {_NEAR}; {false}."
     right = "no box given" if math.isnan(thesis.cp) else f"{_percent(thesis.cp)} of the boxes given are right"
     return (
         f"People were found in {_percent(thesis.cr)} of {counts.targets} cases, {right}; "
@@ -37,9 +48,11 @@ def _following(score: FollowingScore) -> str:
     if not score.found:
         return "The person to follow was never found."
     end = "to the end" if score.followed_to_end else "but not to the end"
+    astray = f"the robot went after somebody else for {score.wrong_person_s:.1f} s; "
     return (
         f"The person to follow was found after {score.time_to_find_s:.1f} s and tracked for "
-        f"{_percent(100.0 * score.followed)} of the time since, {end}; {_some(score.collisions, 'contact')}."
+        f"{_percent(100.0 * score.followed)} of the time since, {end}; "
+        f"{astray if score.wrong_person_s > 0.0 else ''}{_some(score.collisions, 'contact')}."
     )
 
 

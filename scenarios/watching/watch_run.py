@@ -96,15 +96,15 @@ def _watched(
             lines.write(scene_line(scene))
             who.look([(one.id, one.place_m) for one in scene.persons], people.get(number, []))
             bodies.look(frame.time_s, [one.place_m for one in scene.persons])
-            happenings += scene.happenings
+            happenings += [one for one in scene.happenings if not bodies.are_at(one)]
             if layer is not None:
                 depth = (frame.depth(DEPTH) / 1000.0).astype(np.float32)
                 layer.log(number, scene, depth, model.geometry, model.pose)
             report(number, run.frames)
-        happenings += model.finish()
+        happenings += [one for one in model.finish() if not bodies.are_at(one)]
         write_map(model.static_map(), folder / MAP)
         write_background(scene.background_m, folder / BACKGROUND)
-        told = _told(happenings, who, bodies, true_events(run), first)
+        told = _told(happenings, who, true_events(run), first)
         if layer is not None:
             layer.log_map(model.static_map())
             layer.log_events([(happening.told_s, line) for happening, line in told])
@@ -123,10 +123,10 @@ def true_events(run: FinishedRun) -> list[TrueEvent]:
 
 
 def _told(
-    happenings: Sequence[Happening], who: WhoIsWho, bodies: Bodies, events: Sequence[TrueEvent], first: Planar
+    happenings: Sequence[Happening], who: WhoIsWho, events: Sequence[TrueEvent], first: Planar
 ) -> list[tuple[Happening, str]]:
     """Put what happened into words, with the names of the things that it truly happened to."""
-    happenings = [one for one in _without_halves(happenings) if not bodies.are_at(one)]
+    happenings = _without_halves(happenings)
     names = thing_names(happenings, events, first)
     return [(one, sentence(one, who.name, names.get(one.object))) for one in happenings]
 

@@ -142,11 +142,18 @@ class Truth:
     background_m: Callable[[], NDArray[np.float32]]
 
 
-def is_counted(distance_m: float, camera: CameraGeometry) -> bool:
-    """Whether a person at this distance from a camera is to be found: where the sources count (T 3.3).
+def counted_m(camera: CameraGeometry) -> tuple[float, float]:
+    """Give the distances [m] from a camera between which people are to be found.
 
-    They had no panorama; there it is where trackers of panoramas find people.
+    It is where the sources count (T 3.3). They had no panorama; there it is where trackers of
+    panoramas find people.
     """
     if isinstance(camera, Panorama):
-        return ROUND_NEAREST_M <= distance_m <= ROUND_FARTHEST_M
-    return COUNTED_NEAREST_M <= distance_m <= COUNTED_FARTHEST_M
+        return ROUND_NEAREST_M, ROUND_FARTHEST_M
+    return COUNTED_NEAREST_M, COUNTED_FARTHEST_M
+
+
+def is_counted(distance_m: float, camera: CameraGeometry) -> bool:
+    """Whether a person at this distance from a camera is to be found."""
+    nearest_m, farthest_m = counted_m(camera)
+    return nearest_m <= distance_m <= farthest_m

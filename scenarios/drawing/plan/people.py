@@ -23,11 +23,16 @@ _ARRIVED_M = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Way:
-    """Where a person that nobody disturbs is: times (T,) [s] and places (T, 2) [m], and how it ends."""
+    """Where somebody undisturbed is: times (T,) [s], places (T, 2) [m]; and whether that one then leaves."""
 
     times: NDArray[np.float64]
     places: NDArray[np.float64]
-    end: str
+    leaves: bool
+
+    @property
+    def walks(self) -> bool:
+        """Whether the person goes anywhere."""
+        return bool(np.ptp(self.places, axis=0).max() > _ARRIVED_M)
 
 
 def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, colour: str) -> None:
@@ -40,11 +45,17 @@ def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, 
     labels.block(start[0], start[1], 0.12)
     for x, y in np.unique(np.round(way.places, 1), axis=0):  # once where the person stands
         labels.block(x, y, 0.05)
-    entry = f", from {person.enter_s:.1f} s" if person.enter_s > 0.0 else ""
-    name = f"{person.name} {person.height_m:.2f} m{entry}"
+    name = f"{person.name} {person.height_m:.2f} m{_presence(person, way)}"
     labels.write(start[0], start[1], name, size=8, color=colour, weight="bold")
     _draw_pauses(axes, labels, person, way, colour)
     _draw_times(axes, labels, way, colour)
+
+
+def _presence(person: PersonConfig, way: _Way) -> str:
+    """Say when somebody comes; of who walks, it stands at the end of the way when the person leaves."""
+    enters = f"from {person.enter_s:.1f}" if person.enter_s > 0.0 else ""
+    leaves = f"until {person.leave_s:.1f}" if way.leaves and not way.walks else ""
+    return f", {' '.join(filter(None, (enters, leaves)))} s" if enters or leaves else ""
 
 
 def _walk(person: PersonConfig, end_s: float) -> _Way:
@@ -56,7 +67,7 @@ def _walk(person: PersonConfig, end_s: float) -> _Way:
         places.append(walker.position.copy())
     times = person.enter_s + _STEP_S * np.arange(len(places), dtype=np.float64)
     leaves = person.leave_s is not None and person.leave_s < end_s
-    return _Way(times=times, places=np.array(places), end="leaves at" if leaves else "run ends at")
+    return _Way(times=times, places=np.array(places), leaves=leaves)
 
 
 def _draw_arrows(axes: Axes, way: _Way, colour: str) -> None:
@@ -109,5 +120,6 @@ def _draw_times(axes: Axes, labels: Labels, way: _Way, colour: str) -> None:
     x, y = way.places[-1]
     axes.plot(x, y, "s", ms=4.5, mfc=colour, mec="white", mew=0.8, zorder=8)
     stays = way.times[-1] - way.times[arrival] > _SHORTEST_PAUSE_S
-    what = f"stays from {way.times[arrival]:.0f} s" if stays else f"{way.end} {way.times[-1]:.0f} s"
+    end = f"{'leaves' if way.leaves else 'run ends'} at {way.times[-1]:.0f} s"
+    what = f"stays from {way.times[arrival]:.0f} s{f', {end}' if way.leaves else ''}" if stays else end
     labels.write(x, y, what, size=6.8, color=colour, weight="bold")

@@ -60,6 +60,8 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
     draw_legend(figure, _SIDE_IN, has_moves=bool(scenario.place.movers))
     with writing_to(path):
         try:
+            if not path.suffix:  # to which one would be put, unasked
+                raise ValueError("it has no ending")
             figure.savefig(path, dpi=_DPI)
         except ValueError as error:
             raise BadInput(

@@ -18,6 +18,7 @@ from rosbags.typesys.store import Typestore
 from scipy.spatial.transform import Rotation
 
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
+from peopleboy.scenarios.export.ros.odometry_noise import OdometryNoise
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.camera_truth import further_cameras
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
@@ -39,6 +40,7 @@ Message = tuple[str, str, Any]  # topic, type, content
 JPEG_QUALITY: Final = 90
 _POINT_EVERY = 4
 _FLOAT32 = 7  # of sensor_msgs/PointField
+_PLANE = np.ix_((0, 1, 5), (0, 1, 5))  # x, y and the turn about z of a covariance in space
 _MAP, _ODOM, _BASE = "map", "odom", "base_link"
 
 # vision_msgs 4, which no ROS distribution ships with its base.
@@ -73,7 +75,7 @@ def message_types() -> Typestore:
 
 
 class Messenger:
-    """Turns ticks into messages.
+    """Turns ticks, in their order, into messages.
 
     Args:
         robot: whose cameras they are.
@@ -85,6 +87,7 @@ class Messenger:
         self._cameras = robot.cameras
         self._sonar_height_m = robot.sonar.height_m
         self._further = further_cameras(robot.cameras)
+        self._noise = OdometryNoise(robot.drive.encoder_noise_m)
 
     def fixed(self, time_s: float) -> Iterator[Message]:
         """Say once where the cameras are on the robot."""
@@ -278,11 +281,13 @@ class Messenger:
             linear=self._vector((left + right) / 2.0, 0.0, 0.0),
             angular=self._vector(0.0, 0.0, (right - left) / WHEEL_DISTANCE_M),
         )
+        pose = self._pose_with_covariance(tick.observation.odometry)
+        pose.covariance.reshape(6, 6)[_PLANE] = self._noise.carry(tick.observation.odometry)
         return self._make(
             "nav_msgs/Odometry",
             header=self._header(_ODOM, tick.observation.time_s),
             child_frame_id=_BASE,
-            pose=self._pose_with_covariance(tick.observation.odometry),
+            pose=pose,
             twist=self._make("geometry_msgs/TwistWithCovariance", twist=twist, covariance=np.zeros(36)),
         )
 

@@ -118,6 +118,12 @@ class PersonSpec(_Walk):
 class GroupSpec(_Walk):
     """People who walk abreast along one path, from its right side to its left."""
 
+    path: tuple[WaypointSpec, ...] = Field(
+        strict=False,
+        min_length=2,
+        max_length=500,
+        description="the points that they walk to; the way between them tells which side is right",
+    )
     names: tuple[Name, ...] = Field(
         strict=False,
         min_length=2,

@@ -311,7 +311,8 @@ _ByKind = Annotated[_OwnCameraSpec, Field(discriminator="kind")]
 class CommandSpec(Strict):
     """From a time on, a scripted robot drives at this velocity, or as near to it as its drive comes.
 
-    The drive does at most 0.8 m/s and 150 deg/s, and comes to them at 0.6 m/s2 and 200 deg/s2.
+    The drive does at most 0.8 m/s and 150 deg/s, and comes to them at 0.6 m/s2 and 200 deg/s2. The guard,
+    which keeps 0.45 m to what the sonars see, stops it before walls and people as it does any robot.
     """
 
     from_s: Seconds = Field(description="when the robot begins to drive so")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from textwrap import fill
 from typing import NamedTuple
@@ -16,7 +17,6 @@ from peopleboy.scenarios.report.findings.spans import Floats
 from peopleboy.scenarios.report.findings.summary import RunFindings
 from peopleboy.tracker.evaluation.uncounted import counts
 
-DISTANCES_M = (3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0)
 VISIBLE = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 _FEWEST = 5  # boxes in a bin, below which a figure says nothing
 _DASHES = ("-", (0, (4, 2)), (0, (1.4, 2)), (0, (5, 2, 1.4, 2)))
@@ -37,6 +37,13 @@ class CurvePoint(NamedTuple):
     mean: float  # over runs of their means
     sd: float  # sample standard deviation over runs; 0 for fewer than two
     boxes: int  # how many are in the bin
+
+
+def distance_edges(runs: Iterable[RunFindings]) -> tuple[float, ...]:
+    """Give the edges [m] of bins a metre wide over all distances at which people count in some runs."""
+    nearest_m, farthest_m = zip(*(found.counted_m for found in runs), strict=True)
+    first, last = min(nearest_m), max(farthest_m)
+    return (first, *(float(edge) for edge in range(math.floor(first) + 1, math.ceil(last))), last)
 
 
 def samples(found: RunFindings) -> Samples:
@@ -73,13 +80,18 @@ def curve(runs: Sequence[Samples], over: str, figure: str, edges: Sequence[float
 def draw_error_curves(columns: Sequence[Column]) -> list[tuple[str, Markup]]:
     """Draw, with their titles, whether people are found and how far off boxes are, for all columns."""
     runs = {column.label: [samples(found) for found in column.runs] for column in columns}
+    distances_m = distance_edges(found for column in columns for found in column.runs)
     charts = []
     for figure, title, top, unit in (
         ("found", "People found", 100.0, "%"),
         ("offset", "How far the box is off", None, "px"),
     ):
+        if figure == "offset" and not any(
+            np.isfinite(one[figure]).any() for of in runs.values() for one in of
+        ):
+            continue  # of places on the floor
         for over, edges, ticks, label, words in (
-            ("distance", DISTANCES_M, DISTANCES_M[1::2], "distance from the camera [m]", "over distance"),
+            ("distance", distances_m, distances_m[1::2], "distance from the camera [m]", "over distance"),
             ("visible", VISIBLE, VISIBLE, "share of the person that is visible", "over visible share"),
         ):
             curves = {name: curve(of, over, figure, edges) for name, of in runs.items()}

@@ -6,7 +6,6 @@ import numpy as np
 
 from peopleboy.scenarios.report.findings.sentences import seconds, spoken
 from peopleboy.scenarios.report.findings.story import PersonView, RunStory, Story
-from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 
 BEFORE_S = 0.5  # what happened this long before a loss may be its cause
 _CUT_OFF = 0.85  # share of a person nobody hides that is inside the image, below which that is worth telling
@@ -44,8 +43,9 @@ def _amiss(story: RunStory, person: Story, start: int, end: int) -> str:
     if (view == PersonView.PARTLY).any():
         return f"was hidden to {np.nanmax(person.occluded[first:last]):.0%}{hider}"
     if not person.is_counted[first:last].all():
-        is_far = np.nanmax(person.distance_m[first:last]) > COUNTED_FARTHEST_M
-        return f"was {f'beyond {COUNTED_FARTHEST_M:g}' if is_far else f'nearer than {COUNTED_NEAREST_M:g}'} m"
+        nearest_m, farthest_m = story.counted_m
+        is_far = np.nanmax(person.distance_m[first:last]) > farthest_m
+        return f"was {f'beyond {farthest_m:g}' if is_far else f'nearer than {nearest_m:g}'} m"
     if person.visible[first:last].min() < _CUT_OFF:
         return "was cut off by the image border"
     return ""

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.report.findings.spans import Flags, Floats, Ints, between, settle
 from peopleboy.scenarios.run_folder.camera_truth import truth_files
-from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun, cameras_of
 from peopleboy.scenarios.run_folder.on_floor import as_squares, is_on_floor_alone
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_table
 from peopleboy.scenarios.run_folder.tables import TRUTH
@@ -24,6 +25,7 @@ from peopleboy.scenarios.scores.yardstick import (
     kind_of_boxes,
     own_camera,
 )
+from peopleboy.sim.cameras.camera_config import CameraConfig, ThermalConfig
 from peopleboy.sim.truth.events import (
     LEAVES_INSIDE,
     OCCLUSION_ENDS,
@@ -31,7 +33,7 @@ from peopleboy.sim.truth.events import (
     TOTAL_ENDS,
     TOTAL_STARTS,
 )
-from peopleboy.sim.truth.truth import BORDER
+from peopleboy.sim.truth.truth import BORDER, counted_m
 from peopleboy.tracker.evaluation.association import associate, pair_up
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
@@ -75,7 +77,7 @@ class Story:
     visible: Floats  # share of the whole silhouette; 0 as above
     occluded: Floats  # share hidden of what lies inside the image; NaN outside it
     hider: tuple[str, ...]  # who or what hides most of the person; empty for nobody
-    is_counted: Flags  # 3 to 10 m away
+    is_counted: Flags  # neither too near nor too far away
     view: Ints  # `PersonView`, with the thresholds of the event log
     matched: Ints  # number of the track whose box lies on the person (IoU above 0.5), or 0
     track: Ints  # the same without fleeting ones and short breaks
@@ -125,14 +127,33 @@ class RunStory:
         return Yardstick(camera, kind_of_boxes(self.run.folder, camera, tracker, BoxKind(about.boxes)))
 
     @cached_property
-    def seen(self) -> pa.Table:
-        """What is true of people in that camera's images; if scored on the floor, in those with boxes."""
-        camera = self.yardstick.camera
+    def camera(self) -> str:
+        """By whose images it is told who was to be seen; if scored on the floor, one with boxes."""
         if self.is_on_floor:
-            camera, *_ = (*boxed_cameras(self.run.folder), THERMAL)
-        if camera == THERMAL:
+            return (*boxed_cameras(self.run.folder), THERMAL)[0]
+        return self.yardstick.camera
+
+    @cached_property
+    def view(self) -> CameraConfig:
+        """That camera's settings; of `thermal` the usual ones, where the scenario cannot be read."""
+        try:
+            return cameras_of(self.run.folder)[self.camera]
+        except BadInput:
+            if self.camera != THERMAL:
+                raise
+            return ThermalConfig()
+
+    @cached_property
+    def counted_m(self) -> tuple[float, float]:
+        """The distances [m] from that camera between which people count."""
+        return counted_m(self.view.camera)
+
+    @cached_property
+    def seen(self) -> pa.Table:
+        """What is true of people in that camera's images."""
+        if self.camera == THERMAL:
             return self.files.people
-        _, table = truth_files(self.run.folder, camera)
+        _, table = truth_files(self.run.folder, self.camera)
         return read_table(table, TRUTH, _PEOPLE)
 
     @cached_property

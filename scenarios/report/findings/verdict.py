@@ -77,7 +77,8 @@ def _people(found: RunFindings) -> str:
     tracked = due - len(others)
     asides = [f"{listed(hidden)} hidden until the end"] if hidden and due > 1 else []
     never = len(found.people) - due
-    asides += [f"{never} more never came within 3 to 10 m in sight"] if never else []
+    nearest_m, farthest_m = found.counted_m
+    asides += [f"{never} more never came within {nearest_m:g} to {farthest_m:g} m in sight"] if never else []
     aside = f" ({'; '.join(asides)})" if asides else ""
     if due == 1:
         how = "hidden until" if hidden else "tracked to" if tracked else "not tracked to"

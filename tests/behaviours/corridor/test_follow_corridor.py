@@ -58,17 +58,30 @@ def nobody(_):
     return (99.0, 99.0)
 
 
-@pytest.mark.parametrize("seed", [0])
-def test_the_robot_finds_the_middle_keeps_it_and_turns_back_at_the_dead_end(seed):
-    toy = Toy(path=nobody, walls=corridor_walls(), rng=np.random.default_rng(seed))
-    toy.pose = np.array([0.0, 0.5, 0.2])
-    log = drive(toy, make_behaviour("follow_corridor"), 40.0)
+def drive_to_the_end(width, beside, length, seconds):
+    toy = Toy(path=nobody, walls=corridor_walls(length, width), rng=np.random.default_rng(0))
+    toy.pose = np.array([0.0, beside, 0.2])
+    return drive(toy, make_behaviour("follow_corridor"), seconds)
+
+
+def test_the_robot_finds_the_middle_keeps_it_and_turns_back_at_the_dead_end():
+    log = drive_to_the_end(width=3.0, beside=0.5, length=14.0, seconds=40.0)
     x, y, heading = log.robot.T
     assert not log.is_contact.any()
     assert np.abs(y[(log.time_s > 8.0)]).max() < 0.1
     assert x.max() > 11.0
     assert abs(math.remainder(heading[-1] - math.pi, math.tau)) < 0.1
     assert "turn" in log.mode
+
+
+@pytest.mark.parametrize("width", [2.2, 1.4])
+def test_the_end_of_a_narrow_corridor_is_not_taken_for_people_who_stand_there(width):
+    log = drive_to_the_end(width=width, beside=0.1, length=6.0, seconds=22.0)
+    x, y, heading = log.robot.T
+    assert not log.is_contact.any()
+    assert np.abs(y[(log.time_s > 4.0)]).max() < 0.1
+    assert abs(math.remainder(heading[-1] - math.pi, math.tau)) < 0.1
+    assert x[-1] < x.max() - 0.5  # on its way back
 
 
 def test_the_robot_waits_for_who_stands_in_the_way_and_goes_on_when_the_way_is_free():

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,9 +12,12 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from peopleboy.scenarios.drawing.labels import Labels
+from peopleboy.scenarios.drawing.plan.people import draw_person
 from peopleboy.scenarios.drawing.plan.plan import draw_plan
 from peopleboy.scenarios.drawing.plan.sheet import MARGIN_M, lay_out, sections
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.sim.people.person import PersonConfig
+from peopleboy.sim.people.walking.walk import Waypoint
 
 
 @given(st.floats(2.0, 100.0), st.floats(2.0, 20.0))
@@ -54,3 +58,30 @@ def test_the_plan_of_a_long_corridor_is_no_strip(tmp_path: Path) -> None:
     draw_plan(load_scenario("corridor_patrol"), 0, tmp_path / "plan.png")
     with Image.open(tmp_path / "plan.png") as picture:
         assert picture.height > 0.7 * picture.width
+
+
+def test_who_leaves_is_said_to_whether_walking_standing_or_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[str] = []
+    monkeypatch.setattr(Labels, "write", lambda self, x, y, text, **style: written.append(text))  # noqa: ARG005
+    figure = Figure()
+    labels = Labels(figure.add_subplot())
+    stands = PersonConfig(name="anna", path=(Waypoint(at_m=(3.0, 0.0)),), enter_s=2.0, leave_s=6.0)
+    way = (Waypoint(at_m=(3.0, 0.0)), Waypoint(at_m=(5.0, 0.0), speed_m_s=1.0))
+    for person in (
+        stands,
+        replace(stands, enter_s=0.0),
+        replace(stands, path=way, leave_s=9.0),
+        replace(stands, path=way, leave_s=None),
+        replace(stands, leave_s=None),
+    ):
+        draw_person(figure.axes[0], labels, person, 10.0, "#000000")
+    tall = f"anna {stands.height_m:.2f} m"
+    assert written == [
+        f"{tall}, from 2.0 until 6.0 s",
+        f"{tall}, until 6.0 s",
+        f"{tall}, from 2.0 s",
+        "stays from 5 s, leaves at 9 s",
+        f"{tall}, from 2.0 s",
+        "stays from 5 s",
+        f"{tall}, from 2.0 s",
+    ]

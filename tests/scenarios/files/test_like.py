@@ -37,3 +37,14 @@ def test_what_is_left_out_comes_from_farther_down_the_chain() -> None:
 def test_a_scenario_that_is_like_itself_in_the_end_is_refused() -> None:
     with refused("'there'", "there, here"):
         load_scenario("here")
+
+
+def test_an_unknown_one_is_refused_by_who_is_near_or_where_all_are_listed(tmp_path: Path) -> None:
+    with refused("'crosing_2'", "did you mean 'crossing_2'?", "ends in .yaml"):
+        load_scenario("crosing_2")
+    with refused("'zzz'", "`peopleboy list`"):
+        load_scenario("zzz")
+    path = tmp_path / "mine.yaml"
+    path.write_text(WHOLE + "like: ./other.yaml\n")
+    with refused("mine.yaml: like: ", "'./other.yaml'", "`peopleboy list`", "no file"):
+        load_scenario(path)

@@ -85,3 +85,16 @@ def test_only_true_and_false_are_booleans_and_dates_stay_text(tmp_path: Path) ->
         "e": 1.5,
         "f": False,
     }
+
+
+def test_numbers_are_those_of_people_not_octal_ones_or_those_of_clocks(tmp_path: Path) -> None:
+    path = tmp_path / "numbers.yaml"
+    path.write_text(
+        "whole: [0, -7, +45, 120]\nbroken: [0.5, -.5, 3., 1e3, 2.5E-1, -0.0, .inf]\n"
+        "text: [045, '45', 1:30, 0x10, 1_000, 0b1, 1:30.5, e3, '.', '-']\n"
+    )
+    read = read_yaml(path)
+    assert read["whole"] == [0, -7, 45, 120]
+    assert all(isinstance(value, int) for value in read["whole"])
+    assert read["broken"] == [0.5, -0.5, 3.0, 1000.0, 0.25, 0.0, float("inf")]
+    assert all(isinstance(value, str) for value in read["text"])

@@ -52,6 +52,30 @@ def camera(**keys: Any) -> Change:
 
 
 MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
+    "a group without a way": (
+        lambda d: d.update(groups=[{"names": ["eve", "fay"], "path": [{"at_m": [3.0, 2.0]}]}]),
+        ("groups[0].path: must have at least 2 entries",),
+    ),
+    "a person named as a thing": (
+        lambda d: d["people"][1].update(name="table_1"),
+        ("people[1]: name 'table_1' is that of something in the place",),
+    ),
+    "a person named as a wall": (
+        lambda d: d["people"][1].update(name="wall_east"),
+        ("people[1]: name 'wall_east' is that of something in the place",),
+    ),
+    "a person named as the border": (
+        lambda d: d["people"][1].update(name="border"),
+        ("people[1]: name 'border' is taken",),
+    ),
+    "a camera whose images would lie where watch writes": (
+        lambda d: d["robot"].update(cameras={"scene": {"kind": "colour"}}),
+        ("robot.cameras.scene: the name is taken in what a run leaves",),
+    ),
+    "less than a frame": (
+        lambda d: d.update(duration_s=0.03, people=[]),
+        ("duration_s: 0.03 is less than a frame", "1/15 s"),
+    ),
     "unknown reaction": (
         lambda d: d["people"][0].update(reacts={"as": "curios"}),
         ("people[0].reacts.as: unknown as 'curios'", "did you mean 'curious'?"),

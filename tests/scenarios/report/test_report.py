@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.report.charts.error_curves import DISTANCES_M, curve, samples
-from peopleboy.scenarios.report.charts.thermal_stills import Origin, show_frames
+from peopleboy.scenarios.report.charts.error_curves import curve, distance_edges, samples
+from peopleboy.scenarios.report.charts.stills import Origin, show_frames
 from peopleboy.scenarios.report.charts.timelines import (
     ASIDE,
     hidden_words,
@@ -290,7 +290,9 @@ def test_a_run_without_faults_shows_the_boxes_that_fit_worst(folders: dict[str, 
 
 def test_curves_average_over_runs(folders: dict[str, Path]) -> None:
     runs = [found_in(folders[name]) for name in ("steady", "renumbered")]
-    points = curve([samples(found) for found in runs], "distance", "found", DISTANCES_M)
+    edges = distance_edges(runs)
+    assert edges == tuple(range(3, 11))
+    points = curve([samples(found) for found in runs], "distance", "found", edges)
     # Anna is 4 m away and always found; ben is 6 m away and seen in 70 frames, in 69 of which he has a box.
     assert [point.x for point in points] == [4.5, 6.5]
     assert points[0].mean == 100.0

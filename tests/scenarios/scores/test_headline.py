@@ -4,9 +4,11 @@ import dataclasses
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.following_metrics import FollowingRun, score_following
 from peopleboy.scenarios.scores.headline import headline
 from peopleboy.scenarios.scores.run_scores import RunScores
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
@@ -52,6 +54,24 @@ def test_who_counts_is_said_where_nobody_does(tmp_path: Path) -> None:
 def test_all_means_all_and_none_means_none(found: int, false: int, clues: list[str], tmp_path: Path) -> None:
     text = headline(RunScores(scores_of(tmp_path, found, false), None))
     assert [clue for clue in clues if clue not in text] == []
+
+
+def test_who_follows_somebody_else_is_told_so(tmp_path: Path) -> None:
+    people = scores_of(tmp_path, 200)
+    still = np.zeros(30, dtype=np.bool_)
+    run = FollowingRun(
+        time_s=np.arange(30) / 15.0,
+        robot=np.zeros((30, 3)),
+        person=np.full((30, 2), 3.0),
+        is_tracked=~still,
+        is_contact=still,
+        is_wrong=np.arange(30) < 12,
+    )
+    assert "went after somebody else for 0.8 s; no contact" in headline(
+        RunScores(people, score_following(run))
+    )
+    right = dataclasses.replace(run, is_wrong=still)
+    assert "to the end; no contact" in headline(RunScores(people, score_following(right)))
 
 
 def test_a_corridor_without_a_straight_leg_says_nothing_of_its_middle(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.cli import cli
-from peopleboy.scenarios.watching.bodies import Bodies
+from peopleboy.scenarios.watching.bodies import TOLD_S, Bodies
 from peopleboy.scenarios.watching.tell import sentence
 from peopleboy.scenarios.watching.thing_names import thing_names
 from peopleboy.scenarios.watching.true_events import TrueEvent, WhoIsWho, matching
@@ -135,7 +135,11 @@ def test_what_vanishes_where_somebody_stood_was_no_thing() -> None:
     bodies.look(3.0, [(2.8, 0.35)])
     assert bodies.are_at(GONE)
     assert not bodies.are_at(replace(GONE, time_s=4.5))
+    bodies.look(3.0 + TOLD_S, [])
+    assert bodies.are_at(GONE)  # which is told late
     assert not bodies.are_at(replace(GONE, change=Change.APPEARED, from_m=None, to_m=GONE.from_m))
+    bodies.look(200.0, [])
+    assert not bodies.are_at(GONE)  # forgotten, so that long runs take no more room
 
 
 def test_who_is_who_is_told_by_most_instants() -> None:
