@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from statistics import median
 from typing import Final
 
@@ -21,7 +22,8 @@ from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 COUNT: Final = 1000
-_TURN: Final = 10  # frames, as many steps, and then HOG once
+_FRAMES: Final = 10  # of a turn, one after the other, then as many steps as these take, then HOG once
+_STEPS: Final = 100
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,14 +78,14 @@ def _turns(film: Sequence[Frame]) -> list[Turn]:
     hog, step = Hog(uses_colour=True), FilterStep(COUNT)
     hog.detect(film[0])
     turns = []
-    for first in range(0, len(film), _TURN):
-        frames_ms, steps_ms = [], []
-        for frame in film[first : first + _TURN]:
-            spent_ms = _spent_ms(lambda frame=frame: tracker.update(frame))
+    for first in range(0, len(film), _FRAMES):
+        frames_ms = []
+        for frame in film[first : first + _FRAMES]:
+            spent_ms = _spent_ms(partial(tracker.update, frame))
             if len(people_in(tracker)) == MOST:
                 frames_ms.append(spent_ms)
-            steps_ms.append(_spent_ms(step))
-        hog_ms = _spent_ms(lambda first=first: hog.detect(film[first]))
+        steps_ms = [_spent_ms(step) for _ in range(_STEPS)]
+        hog_ms = _spent_ms(partial(hog.detect, film[first]))
         if frames_ms:
             turns.append(Turn(frame_ms=median(frames_ms), step_ms=median(steps_ms), hog_ms=hog_ms))
     return turns
