@@ -39,6 +39,7 @@ from peopleboy.tracker.thermal.particles import (
     predict,
     resample,
     turned,
+    turned_column,
 )
 from peopleboy.tracker.thermal.weights import NOTHING, shared_out, sharp_weights
 from peopleboy.tracker.thermal.whereabouts import Regions
@@ -83,6 +84,10 @@ class FrameView:
     def after_turn(self, x: Columns) -> Columns:
         """Tell where columns x [px] of the last frame lie in this one but for people's own motion."""
         return turned(x, self.turn_rad, self.mount.focal_px, (self.image.shape[1] - 1) / 2)
+
+    def column_after_turn(self, x: float) -> float:
+        """Tell the same of a single column."""
+        return turned_column(x, self.turn_rad, self.mount.focal_px, (self.image.shape[1] - 1) / 2)
 
     def describe(self, state: Floats, hiding: Regions | None = None) -> Floats | None:
         """Describe people (N, 9) as their models do, (N, F), if that can be told.

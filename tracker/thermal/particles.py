@@ -226,6 +226,12 @@ def turned(x: Columns, turn_rad: float, focal_px: float, centre_px: float) -> Co
     return moved
 
 
+def turned_column(x: float, turn_rad: float, focal_px: float, centre_px: float) -> float:
+    """Do as `turned` with a single column, for which calling a kernel would take longer than it works."""
+    slope, along = (x - centre_px) / focal_px, math.tan(turn_rad)
+    return centre_px + focal_px * (slope + along) / (1.0 - slope * along)
+
+
 def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
     """Give the amplitudes (5,) of the random walk in d, vx, vy, vw, vh over one step, the last entries of B.
 

@@ -191,7 +191,7 @@ def moved_on(state: NDArray[np.float64], view: FrameView) -> NDArray[np.float64]
     """Move a state (9,) of the last frame to this one, by its velocity and the camera's turn."""
     later = state.copy()
     later[:4] += view.dt_s * later[VX:]
-    later[:1] = view.after_turn(later[:1])
+    later[X] = view.column_after_turn(float(later[X]))
     return later
 
 
@@ -233,7 +233,7 @@ def seen(
     if missing > 0 or occluder is not None:
         return replace(person, **moved)
     before = person.belief.estimate[:2].copy()
-    before[:1] = view.after_turn(before[:1])
+    before[X] = view.column_after_turn(float(before[X]))
     speed = (belief.estimate[:2] - before) / view.dt_s
     return replace(
         person,

@@ -17,7 +17,7 @@ from peopleboy.tracker.thermal.contour.likelihood import (
     probability,
     seen_shares,
 )
-from peopleboy.tracker.thermal.particles import turned, twin_of
+from peopleboy.tracker.thermal.particles import turned, turned_column, twin_of
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 
 SHAPE = (240, 320)
@@ -76,6 +76,12 @@ def test_columns_turn_as_numpy_reckons_in_their_type(kind: type) -> None:
     moved = turned(x, 0.07, 297.3, 159.5)
     assert moved.dtype == kind
     assert np.array_equal(moved, 159.5 + 297.3 * (slope + tangent) / (1 - slope * tangent))
+
+
+def test_a_single_column_turns_as_many_do() -> None:
+    x = RNG.uniform(-50, 370, 500)
+    moved = [turned_column(float(one), 0.07, 297.3, 159.5) for one in x]
+    assert np.array_equal(turned(x, 0.07, 297.3, 159.5), moved)
 
 
 def test_clutter_is_the_difference_that_three_quarters_of_the_pairs_do_not_exceed() -> None:
