@@ -22,8 +22,8 @@ from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 COUNT: Final = 1000
-_FRAMES: Final = 10  # of a turn, one after the other, then as many steps as these take, then HOG once
-_STEPS: Final = 100
+_FRAMES: Final = 10  # of a turn: one after the other, as in a run
+_STEPS: Final = 100  # likewise of the filter; then comes HOG, once
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -91,9 +91,8 @@ class Bullet:
         self._poses = np.zeros((0, 4, 4))
         self._moved: dict[str, Body] = {}
         self._known: dict[str, Matrix] = {}  # poses of bodies since they last moved
-        self._untold: dict[
-            str, Body
-        ] = {}  # bodies that PyBullet has elsewhere, as only TinyRenderer would see
+        # Bodies that PyBullet still has elsewhere, which only TinyRenderer would see.
+        self._untold: dict[str, Body] = {}
         self._solids = SolidBoxes(self._client.getAABB)
         self._client.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1

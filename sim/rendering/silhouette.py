@@ -102,7 +102,7 @@ def _bounds(table: ShapeTable, camera_from_part: Array, parts: Mask, found: Arra
     """Write the bounds (N, 4) of several sets of parts (N, P) at a distance of 1."""
     pose = np.empty((3, 4))
     for n in range(len(parts)):
-        found[n] = EMPTY
+        found[n, 0], found[n, 1], found[n, 2], found[n, 3] = EMPTY
     for shape in range(len(table.kind)):
         part = table.part[shape]
         if not parts[:, part].any():
@@ -112,4 +112,5 @@ def _bounds(table: ShapeTable, camera_from_part: Array, parts: Mask, found: Arra
         own = shape_bounds(table.kind[shape], table.size[shape], pose, table.triangles[first:end])
         for n in range(len(parts)):
             if parts[n, part]:
-                found[n] = unite((found[n, 0], found[n, 1], found[n, 2], found[n, 3]), own)
+                before = (found[n, 0], found[n, 1], found[n, 2], found[n, 3])
+                found[n, 0], found[n, 1], found[n, 2], found[n, 3] = unite(before, own)
