@@ -230,7 +230,7 @@ def test_another_tracker_has_a_folder_of_its_own(tmp_path: Path, monkeypatch: py
 @pytest.mark.parametrize(
     ("arguments", "clue"),
     [
-        (("run", "no_such_scene"), "single_follow"),
+        (("run", "no_such_scene"), "peopleboy list"),
         (("run", "missing.yaml"), "missing.yaml"),
         (("run", "empty_room", "--tracker", "best"), "peopleboy"),
         (("run", "empty_room", "--renderer", "opengl"), "raycast"),
