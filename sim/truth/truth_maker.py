@@ -101,7 +101,7 @@ class TruthMaker:
         k = person - 1
         if not self._people[k].present:
             return None
-        _, height, torso = seen.bounds(self._outlines[k]).tolist()
+        height, torso = seen.bounds(self._outlines[k, _WHOLE + 1 :]).tolist()
         return _thesis_box(height, torso)
 
     def _everybody(self, cover: Cover, seen: Seen) -> tuple[PersonTruth, ...]:
