@@ -150,6 +150,7 @@ def _person_works(tracker: PeopleTracker, number: int, view: FrameView) -> dict[
     assert colour is not None
     known = ColourModel.begin(appearance.describe(estimate.astype(np.float32)[None])[0], colour)
     strength = np.full(len(others), config.interaction.penalty)
+    rows = resample(cloud, len(cloud), rng)
 
     def occlusion() -> object:
         image = covered_by(view.image, others[:1], config.depth.growth)
@@ -158,7 +159,7 @@ def _person_works(tracker: PeopleTracker, number: int, view: FrameView) -> dict[
 
     return {
         "resample": lambda: resample(cloud, len(cloud), rng),
-        "motion": lambda: predict(state, STEP_S, view.size, config.motion, rng),
+        "motion": lambda: predict(state, rows, STEP_S, view.turn, view.size, config.motion, rng),
         "measure contour": lambda: view.model.differences(view.image, state),
         "weights, estimate": lambda: weigh(state, view, config.person, config),
         "colour and looks": lambda: likelihood(appearance.describe(state), known, colour),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.elementary import exponential
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
+from peopleboy.tracker.normal_draws import source_of, standard_normals
 from peopleboy.tracker.thermal.appearance.appearance_model import AppearanceView, visible
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.config import (
@@ -24,14 +25,14 @@ from peopleboy.tracker.thermal.mount import Mount, mount_of
 from peopleboy.tracker.thermal.particles import (
     CROWN,
     FOOT,
-    Columns,
+    CameraTurn,
     D,
     Floats,
     H,
     Particles,
     W,
-    X,
     Y,
+    camera_turn,
     draw_prior,
     estimated,
     floor_rows,
@@ -39,7 +40,6 @@ from peopleboy.tracker.thermal.particles import (
     predict,
     resample,
     turned,
-    turned_column,
 )
 from peopleboy.tracker.thermal.weights import NOTHING, shared_out, sharp_weights
 from peopleboy.tracker.thermal.whereabouts import Regions
@@ -81,13 +81,14 @@ class FrameView:
         """Image height / 240."""
         return int(self.image.shape[0]) / REFERENCE_HEIGHT_PX
 
-    def after_turn(self, x: Columns) -> Columns:
-        """Tell where columns x [px] of the last frame lie in this one but for people's own motion."""
-        return turned(x, self.turn_rad, self.mount.focal_px, (self.image.shape[1] - 1) / 2)
+    @property
+    def turn(self) -> CameraTurn:
+        """How the camera turned since the last frame, as columns of the image need it."""
+        return camera_turn(self.turn_rad, self.mount.focal_px, (self.image.shape[1] - 1) / 2)
 
     def column_after_turn(self, x: float) -> float:
-        """Tell the same of a single column."""
-        return turned_column(x, self.turn_rad, self.mount.focal_px, (self.image.shape[1] - 1) / 2)
+        """Tell where a column x [px] of the last frame lies in this one but for people's own motion."""
+        return turned(x, self.turn)
 
     def describe(self, state: Floats, hiding: Regions | None = None) -> Floats | None:
         """Describe people (N, 9) as their models do, (N, F), if that can be told.
@@ -166,9 +167,7 @@ def weigh(
         factor = likeness if factor is None else likeness * factor
     weight = sample_weights(fit, chance, inside, config.likelihood.model, filter_config, factor, likeness)
     particles = Particles(state, weight)
-    core, estimate, confidence, uncertainty_px2 = estimated(
-        particles, np.where(inside, chance, np.float32(0)), filter_config
-    )
+    core, estimate, confidence, uncertainty_px2 = estimated(particles, chance, inside, filter_config)
     return Belief(particles, core, estimate, confidence, uncertainty_px2)
 
 
@@ -270,8 +269,8 @@ def advance(
     """
     fresh = round(filter_config.fresh_share * filter_config.count)
     kept = resample(particles, filter_config.count - fresh, rng)
-    moved = predict(kept, view.dt_s, view.size, config.motion if motion is None else motion, rng)
-    moved[:, X] = view.after_turn(moved[:, X])
+    motion = config.motion if motion is None else motion
+    moved = predict(particles.state, kept, view.dt_s, view.turn, view.size, motion, rng)
     if resizes and filter_config.resized_share > 0:
         _resize(moved, filter_config.resized_share, rng)
     if fresh == 0:
@@ -285,16 +284,16 @@ def _resize(state: Floats, share: float, rng: np.random.Generator) -> None:
     Every other one keeps the top of its head where it is, the others keep their feet: a torso that was taken
     for a whole person is found out that way.
     """
-    tried = state[:: round(1 / share)]
-    _scale(tried, rng.standard_normal(len(tried), dtype=np.float32))
+    apart = round(1 / share)
+    _scale(state, apart, standard_normals(*source_of(rng), -(-len(state) // apart)))
 
 
 @njit(cache=True, nogil=True)
-def _scale(state: Floats, chance: Floats) -> None:
-    """Scale samples (N, 9) by chance (N,), normal, in place, as `_resize` says."""
-    for i in range(len(state)):
-        factor = exponential(np.float32(RESIZING) * chance[i])
-        kept = np.float32(-CROWN) if i % 2 == 0 else np.float32(FOOT)
+def _scale(state: Floats, apart: int, chance: Floats) -> None:
+    """Scale every so many samples (N, 9) by chance (M,), normal, in place, as `_resize` says."""
+    for k in range(np.uint64(len(chance))):
+        i, factor = k * np.uint64(apart), exponential(np.float32(RESIZING) * chance[k])
+        kept = np.float32(-CROWN) if k % 2 == 0 else np.float32(FOOT)
         state[i, Y] -= kept * (factor - np.float32(1)) * state[i, H]
         state[i, W] *= factor
         state[i, H] *= factor

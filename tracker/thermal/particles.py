@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numba import njit
@@ -20,7 +20,7 @@ from peopleboy.tracker.thermal.config import (
     MotionConfig,
     TrackerConfig,
 )
-from peopleboy.tracker.thermal.weights import scale_to_one
+from peopleboy.tracker.thermal.weights import scale_to_one, systematic_rows
 
 X: Final = 0
 Y: Final = 1
@@ -41,8 +41,9 @@ FOOT: Final = 2.05  # feet below it
 BOX_SPREAD = 0.05  # of a person within a box that is known, as a share of its sides
 
 Floats = NDArray[np.float32]
-Columns = NDArray[np.floating[Any]]
 Ends = tuple[float, float]
+CameraTurn = tuple[float, float, float]
+"""Tangent of the angle by which a camera turned to the left; focal length and middle column [px]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -194,42 +195,52 @@ def draw_around(
     return state
 
 
-def predict(
-    state: Floats, dt_s: float, size: float, config: MotionConfig, rng: np.random.Generator
-) -> Floats:
-    """Draw the (N, 9) states one time step later.
+def camera_turn(turn_rad: float, focal_px: float, centre_px: float) -> CameraTurn:
+    """Describe a turn of the camera to the left [rad] by what columns need."""
+    return math.tan(turn_rad), focal_px, centre_px
 
-    Constant velocity in (x, y, w, h), a random walk in d and in the velocities.
+
+def turned(x: float, turn: CameraTurn) -> float:
+    """Tell where a column x [px] lies after the camera has turned: to the left moves it to the right.
+
+    The thesis leaves the robot's motion to chance; its turn is known from odometry and need not be.
+    """
+    along, focal_px, centre_px = turn
+    slope = (x - centre_px) / focal_px
+    return centre_px + focal_px * (slope + along) / (1.0 - slope * along)
+
+
+def predict(
+    state: Floats,
+    rows: NDArray[np.int64],
+    dt_s: float,
+    turn: CameraTurn,
+    size: float,
+    config: MotionConfig,
+    rng: np.random.Generator,
+) -> Floats:
+    """Draw where some of the samples are one time step later, (N, 9).
+
+    Constant velocity in (x, y, w, h), a random walk in d and in the velocities; then the camera turns.
 
     Args:
-        state: (N, 9) particles now.
+        state: (M, 9) samples now.
+        rows: (N,) those that go on.
         dt_s: time step [s].
+        turn: of the camera.
         size: image height / 240; the amplitudes are given for an image of 240 rows.
         config: amplitudes of the random walk.
         rng: source of chance.
 
     Source: thesis, equations 4.7 and 4.8.
     """
-    noise = standard_normals(*source_of(rng), 5 * len(state)).reshape(-1, 5)
+    noise = standard_normals(*source_of(rng), 5 * len(rows)).reshape(-1, 5)
     amplitude = noise_per_step(dt_s, size, config)
-    memory = np.array([config.place_memory] * 2 + [config.size_memory] * 2, dtype=np.float32)
-    moved: Floats = _predicted(state, noise, amplitude, dt_s, size * config.noise_by_height, memory)
+    memory = _scaled(1.0, (config.place_memory, config.place_memory, config.size_memory, config.size_memory))
+    moved: Floats = _predicted(
+        state, rows, noise, amplitude, memory, dt_s, size * config.noise_by_height, turn
+    )
     return moved
-
-
-def turned(x: Columns, turn_rad: float, focal_px: float, centre_px: float) -> Columns:
-    """Tell where columns x [px] lie after the camera has turned to the left, which moves them to the right.
-
-    The thesis leaves the robot's motion to chance; its turn is known from odometry and need not be.
-    """
-    moved: Columns = _turned(x, math.tan(turn_rad), focal_px, centre_px)
-    return moved
-
-
-def turned_column(x: float, turn_rad: float, focal_px: float, centre_px: float) -> float:
-    """Do as `turned` with a single column, for which calling a kernel would take longer than it works."""
-    slope, along = (x - centre_px) / focal_px, math.tan(turn_rad)
-    return centre_px + focal_px * (slope + along) / (1.0 - slope * along)
 
 
 def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
@@ -238,10 +249,16 @@ def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
     The sources mean magnitudes a second: the velocities' entries reach the position times dt by way of A, so
     d's entry is multiplied by dt here.
     """
-    amplitude = np.array(
-        [config.noise_d * dt_s, config.noise_x, config.noise_y, config.noise_w, config.noise_h]
-    )
-    return (size * amplitude).astype(np.float32)
+    a_second = config.noise_x, config.noise_y, config.noise_w, config.noise_h
+    return _scaled(size, (config.noise_d * dt_s, *a_second))
+
+
+@lru_cache(maxsize=64)
+def _scaled(factor: float, numbers: tuple[float, ...]) -> Floats:
+    """Lay numbers out for kernels, times a factor."""
+    scaled = (factor * np.array(numbers)).astype(np.float32)
+    scaled.setflags(write=False)
+    return scaled
 
 
 def equally_weighted(state: Floats) -> Particles:
@@ -256,14 +273,15 @@ def normalised(weight: Floats) -> Floats:
     return scaled
 
 
-def resample(particles: Particles, count: int, rng: np.random.Generator) -> Floats:
-    """Draw the states (count, 9) of equally weighted particles by systematic resampling.
+def resample(particles: Particles, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    """Draw the rows (count,) of those that go on, with equal weights, by systematic resampling.
 
     Row i appears floor(count w_i) or ceil(count w_i) times; the whole draw uses one random number.
 
     Source: thesis, algorithm 4.
     """
-    return particles.state.take(systematic_rows(particles.weight, count, rng.random()), axis=0)
+    rows: NDArray[np.int64] = systematic_rows(particles.weight, count, rng.random())
+    return rows
 
 
 def mean_state(particles: Particles) -> NDArray[np.float64]:
@@ -285,7 +303,7 @@ def uncertainty_px2(particles: Particles) -> float:
 
 
 def estimated(
-    particles: Particles, chance: Floats, config: FilterConfig
+    particles: Particles, chance: Floats, is_inside: NDArray[np.bool_], config: FilterConfig
 ) -> tuple[Particles, NDArray[np.float64], float, float]:
     """Choose the particles that make the estimate: of the best ones, those near the very best.
 
@@ -294,7 +312,8 @@ def estimated(
 
     Args:
         particles: the weighted samples.
-        chance: (N,) that they are a person.
+        chance: (N,) that they are a person, by the image.
+        is_inside: (N,) whether they are within the limits; others are none.
         config: its `estimate_share` N heaviest particles are kept, rounded up, and their equals (paper: the
             best 30 %), if they are no farther than `estimate_reach` from the heaviest, in its semi-axes.
 
@@ -305,65 +324,77 @@ def estimated(
     # The count-th heaviest weight: those equal to it stay, so that no sorting order decides.
     least = np.partition(particles.weight, len(particles) - count)[len(particles) - count]
     state, weight, mean, confidence, spread = _core(
-        particles.state, particles.weight, chance, least, config.estimate_reach
+        particles.state, particles.weight, chance, is_inside, least, config.estimate_reach
     )
     return Particles(state, weight), mean, confidence, spread
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _predicted(
     state: Floats,
+    rows: NDArray[np.int64],
     noise: Floats,
     amplitude: Floats,
+    memory: Floats,
     dt_s: float,
     by_height: float,
-    memory: Floats,
+    turn: CameraTurn,
 ) -> Floats:
-    result = np.empty_like(state)
-    for i in range(len(state)):
+    result = np.empty((len(rows), STATE_SIZE), dtype=np.float32)
+    along, focal, centre = np.float32(turn[0]), np.float32(turn[1]), np.float32(turn[2])
+    for i in range(np.uint64(len(rows))):
+        row = np.uint64(rows[i])
         # by_height is the semi-height at which the amplitudes hold as they are; 0 keeps them for every size.
-        scale = state[i, H] / by_height if by_height > 0 else 1.0
-        for k in range(4):
-            result[i, k] = state[i, k] + dt_s * state[i, VX + k]
-            result[i, VX + k] = memory[k] * state[i, VX + k] + scale * amplitude[1 + k] * noise[i, 1 + k]
-        result[i, D] = state[i, D] + scale * amplitude[0] * noise[i, 0]
-    return result
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _turned(x: Columns, tangent: float, focal_px: float, centre_px: float) -> Columns:
-    result = np.empty_like(x)
-    # In the type of the columns, as numpy reckons.
-    kind = x.dtype.type
-    along, focal, centre, one = kind(tangent), kind(focal_px), kind(centre_px), kind(1)
-    for i in range(len(x)):
-        slope = (x[i] - centre) / focal
-        result[i] = centre + focal * (slope + along) / (one - slope * along)
+        scale = state[row, H] / by_height if by_height > 0 else 1.0
+        for k in range(np.uint64(4)):
+            velocity = state[row, k + np.uint64(VX)]
+            result[i, k] = state[row, k] + dt_s * velocity
+            by_chance = scale * amplitude[k + np.uint64(1)] * noise[i, k + np.uint64(1)]
+            result[i, k + np.uint64(VX)] = memory[k] * velocity + by_chance
+        result[i, D] = state[row, D] + scale * amplitude[0] * noise[i, 0]
+        slope = (result[i, X] - centre) / focal
+        result[i, X] = centre + focal * (slope + along) / (np.float32(1) - slope * along)
     return result
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _core(
-    state: Floats, weight: Floats, chance: Floats, least: np.float32, reach: float
+    state: Floats,
+    weight: Floats,
+    chance: Floats,
+    is_inside: NDArray[np.bool_],
+    least: np.float32,
+    reach: float,
 ) -> tuple[Floats, Floats, NDArray[np.float64], float, float]:
     """Choose and sum up the samples of `estimated`, from the least weight that is heavy enough."""
-    best, farthest = state[np.argmax(weight)], np.float32(reach * reach)
-    core, heavy, sure = np.empty_like(state), np.empty_like(weight), np.empty_like(chance)
-    count = 0
-    for i in range(len(state)):
-        if weight[i] >= least:
-            across, down = (state[i, X] - best[X]) / best[W], (state[i, Y] - best[Y]) / best[H]
-            if np.isinf(reach) or across * across + down * down <= farthest:
-                for k in range(STATE_SIZE):
-                    core[count, k] = state[i, k]
-                heavy[count], sure[count] = weight[i], chance[i]
-                count += 1
-    core, heavy = core[:count].copy(), heavy[:count].copy()
+    rows = _rows_near_best(state, weight, least, np.float32(reach * reach))
+    core, heavy = np.empty((len(rows), STATE_SIZE), np.float32), np.empty(len(rows), np.float32)
+    for i in range(np.uint64(len(rows))):
+        for k in range(np.uint64(STATE_SIZE)):
+            core[i, k] = state[rows[i], k]
+        heavy[i] = weight[rows[i]]
     scale_to_one(heavy)
-    mean, confidence = _mean(core, heavy), 0.0
-    for i in range(count):
-        confidence += heavy[i] * np.float64(sure[i])
+    confidence = 0.0
+    for i in range(np.uint64(len(rows))):
+        sure = chance[rows[i]] if is_inside[rows[i]] else np.float32(0)
+        confidence += heavy[i] * np.float64(sure)
+    mean = _mean(core, heavy)
     return core, heavy, mean, confidence, _spread(core, heavy, mean)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _rows_near_best(
+    state: Floats, weight: Floats, least: np.float32, farthest: np.float32
+) -> NDArray[np.uint64]:
+    """List the rows of samples of some weight that are no farther from the heaviest, in its semi-axes."""
+    best, rows, count = state[np.argmax(weight)], np.empty(len(weight), dtype=np.uint64), np.uint64(0)
+    for i in range(np.uint64(len(weight))):
+        across, down = (state[i, X] - best[X]) / best[W], (state[i, Y] - best[Y]) / best[H]
+        is_near = np.isinf(farthest) or across * across + down * down <= farthest
+        # Counted, not branched on, as no processor foresees who is heavy.
+        rows[count] = i
+        count += np.uint64((weight[i] >= least) & is_near)
+    return rows[:count]
 
 
 @njit(cache=True, nogil=True)
@@ -384,53 +415,3 @@ def _spread(state: Floats, weight: Floats, mean: NDArray[np.float64]) -> float:
         across, down = state[i, X] - mean[X], state[i, Y] - mean[Y]
         spread += weight[i] * (across * across + down * down)
     return spread
-
-
-@njit(cache=True, nogil=True)
-def twin_of(state: Floats, i: int) -> int:
-    """Find one of the two samples before the i-th whose body is the same; negative if there is none.
-
-    Samples (N, 9) drawn from the same one lie together and differ in d alone, but for one in every few that
-    is tried at another size.
-    """
-    for before in (i - 1, i - 2):
-        if before >= 0 and (
-            state[i, X] == state[before, X]
-            and state[i, Y] == state[before, Y]
-            and state[i, W] == state[before, W]
-            and state[i, H] == state[before, H]
-        ):
-            return before
-    return -1
-
-
-@njit(cache=True, nogil=True)
-def bodies_of(state: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Find the twins (N,) of samples (N, 9) by `twin_of`, and the rows (M,) of those that have none."""
-    twin, rows, count = np.empty(len(state), dtype=np.int64), np.empty(len(state), dtype=np.int64), 0
-    for i in range(len(state)):
-        twin[i] = twin_of(state, i)
-        if twin[i] < 0:
-            rows[count] = i
-            count += 1
-    return twin, rows[:count]
-
-
-@njit(cache=True, nogil=True)
-def systematic_rows(weight: Floats, count: int, offset: float) -> NDArray[np.int64]:
-    """Find the rows (count,) under `count` evenly spaced marks on the cumulated weights; offset in [0, 1)."""
-    rows = np.empty(count, dtype=np.int64)
-    total, last = 0.0, 0
-    for k in range(len(weight)):
-        total += weight[k]
-        if weight[k] > 0:
-            last = k
-    row = 0
-    cumulated = float(weight[0])
-    for j in range(count):
-        mark = total * (offset + j) / count
-        while mark >= cumulated and row < last:
-            row += 1
-            cumulated += weight[row]
-        rows[j] = row
-    return rows

@@ -1,4 +1,4 @@
-"""What the evidence makes of the weights of samples: kernels over all of a filter at once."""
+"""What the evidence makes of the weights of samples, and who goes on by them: kernels over a whole filter."""
 
 from __future__ import annotations
 
@@ -70,3 +70,23 @@ def scale_to_one(weight: Floats) -> None:
         total += weight[i]
     for i in range(len(weight)):
         weight[i] = np.float32(weight[i] / total) if total > 0 else np.float32(1 / len(weight))
+
+
+@njit(cache=True, nogil=True)
+def systematic_rows(weight: Floats, count: int, offset: float) -> NDArray[np.int64]:
+    """Find the rows (count,) under `count` evenly spaced marks on the cumulated weights; offset in [0, 1)."""
+    rows = np.empty(count, dtype=np.int64)
+    total, last = 0.0, 0
+    for k in range(len(weight)):
+        total += weight[k]
+        if weight[k] > 0:
+            last = k
+    row = 0
+    cumulated = float(weight[0])
+    for j in range(count):
+        mark = total * (offset + j) / count
+        while mark >= cumulated and row < last:
+            row += 1
+            cumulated += weight[row]
+        rows[j] = row
+    return rows

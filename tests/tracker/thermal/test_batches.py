@@ -1,7 +1,5 @@
 """What kernels do for many samples at once equals what is done one by one, or by numpy, to the last bit."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -17,7 +15,7 @@ from peopleboy.tracker.thermal.contour.likelihood import (
     probability,
     seen_shares,
 )
-from peopleboy.tracker.thermal.particles import turned, turned_column, twin_of
+from peopleboy.tracker.thermal.twins import twin_of
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 
 SHAPE = (240, 320)
@@ -67,21 +65,6 @@ def test_the_shares_in_view_are_those_of_the_pixels_under_the_points() -> None:
         pairs = is_seen[: len(probes.section)] & is_seen[len(probes.section) :]
         expected = [pairs[probes.section == section].mean() for section in range(8)]
         assert np.array_equal(seen_shares(marked, sample, probes), expected)
-
-
-@pytest.mark.parametrize("kind", [np.float32, np.float64])
-def test_columns_turn_as_numpy_reckons_in_their_type(kind: type) -> None:
-    x = RNG.uniform(-50, 370, 500).astype(kind)
-    slope, tangent = (x - 159.5) / 297.3, math.tan(0.07)
-    moved = turned(x, 0.07, 297.3, 159.5)
-    assert moved.dtype == kind
-    assert np.array_equal(moved, 159.5 + 297.3 * (slope + tangent) / (1 - slope * tangent))
-
-
-def test_a_single_column_turns_as_many_do() -> None:
-    x = RNG.uniform(-50, 370, 500)
-    moved = [turned_column(float(one), 0.07, 297.3, 159.5) for one in x]
-    assert np.array_equal(turned(x, 0.07, 297.3, 159.5), moved)
 
 
 def test_clutter_is_the_difference_that_three_quarters_of_the_pairs_do_not_exceed() -> None:

@@ -12,9 +12,9 @@ from peopleboy.tracker.thermal.particles import (
     mean_state,
     normalised,
     resample,
-    systematic_rows,
     uncertainty_px2,
 )
+from peopleboy.tracker.thermal.weights import systematic_rows
 
 weights = arrays(np.float32, st.integers(1, 60), elements=st.floats(0, 1, width=32)).filter(
     lambda w: w.sum() > 1e-3
@@ -52,7 +52,7 @@ def test_resampling_uses_one_random_number():
 
 def test_equal_weights_come_back_once_each():
     particles = equally_weighted(cloud(100).state)
-    assert np.array_equal(resample(particles, 100, np.random.default_rng(0)), particles.state)
+    assert np.array_equal(resample(particles, 100, np.random.default_rng(0)), np.arange(100))
 
 
 def test_mean_and_uncertainty_equal_their_closed_forms():
@@ -70,12 +70,13 @@ def test_weights_that_are_all_zero_become_equal():
 
 def test_the_core_is_the_best_share_of_the_particles_and_the_estimate_its_mean():
     particles, chance = cloud(100), np.random.default_rng(1).random(100, dtype=np.float32)
-    core, mean, confidence, spread = estimated(particles, chance, FilterConfig(estimate_share=0.3))
+    is_inside = np.random.default_rng(2).random(100) < 0.7
+    core, mean, confidence, spread = estimated(particles, chance, is_inside, FilterConfig(estimate_share=0.3))
     best = np.sort(np.argsort(particles.weight)[-30:])
     assert np.array_equal(core.state, particles.state[best])
     assert np.allclose(core.weight, normalised(particles.weight[best]))
     assert np.array_equal(mean, mean_state(core))
-    assert confidence == pytest.approx(np.average(chance[best], weights=core.weight), rel=1e-6)
+    assert confidence == pytest.approx(np.average((chance * is_inside)[best], weights=core.weight), rel=1e-6)
     assert spread == uncertainty_px2(core)
 
 
@@ -85,6 +86,6 @@ def test_the_core_leaves_out_particles_on_another_person():
     weight = np.full(20, 0.05, dtype=np.float32)
     weight[3] = 0.1
     config = FilterConfig(estimate_share=1.0, estimate_reach=0.7)
-    core, mean, *_ = estimated(Particles(state, normalised(weight)), weight, config)
+    core, mean, *_ = estimated(Particles(state, normalised(weight)), weight, np.ones(20, bool), config)
     assert len(core) == 10
     assert mean[0] == pytest.approx(100)

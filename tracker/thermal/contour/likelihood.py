@@ -232,7 +232,9 @@ def _measured(
     covered: tuple[float | None, float],
     feet_gain: float = 0.0,
 ) -> tuple[Floats, Floats]:
-    """Measure sections as `section_differences` does, and what share (N, 8) of their weight they keep.
+    """Measure sections as `section_differences` does, and what share of their weight they keep.
+
+    The latter is (N, 8), or (0, 8) where it is all of it.
 
     Args:
         image: (H, W) grey.

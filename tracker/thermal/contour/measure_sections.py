@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.elementary import exponential
 from peopleboy.tracker.thermal.contour.contour import FEET, GREYS, SECTIONS, SHOULDER_LEFT
-from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y, bodies_of
+from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y
+from peopleboy.tracker.thermal.twins import bodies_of
 
 ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
 UNKNOWN: Final = 1e-4  # share of a section's weight that is none
 LANES: Final = 64  # samples that are measured side by side, a few vectors of any processor
+SOME: Final = np.uint64(24)  # of these, at most, that are measured apart from the others
 
 
 @njit(cache=True, nogil=True)
@@ -29,7 +31,9 @@ def measure_sections(
     missing: tuple[float, float, float, float],
     feet_gain: float,
 ) -> tuple[Floats, Floats]:
-    """Measure the mean response (N, 8) of all sections, and what share (N, 8) of their weight they keep.
+    """Measure the mean response (N, 8) of all sections, and what share of their weight they keep.
+
+    The latter is (N, 8), or (0, 8) where points keep theirs whatever happens.
 
     What is below the head of samples that differ in d alone is measured once, as d moves nothing else.
 
@@ -46,40 +50,50 @@ def measure_sections(
         feet_gain: factor on the response of the feet, which counts up to 1; 0 leaves it as it is.
     """
     result = np.empty((len(state), SECTIONS), dtype=np.float32)
-    known = np.ones((len(state), SECTIONS), dtype=np.float32)
+    # Where every point keeps its weight, so does every section.
+    known = np.ones((len(state) if min(missing[1], missing[3]) < 1 else 0, SECTIONS), dtype=np.float32)
     lanes, at = np.empty((6, LANES), dtype=np.float32), np.empty((mix.shape[1], LANES), dtype=np.int32)
     total, left = np.empty(LANES, dtype=np.float32), np.empty(LANES, dtype=np.float32)
+    lowest, lane = np.empty(LANES, dtype=np.int32), np.empty(LANES, dtype=np.uint64)
     grey, counts = image.reshape(-1), response.reshape(-1)
     twin, bodies = bodies_of(state)
     for begin, end, rows in ((0, SHOULDER_LEFT, np.arange(len(state))), (SHOULDER_LEFT, SECTIONS, bodies)):
         for start in range(0, len(rows), LANES):
             _load(lanes, state, rows, start)
-            is_in_view = _locate(at, lanes, mix, same, first[begin], first[end], image.shape)
+            _locate(at, lowest, lanes, mix, same, first[begin], first[end], image.shape)
+            count = min(LANES, len(rows) - start)
+            special = lane[: _find_special(lane, lowest[:count], covered_grey >= 0)]
             for j in range(begin, end):
                 section = j, first[j], first[j + 1]
-                if is_in_view and covered_grey < 0:
+                if len(special) < count:
                     _add_up_in_view(total, at, same, grey, counts, section)
-                else:
-                    count = min(LANES, len(rows) - start)
-                    _add_up(total[:count], left, at, same, grey, counts, section, covered_grey, missing)
+                if len(special) > 0:
+                    _add_up(total, left, special, at, same, grey, counts, section, covered_grey, missing)
                     _put(known, left, rows, start, j)
                 if j == FEET and feet_gain > 0:
                     for k in range(LANES):
                         total[k] = min(np.float32(1), np.float32(feet_gain) * total[k])
                 _put(result, total, rows, start, j)
-    for i in range(len(state)):
-        if twin[i] >= 0:
-            one, other = np.uint64(i), np.uint64(twin[i])
-            for j in range(np.uint64(SHOULDER_LEFT), np.uint64(SECTIONS)):
-                result[one, j], known[one, j] = result[other, j], known[other, j]
+    _copy_to_twins(result, twin)
+    _copy_to_twins(known, twin)
     return result, known
 
 
 @njit(cache=True, nogil=True)
 def _put(table: Floats, values: Floats, rows: NDArray[np.int64], start: int, j: int) -> None:
-    """Write values (K,) into a column of a table (N, 8), in the rows from `start` on."""
-    for k in range(np.uint64(min(LANES, len(rows) - start))):
-        table[np.uint64(rows[np.uint64(start) + k]), np.uint64(j)] = values[k]
+    """Write values (K,) into a column of a table (N, 8), in the rows from `start` on; if it has any."""
+    if len(table) > 0:
+        for k in range(np.uint64(min(LANES, len(rows) - start))):
+            table[np.uint64(rows[np.uint64(start) + k]), np.uint64(j)] = values[k]
+
+
+@njit(cache=True, nogil=True)
+def _copy_to_twins(table: Floats, twin: NDArray[np.int64]) -> None:
+    """Copy what is below the head in a table (N, 8) to samples that have a twin (N,)."""
+    for i in range(np.uint64(len(table))):
+        if twin[i] >= 0:
+            for j in range(np.uint64(SHOULDER_LEFT), np.uint64(SECTIONS)):
+                table[i, j] = table[np.uint64(twin[i]), j]
 
 
 @njit(cache=True, nogil=True)
@@ -99,20 +113,22 @@ def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64], start: int) -> 
 @njit(cache=True, nogil=True)
 def _locate(
     at: NDArray[np.int32],
+    lowest: NDArray[np.int32],
     lanes: Floats,
     mix: Floats,
     same: NDArray[np.int64],
     begin: int,
     end: int,
     shape: tuple[int, int],
-) -> np.bool_:
+) -> None:
     """Write the pixels (2 P, K) of some pairs of points of the samples side by side, without branches.
 
-    Rows of points that lie where an earlier one lies stay as they are. Tells whether all are in the image.
+    Rows of points that lie where an earlier one lies stay as they are. The lowest number (K,) of a sample's
+    pixels is negative if not all of them are in the image.
     """
     columns, right, bottom = np.int32(shape[1]), np.float32(shape[1]), np.float32(shape[0])
     pairs, zero = len(at) // 2, np.float32(0)
-    lowest = np.zeros(LANES, dtype=np.int32)
+    lowest[:] = 0
     for side in (0, pairs):
         # Unsigned, as numba would ask of every other number whether it counts from the end.
         for q in range(np.uint64(side + begin), np.uint64(side + end)):
@@ -134,8 +150,23 @@ def _locate(
                     v = lanes[1, k] + wv * lanes[3, k] + hv * lanes[4, k] + v0
                     at[q, k] = _pixel(u, v, columns, right, bottom)
                     lowest[k] = min(lowest[k], at[q, k])
-    is_in_view: np.bool_ = lowest.min() >= 0
-    return is_in_view
+
+
+@njit(cache=True, nogil=True)
+def _find_special(lane: NDArray[np.uint64], lowest: NDArray[np.int32], are_all: bool) -> np.int64:
+    """List the samples (K,) that have points where none can be seen, and say how many they are.
+
+    All of them if they are so many that it would not pay to tell them apart.
+    """
+    count = np.uint64(0)
+    for k in range(np.uint64(len(lowest))):
+        lane[count] = k
+        count += np.uint64(lowest[k] < 0)
+    if are_all or count > SOME:
+        for k in range(np.uint64(len(lowest))):
+            lane[k] = k
+        return np.int64(len(lowest))
+    return np.int64(count)
 
 
 @njit(cache=True, nogil=True)
@@ -159,14 +190,19 @@ def _add_up_in_view(
     counts: Floats,
     section: tuple[int, int, int],
 ) -> None:
-    """Average what a section's pairs count (K,) where all of them are in view."""
+    """Average what a section's pairs count (K,) of those samples of which all are in the image.
+
+    Of the others it says something without a meaning.
+    """
     j, begin, end = section
     even, pairs, count = j * (2 * GREYS - 1) + GREYS - 1, np.uint64(len(at) // 2), np.float32(end - begin)
+    nowhere = np.int32(0)
     total[:] = 0
     for p in range(np.uint64(begin), np.uint64(end)):
         one, other = np.uint64(same[p]), np.uint64(same[p + pairs])
         for k in range(np.uint64(LANES)):
-            inside, outside = np.int64(grey[np.uint64(at[one, k])]), np.int64(grey[np.uint64(at[other, k])])
+            mine, its = np.uint64(max(at[one, k], nowhere)), np.uint64(max(at[other, k], nowhere))
+            inside, outside = np.int64(grey[mine]), np.int64(grey[its])
             total[k] += counts[np.uint64(even + inside - outside)]
     if count > 0:
         for k in range(LANES):
@@ -178,6 +214,7 @@ def _add_up_in_view(
 def _add_up(
     total: Floats,
     left: Floats,
+    special: NDArray[np.uint64],
     at: NDArray[np.int32],
     same: NDArray[np.int64],
     grey: NDArray[np.uint8],
@@ -186,9 +223,9 @@ def _add_up(
     covered_grey: int,
     missing: tuple[float, float, float, float],
 ) -> None:
-    """Average what a section's pairs count (K,), and tell what share (K,) of its weight they keep.
+    """Average what a section's pairs count (K,) of some samples, and what share (K,) of its weight they keep.
 
-    The section is its number, its first pair, and the first one of the next.
+    The section is its number, its first pair, and the first one of the next. Others keep all of their weight.
     """
     j, begin, end = section
     even, pairs, count = j * (2 * GREYS - 1) + GREYS - 1, np.uint64(len(at) // 2), np.float32(end - begin)
@@ -196,27 +233,26 @@ def _add_up(
     covered_share = np.float32(missing[3])
     unseen, covered = unseen_share * elsewhere, covered_share * np.float32(missing[2])
     unseen_lacks, covered_lacks = np.float32(1) - unseen_share, np.float32(1) - covered_share
-    total[:], left[:] = 0, 1
-    for p in range(np.uint64(begin), np.uint64(end)):
-        mine, its = np.uint64(same[p]), np.uint64(same[p + pairs])
-        for k in range(np.uint64(len(total))):
-            one, other = at[mine, k], at[its, k]
+    left[:] = 1
+    for k in special:
+        counted, kept = np.float32(0), np.float32(1)
+        for p in range(np.uint64(begin), np.uint64(end)):
+            one, other = at[np.uint64(same[p]), k], at[np.uint64(same[p + pairs]), k]
             if (one | other) < 0:
                 if one == ELSEWHERE or other == ELSEWHERE:
-                    total[k] += elsewhere
+                    counted += elsewhere
                 else:
-                    total[k] += unseen
-                    left[k] -= unseen_lacks / count
+                    counted += unseen
+                    kept -= unseen_lacks / count
                 continue
             inside, outside = np.int64(grey[np.uint64(one)]), np.int64(grey[np.uint64(other)])
             if inside == covered_grey or outside == covered_grey:
-                total[k] += covered
-                left[k] -= covered_lacks / count
+                counted += covered
+                kept -= covered_lacks / count
             else:
-                total[k] += counts[np.uint64(even + inside - outside)]
-    for k in range(len(total)):
-        if count > 0 and left[k] > UNKNOWN:
-            total[k] /= count * left[k]
+                counted += counts[np.uint64(even + inside - outside)]
+        has_some = count > 0 and kept > UNKNOWN
+        total[k], left[k] = counted / (count * kept) if has_some else counted, kept
 
 
 @njit(cache=True, nogil=True)
@@ -280,5 +316,6 @@ def locate_points(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int
     """Write the pixels of `pixels_under` a contour (9,) into (2 P,)."""
     lanes, pixels = np.empty((6, LANES), dtype=np.float32), np.empty((len(at), LANES), dtype=np.int32)
     _load(lanes, sample.reshape(1, -1), np.zeros(1, dtype=np.int64), 0)
-    _locate(pixels, lanes, mix, np.arange(len(at)), 0, len(at) // 2, (height, width))
+    lowest = np.empty(LANES, dtype=np.int32)
+    _locate(pixels, lowest, lanes, mix, np.arange(len(at)), 0, len(at) // 2, (height, width))
     at[:] = pixels[:, 0]

@@ -91,9 +91,10 @@ def time_steps(setting: Setting, steps: int) -> Milliseconds:
         return Particles(state, weight)
 
     particles = weigh()
+    kept = np.arange(COUNT)
     works: dict[str, Callable[[], object]] = {
         "resampling": lambda: resample(particles, COUNT, rng),
-        "motion model": lambda: predict(state, 1 / 15, 1.0, config.motion, rng),
+        "motion model": lambda: predict(state, kept, 1 / 15, view.turn, 1.0, config.motion, rng),
         "measuring": lambda: view.model.differences(view.image, state),
         "weight calculation": weigh,
         "estimate uncertainty": lambda: (mean_state(particles), uncertainty_px2(particles)),
