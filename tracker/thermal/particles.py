@@ -388,12 +388,16 @@ def _rows_near_best(
 ) -> NDArray[np.uint64]:
     """List the rows of samples of some weight that are no farther from the heaviest, in its semi-axes."""
     best, rows, count = state[np.argmax(weight)], np.empty(len(weight), dtype=np.uint64), np.uint64(0)
+    # Counted, not branched on, as no processor foresees who is heavy.
+    if np.isinf(farthest):
+        for i in range(np.uint64(len(weight))):
+            rows[count] = i
+            count += np.uint64(weight[i] >= least)
+        return rows[:count]
     for i in range(np.uint64(len(weight))):
         across, down = (state[i, X] - best[X]) / best[W], (state[i, Y] - best[Y]) / best[H]
-        is_near = np.isinf(farthest) or across * across + down * down <= farthest
-        # Counted, not branched on, as no processor foresees who is heavy.
         rows[count] = i
-        count += np.uint64((weight[i] >= least) & is_near)
+        count += np.uint64((weight[i] >= least) & (across * across + down * down <= farthest))
     return rows[:count]
 
 

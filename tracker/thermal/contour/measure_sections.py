@@ -273,11 +273,13 @@ def fill_unknown(differences: Floats, known: Floats, weights: Floats) -> None:
 def weighted_sums(differences: Floats, weights: NDArray[np.float64], weakest_share: float) -> Floats:
     """Add up (N,) sections (N, 8) by weight, and go a share of the way to the weakest but the feet."""
     fit, part = np.empty(len(differences), dtype=np.float32), np.float32(weakest_share)
-    for i in range(len(fit)):
+    share = weights.astype(np.float32)
+    for i in range(np.uint64(len(fit))):
         total, weakest = np.float32(0), differences[i, 0]
-        for j in range(SECTIONS):
-            total += np.float32(weights[j]) * differences[i, j]
-            weakest = min(weakest, differences[i, j]) if j < FEET else weakest
+        for j in range(np.uint64(SECTIONS)):
+            total += share[j] * differences[i, j]
+        for j in range(np.uint64(FEET)):
+            weakest = min(weakest, differences[i, j])
         fit[i] = total + part * (weakest - total)
     return fit
 
