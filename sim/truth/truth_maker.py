@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any, Final, NamedTuple, TypeVar
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, invert_pose, transform
@@ -25,6 +26,7 @@ from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
 
 A = TypeVar("A", bound=NDArray[Any])
 Depth = NDArray[np.float32]
+Bytes = NDArray[np.uint8]
 
 _WHOLE: Final = 0  # of the outlines of a person: the silhouette
 
@@ -74,11 +76,12 @@ class TruthMaker:
         view, people, owners = seen.view, len(self._people), len(self._owner_names)
         cover = seen.sight.cover(view, self._owner_of_part, people, owners)
         whose = Owners(tuple(self._owner_names), self._owner_or_nothing, view.part)
+        instance, body_part = _looked_up(view.part, self._id_of_part, self._class_of_part)
         return Truth(
             time_s=time_s,
             people=self._everybody(cover, seen),
-            instance=_frozen(self._id_of_part[view.part]),
-            body_part=_frozen(self._class_of_part[view.part]),
+            instance=_frozen(instance),
+            body_part=_frozen(body_part),
             depth_m=_frozen(view.depth),
             camera=seen.camera,
             world_from_camera=_frozen(seen.world_from_camera),
@@ -192,6 +195,18 @@ def _outlines(parts: Sequence[str], person_of_part: NDArray[np.int64], people: i
     )
     whole = (person_of_part == np.arange(people)[:, None]) & is_body
     return np.stack([whole, whole & ~is_arm, whole & is_torso], axis=1)
+
+
+@njit(cache=True, nogil=True)
+def _looked_up(part: NDArray[np.int32], one: Bytes, other: Bytes) -> tuple[Bytes, Bytes]:
+    """Say of each pixel (H, W) what two tables (P + 1,) say of its part; their last entry is for part -1."""
+    first, second = np.empty(part.shape, np.uint8), np.empty(part.shape, np.uint8)
+    nothing = np.uint64(len(one) - 1)
+    for v in range(np.uint64(part.shape[0])):
+        for u in range(np.uint64(part.shape[1])):
+            row = np.uint64(part[v, u]) if part[v, u] >= 0 else nothing
+            first[v, u], second[v, u] = one[row], other[row]
+    return first, second
 
 
 def _thesis_box(height: Edges, torso: Edges) -> Box | None:
