@@ -45,7 +45,7 @@ def _signs() -> list[Artist]:
         return Line2D([], [], label=label, **(settings | more))  # type: ignore[arg-type]
 
     return [
-        mark("o", "a person's start, name, height, and when they come", markeredgecolor="white"),
+        mark("o", "a person's start, name, height, and when they come or go", markeredgecolor="white"),
         mark("o", "where the person is at that time", linestyle="-", markerfacecolor="white", markersize=4),
         mark("s", "end of the way: stays, leaves, or the run ends", markeredgecolor="white", markersize=5),
         mark("o", "a pause on the way", markerfacecolor="none", markersize=9),
