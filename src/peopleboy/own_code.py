@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import sys
+import sysconfig
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from peopleboy.bad_input import BadInput
+
+_OF_NO_USER: Final = (
+    "<",  # such as <frozen importlib._bootstrap>
+    str(Path(__file__).parent),
+    *(sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")),
+)
 
 
 class OwnCodeFailed(Exception):  # noqa: N818
@@ -74,7 +81,7 @@ def blamed(who: str) -> Iterator[None]:
         yield
     except BadInput as error:
         raise BadInput(f"{who}: {error}") from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # it may not end the program, least of all with exit code 0
         raise OwnCodeFailed(f"{who} failed: {in_one_line(error)}") from error
 
 
@@ -107,9 +114,11 @@ def traceback_in(path: Path) -> Iterator[None]:
         raise OwnCodeFailed(f"{error}; the traceback is in {path}") from error.__cause__
 
 
-def in_one_line(error: Exception) -> str:
-    """Give kind, message and place of an error."""
-    at = traceback.extract_tb(error.__traceback__)[-1]
+def in_one_line(error: BaseException) -> str:
+    """Give kind, message and place of an error: the last line of a user's in its traceback, or the last."""
+    lines = traceback.extract_tb(error.__traceback__)
+    own = [line for line in lines if not line.filename.startswith(_OF_NO_USER)]
+    at = (own or lines)[-1]
     words = " ".join(f"{type(error).__name__}: {error}".split())
     if isinstance(error, SyntaxError):  # which says by itself where it is
         return words

@@ -44,6 +44,12 @@ WRONG = {
     "(1,)": ("tuple of Track", "int"),
     "(track(id=0),)": ("from 1", "0"),
     "(track(id=1.5),)": ("whole number", "1.5"),
+    "(track(id=True),)": ("whole number", "True"),
+    "(track(id=2**70),)": ("whole number", str(2**53), str(2**70)),
+    "(track(age_s=-1.0),)": ("seconds from 0", "-1.0"),
+    "(track(occluder=0),)": ("id of a track", "0"),
+    "(track(place=(4.0, 1.0)),)": ("FloorPlace", "(4.0, 1.0)"),
+    "(track(place=FloorPlace(position_m=(1.0, 0.0), covariance_m2=(1.0, 2.0, 1.0))),)": ("xx >= 0", "2.0"),
     "(track(id=7), track(id=7))": ("differ", "7 twice"),
     "(track(boxes={'thermal': (0, 0, float('nan'), 5)}),)": ("track 1", "'thermal'", "finite", "nan"),
     "(track(boxes={'thermal': (0, 0, -1, 5)}),)": ("width >= 0", "-1"),
@@ -124,6 +130,17 @@ def test_who_writes_into_an_image_spoils_none_and_is_told_so(
     assert_names(
         capsys.readouterr().err, f"frame 3: tracker '{name}' failed", "read-only", "writing.py, line 21"
     )
+
+
+@pytest.mark.parametrize(
+    ("answer", "says"), [("Status.HIDDEN", "AttributeError: HIDDEN"), ("exit(0)", "SystemExit: 0")]
+)
+def test_an_error_is_told_by_the_line_of_theirs_and_none_ends_the_program(
+    answer: str, says: str, home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = write_tracker(home, answer, f"elsewhere_{len(answer)}")  # both are raised in Python's own library
+    assert run_cli("run", "brief.yaml", "--tracker", name, "--no-rrd", "--out", "run") == 1
+    assert_names(capsys.readouterr().err, says, f"elsewhere_{len(answer)}.py, line 21")
 
 
 def test_in_a_sweep_the_failed_runs_are_named_with_where_their_tracebacks_are(
