@@ -42,23 +42,26 @@ def load_own(what: str, name: str, call: str) -> Callable[..., Any]:
     Raises:
         BadInput: there is no such module or class, or the module cannot be imported.
     """
-    home, _, member = name.partition(":")
+    home, _, member = name.rpartition(":")
+    if home.endswith(".py") or "/" in home or "\\" in home:
+        module = home.replace("\\", "/").rpartition("/")[2].removesuffix(".py")
+        raise BadInput(f"{what} {name!r}: {home!r} is a file's path; from its folder, give {module}:{member}")
     if (here := str(Path.cwd())) not in sys.path:
         sys.path.insert(0, here)
     try:
-        module = import_module(home)
+        found = import_module(home)
     except (ImportError, ValueError) as error:
         raise BadInput(f"{what} {name!r}: module {home!r} cannot be imported: {error}") from error
     except Exception as error:
         raise BadInput(
             f"{what} {name!r}: module {home!r} cannot be imported: {in_one_line(error)}"
         ) from error
-    if not hasattr(module, member):
+    if not hasattr(found, member):
         raise BadInput(f"{what} {name!r}: there is no {member!r} in {home}")
 
     def make(*arguments: object) -> Any:
         try:
-            return getattr(module, member)(*arguments)
+            return getattr(found, member)(*arguments)
         except BadInput as error:
             raise BadInput(f"{what} {name!r}: {error}") from error
         except Exception as error:

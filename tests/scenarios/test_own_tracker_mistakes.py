@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 import yaml
 
+from peopleboy.own_code import load_own
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names, refused
@@ -154,6 +155,12 @@ def test_in_a_sweep_the_failed_runs_are_named_with_where_their_tracebacks_are(
         assert part in told
     name = write_tracker(home, "None", "nothing_told")
     assert_names(refusal(capsys, "sweep", "brief.yaml", *options[2:], "--tracker", name), "frame 3", name)
+
+
+@pytest.mark.parametrize("path", ["mine.py", "../own/mine.py", "./mine", "C:\\own\\mine.py"])
+def test_a_path_is_refused_with_the_module_to_give(path: str) -> None:
+    with refused(f"tracker {f'{path}:Mine'!r}", "file's path", "give mine:Mine"):
+        load_own("tracker", f"{path}:Mine", "so")
 
 
 @pytest.mark.parametrize(
