@@ -19,7 +19,7 @@ from peopleboy.scenarios.export.yolo import write_yolo, write_yolo_pose
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
-from peopleboy.scenarios.scores.yardstick import CALLED, kind_of_boxes
+from peopleboy.scenarios.scores.yardstick import CALLED, boxed_cameras, kind_of_boxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
 
 WRITERS: dict[str, Callable[..., None]] = {
@@ -86,12 +86,11 @@ def notes_on(
     """Say, once a tracker, whose boxes are of another kind than those of the truth beside which they lie."""
     if form not in OF_EITHER_KIND:
         return
-    there = boxes or BoxKind.TORSO
+    there, name = boxes or BoxKind.TORSO, camera or "thermal"
     kinds = {
-        run.about.tracker: kind_of_boxes(
-            run.folder, camera or "thermal", run.about.tracker, BoxKind(run.about.boxes)
-        )
+        run.about.tracker: kind_of_boxes(run.folder, name, run.about.tracker, BoxKind(run.about.boxes))
         for run in runs
+        if name in boxed_cameras(run.folder)
     }
     for tracker, kind in kinds.items():
         if kind is not there:
