@@ -10,6 +10,7 @@ import pytest
 import yaml
 
 from peopleboy.own_code import load_own
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names, refused
@@ -93,6 +94,15 @@ def test_a_wrong_value_is_told_in_a_line_with_what_would_be_right(
     assert about["error"]["message"] in told
     with refused("run.json", "failed", name):
         read_run(Path("run"))
+
+
+def test_an_environment_refuses_a_wrong_value_too(home: Path) -> None:
+    name = write_tracker(home, "(track(id='1'),)", "in_environment")
+    env = PeopleBoyEnv("brief.yaml", observation="tracks", tracker=name)
+    env.reset(seed=0)
+    with refused(f"tracker '{name}'", "whole number", "'1'"):
+        for _ in range(3):
+            env.step([0.0, 0.0])
 
 
 def test_numbers_of_numpy_are_right_ones(home: Path) -> None:
