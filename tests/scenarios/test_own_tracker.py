@@ -214,7 +214,6 @@ def test_a_camera_of_which_there_is_no_kind_is_refused(
         run_scenario(
             load_scenario(tmp_path / "standing.yaml"),
             RunOptions(seed=0, out=tmp_path / "run", tracker="peeping"),
-            lambda _tick, _frames: None,
         )
     assert not (tmp_path / "run").exists()
 
