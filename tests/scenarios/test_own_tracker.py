@@ -203,6 +203,26 @@ def test_a_camera_that_it_wants_is_mounted_and_nothing_else_changes(
     ).read_bytes()
 
 
+class Everywhen(Reckoner):
+    """Boxes everybody's place in the image of a camera, whether it took one or not."""
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        return tuple(replace(t, boxes={"slow": (0.0, 0.0, 9.0, 9.0)}) for t in super().update(frame))
+
+
+def test_boxes_are_scored_in_frames_in_which_a_slow_camera_took_an_image(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(TRACKERS, "everywhen", Everywhen)
+    monkeypatch.setitem(TRACKERS, "reckoner", Reckoner)
+    cameras = STANDING["robot"].get("cameras", {}) | {"slow": {"kind": "thermal", "rate_hz": 5}}
+    scene = STANDING | {"robot": STANDING["robot"] | {"cameras": cameras}}
+    run = make_run(scene, tmp_path / "run", "--tracker", "everywhen")
+    assert len((run / "tracks" / "slow.txt").read_text(encoding="utf-8").splitlines()) == 30
+    metrics = json.loads((run / "metrics.json").read_text(encoding="utf-8"))
+    assert metrics["cameras"]["slow"]["counts"]["candidates"] == 10
+
+
 def test_a_camera_of_which_there_is_no_kind_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
