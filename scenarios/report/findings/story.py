@@ -143,6 +143,11 @@ class RunStory:
                 raise
             return ThermalConfig()
 
+    @property
+    def every(self) -> int:
+        """How many frames there are from one image of that camera to the next."""
+        return self.run.rate_hz // (self.view.rate_hz or self.run.rate_hz)
+
     @cached_property
     def counted_m(self) -> tuple[float, float]:
         """The distances [m] from that camera between which people count."""
@@ -208,11 +213,13 @@ def _tell(story: RunStory, person: int, lying: Any) -> Story:
     at = rows["frame"].to_numpy() - 1
     mine = lying[lying.person == person]
 
+    newest = np.arange(frames) - np.arange(frames) % story.every
+
     def spread(values: object, at: Ints = at) -> Floats:
-        """Spread values over all frames (F,); NaN elsewhere."""
+        """Spread values over all frames (F,), each as in the camera's newest image; NaN elsewhere."""
         column = np.full(frames, np.nan)
         column[at] = values
-        return column
+        return np.asarray(column[newest])
 
     beyond = [dict(hidden).get(BORDER, 0.0) for hidden in rows["hidden_by"].to_pylist()]
     inside = spread((rows["whole_px"].to_numpy() > 0) * (1.0 - np.array(beyond)))
@@ -229,7 +236,7 @@ def _tell(story: RunStory, person: int, lying: Any) -> Story:
         distance_m=spread(rows["distance_m"].to_numpy()),
         visible=np.nan_to_num(spread(rows["visible_fraction"].to_numpy())),
         occluded=occluded,
-        hider=tuple(hider.get(frame) or "" for frame in range(frames)),
+        hider=tuple(hider.get(frame) or "" for frame in newest.tolist()),
         is_counted=is_counted,
         view=view,
         matched=matched,

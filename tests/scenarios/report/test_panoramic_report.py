@@ -63,6 +63,12 @@ def test_people_count_within_the_limits_of_panoramas(found: RunFindings) -> None
     ]
 
 
+def test_between_two_images_people_are_as_the_former_showed_them(found: RunFindings) -> None:
+    anna = found.called("anna")
+    assert anna.is_due.all()  # and not in one frame of three, so that each image were a moment of its own
+    assert len(set(anna.hold.tolist())) == 1
+
+
 def test_pictures_are_the_newest_panoramas(found: RunFindings) -> None:
     shown = show_frames(found, [4, 6, 7])
     assert [(still.camera, still.time_s, still.origin) for still in shown.values()] == [
