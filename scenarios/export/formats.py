@@ -95,6 +95,6 @@ def notes_on(
     for tracker, kind in kinds.items():
         if kind is not there:
             yield (
-                f"boxes of {tracker} are round {CALLED[kind]}, those of gt.txt round {CALLED[there]}; "
-                f"--boxes {kind} has those of gt.txt round {CALLED[kind]}, too"
+                f"boxes of tracker {tracker} are round {CALLED[kind]}, those of gt.txt round {CALLED[there]};"
+                f" --boxes {kind} has those of gt.txt round {CALLED[kind]}, too"
             )
