@@ -110,9 +110,13 @@ class RunStory:
 
     @cached_property
     def shown(self) -> dict[int, Flags]:
-        """For each confirmed track the frames (F,) in which it is shown."""
-        every, (_, tracks) = np.arange(1, self.run.frames + 1), self.boxes
-        return {n: np.isin(every, tracks.frame[tracks.id == n]) for n in np.unique(tracks.id).tolist()}
+        """For each confirmed track the frames (F,) in which it is shown.
+
+        Where tracks are told at images alone, as those made elsewhere, they are shown until the next image.
+        """
+        frames, (_, tracks) = np.arange(self.run.frames), self.boxes
+        at = self.newest if np.isin(tracks.frame - 1, self.newest).all() else frames
+        return {n: np.isin(at + 1, tracks.frame[tracks.id == n]) for n in np.unique(tracks.id).tolist()}
 
     @cached_property
     def is_on_floor(self) -> bool:
@@ -142,6 +146,12 @@ class RunStory:
             if self.camera != THERMAL:
                 raise
             return ThermalConfig()
+
+    @property
+    def newest(self) -> Ints:
+        """For each frame (F,) the one, from 0, in which that camera took its newest image."""
+        frames = np.arange(self.run.frames)
+        return frames - frames % self.every
 
     @property
     def every(self) -> int:
@@ -213,7 +223,7 @@ def _tell(story: RunStory, person: int, lying: Any) -> Story:
     at = rows["frame"].to_numpy() - 1
     mine = lying[lying.person == person]
 
-    newest = np.arange(frames) - np.arange(frames) % story.every
+    newest = story.newest
 
     def spread(values: object, at: Ints = at) -> Floats:
         """Spread values over all frames (F,), each as in the camera's newest image; NaN elsewhere."""
