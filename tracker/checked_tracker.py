@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
-from numbers import Integral, Real
+from numbers import Real
 from typing import Any
+
+import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import blamed
-from peopleboy.tracker.evaluation.sequence import FARTHEST
+from peopleboy.tracker.evaluation.sequence import FARTHEST, LARGEST
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
 
 
@@ -73,8 +75,8 @@ def _faults(tracks: object, cameras: Collection[str]) -> Iterator[str]:
         if not isinstance(track, Track):
             yield f"update(frame) must give a tuple of Track, got a {type(track).__name__} in it"
             return
-        if not _is_whole(track.id) or track.id < 1:
-            yield f"id must be a whole number from 1, got {track.id!r}"
+        if not _is_id(track.id):
+            yield f"id must be a whole number from 1 to {LARGEST}, got {track.id!r}"
         if track.id in seen:
             yield f"ids must differ from each other in a frame, got {track.id} twice"
         seen.add(track.id)
@@ -95,19 +97,33 @@ def _box_faults(boxes: object, cameras: Collection[str]) -> Iterator[str]:
             yield f"box in {camera!r} must be within +-{FARTHEST:.0e} pixels, got {box}"
 
 
-def _other_faults(track: Track) -> Iterator[str]:
-    place, status = track.place, _one_of(Status, track.status)
-    if place is not None and not _are_numbers(place.position_m, 2):
+def _place_faults(place: object) -> Iterator[str]:
+    if place is None:
+        return
+    if not isinstance(place, FloorPlace):
+        yield f"place must be None or a FloorPlace, got {place!r}"
+        return
+    if not _are_numbers(place.position_m, 2):
         yield f"position_m must be a tuple of finite metres ahead and left, got {place.position_m!r}"
-    if place is not None and not _are_numbers(place.covariance_m2, 3):
+    if not _are_numbers(place.covariance_m2, 3):
         yield f"covariance_m2 must be a tuple of finite xx, xy, yy, got {place.covariance_m2!r}"
+    elif not _is_covariance(*place.covariance_m2):
+        yield (
+            "covariance_m2 must be a covariance: xx >= 0, yy >= 0 and xy no more than both allow, "
+            f"got xx, xy, yy {place.covariance_m2!r}"
+        )
+
+
+def _other_faults(track: Track) -> Iterator[str]:
+    status = _one_of(Status, track.status)
+    yield from _place_faults(track.place)
     if not _are_numbers((track.confidence,), 1) or not 0.0 <= track.confidence <= 1.0:
         yield f"confidence must be from 0 to 1, got {track.confidence!r}"
     if status:
         yield f"status must be {status}, got {track.status!r}"
-    if not _are_numbers((track.age_s,), 1):
-        yield f"age_s must be finite seconds, got {track.age_s!r}"
-    if track.occluder is not None and not _is_whole(track.occluder):
+    if not _are_numbers((track.age_s,), 1) or track.age_s < 0.0:
+        yield f"age_s must be finite seconds from 0, got {track.age_s!r}"
+    if track.occluder is not None and not _is_id(track.occluder):
         yield f"occluder must be None or the id of a track, got {track.occluder!r}"
 
 
@@ -116,8 +132,14 @@ def _one_of(kind: type[Status], value: object) -> str:
     return "" if isinstance(value, kind) else " or ".join(f"{kind.__name__}.{one.name}" for one in kind)
 
 
-def _is_whole(value: object) -> bool:
-    return isinstance(value, Integral)
+def _is_id(value: object) -> bool:
+    """Tell whether it is a number that files and figures keep as it is; True is none, though it equals 1."""
+    return isinstance(value, int | np.integer) and type(value) is not bool and 1 <= int(value) <= LARGEST
+
+
+def _is_covariance(xx: float, xy: float, yy: float) -> bool:
+    """Tell whether it is that of any error, rounding aside."""
+    return xx >= 0.0 and yy >= 0.0 and xy * xy <= xx * yy * (1.0 + 1e-6) + 1e-12
 
 
 def _are_numbers(values: Any, count: int) -> bool:

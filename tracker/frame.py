@@ -119,6 +119,8 @@ class ReadOnlyImages(Mapping[str, NDArray[Any]]):
         self._images = images
 
     def __getitem__(self, camera: str) -> Any:
+        if camera not in self._images:  # told in full, as cameras may be slower than frames
+            raise KeyError(_lacking(camera, self._images))
         image: object = self._images[camera]
         if not isinstance(image, np.ndarray):  # whoever reads it tells of that
             return image
@@ -196,9 +198,7 @@ class Frame:
 
     def _image(self, camera: str) -> NDArray[Any]:
         if camera not in self.images:
-            raise BadInput(
-                f"frame has no image of camera {camera!r}; it has {', '.join(self.images) or 'none'}"
-            )
+            raise BadInput(_lacking(camera, self.images))
         return self.images[camera]
 
 
@@ -215,3 +215,7 @@ def _check_image(
     is_right_shape = image.ndim == dimensions and image.size > 0 and (dimensions == 2 or image.shape[2] == 3)
     if not is_right_shape or image.dtype != dtype:
         raise BadInput(f"{rule}, got {image.shape} {image.dtype}")
+
+
+def _lacking(camera: str, images: Mapping[str, Any]) -> str:
+    return f"frame has no image of camera {camera!r}; it has {', '.join(images) or 'none'}"

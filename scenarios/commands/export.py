@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from peopleboy.scenarios.commands.options import BOXES, tell_note
+
 FORMATS = ("mot", "coco", "images", "yolo", "yolo-pose", "viper", "mcap", "mp4")
 
 
@@ -24,6 +26,11 @@ FORMATS = ("mot", "coco", "images", "yolo", "yolo-pose", "viper", "mcap", "mp4")
     help="How wide and high boxes of yolo and yolo-pose are at least, in pixels; 0 for all.  [default: 3]",
 )
 @click.option(
+    "--boxes",
+    type=BOXES,
+    help="What boxes of mot's truth are drawn round: the torso, or all of a person.  [default: torso]",
+)
+@click.option(
     "--out",
     type=click.Path(path_type=Path),
     help="Folder to leave.  [default: beside the run, RUN-FORMAT(-CAMERA); of several, export-FORMAT]",
@@ -34,6 +41,7 @@ def export(
     form: str,
     camera: str | None,
     least_px: float | None,
+    boxes: str | None,
     out: Path | None,
     overwrite: bool,
 ) -> None:
@@ -49,19 +57,27 @@ def export(
     """
     from peopleboy.scenarios.export.dataset.splits import refuse_unfinished
     from peopleboy.scenarios.export.formats import export as write
+    from peopleboy.scenarios.export.formats import notes_on
     from peopleboy.scenarios.export.replay import counted
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.run_folder.finished_run import open_whole_runs, runs_in
+    from peopleboy.tracker.footage.box_kinds import BoxKind
 
     for folder in runs:
         refuse_unfinished(folder)
-    opened = open_whole_runs([run for folder in runs for run in runs_in(folder)])
+    opened = open_whole_runs(
+        [run for folder in runs for run in runs_in(folder)],
+        are_named_apart=form != "mot",  # which names sequences by scenario and seed, for several trackers
+    )
     first = opened[0].folder
     what = form if camera is None else f"{form}-{camera}"
     name = f"{first.name}-{what}" if len(opened) == 1 else f"export-{what}"
     folder = out if out is not None else first.parent / name
+    kind = None if boxes is None else BoxKind(boxes)
     frames = sum(run.frames for run in opened)
     with progress_bar(form, unit="frames") as show:
         play = counted(lambda frame: show(frame, frames))
-        write(opened, form, folder, play, camera=camera, least_px=least_px, overwrite=overwrite)
+        write(opened, form, folder, play, camera=camera, least_px=least_px, boxes=kind, overwrite=overwrite)
+    for note in notes_on(opened, form, camera, kind):
+        tell_note(note)
     click.echo(folder)

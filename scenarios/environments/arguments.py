@@ -31,9 +31,13 @@ def check_size(size: tuple[int, int]) -> None:
     Raises:
         BadInput: it is one.
     """
-    is_fine = len(size) == 2 and all(
-        isinstance(got, int) and low <= got <= high
-        for got, low, high in zip(size, SMALLEST_PX, LARGEST_PX, strict=True)
+    is_fine = (
+        isinstance(size, tuple | list)
+        and len(size) == 2
+        and all(
+            isinstance(got, int) and low <= got <= high
+            for got, low, high in zip(size, SMALLEST_PX, LARGEST_PX, strict=True)
+        )
     )
     if not is_fine:
         (narrow, flat), (wide, tall) = SMALLEST_PX, LARGEST_PX

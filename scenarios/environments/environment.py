@@ -34,7 +34,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
-from peopleboy.scenarios.loop.tracker_by_name import camera_names, check_cameras, make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import camera_names, make_checked_eyes
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
@@ -157,8 +157,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._is_varied = bool(chosen)
         self._tracker: Tracker | None = None
         if self._kind == "tracks":
-            self._tracker = make_eyes(self._tracker_name, self._seed, self._world.truth)
-            check_cameras(self._tracker, config.robot.cameras)
+            name, cameras = self._tracker_name, config.robot.cameras
+            self._tracker = make_checked_eyes(name, self._seed, self._world.truth, cameras)
         self._tracks: tuple[Track, ...] = ()
         self._before: Planar | None = None
         self._images: Arrays = {}

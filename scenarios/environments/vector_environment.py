@@ -23,6 +23,7 @@ from peopleboy.sim.fleet.together import Together
 from peopleboy.sim.shapes.joined_tables import Numbers
 
 Flags = NDArray[np.bool_]
+_OF_GYMNASIUM = {"max_episode_steps", "autoreset_mode"}
 
 
 class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
@@ -53,6 +54,11 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             raise BadInput(f"num_envs {num_envs}: must be 1 or more")
         if settings.get("render_mode") is not None:
             raise BadInput("render_mode: many worlds draw no pictures; leave it out, or take one environment")
+        for name in _OF_GYMNASIUM & settings.keys():
+            raise BadInput(
+                f"{name}: gymnasium's own ways to put worlds together have that; "
+                "give vectorization_mode='sync' or 'async'"
+            )
         if threads is not None and threads < 1:
             raise BadInput(
                 f"threads {threads}: must be 1 or more, or None for as many as there are processors"
@@ -86,20 +92,17 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             options: as for a single environment, for all of them.
 
         Raises:
-            BadInput: options that there are not, or not a seed for each.
+            BadInput: options that there are not, or not a seed for each; or all this is closed.
         """
-        seeds = [seed] * self.num_envs if seed is None else seed
-        if isinstance(seeds, int | np.integer):
-            seeds = [int(seeds) + number for number in range(self.num_envs)]
-        if len(seeds) != self.num_envs:
-            raise BadInput(f"seed: {len(seeds)} seeds for {self.num_envs} worlds; give one each")
+        self._check_open()
+        seeds = self._seeds(seed)
+        self._together = None  # even if this is interrupted: worlds are made anew
         found = self._empty()
         infos: list[Infos] = []
         for number, (env, own) in enumerate(zip(self._envs, seeds, strict=True)):
             observation, info = env.reset(seed=own, options=options)
             _put(found, number, observation)
             infos.append(info)
-        self._together = None
         self._keep(found)
         return found, join_infos(infos)
 
@@ -109,6 +112,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         Raises:
             BadInput: the actions are not (B, 2) finite numbers, or there are no episodes under way.
         """
+        self._check_open()
         shares, is_over = check_actions(actions, (self.num_envs, 2)), self._episodes.records["is_over"].copy()
         instants = self._step_together(np.flatnonzero(~is_over), shares)
         results = StepResults(self.num_envs)
@@ -138,6 +142,20 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         for env in self._envs:
             env.close()
         self._crew.close()
+
+    def _check_open(self) -> None:
+        if self.closed:
+            raise BadInput("environment: is closed; make another one")
+
+    def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
+        """Give each world's seed."""
+        if seed is None:
+            return [None] * self.num_envs
+        if isinstance(seed, int | np.integer):
+            return [int(seed) + number for number in range(self.num_envs)]
+        if len(seed) != self.num_envs:
+            raise BadInput(f"seed: {len(seed)} seeds for {self.num_envs} worlds; give one each")
+        return [int(own) if isinstance(own, np.integer) else own for own in seed]
 
     def _step_together(self, going: Numbers, shares: NDArray[np.float64]) -> list[Instants]:
         """Step the worlds whose episodes are under way."""

@@ -6,6 +6,8 @@ gt/mot_challenge/peopleboy-all/SEQUENCE/seqinfo.ini      length, frame rate, siz
 /img1/000001.png  images of the camera
 trackers/mot_challenge/peopleboy-all/TRACKER/data/SEQUENCE.txt
 
+gt.txt has boxes round torsos, as the run's own, or round whole people, as if nothing hid them.
+
 The camera is the thermal one unless another is asked for, whose images are counted from 1 too; results are
 there if the tracker gave boxes in its images.
 
@@ -17,7 +19,7 @@ There is no det/det.txt: nothing in a run finds people in single images, and tru
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
@@ -25,8 +27,11 @@ from peopleboy.scenarios.export.by_split import by_split
 from peopleboy.scenarios.export.camera_images import write_camera_images
 from peopleboy.scenarios.export.one_camera import OneCamera, with_people
 from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.run_folder.camera_truth import true_boxes, truth_files
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
+from peopleboy.tracker.evaluation.mot_files import truth_line
+from peopleboy.tracker.footage.box_kinds import BoxKind
 
 BENCHMARK, EVERYTHING = "peopleboy", "all"
 
@@ -37,8 +42,21 @@ _COUNTED, _CLASS, _VISIBLE = 6, 7, 8
 _Sequences = dict[str, dict[str, OneCamera]]  # by name, then tracker
 
 
-def write_mot(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str = "thermal") -> None:
+def write_mot(
+    runs: Sequence[FinishedRun],
+    folder: Path,
+    play: Play,
+    camera: str = "thermal",
+    boxes: BoxKind = BoxKind.TORSO,
+) -> None:
     """Write runs as sequences, by split; runs of several trackers on the same seed are one sequence.
+
+    Args:
+        runs: which.
+        folder: to leave.
+        play: gives a run's ticks.
+        camera: whose images and boxes.
+        boxes: what those of the truth are drawn round.
 
     Raises:
         BadInput: two runs are the same, or the trackers have not seen the same sequences, or the runs cannot
@@ -48,16 +66,16 @@ def write_mot(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str
         split: _sequences([with_people(run, camera) for run in own]) for split, own in by_split(runs).items()
     }
     for split, sequences in sorted_runs.items():
-        _write_set(f"{BENCHMARK}-{split or EVERYTHING}", sequences, folder, play)
+        _write_set(f"{BENCHMARK}-{split or EVERYTHING}", sequences, folder, play, boxes)
 
 
-def _write_set(name: str, sequences: _Sequences, folder: Path, play: Play) -> None:
+def _write_set(name: str, sequences: _Sequences, folder: Path, play: Play, boxes: BoxKind) -> None:
     truth, results = (folder / side / "mot_challenge" for side in ("gt", "trackers"))
     (truth / "seqmaps").mkdir(parents=True, exist_ok=True)
     lines = "".join(f"{line}\n" for line in ("name", *sequences))
     (truth / "seqmaps" / f"{name}.txt").write_text(lines, encoding="utf-8")
     for sequence, own in sequences.items():
-        _write_sequence(sequence, next(iter(own.values())), truth / name / sequence, play)
+        _write_sequence(sequence, next(iter(own.values())), truth / name / sequence, play, boxes)
         for tracker, shots in own.items():
             if shots.tracks_file.is_file():
                 data = results / name / tracker / "data"
@@ -67,20 +85,32 @@ def _write_set(name: str, sequences: _Sequences, folder: Path, play: Play) -> No
 
 def tracks_text(shots: OneCamera) -> str:
     """Give the boxes of the tracker in a camera's images."""
-    return "".join(f"{','.join(cells)}\n" for cells in _numbered(shots, shots.tracks_file))
+    lines = shots.tracks_file.read_text(encoding="utf-8").splitlines()
+    return "".join(f"{','.join(cells)}\n" for cells in _numbered(shots, lines))
 
 
-def gt_text(shots: OneCamera) -> str:
+def gt_text(shots: OneCamera, boxes: BoxKind = BoxKind.TORSO) -> str:
     """Give the truth in a camera's images, whomever our own scores leave out marked as a distractor.
 
     These are people nearer than 3 m or farther than 10 m, and those of whom nothing is visible.
     """
-    return "".join(f"{','.join(_judged(cells))}\n" for cells in _numbered(shots, shots.truth_file))
+    cells = _numbered(shots, _truth_lines(shots, boxes))
+    return "".join(f"{','.join(_judged(each))}\n" for each in cells)
 
 
-def _numbered(shots: OneCamera, path: Path) -> Iterator[list[str]]:
+def _truth_lines(shots: OneCamera, boxes: BoxKind) -> list[str]:
+    """Give a line for each person in each frame of the run, as its truth/gt.txt has them."""
+    text, table = truth_files(shots.run.folder, shots.name)
+    if boxes is BoxKind.TORSO:
+        return text.read_text(encoding="utf-8").splitlines()
+    truth = true_boxes(text, table, boxes)
+    every = zip(truth.frame, truth.id, truth.box, truth.counted, truth.visible, strict=True)
+    return [truth_line(*row).rstrip() for row in every]
+
+
+def _numbered(shots: OneCamera, lines: Iterable[str]) -> Iterator[list[str]]:
     """Yield the cells of each line, the frames of the run replaced by the camera's images."""
-    for line in path.read_text(encoding="utf-8").splitlines():
+    for line in lines:
         frame, *rest = line.split(",")
         if int(frame) in shots.frames:
             yield [str(shots.number(int(frame))), *rest]
@@ -111,7 +141,7 @@ def _sequences(every: Sequence[OneCamera]) -> _Sequences:
     return found
 
 
-def _write_sequence(name: str, shots: OneCamera, folder: Path, play: Play) -> None:
+def _write_sequence(name: str, shots: OneCamera, folder: Path, play: Play, boxes: BoxKind) -> None:
     for part in ("gt", "img1"):
         (folder / part).mkdir(parents=True)
     width, height = shots.size
@@ -126,7 +156,7 @@ def _write_sequence(name: str, shots: OneCamera, folder: Path, play: Play) -> No
     }
     lines = "".join(f"{key}={value}\n" for key, value in settings.items())
     (folder / "seqinfo.ini").write_text(f"[Sequence]\n{lines}", encoding="utf-8")
-    (folder / "gt" / "gt.txt").write_text(gt_text(shots), encoding="utf-8")
+    (folder / "gt" / "gt.txt").write_text(gt_text(shots, boxes), encoding="utf-8")
     write_camera_images(shots, play, lambda number: folder / "img1" / image_file(number))
 
 

@@ -11,7 +11,8 @@ from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.tracker.trackers import TRACKERS, ChecksCameras, Tracker, make_tracker
+from peopleboy.tracker.checked_tracker import CheckedTracker
+from peopleboy.tracker.trackers import TRACKERS, ChecksCameras, Tracker, is_own, make_tracker
 
 
 def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
@@ -21,6 +22,19 @@ def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
         BadInput: an unknown name, or a tracker of your own that cannot be made.
     """
     return OracleTracker(truth) if name == ORACLE else _make(name, seed)
+
+
+def make_checked_eyes(
+    name: str, seed: int, truth: Callable[[], Truth], cameras: Mapping[str, CameraConfig]
+) -> Tracker:
+    """Make a tracker by its name, which may refuse the cameras; each answer of one of your own is looked at.
+
+    Raises:
+        BadInput: an unknown name, or a tracker of your own that cannot be made, or cameras that it refuses.
+    """
+    tracker = make_eyes(name, seed, truth)
+    check_cameras(tracker, cameras)
+    return CheckedTracker(tracker, f"tracker {name!r}", cameras) if is_own(name) else tracker
 
 
 def check_cameras(tracker: Tracker, cameras: Mapping[str, CameraConfig]) -> None:

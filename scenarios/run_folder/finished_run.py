@@ -187,8 +187,12 @@ def open_run(folder: Path) -> FinishedRun:
     return FinishedRun(folder, about)
 
 
-def open_whole_runs(folders: Sequence[Path]) -> list[FinishedRun]:
+def open_whole_runs(folders: Sequence[Path], *, are_named_apart: bool = True) -> list[FinishedRun]:
     """Open runs of which all is there that is needed to play them again, and look at all of it once.
+
+    Args:
+        folders: theirs.
+        are_named_apart: whether each must have a name of its own.
 
     Raises:
         BadInput: there is no such run in a folder, or two have the same name.
@@ -196,7 +200,7 @@ def open_whole_runs(folders: Sequence[Path]) -> list[FinishedRun]:
     runs = [_open_whole(folder) for folder in folders]
     seen: dict[str, Path] = {}
     for run in runs:
-        if run.name in seen:
+        if are_named_apart and run.name in seen:
             raise BadInput(
                 f"{run.folder}: {seen[run.name]} is called {run.name} too; leave one out, or rename it"
             )

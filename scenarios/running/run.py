@@ -62,13 +62,20 @@ def tracker_name(scenario: Scenario, options: RunOptions) -> str:
     return scenario.tracker if options.tracker is None else options.tracker
 
 
-def run(scenario: Scenario, options: RunOptions, report: Callable[[Tick, int], None]) -> RunScores:
+def run(
+    scenario: Scenario,
+    options: RunOptions,
+    report: Callable[[Tick, int], None] = lambda _tick, _frames: None,
+) -> RunScores:
     """Run a scenario from start to end and write its folder.
 
     Args:
         scenario: what to run.
         options: how.
         report: called after every tick with the number of all ticks, such as by a progress bar.
+
+    Returns:
+        The scores, as metrics.json has them.
 
     Raises:
         BadInput: an option cannot be used, and nothing is written then; or tracker or behaviour gave what

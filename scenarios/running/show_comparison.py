@@ -17,6 +17,7 @@ from rich.table import Table
 
 from peopleboy.scenarios.running.compare_controllers import Controller, Figures, intervals
 from peopleboy.scenarios.scores.bootstrap import Interval
+from peopleboy.scenarios.scores.comfort.comfort_metrics import COMFORT_WORDS
 
 _SHARES = {
     "found", "followed", "in_band", "facing", "in_band_and_facing", "followed_to_end", "path_efficiency"
@@ -59,7 +60,9 @@ def _names(means: Mapping[Controller, Mapping[str, Interval]]) -> list[str]:
 
 
 def _label(name: str) -> str:
-    """Turn a key of metrics.json into words with a unit."""
+    """Turn a key of metrics.json into words with a unit; those of comfort are called as everywhere else."""
+    if name in COMFORT_WORDS:
+        return COMFORT_WORDS[name]
     stem, unit = name, "%" if name in _SHARES else ""
     for ending, written in (("_m_s3", "m/s3"), ("_m_s", "m/s"), ("_rad", "deg"), ("_m", "m"), ("_s", "s")):
         if stem.endswith(ending):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.run_folder.on_floor import (
     BELIEFS,
     PEOPLE,
@@ -17,6 +18,7 @@ from peopleboy.scenarios.run_folder.on_floor import (
 from peopleboy.scenarios.run_folder.run_files import read_table
 from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
 from peopleboy.scenarios.scores.yardstick import Yardstick, notes_on
+from peopleboy.sim.config import CONTROL_HZ
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
@@ -47,9 +49,10 @@ def score_people(
 ) -> ScoredPeople:
     """Score the tracks of a run: their boxes in a camera's image, and where they say that people stand.
 
-    Places come with the boxes of the thermal image. A tracker that gave no box of anybody there, but places,
-    is scored on the floor alone: everybody is a square there (`floor_squares`), and all figures of boxes are
-    those of squares.
+    Boxes are scored in frames in which the camera took an image: in others there is no truth to hold them
+    against. Places come with the boxes of the thermal image. A tracker that gave no box of anybody there, but
+    places, is scored on the floor alone: everybody is a square there (`floor_squares`), and all figures of
+    boxes are those of squares.
 
     Args:
         folder: of the run, with its tables.
@@ -63,6 +66,7 @@ def score_people(
     """
     truth, tracks = held
     if by.camera != THERMAL:
+        tracks = _at_images(folder, by.camera, tracks)
         scores = evaluate(truth, tracks, frames=frames, min_visible=min_visible)
         return ScoredPeople(scores, by, notes_on(folder, by, truth, tracks))
     robot = read_table(folder / "robot.parquet", ROBOT, POSE)
@@ -82,3 +86,9 @@ def score_people(
     if is_on_floor:
         return ScoredPeople(scores)
     return ScoredPeople(scores, by, notes_on(folder, by, truth, tracks))
+
+
+def _at_images(folder: Path, camera: str, tracks: TrackBoxes) -> TrackBoxes:
+    """Keep the boxes of frames in which a camera took an image."""
+    every = CONTROL_HZ // (cameras_of(folder)[camera].rate_hz or CONTROL_HZ)
+    return tracks.take((tracks.frame - 1) % every == 0)

@@ -57,11 +57,13 @@ def boxes_held(folder: Path, by: Yardstick) -> tuple[TrueBoxes, TrackBoxes]:
     text, table = truth_files(folder, by.camera)
     if by.camera == THERMAL:
         return true_boxes(text, table, by.boxes), read_tracks(folder / "tracks.txt")
-    given = folder / "tracks" / f"{by.camera}.txt"
+    cameras, given = cameras_of(folder), folder / "tracks" / f"{by.camera}.txt"
+    if by.camera not in cameras:
+        raise BadInput(f"{folder}: there is no camera {by.camera!r}; choose from {', '.join(cameras)}")
     for path in (text, given):
         if not path.is_file():
             raise BadInput(f"{path}: there is no such file; no boxes were given in camera {by.camera!r}")
-    around = around_px(cameras_of(folder)[by.camera].camera)
+    around = around_px(cameras[by.camera].camera)
     return replace(true_boxes(text, table, by.boxes), around_px=around), read_tracks(given)
 
 

@@ -33,11 +33,14 @@ def scene_line(scene: VistaScene) -> str:
 
 
 def write_map(surface: Surface, path: Path) -> None:
-    """Write points and normals as a binary PLY file, in the frame of the robot's first place [m]."""
+    """Write points and normals as a binary PLY file, in the frame of the robot's first place [m].
+
+    Normals point back to the camera, as viewers and registration expect them.
+    """
     names = ("x", "y", "z", "nx", "ny", "nz")
     head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(surface.points_m)}"]
     head += [*(f"property float {name}" for name in names), "end_header", ""]
-    rows = np.concatenate([surface.points_m, surface.normals], axis=1).astype("<f4")
+    rows = np.concatenate([surface.points_m, -surface.normals], axis=1).astype("<f4")
     path.write_bytes("\n".join(head).encode() + rows.tobytes())
 
 

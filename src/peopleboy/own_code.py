@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import sys
+import sysconfig
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from peopleboy.bad_input import BadInput
+
+_OF_NO_USER: Final = (
+    "<",  # such as <frozen importlib._bootstrap>
+    str(Path(__file__).parent),
+    *(sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")),
+)
 
 
 class OwnCodeFailed(Exception):  # noqa: N818
@@ -35,23 +42,26 @@ def load_own(what: str, name: str, call: str) -> Callable[..., Any]:
     Raises:
         BadInput: there is no such module or class, or the module cannot be imported.
     """
-    home, _, member = name.partition(":")
+    home, _, member = name.rpartition(":")
+    if home.endswith(".py") or "/" in home or "\\" in home:
+        module = home.replace("\\", "/").rpartition("/")[2].removesuffix(".py")
+        raise BadInput(f"{what} {name!r}: {home!r} is a file's path; from its folder, give {module}:{member}")
     if (here := str(Path.cwd())) not in sys.path:
         sys.path.insert(0, here)
     try:
-        module = import_module(home)
+        found = import_module(home)
     except (ImportError, ValueError) as error:
         raise BadInput(f"{what} {name!r}: module {home!r} cannot be imported: {error}") from error
     except Exception as error:
         raise BadInput(
             f"{what} {name!r}: module {home!r} cannot be imported: {in_one_line(error)}"
         ) from error
-    if not hasattr(module, member):
+    if not hasattr(found, member):
         raise BadInput(f"{what} {name!r}: there is no {member!r} in {home}")
 
     def make(*arguments: object) -> Any:
         try:
-            return getattr(module, member)(*arguments)
+            return getattr(found, member)(*arguments)
         except BadInput as error:
             raise BadInput(f"{what} {name!r}: {error}") from error
         except Exception as error:
@@ -74,7 +84,7 @@ def blamed(who: str) -> Iterator[None]:
         yield
     except BadInput as error:
         raise BadInput(f"{who}: {error}") from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # it may not end the program, least of all with exit code 0
         raise OwnCodeFailed(f"{who} failed: {in_one_line(error)}") from error
 
 
@@ -107,9 +117,11 @@ def traceback_in(path: Path) -> Iterator[None]:
         raise OwnCodeFailed(f"{error}; the traceback is in {path}") from error.__cause__
 
 
-def in_one_line(error: Exception) -> str:
-    """Give kind, message and place of an error."""
-    at = traceback.extract_tb(error.__traceback__)[-1]
+def in_one_line(error: BaseException) -> str:
+    """Give kind, message and place of an error: the last line of a user's in its traceback, or the last."""
+    lines = traceback.extract_tb(error.__traceback__)
+    own = [line for line in lines if not line.filename.startswith(_OF_NO_USER)]
+    at = (own or lines)[-1]
     words = " ".join(f"{type(error).__name__}: {error}".split())
     if isinstance(error, SyntaxError):  # which says by itself where it is
         return words

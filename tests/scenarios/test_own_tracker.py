@@ -20,6 +20,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.thermal_box import thermal_box
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run import run as run_scenario
+from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import KINDS
 from peopleboy.sim.geometry.pinhole import Pinhole
@@ -188,6 +189,8 @@ def test_a_camera_that_it_wants_is_mounted_and_nothing_else_changes(
     assert len((more / "tracks" / "rear.txt").read_text(encoding="utf-8").splitlines()) == 30
     assert run_cli("evaluate", more, "--camera", "rear") == 0
     assert run_cli("evaluate", plain, "--camera", "rear") == 2
+    with refused("'front'", "thermal, colour, rear"):
+        boxes_held(more, Yardstick("front"))
     assert run_cli("export", more, "--format", "mot", "--camera", "rear", "--out", tmp_path / "mot") == 0
     given = next((tmp_path / "mot" / "trackers").rglob("standing-0.txt")).read_text(encoding="utf-8")
     assert given == (more / "tracks" / "rear.txt").read_text(encoding="utf-8")
@@ -198,6 +201,26 @@ def test_a_camera_that_it_wants_is_mounted_and_nothing_else_changes(
     assert (tmp_path / "again" / "tracks" / "rear.txt").read_bytes() == (
         more / "tracks" / "rear.txt"
     ).read_bytes()
+
+
+class Everywhen(Reckoner):
+    """Boxes everybody's place in the image of a camera, whether it took one or not."""
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        return tuple(replace(t, boxes={"slow": (0.0, 0.0, 9.0, 9.0)}) for t in super().update(frame))
+
+
+def test_boxes_are_scored_in_frames_in_which_a_slow_camera_took_an_image(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(TRACKERS, "everywhen", Everywhen)
+    monkeypatch.setitem(TRACKERS, "reckoner", Reckoner)
+    cameras = STANDING["robot"].get("cameras", {}) | {"slow": {"kind": "thermal", "rate_hz": 5}}
+    scene = STANDING | {"robot": STANDING["robot"] | {"cameras": cameras}}
+    run = make_run(scene, tmp_path / "run", "--tracker", "everywhen")
+    assert len((run / "tracks" / "slow.txt").read_text(encoding="utf-8").splitlines()) == 30
+    metrics = json.loads((run / "metrics.json").read_text(encoding="utf-8"))
+    assert metrics["cameras"]["slow"]["counts"]["candidates"] == 10
 
 
 def test_a_camera_of_which_there_is_no_kind_is_refused(
@@ -211,7 +234,6 @@ def test_a_camera_of_which_there_is_no_kind_is_refused(
         run_scenario(
             load_scenario(tmp_path / "standing.yaml"),
             RunOptions(seed=0, out=tmp_path / "run", tracker="peeping"),
-            lambda _tick, _frames: None,
         )
     assert not (tmp_path / "run").exists()
 

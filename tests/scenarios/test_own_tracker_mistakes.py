@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 import yaml
 
+from peopleboy.own_code import load_own
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names, refused
@@ -44,6 +46,12 @@ WRONG = {
     "(1,)": ("tuple of Track", "int"),
     "(track(id=0),)": ("from 1", "0"),
     "(track(id=1.5),)": ("whole number", "1.5"),
+    "(track(id=True),)": ("whole number", "True"),
+    "(track(id=2**70),)": ("whole number", str(2**53), str(2**70)),
+    "(track(age_s=-1.0),)": ("seconds from 0", "-1.0"),
+    "(track(occluder=0),)": ("id of a track", "0"),
+    "(track(place=(4.0, 1.0)),)": ("FloorPlace", "(4.0, 1.0)"),
+    "(track(place=FloorPlace(position_m=(1.0, 0.0), covariance_m2=(1.0, 2.0, 1.0))),)": ("xx >= 0", "2.0"),
     "(track(id=7), track(id=7))": ("differ", "7 twice"),
     "(track(boxes={'thermal': (0, 0, float('nan'), 5)}),)": ("track 1", "'thermal'", "finite", "nan"),
     "(track(boxes={'thermal': (0, 0, -1, 5)}),)": ("width >= 0", "-1"),
@@ -88,6 +96,15 @@ def test_a_wrong_value_is_told_in_a_line_with_what_would_be_right(
         read_run(Path("run"))
 
 
+def test_an_environment_refuses_a_wrong_value_too(home: Path) -> None:
+    name = write_tracker(home, "(track(id='1'),)", "in_environment")
+    env = PeopleBoyEnv("brief.yaml", observation="tracks", tracker=name)
+    env.reset(seed=0)
+    with refused(f"tracker '{name}'", "whole number", "'1'"):
+        for _ in range(3):
+            env.step([0.0, 0.0])
+
+
 def test_numbers_of_numpy_are_right_ones(home: Path) -> None:
     name = write_tracker(
         home,
@@ -126,6 +143,17 @@ def test_who_writes_into_an_image_spoils_none_and_is_told_so(
     )
 
 
+@pytest.mark.parametrize(
+    ("answer", "says"), [("Status.HIDDEN", "AttributeError: HIDDEN"), ("exit(0)", "SystemExit: 0")]
+)
+def test_an_error_is_told_by_the_line_of_theirs_and_none_ends_the_program(
+    answer: str, says: str, home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = write_tracker(home, answer, f"elsewhere_{len(answer)}")  # both are raised in Python's own library
+    assert run_cli("run", "brief.yaml", "--tracker", name, "--no-rrd", "--out", "run") == 1
+    assert_names(capsys.readouterr().err, says, f"elsewhere_{len(answer)}.py, line 21")
+
+
 def test_in_a_sweep_the_failed_runs_are_named_with_where_their_tracebacks_are(
     home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -137,6 +165,12 @@ def test_in_a_sweep_the_failed_runs_are_named_with_where_their_tracebacks_are(
         assert part in told
     name = write_tracker(home, "None", "nothing_told")
     assert_names(refusal(capsys, "sweep", "brief.yaml", *options[2:], "--tracker", name), "frame 3", name)
+
+
+@pytest.mark.parametrize("path", ["mine.py", "../own/mine.py", "./mine", "C:\\own\\mine.py"])
+def test_a_path_is_refused_with_the_module_to_give(path: str) -> None:
+    with refused(f"tracker {f'{path}:Mine'!r}", "file's path", "give mine:Mine"):
+        load_own("tracker", f"{path}:Mine", "so")
 
 
 @pytest.mark.parametrize(

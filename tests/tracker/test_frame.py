@@ -83,3 +83,10 @@ def test_images_cannot_be_written_to_are_no_copies_and_are_made_when_asked_for()
     assert (list(lazy.images), COLOUR in lazy.images, asked) == ([THERMAL, COLOUR], True, [])
     assert lazy.grey(THERMAL).shape == (4, 5)
     assert asked == [THERMAL]
+
+
+def test_an_image_that_is_not_there_is_told_with_those_that_are():
+    frame = Frame(images={"thermal": np.zeros((4, 4), np.uint8)}, time_s=0.0)
+    assert frame.images.get("rear") is None
+    with pytest.raises(KeyError, match="no image of camera 'rear'; it has thermal"):
+        frame.images["rear"]

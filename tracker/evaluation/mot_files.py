@@ -131,8 +131,8 @@ def _read_table(path: Path, names: str, widths: range) -> Floats:
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "not a text file"
         raise BadInput(f"{path}: cannot be read as MOTChallenge text: {reason}") from error
-    if not lines[-1]:
-        lines.pop()  # the newline that ends the last line
+    while lines and not lines[-1].strip():
+        lines.pop()  # the newline that ends the last line, and empty lines with which others end files
     count = len(lines[0].split(",")) if lines else widths[-1]
     if count in widths:
         widths = range(count, count + 1)

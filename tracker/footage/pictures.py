@@ -21,6 +21,8 @@ INNER: Final = ("img", "img1", "color", OF_A_RUN)
 """Where benchmarks' sequences and runs of ours keep their pictures."""
 PAGED: Final = (".tif", ".tiff")
 """Files that may hold several pictures."""
+_TEXT: Final = b"ansi"
+_DEEP_GREY: Final = b"Y1\x00"  # with the number of bits, by FFmpeg's table of raw formats
 
 
 class Footage(Protocol):
@@ -57,7 +59,11 @@ def open_footage(path: Path) -> Footage:
         return _open_folder(_home_of_pictures(path), path.name)
     if not path.is_file():
         raise BadInput(f"{path}: there is no such folder or video")
-    return Pages(path, path.stem) if path.suffix.lower() in PAGED else Video(path)
+    if path.suffix.lower() in PAGED:
+        return Pages(path, path.stem)
+    if path.suffix.lower() in SUFFIXES:  # of which a reader of videos would make 8 bits
+        raise BadInput(f"{path}: is one picture; give a folder of them")
+    return Video(path)
 
 
 def beside(footage: Path) -> list[Path]:
@@ -152,6 +158,12 @@ class Video:
         rate = film.get(cv2.CAP_PROP_FPS)
         self.rate_hz: float | None = float(rate) if np.isfinite(rate) and rate > 0 else None
         self.expected = max(int(film.get(cv2.CAP_PROP_FRAME_COUNT)), 0)
+        pixels = _code(film, cv2.CAP_PROP_CODEC_PIXEL_FORMAT)
+        if pixels[:3] == _DEEP_GREY:
+            self.notes.append(
+                f"{path}: has {pixels[3]} bits a pixel, of which 8 are read; "
+                f"`ffmpeg -i {path} frames/%06d.tiff` keeps them all"
+            )
         is_read, _ = film.read()
         film.release()
         if not is_read:
@@ -176,12 +188,17 @@ class Video:
         # FFmpeg's own lines about damaged files would stand before ours; OpenCV reads this as it opens.
         os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
         film = cv2.VideoCapture(str(self.path))
-        if not film.isOpened():
+        if not film.isOpened() or _code(film, cv2.CAP_PROP_FOURCC) == _TEXT:  # FFmpeg draws text files
             raise BadInput(
                 f"{self.path}: cannot be read as a video: damaged, or of a codec that OpenCV lacks; "
                 "a folder of pictures always works"
             )
         return film
+
+
+def _code(film: cv2.VideoCapture, which: int) -> bytes:
+    """Give the four bytes of a code."""
+    return int(film.get(which)).to_bytes(4, "little", signed=True)
 
 
 def _where_else(folder: Path) -> str:

@@ -58,7 +58,7 @@ class Surface:
 
     Attributes:
         points_m: (N, 3).
-        normals: (N, 3) of length 1.
+        normals: (N, 3) of length 1, away from the camera.
     """
 
     points_m: Floats

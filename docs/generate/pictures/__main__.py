@@ -63,7 +63,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
 }
 
 # Where fewer do as well, to the eye.
-FEWER_COLOURS = {"panorama": 96, "scene_model": 192}
+FEWER_COLOURS = {"first_run": 80, "panorama": 96, "scene_model": 192}
 
 for name in sys.argv[1:] or PICTURES:
     print(save(PICTURES[name](), FOLDER / f"{name}.png", FEWER_COLOURS.get(name, COLOURS)))

@@ -47,10 +47,10 @@ def distance_edges(runs: Iterable[RunFindings]) -> tuple[float, ...]:
 
 
 def samples(found: RunFindings) -> Samples:
-    """Collect what curves are made of."""
+    """Collect what curves are made of, once for each image."""
     parts: list[list[Floats]] = [[np.zeros(0)] * 4]
     for person in found.people:
-        at = counts(person.is_counted, person.visible)
+        at = counts(person.is_counted, person.visible) & (np.arange(found.run.frames) % found.every == 0)
         hits = np.where(np.isfinite(person.iou), 100.0, 0.0)
         parts.append([c[at] for c in (person.distance_m, person.visible, hits, person.offset_px)])
     columns = [np.concatenate(part) for part in zip(*parts, strict=True)]

@@ -171,8 +171,9 @@ def _afterwards(story: RunStory, person: Story, number: int, end: int) -> tuple[
 
 def _belief(story: RunStory, number: int, end: int, own: Story | None) -> str:
     """Give the tracker's own reason, and say on whom the tracks lay that it names."""
-    about = ("lost", f"track {number}", end + 1)
-    why = next((line.why for line in story.run.events if (line.kind, line.who, line.frame) == about), "")
+    about, since = ("lost", f"track {number}"), end + 1 - story.every
+    events = (line for line in story.run.events if since < line.frame <= end + 1)
+    why = next((line.why for line in events if (line.kind, line.who) == about), "")
     return re.sub(
         r"track (\d+)", lambda found: f"number {found[1]}{_whose(story, int(found[1]), end, own)}", why
     )

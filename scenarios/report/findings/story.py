@@ -110,9 +110,13 @@ class RunStory:
 
     @cached_property
     def shown(self) -> dict[int, Flags]:
-        """For each confirmed track the frames (F,) in which it is shown."""
-        every, (_, tracks) = np.arange(1, self.run.frames + 1), self.boxes
-        return {n: np.isin(every, tracks.frame[tracks.id == n]) for n in np.unique(tracks.id).tolist()}
+        """For each confirmed track the frames (F,) in which it is shown.
+
+        Where tracks are told at images alone, as those made elsewhere, they are shown until the next image.
+        """
+        frames, (_, tracks) = np.arange(self.run.frames), self.boxes
+        at = self.newest if np.isin(tracks.frame - 1, self.newest).all() else frames
+        return {n: np.isin(at + 1, tracks.frame[tracks.id == n]) for n in np.unique(tracks.id).tolist()}
 
     @cached_property
     def is_on_floor(self) -> bool:
@@ -142,6 +146,17 @@ class RunStory:
             if self.camera != THERMAL:
                 raise
             return ThermalConfig()
+
+    @property
+    def newest(self) -> Ints:
+        """For each frame (F,) the one, from 0, in which that camera took its newest image."""
+        frames = np.arange(self.run.frames)
+        return frames - frames % self.every
+
+    @property
+    def every(self) -> int:
+        """How many frames there are from one image of that camera to the next."""
+        return self.run.rate_hz // (self.view.rate_hz or self.run.rate_hz)
 
     @cached_property
     def counted_m(self) -> tuple[float, float]:
@@ -208,11 +223,13 @@ def _tell(story: RunStory, person: int, lying: Any) -> Story:
     at = rows["frame"].to_numpy() - 1
     mine = lying[lying.person == person]
 
+    newest = story.newest
+
     def spread(values: object, at: Ints = at) -> Floats:
-        """Spread values over all frames (F,); NaN elsewhere."""
+        """Spread values over all frames (F,), each as in the camera's newest image; NaN elsewhere."""
         column = np.full(frames, np.nan)
         column[at] = values
-        return column
+        return np.asarray(column[newest])
 
     beyond = [dict(hidden).get(BORDER, 0.0) for hidden in rows["hidden_by"].to_pylist()]
     inside = spread((rows["whole_px"].to_numpy() > 0) * (1.0 - np.array(beyond)))
@@ -229,7 +246,7 @@ def _tell(story: RunStory, person: int, lying: Any) -> Story:
         distance_m=spread(rows["distance_m"].to_numpy()),
         visible=np.nan_to_num(spread(rows["visible_fraction"].to_numpy())),
         occluded=occluded,
-        hider=tuple(hider.get(frame) or "" for frame in range(frames)),
+        hider=tuple(hider.get(frame) or "" for frame in newest.tolist()),
         is_counted=is_counted,
         view=view,
         matched=matched,

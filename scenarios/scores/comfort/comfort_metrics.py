@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Final
 
 import numpy as np
@@ -69,6 +69,16 @@ class ComfortScore:
             ("jerk", self.jerk_m_s3, "m/s3", "of the robot, root mean square, forwards"),
             ("jerk felt", self.felt_jerk_m_s3, "m/s3", "the same with somebody within 3.6 m"),
         ]
+
+
+_NAMES: Final = tuple(field.name for field in fields(ComfortScore))
+COMFORT_WORDS: Final = {
+    name: f"{words}, {unit}" if unit else words
+    for name, (words, _, unit, _) in zip(
+        _NAMES, ComfortScore(**dict.fromkeys(_NAMES, math.nan)).rows(), strict=True
+    )
+}
+"""What each figure is called, with its unit, by its key in metrics.json."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -204,6 +204,8 @@ def test_what_does_not_fit_many_worlds_is_refused() -> None:
         PeopleBoyVectorEnv(0)
     with pytest.raises(BadInput, match="threads 0"):
         PeopleBoyVectorEnv(2, threads=0)
+    with pytest.raises(BadInput, match="autoreset_mode: gymnasium's own"):
+        PeopleBoyVectorEnv(2, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
     with pytest.raises(BadInput, match="render_mode"):
         PeopleBoyVectorEnv(2, render_mode="rgb_array")
     many = PeopleBoyVectorEnv(2, observation="truth", physics="kinematic")
@@ -213,6 +215,17 @@ def test_what_does_not_fit_many_worlds_is_refused() -> None:
         many.reset(seed=[1])
     with pytest.raises(BadInput, match=r"\(2, 2\)"):
         many.step(np.zeros(2, np.float32))
+    many.reset(seed=np.array([1, 2]))
+    with pytest.raises(gymnasium.error.Error, match="greater or equal to zero"):
+        many.reset(seed=[3, -1])
+    ours = many.step(np.zeros((2, 2), np.float32))[0]  # world 0 is another one by now
+    one = PeopleBoyEnv(observation="truth", physics="kinematic")
+    one.reset(seed=3)
+    assert np.array_equal(ours["sonar"][0], one.step(np.zeros(2, np.float32))[0]["sonar"])
+    many.close()
+    for call in (many.reset, lambda: many.step(np.zeros((2, 2), np.float32))):
+        with pytest.raises(BadInput, match="is closed"):
+            call()
 
 
 def test_worlds_of_several_kinds_some_of_them_empty_are_single_worlds_too() -> None:

@@ -66,6 +66,7 @@ def test_two_runs_of_one_name_are_refused(
 ) -> None:
     again = copy(crossing, tmp_path / crossing.name)
     assert_names(refusal(capsys, "export", crossing, again, *FORM), again, "tiny-3")
+    assert_names(refusal(capsys, "export", crossing, *FORM, "--boxes", "whole"), "--boxes whole", "mot")
 
 
 def test_nothing_is_replaced_but_an_export_and_that_only_if_asked(

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import configparser
+import json
 import shutil
 from pathlib import Path
 
@@ -100,6 +101,26 @@ def test_boxes_agree_with_the_table_and_people_who_do_not_count_are_distractors(
         is_judged = row["is_counted"] and row["visible_fraction"] > 0.0
         assert tuple(line[6:8]) == ((1, 1) if is_judged else (0, 8))
     assert {line[7] for line in lines.values()} == {1, 8}
+
+
+def test_the_truth_has_boxes_round_whole_people_if_asked_and_folders_may_share_a_name(
+    crossing: Path, thesis: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again = shutil.copytree(thesis, tmp_path / crossing.name)  # as those of two sweeps do
+    out = tmp_path / "mot"
+    order = ("--format", "mot", "--boxes", "whole", "--out", out)
+    assert run_cli("export", crossing, again, *order) == 0
+    for told in capsys.readouterr().err.splitlines()[-2:]:
+        assert_names(told, "note: boxes of", "round torsos", "--boxes torso")
+    data = dataset(out, capsys)
+    for tracker, run in (("peopleboy", crossing), ("thesis", thesis)):
+        assert run_cli("evaluate", run, "--boxes", "whole", "--json") == 0
+        (figures,) = json.loads(capsys.readouterr().out)["trackers"].values()
+        mot = figures["all_frames"]["mot"]
+        found = score(data, tracker)
+        assert [100.0 * found[key] for key in ("MOTA", "IDF1", "HOTA")] == pytest.approx(
+            [mot[key] for key in ("MOTA", "IDF1", "HOTA")], abs=1e-6
+        )
 
 
 def test_the_sequence_says_its_length_and_holds_the_images(folder: Path, crossing: Path) -> None:

@@ -37,15 +37,21 @@ class Somewhere:
     def update(self, frame):
         box = {"panorama": (114.0, 12.0, 12.0, 60.0)}
         return (Track(id=1, boxes=box, confidence=1.0, status=Status.UNKNOWN, age_s=frame.time_s),)
+
+class AtImages(Somewhere):
+    def update(self, frame):
+        return super().update(frame) if "panorama" in frame.images else ()
 """
 
 
-@pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunFindings]:
+@pytest.fixture(scope="module", params=["Somewhere", "AtImages"])
+def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunFindings]:
     folder = tmp_path_factory.mktemp("round")
     (folder / "round.yaml").write_text(SCENE)
     (folder / "all_round.py").write_text(TRACKER)
-    options = RunOptions(seed=0, out=folder / "run", frames=True, record=False, tracker="all_round:Somewhere")
+    options = RunOptions(
+        seed=0, out=folder / "run", frames=True, record=False, tracker=f"all_round:{request.param}"
+    )
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(folder)
         run(load_scenario(folder / "round.yaml"), options, lambda *_: None)
@@ -61,6 +67,13 @@ def test_people_count_within_the_limits_of_panoramas(found: RunFindings) -> None
     assert [(point.x, point.boxes) for point in curve([samples(found)], "distance", "found", edges)] == [
         (2.5, 9)
     ]
+
+
+def test_between_two_images_people_are_as_the_former_showed_them(found: RunFindings) -> None:
+    anna = found.called("anna")
+    assert anna.is_due.all()  # and not in one frame of three, so that each image were a moment of its own
+    assert len(set(anna.hold.tolist())) == 1
+    assert found.shown[1].all()
 
 
 def test_pictures_are_the_newest_panoramas(found: RunFindings) -> None:

@@ -58,12 +58,16 @@ def test_whole_people_are_boxed_by_trackers_of_ones_own_alone(tmp_path):
 def test_a_comparison_is_printed_drawn_and_kept(tmp_path, capsys):
     runs = {
         Controller("a", "truth"): [{"followed": 0.5, "jerk_m_s3": 1.0}, {"followed": 1.0, "jerk_m_s3": NAN}],
-        Controller("b", "truth"): [{"lateral_m": 0.1}, {"lateral_m": 0.1}],
+        Controller("b", "truth"): [
+            {"lateral_m": 0.1, "personal_s": 2.0},
+            {"lateral_m": 0.1, "personal_s": 2.0},
+        ],
     }
     content = keep_comparison("scene", runs, tmp_path)
     show_comparison("scene", runs)
     printed = capsys.readouterr().out
     assert "followed, %" in printed
+    assert "within 1.2 m, s" in printed
     assert "75.00 [50.00, 100.00]" in printed
     assert content == json.loads((tmp_path / "comparison.json").read_text())
     kept = content["controllers"]

@@ -75,8 +75,11 @@ def test_what_was_moved_is_told_by_names_and_left_in_files(run: Path) -> None:
     known = background > 0
     assert known.mean() > 0.97
     assert np.abs(background.astype(int) - ever)[known].mean() < 8.0
-    head = (scene / "static_map.ply").read_bytes()[:80]
+    head, rows = (scene / "static_map.ply").read_bytes().split(b"end_header\n", 1)
     assert head.startswith(b"ply\nformat binary_little_endian 1.0\nelement vertex ")
+    points = np.frombuffer(rows, "<f4").reshape(-1, 6)
+    on_floor = points[np.abs(points[:, 2]) < 0.02]
+    assert np.median(on_floor[:, 5]) > 0.99  # up, to the camera
     assert (scene / "scene.rrd").stat().st_size > 1000
 
 

@@ -1,5 +1,7 @@
 """People who keep their numbers, and strangers who get none of theirs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -155,6 +157,10 @@ def test_a_box_in_the_colour_image_follows_rays_and_place():
     assert left + width / 2.0 == pytest.approx(160.0 + 300.0 * 0.06 / 4.0)
     assert (top, height) == pytest.approx((80.0, 125.0))
     assert box_in(PANORAMA, seen, Frame(images={PANORAMA: scene()}, time_s=0.0)) is None
+    # Of a tracker that tells no places the height tells how far away it is, near enough for 6 cm aside.
+    unplaced = box_in(COLOUR, replace(seen, place=None), frame)
+    assert unplaced == pytest.approx((left, top, width, height), abs=1.0)
+    assert box_in(COLOUR, replace(seen, place=None, boxes={}), frame) is None
 
 
 def test_without_colours_it_is_refused_in_one_line():

@@ -52,6 +52,8 @@ def test_spaces_windows_line_ends_and_a_missing_last_newline_are_fine(tmp_path):
     tracks = read_tracks(path)
     assert tracks.frame.tolist() == [1, 2]
     assert tracks.box[1].tolist() == [10.5, 20.0, 30.0, 80.0]
+    path.write_bytes(b"2,3,10.5,20,30,80,1,-1,-1,-1\r\n\r\n\n")
+    assert read_tracks(path).frame.tolist() == [2]
 
 
 @pytest.mark.parametrize(

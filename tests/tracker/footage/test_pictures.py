@@ -122,3 +122,23 @@ def test_a_run_that_holds_what_is_to_be_read_is_not_replaced(tmp_path, what):
     told = refusal(*more.get(what, (clip,)), "--out", run, "--overwrite")
     assert_names(told, f"{run}: ", clip)
     assert len(list(clip.iterdir())) == 4
+
+
+def test_a_text_and_a_single_picture_are_no_video(tmp_path):
+    (tmp_path / "tracks.txt").write_text("1,1,20.0,30.0,10.0,40.0,1,-1,-1,-1\n" * 40)  # FFmpeg would draw it
+    with refused("tracks.txt", "cannot be read as a video"):
+        open_footage(tmp_path / "tracks.txt")
+    clip = write_folder(tmp_path / "clip", 1)
+    with refused("frame1.png", "is one picture", "folder"):
+        open_footage(clip / "frame1.png")
+
+
+def test_a_video_of_16_bits_is_said_to_be_read_as_one_of_8(tmp_path):
+    av = pytest.importorskip("av")
+    with av.open(str(tmp_path / "deep.mkv"), "w") as film:
+        stream = film.add_stream("ffv1", rate=9)
+        stream.width, stream.height, stream.pix_fmt = 32, 24, "gray16le"
+        frame = av.VideoFrame.from_ndarray(np.full((24, 32), 29000, np.uint16), format="gray16le")
+        film.mux([*stream.encode(frame), *stream.encode()])
+    (note,) = open_footage(tmp_path / "deep.mkv").notes
+    assert_names(note, "deep.mkv", "16 bits", "8 are read", "%06d.tiff")

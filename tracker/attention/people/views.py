@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Calibration, Frame
-from peopleboy.tracker.track import Box, Track
+from peopleboy.tracker.thermal.whereabouts import places_on_floor
+from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 LOOKED_AT: Final = (COLOUR, DEPTH_COLOUR, PANORAMA)
 """Cameras that show colours, by their names."""
@@ -66,6 +67,7 @@ def check_colours(frame: Frame) -> None:
 def box_in(camera: str, track: Track, frame: Frame) -> Box | None:
     """Find the box of a track in a colour camera's image: its own, that of its rays, or of who stands there.
 
+    Who has a box in the thermal image and no place stands where somebody of usual height would.
     Without calibrations colours are taken to show what the thermal image shows.
 
     Returns:
@@ -77,9 +79,10 @@ def box_in(camera: str, track: Track, frame: Frame) -> Box | None:
     calibration, thermal = frame.calibrations.get(camera), frame.calibrations.get(THERMAL)
     if calibration is None:
         return _same_view(camera, track, frame)
-    if track.place is None:
+    place = track.place or _place_by_height(track, thermal)
+    if place is None:
         return None
-    ahead, aside = track.place.position_m
+    ahead, aside = place.position_m
     if THERMAL in track.boxes and thermal is not None:
         ends = _ends(track.boxes[THERMAL], ahead, thermal)
     else:
@@ -94,6 +97,13 @@ def _same_view(camera: str, track: Track, frame: Frame) -> Box | None:
     across, down = here[1] / there[1], here[0] / there[0]
     left, top, width, height = track.boxes[THERMAL]
     return left * across, top * down, width * across, height * down
+
+
+def _place_by_height(track: Track, thermal: Calibration | None) -> FloorPlace | None:
+    """Tell where somebody stands of whom a tracker tells no more than a box in the thermal image."""
+    if thermal is None or THERMAL not in track.boxes:
+        return None
+    return places_on_floor([track.boxes[THERMAL]], [Status.TRACKED], thermal)[0]
 
 
 def _ends(box: Box, ahead_m: float, thermal: Calibration) -> NDArray[np.float64] | None:
