@@ -15,7 +15,7 @@ from peopleboy.tracker.thermal.contour.likelihood import (
     probability,
     seen_shares,
 )
-from peopleboy.tracker.thermal.twins import twin_of
+from peopleboy.tracker.thermal.contour.twins import twin_of
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 
 SHAPE = (240, 320)

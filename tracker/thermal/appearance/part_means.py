@@ -16,8 +16,8 @@ from peopleboy.tracker.thermal.appearance.regions import (
     first_pixel_after,
     part_rectangle,
 )
+from peopleboy.tracker.thermal.contour.twins import bodies_of
 from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y
-from peopleboy.tracker.thermal.twins import bodies_of
 
 WHITE: Final = 255.0
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.elementary import exponential
 from peopleboy.tracker.thermal.contour.contour import FEET, GREYS, SECTIONS, SHOULDER_LEFT
+from peopleboy.tracker.thermal.contour.twins import bodies_of
 from peopleboy.tracker.thermal.particles import D, Floats, H, W, X, Y
-from peopleboy.tracker.thermal.twins import bodies_of
 
 ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
 UNKNOWN: Final = 1e-4  # share of a section's weight that is none
