@@ -138,6 +138,11 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
     is_flag=True,
     help="Teach where in windows people are; trees that tell whether anybody is there stay as they are.",
 )
+@click.option(
+    "--second-look",
+    is_flag=True,
+    help="Teach the network that looks again at what trees propose; all trees stay as they are.",
+)
 @workers_options
 def train_detector(
     worlds: int,
@@ -145,6 +150,7 @@ def train_detector(
     ship: bool,
     windows: tuple[str, ...],
     only_places: bool,
+    second_look: bool,
     workers: int | None,
     scheduler: str | None,
 ) -> None:
@@ -156,9 +162,13 @@ def train_detector(
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.people_learning.people_lesson import give_people_lesson
+    from peopleboy.scenarios.studies.second_look.network_lesson import give_second_look_lesson
     from peopleboy.tracker.proposals.window import Kind
 
     chosen, kinds = chosen_workers(workers, scheduler), [kind for kind in Kind if kind in windows]
+    if second_look:
+        click.echo(give_second_look_lesson(out, chosen, worlds=worlds, ship=ship))
+        return
     click.echo(
         give_people_lesson(out, chosen, worlds=worlds, kinds=kinds, only_places=only_places, ship=ship)
     )

@@ -22,6 +22,7 @@ from peopleboy.tracker.by_detection.paths import (
     Floats,
     advanced,
     begun,
+    between,
     boxes_of,
     corrected,
     distances,
@@ -152,7 +153,7 @@ class ByDetectionTracker:
             seen = found[row]
             finding = Finding(float(proposed.scores[seen]), float(common[seen]), float(speed[row]))
             target.see(finding, now.time_s, now.dt_s, config)
-            target.widen(proposed.ratio(seen))
+            target.show(proposed.boxes[seen])
             if is_beside[row]:
                 target.overlap()
             else:
@@ -217,6 +218,7 @@ class ByDetectionTracker:
                 looks=proposed.looks[row],
                 colours=proposed.colours[row],
                 ratio=proposed.ratio(row),
+                shown=proposed.boxes[row],
                 log_odds=min(float(proposed.scores[row]), config.highest_score),
             )
             for row in free.tolist()
@@ -252,10 +254,17 @@ class ByDetectionTracker:
         target.id = self._born
         target.log_odds = max(target.log_odds, self._config.existence.confirmed)
 
+    def _told_box(self, target: Target, box: Floats, time_s: float) -> Box:
+        """Tell where somebody is: between where the path leads and what the image shows, if it does."""
+        if target.seen_s == time_s:
+            box = between(box, target.shown, self._config.path.shown)
+        left, top, width, height = box.tolist()
+        return left, top, width, height
+
     def _tracks(self, frame: Frame, now: _Instant) -> tuple[Track, ...]:
         shown = [
-            (target, _box(box))
-            for target, box in zip(self._targets, self._boxes(now.view).tolist(), strict=True)
+            (target, self._told_box(target, box, now.time_s))
+            for target, box in zip(self._targets, self._boxes(now.view), strict=True)
             if target.is_shown(now.time_s, self._config.existence)
         ]
         shown.sort(key=lambda pair: pair[0].id)
@@ -276,8 +285,3 @@ class ByDetectionTracker:
             )
             for (target, box), status, place in zip(shown, statuses, places, strict=True)
         )
-
-
-def _box(numbers: Sequence[float]) -> Box:
-    left, top, width, height = numbers
-    return left, top, width, height

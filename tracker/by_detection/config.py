@@ -22,6 +22,7 @@ class PathConfig:
         build: deviation of the logarithm of people's stature.
         posture: by how much that changes in a second, as people sit down or bend.
         floor_m: deviation of feet from the floor, where it is known.
+        shown: share of the box of this image in the one that is told; the rest is where the path leads.
     """
 
     acceleration_m_s2: tuple[float, float, float] = (0.8, 0.2, 0.8)
@@ -31,7 +32,8 @@ class PathConfig:
     foot: float = 0.06
     build: float = 0.04
     posture: float = 0.02
-    floor_m: float = 0.15
+    floor_m: float = 0.08
+    shown: float = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,8 +89,8 @@ class ExistenceConfig:
     Attributes:
         weakest: proposals of a lower score are not looked at.
         trust: what a unit of the others counts, in images of cameras that the detector does not know.
-        lasting: what is added to them: who is proposed in one image after another is somebody more often than
-            single images say.
+        lasting: what is added to them: who is hardly somebody, in one image after another, is nobody more
+            often than single images say.
         birth: score of a proposal that may be somebody new.
         independent_s: images so far apart speak for themselves, at the soonest.
         still_s: the same of who stands still: what looks like somebody does so in the next image, too.
@@ -109,15 +111,15 @@ class ExistenceConfig:
 
     weakest: float = -2.0
     trust: float = 0.8
-    lasting: float = 0.4
+    lasting: float = -0.2
     birth: float = -0.5
     independent_s: float = 0.25
     still_s: float = 4.0
     look_m: float = 0.25
-    highest_score: float = 1.5
-    shared_doubt: float = 3.0
+    highest_score: float = 2.0
+    shared_doubt: float = 2.0
     highest: float = 8.0
-    confirmed: float = 1.5
+    confirmed: float = 1.2
     hopeless: float = -0.5
     missed: float = 1.0
     missed_hidden: float = 0.3

@@ -11,6 +11,7 @@ import numpy as np
 from peopleboy.tracker.by_detection.colours import FEATURES, Colours, alike
 from peopleboy.tracker.by_detection.config import ExistenceConfig
 from peopleboy.tracker.by_detection.looks import Pattern
+from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.track import Status
 
 _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
@@ -43,6 +44,7 @@ class Target:
         looks: how it looks in the thermal image.
         colours: what it wears; 0 where nobody knows.
         ratio: width of its box over the height.
+        shown: (4,) its box in the image in which it was last seen [px].
         watched_s: for how long it was seen in all.
         log_odds: that it is a person.
         id: 0 as long as it is not told.
@@ -59,6 +61,7 @@ class Target:
     looks: Pattern
     colours: Colours
     ratio: float
+    shown: Floats
     watched_s: float = 0.0
     log_odds: float = 0.0
     id: int = 0
@@ -87,9 +90,10 @@ class Target:
         self.log_odds = min(max(sum_of_both, -config.highest), config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-seen.score)) - self.confidence)
 
-    def widen(self, ratio: float) -> None:
-        """Take in how wide its box is, over the height."""
-        self.ratio += _LEARNING * (ratio - self.ratio)
+    def show(self, box: Floats) -> None:
+        """Take in its box (4,), and how wide that is over the height."""
+        self.shown = box
+        self.ratio += _LEARNING * (float(box[2] / box[3]) - self.ratio)
 
     def learn(self, looks: Pattern, colours: Colours, dt_s: float) -> None:
         """Take in how it looks now, apart from others."""

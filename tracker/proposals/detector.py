@@ -14,6 +14,7 @@ from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
 from peopleboy.tracker.proposals.motion import change, shifted, turned
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.pyramid import levels
+from peopleboy.tracker.proposals.second_look import Network, look_again, shipped_network
 from peopleboy.tracker.proposals.suppression import Proposals, suppress
 from peopleboy.tracker.proposals.window import Floats
 from peopleboy.tracker.thermal.mount import Mount
@@ -25,6 +26,9 @@ EARLIER_S: Final = 0.2
 
 SMALLEST_PX: Final = 24.0
 """Height of the smallest people who are looked for."""
+
+WEAKEST: Final = -3.5
+"""Score of what trees propose from which on it is looked at again."""
 
 _OLDEST_S: Final = 2.0 * EARLIER_S
 
@@ -40,16 +44,23 @@ class PeopleDetector:
     """Where people may be in images that come one after another."""
 
     def __init__(
-        self, model: PeopleModel | None = None, *, smallest_px: float = SMALLEST_PX, least_score: float = 0.0
+        self,
+        model: PeopleModel | None = None,
+        network: Network | None = None,
+        *,
+        smallest_px: float = SMALLEST_PX,
+        least_score: float = 0.0,
     ) -> None:
-        """Take the shipped trees, or others.
+        """Take the shipped trees and network, or others.
 
         Args:
-            model: the trees.
+            model: the trees, which propose.
+            network: looks again at what they propose.
             smallest_px: height of the smallest people who are looked for.
             least_score: of what is told.
         """
         self._model = shipped_model() if model is None else model
+        self._network = shipped_network() if network is None else network
         self._smallest_px = smallest_px
         self._least_score = least_score
         self._past: deque[_Past] = deque()
@@ -67,7 +78,8 @@ class PeopleDetector:
             mount: how the camera sits; None if that is not known: then people may be anywhere.
         """
         moved = self._change(grey, time_s, odometry, mount)
-        return look(self._model, grey, moved, mount, self._smallest_px, self._least_score, self._memory)
+        first = look(self._model, grey, moved, mount, self._smallest_px, WEAKEST, self._memory)
+        return look_again(self._network, grey, moved, first, mount, self._least_score)
 
     def _change(self, grey: Grey, time_s: float, odometry: Odometry | None, mount: Mount | None) -> Grey:
         """Compare an image with the one of about 0.2 s ago, and keep it for later ones."""
@@ -99,7 +111,7 @@ def look(
     least_score: float,
     memory: Memory | None = None,
 ) -> Proposals:
-    """Look for people in an image of which it is known by how much (H, W) greys changed."""
+    """Let trees look for people in an image of which it is known by how much (H, W) greys changed."""
     boxes: list[Floats] = [np.empty((0, 4))]
     scores: list[Floats] = [np.empty(0)]
     for level in levels(grey, change, mount, smallest_px, memory or Memory()):

@@ -31,7 +31,7 @@ def varied(shot: PeopleShot, rng: np.random.Generator, kind: Kind) -> PeopleShot
         return shot.varied(rng)
     side = shot.mirrored() if rng.random() < 0.5 else shot
     if rng.random() >= _AS_IT_IS:
-        side = _cut_off(side, rng)
+        side = cut_off(side, rng)
     return replace(side, is_good=who_is_cut(side)).recoloured(rng)
 
 
@@ -63,7 +63,7 @@ def _tall(shot: PeopleShot) -> NDArray[np.bool_]:
     return np.asarray(shot.is_clear & (shot.box[:, 3] > _TALL_PX), np.bool_)
 
 
-def _cut_off(shot: PeopleShot, rng: np.random.Generator) -> PeopleShot:
+def cut_off(shot: PeopleShot, rng: np.random.Generator) -> PeopleShot:
     """Give a part of it that ends in the middle of somebody."""
     tall = np.flatnonzero(_tall(shot))
     if not len(tall):

@@ -63,7 +63,7 @@ def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
 
 def test_what_looks_rather_unlike_a_person_is_not_told() -> None:
     assert not any(tracked([[walker(100.0)]] * 60, score=-0.6))
-    assert tracked([[walker(100.0)]] * 60, score=0.8)[-1]
+    assert tracked([[walker(100.0)]] * 60, score=1.6)[-1]
 
 
 def test_somebody_sure_is_told_by_the_third_image() -> None:

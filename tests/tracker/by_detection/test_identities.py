@@ -28,6 +28,7 @@ def person(number: int, was: float, now: float | None, seen_s: float = NOW_S) ->
         looks=np.zeros(72, np.float32),
         colours=wearing(was),
         ratio=0.27,
+        shown=np.array([0.0, 0.0, 10.0, 40.0]),
         id=number,
     )
     if now is not None:

@@ -22,6 +22,7 @@ def known() -> Target:
         looks=np.zeros(4, np.float32),
         colours=np.zeros(FEATURES, np.float32),
         ratio=0.3,
+        shown=np.array([0.0, 0.0, 10.0, 40.0]),
         log_odds=CONFIG.confirmed,
         id=1,
         told_s=0.0,
@@ -73,8 +74,9 @@ def images_until_told(score: float, speed_m_s: float) -> int:
 
 def test_who_stands_still_is_no_new_sight_in_every_image() -> None:
     walks, stands = images_until_told(0.5, 1.0), images_until_told(0.5, 0.0)
-    assert walks == pytest.approx(2.0 * CONFIG.independent_s / DT_S, abs=1.0)
-    assert stands == pytest.approx(2.0 * CONFIG.still_s / DT_S, abs=1.0)
+    sights = (CONFIG.confirmed - 0.5) / 0.5
+    assert walks == pytest.approx(sights * CONFIG.independent_s / DT_S, abs=1.0)
+    assert stands == pytest.approx(sights * CONFIG.still_s / DT_S, abs=1.0)
 
 
 @given(st.floats(0.0, 5.0), st.floats(0.0, 5.0))

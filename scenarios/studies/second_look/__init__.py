@@ -1,0 +1,1 @@
+"""Teaching the network that looks again at what trees propose."""

@@ -1,0 +1,161 @@
+"""The whole lesson of the second look: films, what trees propose in them, a network, and how good it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.running.engine.engine import work_through
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
+from peopleboy.scenarios.studies.people_learning.shots import shots_of
+from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
+from peopleboy.scenarios.studies.second_look.looks import Looks, looks_of
+from peopleboy.scenarios.studies.second_look.teach_network import NOBODY, SOMEBODY, teach_network
+from peopleboy.tracker.boxes import Floats
+from peopleboy.tracker.proposals.crops import SCORES, planes_of
+from peopleboy.tracker.proposals.model import shipped_model
+from peopleboy.tracker.proposals.placing import moved
+from peopleboy.tracker.proposals.second_look import NETWORK, Network
+
+LATER: Final = (700, 200, 500, 200, 200)
+"""Of each kind, worlds from so many seeds after the first on: no trees were taught on these."""
+
+ROUNDS: Final = 5
+_HELD_BACK: Final = 10  # of so many later worlds one is not learned from
+_AT_ONCE: Final = 256  # crops
+
+
+def give_second_look_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) -> Path:
+    """Learn to look again at what the tracker's own trees propose, and leave films and a network in a folder.
+
+    Half of the worlds are those by which trees are taught, the others later ones. Films that are there are
+    used.
+
+    Args:
+        out: the folder.
+        workers: who films.
+        worlds: how many to learn from; a tenth of the later ones is held back, to make scores log odds.
+        ship: whether to put the network in the place of the tracker's own.
+
+    Returns:
+        The file of the network.
+
+    Raises:
+        BadInput: a path that cannot be used, scikit-learn is missing, or too few people.
+        TasksFailed: some films failed, after all others were done.
+    """
+    films = out / "films"
+    with writing_to(out):
+        films.mkdir(parents=True, exist_ok=True)
+    early, late = (
+        [PeopleFilmTask(str(films), seed) for seed in seeds_of(worlds // 2, later=later)]
+        for later in (False, True)
+    )
+    work_through([task for task in (*early, *late) if not task.film.is_file()], workers, "films")
+    held = late[_HELD_BACK - 1 :: _HELD_BACK] or late[-1:]
+    lessons = [task.film for task in (*early, *late) if task not in held]
+    learned, others = taken(lessons, varies=True), taken([task.film for task in held], varies=False)
+    _say(
+        f"{len(lessons)} films, {len(learned.overlap)} proposals to learn from, {len(others.overlap)} others"
+    )
+    network = with_log_odds(teach_network(learned, np.random.default_rng(0), rounds=ROUNDS, say=_say), others)
+    about = {
+        "learned from": f"{len(lessons)} films, {len(learned.overlap)} proposals",
+        f"on {len(held)} others": judged(network, others),
+    }
+    path = NETWORK if ship else out / NETWORK.name
+    with writing_to(path.parent), whole(path) as part:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        replace(network, about=about).save(part)
+    return path
+
+
+def seeds_of(worlds: int, *, later: bool) -> Iterator[int]:
+    """Yield the seeds of so many worlds, as the detector's lesson has them, or later ones."""
+    for kind, later_by in zip(KINDS, LATER, strict=True):
+        yield from (seed + later_by * later for seed in kind.seeds(worlds))
+
+
+def taken(films: list[Path], *, varies: bool) -> Looks:
+    """Collect what trees propose in films."""
+    model = shipped_model()
+    return Looks.joined(
+        looks_of(list(shots_of([film])), model, np.random.default_rng(number), varies=varies)
+        for number, film in enumerate(films)
+    )
+
+
+def with_log_odds(network: Network, looks: Looks) -> Network:
+    """Let scores be the log odds of somebody among proposals that it never saw (Platt 1999).
+
+    Raises:
+        BadInput: scikit-learn is missing, or only people or none are proposed.
+    """
+    try:
+        from sklearn.linear_model import LogisticRegression  # here, as it comes with the extra `train`
+    except ImportError as error:
+        raise BadInput("train-detector needs scikit-learn: pip install scikit-learn") from error
+    score, is_person = _whether(_told(network, looks)[:, 0], looks)
+    if is_person.all() or not is_person.any():
+        raise BadInput(f"{is_person.sum()} of {len(score)} proposals are people; take more worlds")
+    fitted = LogisticRegression(C=1e6).fit(score[:, None], is_person)
+    line = np.array([fitted.coef_[0, 0], fitted.intercept_[0]], np.float32)
+    return replace(network, weights={**network.weights, "line": line})
+
+
+def judged(network: Network, looks: Looks) -> str:
+    """Say in words how much better the second look tells than the first one."""
+    told = _told(network, looks)
+    first, is_person = _whether(SCORES * looks.numbers[:, 0].astype(np.float64), looks)
+    second, _ = _whether(told[:, 0], looks)
+    losses = [np.logaddexp(0.0, np.where(is_person, -score, score)).mean() for score in (first, second)]
+    people = looks.overlap >= SOMEBODY
+    before, after = (
+        looks.overlap[people],
+        overlap_of(told[people, 1:], looks.offsets[people].astype(np.float64)),
+    )
+    return (
+        f"{len(first)} proposals, {is_person.sum()} of people: log loss {losses[0]:.3f} at first sight, "
+        f"{losses[1]:.3f} then; mean overlap {before.mean():.3f}, {after.mean():.3f}"
+    )
+
+
+def overlap_of(told: Floats, true: Floats) -> Floats:
+    """Give the IoU (N,) of boxes by their offsets (N, 4) from the same windows."""
+    window = np.tile([0.0, 0.0, 1.0, 1.0], (len(told), 1))
+    one, other = moved(window, told), moved(window, true)
+    low, high = (
+        np.maximum(one[:, :2], other[:, :2]),
+        np.minimum(one[:, :2] + one[:, 2:], other[:, :2] + other[:, 2:]),
+    )
+    common = np.prod(np.maximum(high - low, 0.0), axis=1)
+    return np.asarray(common / (np.prod(one[:, 2:], axis=1) + np.prod(other[:, 2:], axis=1) - common))
+
+
+def _whether(score: Floats, looks: Looks) -> tuple[Floats, NDArray[np.bool_]]:
+    """Give scores (M,) of what is somebody or nobody, and which it is."""
+    is_person = looks.overlap >= SOMEBODY
+    counts = is_person | (looks.overlap < NOBODY)
+    return score[counts], is_person[counts]
+
+
+def _told(network: Network, looks: Looks) -> Floats:
+    parts = [
+        np.arange(k, min(k + _AT_ONCE, len(looks.overlap))) for k in range(0, len(looks.overlap), _AT_ONCE)
+    ]
+    told = [network.told(planes_of(looks.crops[part]), looks.numbers[part]) for part in parts]
+    return np.concatenate([np.empty((0, 1 + looks.offsets.shape[1])), *told])
+
+
+def _say(words: str) -> None:
+    Console(stderr=True).print(words, highlight=False)

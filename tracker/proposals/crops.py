@@ -1,0 +1,117 @@
+"""What is looked at a second time: surroundings of proposals, all of one size, and a few numbers."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.proposals.window import Floats
+from peopleboy.tracker.thermal.mount import Mount
+
+Grey = NDArray[np.uint8]
+Crops = NDArray[np.uint8]
+Planes = NDArray[np.float32]
+
+ROWS: Final = 64
+COLUMNS: Final = 48
+PLANES: Final = 3
+"""Of a crop: grey, by how much it changed, and what lies inside the image."""
+NUMBERS: Final = 9
+"""Of a proposal: see `numbers_of`."""
+SCORES: Final = 4.0
+"""Log odds in a unit of the first of them."""
+
+_TALL: Final = 1.4  # heights of a box that a crop shows
+_USUAL_PX: Final = 80.0  # height of people in the middle of all sizes
+_STATURE_M: Final = 1.7
+_MOST: Final = 2.0
+_SHARPNESS: Final = 6.0  # of the logarithm of the stature
+_LEAST_GREY: Final = 2.0  # deviation that is noise
+_MOST_GREY: Final = 4.0  # deviations
+_FLAGS: Final = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+
+
+def crops_of(grey: Grey, change: Grey, boxes: Floats) -> Crops:
+    """Cut out what is in boxes (N, 4) [px] and around them, (N, 64, 48, 3).
+
+    Args:
+        grey: (H, W) image.
+        change: (H, W) by how much greys changed.
+        boxes: from head to feet; 1.4 heights of each are shown, about its middle.
+    """
+    crops = np.zeros((len(boxes), ROWS, COLUMNS, PLANES), np.uint8)
+    images = [(grey, change)]
+    for crop, (left, top, width, height) in zip(crops, boxes.tolist(), strict=True):
+        scale = _TALL * height / ROWS  # [px] of the image in one of the crop
+        halvings = max(int(np.floor(np.log2(scale) + 0.25)), 0)
+        while len(images) <= halvings:
+            images.append((_half(images[-1][0]), _half(images[-1][1])))
+        half = 0.5**halvings
+        middle = (left + width / 2.0 + 0.5, top + height / 2.0 + 0.5)
+        begin = [(m - scale * size / 2.0) * half for m, size in zip(middle, (COLUMNS, ROWS), strict=True)]
+        step = scale * half
+        turn = np.array([[step, 0.0, begin[0] + step / 2.0 - 0.5], [0.0, step, begin[1] + step / 2.0 - 0.5]])
+        for plane, image in enumerate(images[halvings]):
+            crop[..., plane] = cv2.warpAffine(
+                image, turn, (COLUMNS, ROWS), flags=_FLAGS, borderMode=cv2.BORDER_REPLICATE
+            )
+        crop[..., 2] = _inside(turn, images[halvings][0].shape)
+    return crops
+
+
+def planes_of(crops: Crops) -> Planes:
+    """Express crops (N, 64, 48, 3) in their own deviations: neither brightness nor gain matter."""
+    inside = (crops[..., 2:] > 0).astype(np.float32)
+    count = np.maximum(inside.sum(axis=(1, 2), keepdims=True), 1.0)
+    grey, change = crops[..., :1].astype(np.float32), crops[..., 1:2].astype(np.float32)
+    mean = (grey * inside).sum(axis=(1, 2), keepdims=True) / count
+    off = (grey - mean) * inside
+    spread = np.sqrt((off * off).sum(axis=(1, 2), keepdims=True) / count) + np.float32(_LEAST_GREY)
+    told = np.clip(off / spread, -_MOST_GREY, _MOST_GREY)
+    moving = np.minimum(change * inside / spread, _MOST_GREY)
+    return np.concatenate([told, moving, inside], axis=3).astype(np.float32)
+
+
+def numbers_of(found: Proposals, crops: Crops, shape: tuple[int, int], mount: Mount | None) -> Planes:
+    """Tell of proposals what crops (N, 64, 48, 3) do not show.
+
+    Args:
+        found: N proposals.
+        crops: of them.
+        shape: rows and columns of the image.
+        mount: of the camera; None if that is not known.
+
+    Returns:
+        (N, 9) score, logarithm of the height, shares that are above, below, left and right of the image,
+        logarithm of the contrast, and the logarithm of the stature of somebody who stands there on the
+        floor, and whether that is known.
+    """
+    rows, columns = shape
+    left, top, width, height = found.box.T
+    over = [-top / height, (top + height - rows) / height, -left / width, (left + width - columns) / width]
+    contrast = np.log((crops[..., 0].std(axis=(1, 2)) + 1.0) / 30.0)
+    stature, is_known = np.zeros(len(crops)), np.zeros(len(crops))
+    if mount is not None:
+        below = np.maximum(top + height - mount.horizon_px, 1e-3)
+        stature = np.clip(_SHARPNESS * np.log(mount.height_m * height / below / _STATURE_M), -_MOST, _MOST)
+        is_known[:] = 1.0
+    told = [found.score / SCORES, np.log2(height / _USUAL_PX), *(np.clip(one, 0.0, 1.0) for one in over)]
+    return np.stack([*told, contrast, stature, is_known], axis=1).astype(np.float32)
+
+
+def _half(image: Grey) -> Grey:
+    rows, columns = image.shape
+    half = (max((columns + 1) // 2, 1), max((rows + 1) // 2, 1))
+    return np.asarray(cv2.resize(image, half, interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def _inside(turn: Floats, shape: tuple[int, ...]) -> Grey:
+    down = turn[1, 1] * np.arange(ROWS) + turn[1, 2]
+    right = turn[0, 0] * np.arange(COLUMNS) + turn[0, 2]
+    is_row = (down > -0.5) & (down < shape[0] - 0.5)
+    is_column = (right > -0.5) & (right < shape[1] - 0.5)
+    return np.asarray(np.outer(is_row, is_column), np.uint8) * np.uint8(255)
