@@ -30,6 +30,7 @@ def image() -> np.ndarray:
     return np.random.default_rng(2).integers(0, 256, (120, 160)).astype(np.uint8)
 
 
+PAGE = Path(__file__).parents[3] / "docs" / "how" / "proposals.md"
 FIRST = Proposals(np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0]))
 
 
@@ -106,3 +107,8 @@ def test_another_network_is_refused(tmp_path: Path, name: str, wrong: np.ndarray
 
 def test_the_shipped_one_says_what_it_was_learned_from() -> None:
     assert "films" in shipped_network().about["learned from"]
+
+
+def test_the_page_says_how_good_the_shipped_one_is() -> None:
+    page = " ".join(PAGE.read_text(encoding="utf-8").split())
+    assert shipped_network().about["on 24 others"] in page
