@@ -54,6 +54,7 @@ BELIEVED_OF_STRANGERS: Final = 0.4
 """The same of a camera whose mount is not known, which is no robot's own."""
 
 _ABOUT: Final = "about"
+_PART: Final = 512  # terms of a sum
 
 
 def shapes() -> dict[str, tuple[int, ...]]:
@@ -89,7 +90,7 @@ class Network:
             seen = patches(here, side, stride) @ self.weights[f"kernel{layer}"]
             here = np.maximum(seen + self.weights[f"bias{layer}"], np.float32(0.0))
         flat = np.concatenate([here.reshape(len(here), -1), numbers], axis=1)
-        units = np.maximum(flat @ self.weights["all"] + self.weights["all_bias"], np.float32(0.0))
+        units = np.maximum(in_parts(flat, self.weights["all"]) + self.weights["all_bias"], np.float32(0.0))
         last = (units @ self.weights["last"] + self.weights["last_bias"]).astype(np.float64)
         last[:, 0] += SCORES * numbers[:, 0]
         gain, offset = self.weights["line"].tolist()
@@ -146,6 +147,17 @@ def patches(planes: Planes, side: int, stride: int) -> Planes:
     count, rows, columns, depth = seen.shape[:4]
     whole = np.ascontiguousarray(seen.transpose(0, 1, 2, 4, 5, 3))
     return np.asarray(whole.reshape(count, rows, columns, side * side * depth), np.float32)
+
+
+def in_parts(one: Planes, other: Planes) -> Planes:
+    """Multiply matrices (N, K) and (K, M), part of K by part.
+
+    Of long sums a BLAS gives each thread a part, and results would hang on how many threads there are.
+    """
+    total = np.zeros((len(one), other.shape[1]), np.float32)
+    for begin in range(0, len(other), _PART):
+        total += one[:, begin : begin + _PART] @ other[begin : begin + _PART]
+    return total
 
 
 @cache

@@ -4,6 +4,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 
 from peopleboy.scenarios.studies.second_look.teach_network import first_weights
 from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, PLANES, ROWS
@@ -11,6 +12,7 @@ from peopleboy.tracker.proposals.second_look import (
     LAYERS,
     TOLD,
     Network,
+    in_parts,
     look_again,
     patches,
     shapes,
@@ -41,6 +43,26 @@ def test_a_kernel_is_a_filter() -> None:
     theirs = cv2.filter2D(plane, -1, kernel, borderType=cv2.BORDER_CONSTANT)
     np.testing.assert_allclose(ours[0], theirs, atol=1e-5)
     np.testing.assert_allclose(patches(plane[None, :, :, None], 3, 2) @ kernel.ravel(), ours[:, ::2, ::2])
+
+
+@pytest.mark.parametrize("count", [1, 4, 7])
+def test_what_is_told_does_not_hang_on_how_many_threads_there_are(count: int) -> None:
+    rng = np.random.default_rng(count)
+    planes = rng.standard_normal((count, ROWS, COLUMNS, PLANES)).astype(np.float32)
+    numbers = rng.standard_normal((count, NUMBERS)).astype(np.float32)
+    told = []
+    for threads in (1, 2, 4):
+        with threadpool_limits(threads):
+            told.append(shipped_network().told(planes, numbers))
+    assert np.array_equal(told[0], told[1])
+    assert np.array_equal(told[0], told[2])
+
+
+def test_a_product_in_parts_is_the_product() -> None:
+    rng = np.random.default_rng(0)
+    one, other = rng.standard_normal((3, 1300)), rng.standard_normal((1300, 5))
+    product = in_parts(one.astype(np.float32), other.astype(np.float32))
+    np.testing.assert_allclose(product, one @ other, rtol=1e-4, atol=1e-4)
 
 
 def test_shapes_follow_from_the_layers() -> None:
