@@ -14,7 +14,7 @@ from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
 from peopleboy.tracker.proposals.motion import change, shifted, turned
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.pyramid import levels
-from peopleboy.tracker.proposals.second_look import Network, look_again, shipped_network
+from peopleboy.tracker.proposals.second_look import SecondLook, look_again, shipped_network
 from peopleboy.tracker.proposals.suppression import Proposals, suppress
 from peopleboy.tracker.proposals.window import Floats
 from peopleboy.tracker.thermal.mount import Mount
@@ -46,7 +46,7 @@ class PeopleDetector:
     def __init__(
         self,
         model: PeopleModel | None = None,
-        network: Network | None = None,
+        network: SecondLook | None = None,
         *,
         smallest_px: float = SMALLEST_PX,
         least_score: float = 0.0,

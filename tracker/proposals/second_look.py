@@ -69,7 +69,7 @@ def shapes() -> dict[str, tuple[int, ...]]:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Network:
+class SecondLook:
     """Convolutions, and two layers that see all.
 
     Attributes:
@@ -105,7 +105,7 @@ class Network:
             np.savez_compressed(file, **content)
 
     @classmethod
-    def load(cls, path: Path) -> Network:
+    def load(cls, path: Path) -> SecondLook:
         """Read a network.
 
         Raises:
@@ -122,7 +122,7 @@ class Network:
 
 
 def look_again(
-    network: Network, grey: Grey, change: Grey, first: Proposals, mount: Mount | None, least_score: float
+    network: SecondLook, grey: Grey, change: Grey, first: Proposals, mount: Mount | None, least_score: float
 ) -> Proposals:
     """Look again at what was proposed in an image of which it is known by how much (H, W) greys changed.
 
@@ -161,9 +161,9 @@ def in_parts(one: Planes, other: Planes) -> Planes:
 
 
 @cache
-def shipped_network() -> Network:
+def shipped_network() -> SecondLook:
     """Read the network that comes with the tracker."""
-    return Network.load(NETWORK)
+    return SecondLook.load(NETWORK)
 
 
 def _fits(array: NDArray[Any], shape: tuple[int, ...]) -> bool:

@@ -29,7 +29,7 @@ _GROWN: Final = 0.09  # of the logarithm of the size
 _SURER: Final = 0.5  # of the score
 
 
-class Looks(NamedTuple):
+class LookExamples(NamedTuple):
     """What is learned from.
 
     Attributes:
@@ -45,7 +45,7 @@ class Looks(NamedTuple):
     offsets: Planes
 
     @classmethod
-    def joined(cls, parts: Iterable[Looks]) -> Looks:
+    def joined(cls, parts: Iterable[LookExamples]) -> LookExamples:
         """Take examples together."""
         none = cls(
             np.empty((0, *_NO_CROP.shape), np.uint8),
@@ -55,16 +55,16 @@ class Looks(NamedTuple):
         )
         return cls(*(np.concatenate(column) for column in zip(none, *parts, strict=True)))
 
-    def take(self, rows: NDArray[np.intp]) -> Looks:
+    def take(self, rows: NDArray[np.intp]) -> LookExamples:
         """Give some of them."""
-        return Looks(self.crops[rows], self.numbers[rows], self.overlap[rows], self.offsets[rows])
+        return LookExamples(self.crops[rows], self.numbers[rows], self.overlap[rows], self.offsets[rows])
 
-    def mirrored(self) -> Looks:
+    def mirrored(self) -> LookExamples:
         """Swap left and right."""
         numbers, offset = self.numbers.copy(), self.offsets.copy()
         numbers[:, 4:6] = self.numbers[:, [5, 4]]
         offset[:, 0] *= -1.0
-        return Looks(self.crops[:, :, ::-1], numbers, self.overlap, offset)
+        return LookExamples(self.crops[:, :, ::-1], numbers, self.overlap, offset)
 
 
 _NO_CROP: Final = crops_of(np.zeros((1, 1), np.uint8), np.zeros((1, 1), np.uint8), np.ones((1, 4)))[0]
@@ -72,7 +72,7 @@ _NO_CROP: Final = crops_of(np.zeros((1, 1), np.uint8), np.zeros((1, 1), np.uint8
 
 def looks_of(
     shots: Sequence[PeopleShot], model: PeopleModel, rng: np.random.Generator, *, varies: bool
-) -> Looks:
+) -> LookExamples:
     """Collect what trees propose in images.
 
     Args:
@@ -82,7 +82,7 @@ def looks_of(
         varies: whether images are varied, and boxes also moved, as to learn from; else both stay as they are.
     """
     drawn = _varied(shots, rng) if varies else ((shot, shot.mount is not None, None) for shot in shots)
-    return Looks.joined(in_threads(lambda one: _looks(*one, model), drawn))
+    return LookExamples.joined(in_threads(lambda one: _looks(*one, model), drawn))
 
 
 def _varied(
@@ -95,7 +95,9 @@ def _varied(
             yield cut_off(varied, own) if own.random() < _CUT else varied, own.random() < _MOUNT_KNOWN, own
 
 
-def _looks(shot: PeopleShot, is_known: bool, rng: np.random.Generator | None, model: PeopleModel) -> Looks:
+def _looks(
+    shot: PeopleShot, is_known: bool, rng: np.random.Generator | None, model: PeopleModel
+) -> LookExamples:
     mount = shot.mount if is_known else None
     found = look(model, shot.grey, shot.change, mount, SMALLEST_PX, WEAKEST)
     if rng is not None:
@@ -103,7 +105,7 @@ def _looks(shot: PeopleShot, is_known: bool, rng: np.random.Generator | None, mo
     crops = crops_of(shot.grey, shot.change, found.box)
     overlap, offset = _whom(found.box, shot.box)
     numbers = numbers_of(found, crops, (shot.grey.shape[0], shot.grey.shape[1]), mount)
-    return Looks(crops, numbers, overlap.astype(np.float32), offset.astype(np.float32))
+    return LookExamples(crops, numbers, overlap.astype(np.float32), offset.astype(np.float32))
 
 
 def _jittered(found: Proposals, rng: np.random.Generator) -> Proposals:

@@ -19,13 +19,13 @@ from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.shots import shots_of
 from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
-from peopleboy.scenarios.studies.second_look.looks import Looks, looks_of
+from peopleboy.scenarios.studies.second_look.looks import LookExamples, looks_of
 from peopleboy.scenarios.studies.second_look.teach_network import NOBODY, SOMEBODY, teach_network
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.proposals.crops import SCORES, planes_of
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.placing import moved
-from peopleboy.tracker.proposals.second_look import NETWORK, Network
+from peopleboy.tracker.proposals.second_look import NETWORK, SecondLook
 
 LATER: Final = (700, 200, 500, 200, 200)
 """Of each kind, worlds from so many seeds after the first on: no trees were taught on these."""
@@ -86,16 +86,16 @@ def seeds_of(worlds: int, *, later: bool) -> Iterator[int]:
         yield from (seed + later_by * later for seed in kind.seeds(worlds))
 
 
-def taken(films: list[Path], *, varies: bool) -> Looks:
+def taken(films: list[Path], *, varies: bool) -> LookExamples:
     """Collect what trees propose in films."""
     model = shipped_model()
-    return Looks.joined(
+    return LookExamples.joined(
         looks_of(list(shots_of([film])), model, np.random.default_rng(number), varies=varies)
         for number, film in enumerate(films)
     )
 
 
-def with_log_odds(network: Network, looks: Looks) -> Network:
+def with_log_odds(network: SecondLook, looks: LookExamples) -> SecondLook:
     """Let scores be the log odds of somebody among proposals that it never saw (Platt 1999).
 
     Raises:
@@ -113,7 +113,7 @@ def with_log_odds(network: Network, looks: Looks) -> Network:
     return replace(network, weights={**network.weights, "line": line})
 
 
-def judged(network: Network, looks: Looks) -> str:
+def judged(network: SecondLook, looks: LookExamples) -> str:
     """Say in words how much better the second look tells than the first one."""
     told = _told(network, looks)
     first, is_person = _whether(SCORES * looks.numbers[:, 0].astype(np.float64), looks)
@@ -142,14 +142,14 @@ def overlap_of(told: Floats, true: Floats) -> Floats:
     return np.asarray(common / (np.prod(one[:, 2:], axis=1) + np.prod(other[:, 2:], axis=1) - common))
 
 
-def _whether(score: Floats, looks: Looks) -> tuple[Floats, NDArray[np.bool_]]:
+def _whether(score: Floats, looks: LookExamples) -> tuple[Floats, NDArray[np.bool_]]:
     """Give scores (M,) of what is somebody or nobody, and which it is."""
     is_person = looks.overlap >= SOMEBODY
     counts = is_person | (looks.overlap < NOBODY)
     return score[counts], is_person[counts]
 
 
-def _told(network: Network, looks: Looks) -> Floats:
+def _told(network: SecondLook, looks: LookExamples) -> Floats:
     parts = [
         np.arange(k, min(k + _AT_ONCE, len(looks.overlap))) for k in range(0, len(looks.overlap), _AT_ONCE)
     ]

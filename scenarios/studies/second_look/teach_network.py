@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.studies.second_look.looks import Looks
+from peopleboy.scenarios.studies.second_look.looks import LookExamples
 from peopleboy.tracker.proposals.crops import NUMBERS, SCORES, Planes, planes_of
 from peopleboy.tracker.proposals.placing import OFFSETS
-from peopleboy.tracker.proposals.second_look import LAYERS, SCALES, UNITS, USUAL, Network, patches, shapes
+from peopleboy.tracker.proposals.second_look import LAYERS, SCALES, UNITS, USUAL, SecondLook, patches, shapes
 
 Weights = dict[str, Planes]
 
@@ -75,8 +75,8 @@ class Momentum:
 
 
 def teach_network(
-    looks: Looks, rng: np.random.Generator, *, rounds: int, say: Callable[[str], None]
-) -> Network:
+    looks: LookExamples, rng: np.random.Generator, *, rounds: int, say: Callable[[str], None]
+) -> SecondLook:
     """Teach a network on what was proposed: each is seen once a round, in half of the batches mirrored.
 
     Raises:
@@ -95,10 +95,10 @@ def teach_network(
         if number % _TOLD == 0:
             say(f"{number} of {batches} batches: loss {total[0] / _TOLD:.3f}, places {total[1] / _TOLD:.3f}")
             total[:] = 0.0
-    return Network(weights)
+    return SecondLook(weights)
 
 
-def _batches(looks: Looks, rng: np.random.Generator, rounds: int) -> Iterator[Looks]:
+def _batches(looks: LookExamples, rng: np.random.Generator, rounds: int) -> Iterator[LookExamples]:
     for _ in range(rounds):
         order = rng.permutation(len(looks.overlap))
         for begin in range(0, len(order) - _BATCH + 1, _BATCH):
@@ -106,7 +106,7 @@ def _batches(looks: Looks, rng: np.random.Generator, rounds: int) -> Iterator[Lo
             yield batch.mirrored() if rng.random() < 0.5 else batch
 
 
-def _varied(looks: Looks, rng: np.random.Generator) -> Planes:
+def _varied(looks: LookExamples, rng: np.random.Generator) -> Planes:
     """Give crops (N, 64, 48, 3) as the network sees them, some without motion."""
     planes = planes_of(looks.crops)
     planes[rng.random(len(planes)) < _STILL, ..., 1] = 0.0
@@ -120,7 +120,7 @@ def _kept(rng: np.random.Generator) -> Planes:
 
 
 def slopes_of(
-    weights: Weights, batch: Looks, planes: Planes, kept: Planes
+    weights: Weights, batch: LookExamples, planes: Planes, kept: Planes
 ) -> tuple[Weights, NDArray[np.float64]]:
     """Give the slopes of the loss by weight, and the losses: whether, and where.
 
@@ -155,7 +155,7 @@ def slopes_of(
     return slopes, losses
 
 
-def _loss(last: Planes, batch: Looks) -> tuple[Planes, NDArray[np.float64]]:
+def _loss(last: Planes, batch: LookExamples) -> tuple[Planes, NDArray[np.float64]]:
     count = np.float32(len(last))
     odds = last[:, 0] + SCORES * batch.numbers[:, 0]
     is_person = batch.overlap >= SOMEBODY

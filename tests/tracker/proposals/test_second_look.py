@@ -11,7 +11,7 @@ from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, PLANES, ROWS
 from peopleboy.tracker.proposals.second_look import (
     LAYERS,
     TOLD,
-    Network,
+    SecondLook,
     in_parts,
     look_again,
     patches,
@@ -22,10 +22,10 @@ from peopleboy.tracker.proposals.suppression import Proposals
 from tests.helpers.calls.refused import refused
 
 
-def drawn_network(last: float = 0.0) -> Network:
+def drawn_network(last: float = 0.0) -> SecondLook:
     weights = first_weights(np.random.default_rng(0))
     weights["last"] *= np.float32(last)
-    return Network(weights, {"learned from": "nothing"})
+    return SecondLook(weights, {"learned from": "nothing"})
 
 
 def image() -> np.ndarray:
@@ -101,7 +101,7 @@ def test_each_is_judged_by_itself() -> None:
 def test_a_network_comes_back_from_its_file(tmp_path: Path) -> None:
     network = drawn_network(1.0)
     network.save(tmp_path / "net.npz")
-    read = Network.load(tmp_path / "net.npz")
+    read = SecondLook.load(tmp_path / "net.npz")
     assert read.about == network.about
     for name, weights in network.weights.items():
         np.testing.assert_allclose(read.weights[name], weights, rtol=1e-3, atol=1e-6)
@@ -109,7 +109,7 @@ def test_a_network_comes_back_from_its_file(tmp_path: Path) -> None:
 
 def test_a_missing_file_names_the_command(tmp_path: Path) -> None:
     with refused("none.npz", "train-detector --second-look"):
-        Network.load(tmp_path / "none.npz")
+        SecondLook.load(tmp_path / "none.npz")
 
 
 @pytest.mark.parametrize(
@@ -124,7 +124,7 @@ def test_another_network_is_refused(tmp_path: Path, name: str, wrong: np.ndarray
     network = drawn_network()
     replace(network, weights={**network.weights, name: wrong}).save(tmp_path / "other.npz")
     with refused("other.npz", "holds no network for crops of 64 x 48"):
-        Network.load(tmp_path / "other.npz")
+        SecondLook.load(tmp_path / "other.npz")
 
 
 def test_the_shipped_one_says_what_it_was_learned_from() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
-from peopleboy.scenarios.studies.second_look.looks import Looks, looks_of
+from peopleboy.scenarios.studies.second_look.looks import LookExamples, looks_of
 from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, ROWS
 from peopleboy.tracker.proposals.model import shipped_model
 from tests.helpers.images.drawn_films import drawn_film
@@ -17,7 +17,7 @@ def shots(tmp_path_factory: pytest.TempPathFactory) -> list[PeopleShot]:
     return list(shots_of([path]))
 
 
-def looked(shots: list[PeopleShot], *, varies: bool, seed: int = 0) -> Looks:
+def looked(shots: list[PeopleShot], *, varies: bool, seed: int = 0) -> LookExamples:
     return looks_of(shots, shipped_model(), np.random.default_rng(seed), varies=varies)
 
 

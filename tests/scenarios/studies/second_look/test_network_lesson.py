@@ -9,12 +9,12 @@ import pytest
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
 from peopleboy.scenarios.studies.second_look import network_lesson, teach_network
-from peopleboy.scenarios.studies.second_look.looks import Looks
+from peopleboy.scenarios.studies.second_look.looks import LookExamples
 from peopleboy.scenarios.studies.second_look.network_lesson import LATER, overlap_of, seeds_of, with_log_odds
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, PLANES, ROWS, SCORES, planes_of
 from peopleboy.tracker.proposals.placing import moved
-from peopleboy.tracker.proposals.second_look import Network
+from peopleboy.tracker.proposals.second_look import SecondLook
 from tests.helpers.calls.command_line import run_cli
 from tests.helpers.images.drawn_films import drawn_film
 
@@ -27,7 +27,7 @@ def test_the_lesson_leaves_a_network_that_says_how_good_it_is(
     monkeypatch.setattr(teach_network, "_BATCH", 8)
     chosen = ("--worlds", 10, "--second-look", "--out", tmp_path, "--workers", 1)
     assert run_cli("train-detector", *chosen) == 0
-    about = Network.load(tmp_path / "second_look.npz").about
+    about = SecondLook.load(tmp_path / "second_look.npz").about
     assert about["learned from"].startswith("13 films, ")
     assert "log loss" in about["on 1 others"]
 
@@ -60,10 +60,10 @@ def test_scores_become_log_odds() -> None:
     numbers = np.zeros((4000, NUMBERS), np.float32)
     numbers[:, 0] = 4.0 * true / SCORES
     crops = np.broadcast_to(np.uint8(0), (4000, ROWS, COLUMNS, PLANES))
-    looks = Looks(crops, numbers, is_person.astype(np.float32), np.zeros((4000, 4), np.float32))
+    looks = LookExamples(crops, numbers, is_person.astype(np.float32), np.zeros((4000, 4), np.float32))
     weights = teach_network.first_weights(rng)
     weights["last"][:] = 0.0
-    network = with_log_odds(replace(Network(weights)), looks)
+    network = with_log_odds(replace(SecondLook(weights)), looks)
     gain, offset = network.weights["line"].tolist()
     assert gain == pytest.approx(0.25, abs=0.03)
     assert offset == pytest.approx(0.0, abs=0.1)

@@ -2,15 +2,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.studies.second_look.looks import Looks
+from peopleboy.scenarios.studies.second_look.looks import LookExamples
 from peopleboy.scenarios.studies.second_look.teach_network import first_weights, slopes_of, teach_network
 from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, PLANES, ROWS, SCORES, planes_of
 from peopleboy.tracker.proposals.placing import OFFSETS
-from peopleboy.tracker.proposals.second_look import SCALES, UNITS, USUAL, Network
+from peopleboy.tracker.proposals.second_look import SCALES, UNITS, USUAL, SecondLook
 from tests.helpers.calls.refused import refused
 
 
-def drawn_looks(count: int, seed: int = 0) -> Looks:
+def drawn_looks(count: int, seed: int = 0) -> LookExamples:
     """Crops of which those of people have a bright upright bar in the middle, the others a lying one."""
     rng = np.random.default_rng(seed)
     crops = rng.integers(60, 120, (count, ROWS, COLUMNS, PLANES)).astype(np.uint8)
@@ -20,10 +20,12 @@ def drawn_looks(count: int, seed: int = 0) -> Looks:
     crops[..., 2] = 255
     numbers = rng.normal(0.0, 0.1, (count, NUMBERS)).astype(np.float32)
     offsets = rng.normal(0.0, 0.02, (count, OFFSETS)) + USUAL[1:]
-    return Looks(crops, numbers, np.where(is_person, 0.8, 0.0).astype(np.float32), offsets.astype(np.float32))
+    return LookExamples(
+        crops, numbers, np.where(is_person, 0.8, 0.0).astype(np.float32), offsets.astype(np.float32)
+    )
 
 
-def loss(network: Network, looks: Looks) -> float:
+def loss(network: SecondLook, looks: LookExamples) -> float:
     """The mean loss, in other words than in the code: of the log odds, and of Huber's for places."""
     told = network.told(planes_of(looks.crops), looks.numbers)
     is_person = looks.overlap > 0.5
@@ -48,7 +50,7 @@ def test_slopes_are_those_of_the_loss(name: str) -> None:
     for sign in (1.0, -1.0):
         moved = weights[name].copy()
         moved[steepest] += sign * step
-        sides.append(loss(Network({**weights, name: moved}), looks))
+        sides.append(loss(SecondLook({**weights, name: moved}), looks))
     assert (sides[0] - sides[1]) / (2.0 * step) == pytest.approx(slopes[name][steepest], rel=0.05)
 
 
