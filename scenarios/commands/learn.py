@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.options import workers_options
 
 
@@ -166,6 +167,10 @@ def train_detector(
     from peopleboy.tracker.proposals.window import Kind
 
     chosen, kinds = chosen_workers(workers, scheduler), [kind for kind in Kind if kind in windows]
+    if second_look and (only_places or len(kinds) < len(Kind)):
+        raise BadInput(
+            "train-detector: --second-look teaches no trees; leave out --windows and --only-places"
+        )
     if second_look:
         click.echo(give_second_look_lesson(out, chosen, worlds=worlds, ship=ship))
         return

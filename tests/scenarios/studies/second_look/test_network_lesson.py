@@ -32,6 +32,15 @@ def test_the_lesson_leaves_a_network_that_says_how_good_it_is(
     assert "log loss" in about["on 1 others"]
 
 
+def test_trees_are_not_asked_for_beside_the_second_look(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for asked in (("--only-places",), ("--windows", "cut")):
+        assert run_cli("train-detector", "--second-look", *asked, "--out", tmp_path / "out") == 2
+        assert "--second-look teaches no trees" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 def test_later_worlds_are_none_of_the_first() -> None:
     early, late = (set(seeds_of(600, later=later)) for later in (False, True))
     assert len(early) == len(late)
