@@ -22,7 +22,6 @@ from peopleboy.tracker.by_detection.paths import (
     Floats,
     advanced,
     begun,
-    between,
     boxes_of,
     corrected,
     distances,
@@ -257,7 +256,7 @@ class ByDetectionTracker:
     def _told_box(self, target: Target, box: Floats, time_s: float) -> Box:
         """Tell where somebody is: between where the path leads and what the image shows, if it does."""
         if target.seen_s == time_s:
-            box = between(box, target.shown, self._config.path.shown)
+            box = box + self._config.path.shown * (target.shown - box)
         left, top, width, height = box.tolist()
         return left, top, width, height
 

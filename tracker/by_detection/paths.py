@@ -129,17 +129,6 @@ def boxes_of(paths: Paths, view: Viewpoint, ratio: Floats) -> Floats:
     return np.asarray(boxes, np.float64)
 
 
-def between(one: Floats, other: Floats, share: float) -> Floats:
-    """Give a box (4,) between two, by so large a share of the other one: ends, middle column and width."""
-    aside = one[2] / 2.0, other[2] / 2.0
-    first, second = (
-        np.array([box[0] + half, box[1], box[2], box[3]])
-        for box, half in zip((one, other), aside, strict=True)
-    )
-    middle, top, width, height = (first + share * (second - first)).tolist()
-    return np.array([middle - width / 2.0, top, width, height])
-
-
 def _turn(moved: Odometry) -> Floats:
     """Give the rotation (3, 3) of the level frame into that of a robot that turned."""
     cosine, sine = math.cos(moved.turn_rad), math.sin(moved.turn_rad)

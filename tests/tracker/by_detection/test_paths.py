@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.by_detection.config import PathConfig
-from peopleboy.tracker.by_detection.paths import advanced, begun, between, boxes_of, corrected, distances
+from peopleboy.tracker.by_detection.paths import advanced, begun, boxes_of, corrected, distances
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import Odometry
 from tests.tracker.by_detection.test_viewpoint import SHAPE, calibration
@@ -81,11 +81,3 @@ def test_who_is_short_is_told_from_who_is_far_where_the_floor_is_known() -> None
         paths = corrected(paths, box_at(feet, build), VIEW, CONFIG)
     assert paths.mean[0, :3] == pytest.approx(feet, abs=0.1)
     assert paths.mean[0, 6] == pytest.approx(build, abs=0.02)
-
-
-def test_a_box_between_two_has_ends_middle_and_width_between_theirs() -> None:
-    one, other = np.array([10.0, 20.0, 10.0, 40.0]), np.array([20.0, 24.0, 20.0, 60.0])
-    np.testing.assert_allclose(between(one, other, 0.0), one)
-    np.testing.assert_allclose(between(one, other, 1.0), other)
-    left, top, width, height = between(one, other, 0.5)
-    assert (left + width / 2.0, top, width, height) == (22.5, 22.0, 15.0, 50.0)
