@@ -32,9 +32,9 @@ from peopleboy.tracker.weights_archive import opened_archive
 
 Grey = NDArray[np.uint8]
 
-LAYERS: Final = ((5, 2, 16), (3, 2, 32), (3, 1, 48), (3, 2, 64), (3, 1, 64))
+LAYERS: Final = ((5, 2, 24), (3, 2, 48), (3, 1, 64), (3, 2, 96), (3, 1, 96), (1, 1, 32))
 """Side of the kernel, stride and planes of each layer."""
-UNITS: Final = 96
+UNITS: Final = 128
 TOLD: Final = 1 + OFFSETS
 SCALES: Final = np.array([1.0, 0.02, 0.06, 0.08, 0.03])
 """What a unit of each that is told means: log odds, and `placing.offsets`."""
@@ -50,7 +50,7 @@ BELIEVED: Final = 0.5
 
 In rendered images all of it would be right; in those of real cameras the network is too sure of itself.
 """
-BELIEVED_OF_STRANGERS: Final = 0.4
+BELIEVED_OF_STRANGERS: Final = 0.3
 """The same of a camera whose mount is not known, which is no robot's own."""
 
 _ABOUT: Final = "about"
@@ -87,7 +87,7 @@ class SecondLook:
         """
         here = planes
         for layer, (side, stride, _) in enumerate(LAYERS):
-            seen = patches(here, side, stride) @ self.weights[f"kernel{layer}"]
+            seen = in_parts(patches(here, side, stride), self.weights[f"kernel{layer}"])
             here = np.maximum(seen + self.weights[f"bias{layer}"], np.float32(0.0))
         flat = np.concatenate([here.reshape(len(here), -1), numbers], axis=1)
         units = np.maximum(in_parts(flat, self.weights["all"]) + self.weights["all_bias"], np.float32(0.0))
@@ -150,13 +150,13 @@ def patches(planes: Planes, side: int, stride: int) -> Planes:
 
 
 def in_parts(one: Planes, other: Planes) -> Planes:
-    """Multiply matrices (N, K) and (K, M), part of K by part.
+    """Multiply matrices (..., K) and (K, M), part of K by part.
 
     Of long sums a BLAS gives each thread a part, and results would hang on how many threads there are.
     """
-    total = np.zeros((len(one), other.shape[1]), np.float32)
-    for begin in range(0, len(other), _PART):
-        total += one[:, begin : begin + _PART] @ other[begin : begin + _PART]
+    total = one[..., :_PART] @ other[:_PART]
+    for begin in range(_PART, len(other), _PART):
+        total += one[..., begin : begin + _PART] @ other[begin : begin + _PART]
     return total
 
 

@@ -87,8 +87,14 @@ KINDS: Final = (
     Kind("crowds in the robot's own span", 5000, 0.1, _library_crowd),
 )
 
+LATER: Final = 10_000
+"""So many seeds after those of a kind there are more of it."""
+
 
 def world_of(seed: int) -> World:
-    """Draw the world of a seed; those below the first kind's are of that kind, too."""
-    kind = next((kind for kind in reversed(KINDS) if seed >= kind.first_seed), KINDS[0])
+    """Draw the world of a seed; those below the first kind's are of that kind, too.
+
+    Kinds come again every `LATER` seeds.
+    """
+    kind = next((kind for kind in reversed(KINDS) if seed % LATER >= kind.first_seed), KINDS[0])
     return kind.draw(seed)

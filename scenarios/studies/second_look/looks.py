@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.studies.people_learning.cut_off import cut_off
 from peopleboy.scenarios.studies.people_learning.many_threads import in_threads
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
+from peopleboy.scenarios.studies.second_look.electronics import through_electronics
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.crops import NUMBERS, Crops, Planes, crops_of, numbers_of
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, WEAKEST, look
@@ -18,6 +19,11 @@ from peopleboy.tracker.proposals.model import PeopleModel
 from peopleboy.tracker.proposals.placing import OFFSETS, offsets
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.proposals.window import Floats
+
+SOMEBODY: Final = 0.35
+"""IoU from which on a proposal is somebody."""
+NOBODY: Final = 0.2
+"""IoU up to which it is nobody; what is between is neither."""
 
 _VARIETIES: Final = 2  # of each image
 _AS_IT_IS: Final = 0.25  # of them
@@ -91,7 +97,7 @@ def _varied(
     for shot in shots:
         for _ in range(_VARIETIES):
             own = np.random.default_rng(rng.integers(2**63))
-            varied = shot if own.random() < _AS_IT_IS else shot.varied(own)
+            varied = shot if own.random() < _AS_IT_IS else through_electronics(shot.varied(own), own)
             yield cut_off(varied, own) if own.random() < _CUT else varied, own.random() < _MOUNT_KNOWN, own
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -18,53 +17,48 @@ from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.shots import shots_of
-from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
-from peopleboy.scenarios.studies.second_look.looks import LookExamples, looks_of
-from peopleboy.scenarios.studies.second_look.teach_network import NOBODY, SOMEBODY, teach_network
+from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS, LATER
+from peopleboy.scenarios.studies.second_look.looks import NOBODY, SOMEBODY, LookExamples, looks_of
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.proposals.crops import SCORES, planes_of
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.placing import moved
 from peopleboy.tracker.proposals.second_look import NETWORK, SecondLook
 
-LATER: Final = (700, 200, 500, 200, 200)
-"""Of each kind, worlds from so many seeds after the first on: no trees were taught on these."""
-
-ROUNDS: Final = 5
-_HELD_BACK: Final = 10  # of so many later worlds one is not learned from
+ROUNDS: Final = 4
+_HELD_BACK: Final = 10  # of so many worlds one is not learned from
 _AT_ONCE: Final = 256  # crops
 
 
 def give_second_look_lesson(out: Path, workers: Workers, *, worlds: int, ship: bool) -> Path:
     """Learn to look again at what the tracker's own trees propose, and leave films and a network in a folder.
 
-    Half of the worlds are those by which trees are taught, the others later ones. Films that are there are
-    used.
+    The worlds are later ones than those by which trees are taught, which are surer of what they know. Films
+    that are there are used.
 
     Args:
         out: the folder.
         workers: who films.
-        worlds: how many to learn from; a tenth of the later ones is held back, to make scores log odds.
+        worlds: how many to learn from; a tenth is held back, to make scores log odds.
         ship: whether to put the network in the place of the tracker's own.
 
     Returns:
         The file of the network.
 
     Raises:
-        BadInput: a path that cannot be used, scikit-learn is missing, or too few people.
+        BadInput: a path that cannot be used, JAX, Optax or scikit-learn is missing, or too few people.
         TasksFailed: some films failed, after all others were done.
     """
+    from peopleboy.scenarios.studies.second_look.teach_network import teach_network  # here, as it needs JAX
+
     films = out / "films"
     with writing_to(out):
         films.mkdir(parents=True, exist_ok=True)
-    early, late = (
-        [PeopleFilmTask(str(films), seed) for seed in seeds_of(worlds // 2, later=later)]
-        for later in (False, True)
-    )
-    work_through([task for task in (*early, *late) if not task.film.is_file()], workers, "films")
-    held = late[_HELD_BACK - 1 :: _HELD_BACK] or late[-1:]
-    lessons = [task.film for task in (*early, *late) if task not in held]
-    learned, others = taken(lessons, varies=True), taken([task.film for task in held], varies=False)
+    tasks = [PeopleFilmTask(str(films), seed) for seed in later_seeds(worlds)]
+    work_through([task for task in tasks if not task.film.is_file()], workers, "films")
+    held = [task for task in tasks if task.seed % _HELD_BACK == _HELD_BACK - 1] or tasks[-1:]
+    lessons = [task for task in tasks if task not in held]
+    learned, others = taken(lessons, varies=True), taken(held, varies=False)
     _say(
         f"{len(lessons)} films, {len(learned.overlap)} proposals to learn from, {len(others.overlap)} others"
     )
@@ -80,18 +74,17 @@ def give_second_look_lesson(out: Path, workers: Workers, *, worlds: int, ship: b
     return path
 
 
-def seeds_of(worlds: int, *, later: bool) -> Iterator[int]:
-    """Yield the seeds of so many worlds, as the detector's lesson has them, or later ones."""
-    for kind, later_by in zip(KINDS, LATER, strict=True):
-        yield from (seed + later_by * later for seed in kind.seeds(worlds))
+def later_seeds(worlds: int) -> list[int]:
+    """Give the seeds of so many worlds by which no trees are taught."""
+    return [seed + LATER for kind in KINDS for seed in kind.seeds(worlds)]
 
 
-def taken(films: list[Path], *, varies: bool) -> LookExamples:
-    """Collect what trees propose in films."""
+def taken(tasks: list[PeopleFilmTask], *, varies: bool) -> LookExamples:
+    """Collect what trees propose in films; the seed of each draws how its images are varied."""
     model = shipped_model()
     return LookExamples.joined(
-        looks_of(list(shots_of([film])), model, np.random.default_rng(number), varies=varies)
-        for number, film in enumerate(films)
+        looks_of(list(shots_of([task.film])), model, np.random.default_rng(task.seed), varies=varies)
+        for task in tasks
     )
 
 

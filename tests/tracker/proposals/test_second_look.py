@@ -133,4 +133,4 @@ def test_the_shipped_one_says_what_it_was_learned_from() -> None:
 
 def test_the_page_says_how_good_the_shipped_one_is() -> None:
     page = " ".join(PAGE.read_text(encoding="utf-8").split())
-    assert shipped_network().about["on 24 others"] in page
+    assert shipped_network().about["on 200 others"] in page

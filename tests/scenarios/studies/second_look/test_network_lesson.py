@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,10 +8,10 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
-from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
+from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS, LATER, world_of
 from peopleboy.scenarios.studies.second_look import network_lesson, teach_network
 from peopleboy.scenarios.studies.second_look.looks import LookExamples
-from peopleboy.scenarios.studies.second_look.network_lesson import LATER, overlap_of, seeds_of, with_log_odds
+from peopleboy.scenarios.studies.second_look.network_lesson import later_seeds, overlap_of, with_log_odds
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, PLANES, ROWS, SCORES, planes_of
 from peopleboy.tracker.proposals.placing import moved
@@ -28,7 +29,7 @@ def test_the_lesson_leaves_a_network_that_says_how_good_it_is(
     chosen = ("--worlds", 10, "--second-look", "--out", tmp_path, "--workers", 1)
     assert run_cli("train-detector", *chosen) == 0
     about = SecondLook.load(tmp_path / "second_look.npz").about
-    assert about["learned from"].startswith("13 films, ")
+    assert about["learned from"].startswith("9 films, ")
     assert "log loss" in about["on 1 others"]
 
 
@@ -41,16 +42,23 @@ def test_trees_are_not_asked_for_beside_the_second_look(
     assert not (tmp_path / "out").exists()
 
 
-def test_later_worlds_are_none_of_the_first() -> None:
-    early, late = (set(seeds_of(600, later=later)) for later in (False, True))
-    assert len(early) == len(late)
-    assert not early & late
+def test_later_worlds_are_of_the_same_kinds_and_no_trees_were_taught_on_them() -> None:
+    seeds = later_seeds(2000)
+    assert len(seeds) == len(set(seeds)) == 2000
+    taught = {seed for kind in KINDS for seed in kind.seeds(1500)}
+    assert not taught & set(seeds)
+    crowd = KINDS[1]
+    assert world_of(LATER + crowd.first_seed) == crowd.draw(LATER + crowd.first_seed)
 
 
-def test_no_trees_were_taught_on_later_worlds() -> None:
-    for kind, later in zip(KINDS, LATER, strict=True):
-        assert later >= len(kind.seeds(1500))
-        assert later + len(kind.seeds(500)) <= 1000
+def test_without_jax_the_lesson_says_what_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "optax", None)
+    monkeypatch.delitem(sys.modules, teach_network.__name__)
+    assert run_cli("train-detector", "--second-look", "--out", tmp_path / "out") == 2
+    assert "pip install jax optax" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_overlap_of_offsets_is_that_of_the_boxes() -> None:

@@ -1,0 +1,39 @@
+import jax
+import numpy as np
+
+from peopleboy.scenarios.studies.second_look.vary_crops import varied
+from peopleboy.tracker.proposals.crops import COLUMNS, PLANES, ROWS
+
+
+def drawn_planes(count: int) -> np.ndarray:
+    planes = np.random.default_rng(0).normal(0.0, 1.0, (count, ROWS, COLUMNS, PLANES)).astype(np.float32)
+    planes[..., 1] = np.abs(planes[..., 1])
+    planes[..., 2] = 1.0
+    planes[:, 50:, :, :] = 0.0  # below the image
+    return planes
+
+
+def test_what_is_outside_the_image_stays_outside() -> None:
+    planes = drawn_planes(40)
+    after = np.asarray(varied(planes, jax.random.key(1)))
+    assert after.shape == planes.shape
+    np.testing.assert_array_equal(after[..., 2], planes[..., 2])
+    assert not after[:, 50:].any()
+
+
+def test_some_crops_are_covered_and_some_stand_still() -> None:
+    planes = drawn_planes(400)
+    after = np.asarray(varied(planes, jax.random.key(2)))
+    is_still = ~after[..., 1].any(axis=(1, 2))
+    assert 0.08 < is_still.mean() < 0.25
+    moves = after[~is_still][:, :50, :, 1]
+    covered = (moves == 0.0).mean(axis=(1, 2))
+    assert 0.08 < (covered > 0.01).mean() < 0.35
+    assert covered.max() < 0.5
+
+
+def test_the_same_key_gives_the_same() -> None:
+    planes = drawn_planes(3)
+    one, same, other = (np.asarray(varied(planes, jax.random.key(key))) for key in (5, 5, 6))
+    np.testing.assert_array_equal(one, same)
+    assert not np.array_equal(one, other)
