@@ -62,6 +62,7 @@ def give_second_look_lesson(out: Path, workers: Workers, *, worlds: int, ship: b
     _say(
         f"{len(lessons)} films, {len(learned.overlap)} proposals to learn from, {len(others.overlap)} others"
     )
+    refuse_one_kind(others)
     network = with_log_odds(teach_network(learned, np.random.default_rng(0), rounds=ROUNDS, say=_say), others)
     about = {
         "learned from": f"{len(lessons)} films, {len(learned.overlap)} proposals",
@@ -88,6 +89,19 @@ def taken(tasks: list[PeopleFilmTask], *, varies: bool) -> LookExamples:
     )
 
 
+def refuse_one_kind(looks: LookExamples) -> None:
+    """Refuse examples by which no scores can be made log odds.
+
+    Raises:
+        BadInput: only people or none are proposed.
+    """
+    _, is_person = _whether(np.zeros(len(looks.overlap)), looks)
+    if is_person.all() or not is_person.any():
+        raise BadInput(
+            f"{is_person.sum()} of {len(is_person)} proposals held back are people; take more worlds"
+        )
+
+
 def with_log_odds(network: SecondLook, looks: LookExamples) -> SecondLook:
     """Let scores be the log odds of somebody among proposals that it never saw (Platt 1999).
 
@@ -98,9 +112,8 @@ def with_log_odds(network: SecondLook, looks: LookExamples) -> SecondLook:
         from sklearn.linear_model import LogisticRegression  # here, as it comes with the extra `train`
     except ImportError as error:
         raise BadInput("train-detector needs scikit-learn: pip install scikit-learn") from error
+    refuse_one_kind(looks)
     score, is_person = _whether(_told(network, looks)[:, 0], looks)
-    if is_person.all() or not is_person.any():
-        raise BadInput(f"{is_person.sum()} of {len(score)} proposals are people; take more worlds")
     fitted = LogisticRegression(C=1e6).fit(score[:, None], is_person)
     line = np.array([fitted.coef_[0, 0], fitted.intercept_[0]], np.float32)
     return replace(network, weights={**network.weights, "line": line})

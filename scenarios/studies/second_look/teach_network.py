@@ -34,7 +34,8 @@ _DECAY: Final = 0.02  # of kernels, in a batch, of the rate
 _LEFT_OUT: Final = 0.4  # of units, in each batch others (Srivastava et al., JMLR 2014)
 _PLACES: Final = 0.5  # weight of where people are, beside whether
 _FAR: Final = 2.0  # units from which on it does not matter how much farther off a place is (Huber)
-_FOLLOWED: Final = 0.002  # share of a batch in the weights that are kept (Polyak and Juditsky 1992)
+_FOLLOWED: Final = 0.002  # least share of a batch in the weights that are kept (Polyak and Juditsky 1992)
+_SOON: Final = 9.0  # batches, so that the n-th has a share of 9 / (9 + n) at first
 _TOLD: Final = 200  # batches
 _LAST: Final = 0.1  # weights of the last layer, beside He's
 
@@ -84,7 +85,7 @@ def teach_network(
     keys = jax.random.split(jax.random.key(int(rng.integers(2**31))), batches)
     for number, batch in enumerate(_batches(looks, rng, rounds), 1):
         weights, state, kept, losses = step(
-            weights, state, kept, planes_of(batch.crops), batch, keys[number - 1]
+            weights, state, kept, planes_of(batch.crops), batch, keys[number - 1], _followed(number)
         )
         total += [float(losses.whether), float(losses.where)]
         if number % _TOLD == 0:
@@ -144,6 +145,7 @@ def _step(
     planes: jax.Array,
     batch: LookExamples,
     key: jax.Array,
+    followed: float,
 ) -> tuple[Weights, optax.OptState, Weights, Losses]:
     for_crops, for_units = jax.random.split(key)
     units = weights["last"].shape[0]
@@ -152,8 +154,13 @@ def _step(
     (_, losses), slopes = jax.value_and_grad(loss, has_aux=True)(weights, seen, batch, left)
     steps, state = optimiser.update(slopes, state, weights)
     weights = {name: array + steps[name] for name, array in weights.items()}
-    kept = {name: array + _FOLLOWED * (weights[name] - array) for name, array in kept.items()}
+    kept = {name: array + followed * (weights[name] - array) for name, array in kept.items()}
     return weights, state, kept, losses
+
+
+def _followed(number: int) -> float:
+    """Give the share that weights after so many batches have in those that are kept: more at first."""
+    return max(_FOLLOWED, _SOON / (_SOON + number))
 
 
 def _optimiser(batches: int) -> optax.GradientTransformation:

@@ -11,12 +11,18 @@ from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleF
 from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS, LATER, world_of
 from peopleboy.scenarios.studies.second_look import network_lesson, teach_network
 from peopleboy.scenarios.studies.second_look.looks import LookExamples
-from peopleboy.scenarios.studies.second_look.network_lesson import later_seeds, overlap_of, with_log_odds
+from peopleboy.scenarios.studies.second_look.network_lesson import (
+    later_seeds,
+    overlap_of,
+    refuse_one_kind,
+    with_log_odds,
+)
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, PLANES, ROWS, SCORES, planes_of
 from peopleboy.tracker.proposals.placing import moved
 from peopleboy.tracker.proposals.second_look import SecondLook
 from tests.helpers.calls.command_line import run_cli
+from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_films import drawn_film
 
 
@@ -67,6 +73,15 @@ def test_overlap_of_offsets_is_that_of_the_boxes() -> None:
     window = np.tile([40.0, 50.0, 30.0, 80.0], (20, 1))
     expected = iou(moved(window, told), moved(window, true))
     np.testing.assert_allclose(overlap_of(told, true), expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("overlap", "told"), [([0.9, 0.8, 0.3], "2 of 2"), ([0.0, 0.1], "0 of 2"), ([], "0 of 0")]
+)
+def test_people_alone_or_none_are_refused(overlap: list[float], told: str) -> None:
+    none = LookExamples.joined([])
+    with refused(f"{told} proposals held back are people", "take more worlds"):
+        refuse_one_kind(none._replace(overlap=np.array(overlap, np.float32)))
 
 
 def test_scores_become_log_odds() -> None:

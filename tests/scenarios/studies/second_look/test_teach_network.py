@@ -2,7 +2,6 @@ import jax
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.studies.second_look import teach_network as teaching
 from peopleboy.scenarios.studies.second_look.looks import LookExamples
 from peopleboy.scenarios.studies.second_look.teach_network import first_weights, loss, teach_network, told
 from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, PLANES, ROWS, SCORES, planes_of
@@ -59,8 +58,7 @@ def test_who_is_neither_somebody_nor_nobody_does_not_count() -> None:
     assert all(not np.asarray(slope).any() for slope in slopes.values())
 
 
-def test_people_are_told_from_others_after_a_short_lesson(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(teaching, "_FOLLOWED", 0.1)
+def test_people_are_told_from_others_after_a_short_lesson() -> None:
     said: list[str] = []
     network = teach_network(drawn_looks(640), np.random.default_rng(0), rounds=8, say=said.append)
     others = drawn_looks(200, seed=5)
