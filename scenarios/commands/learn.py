@@ -159,7 +159,7 @@ def train_detector(
 
     Some are as drawn, others full of people, plain, both, or warm. A tenth is held back, to make scores log
     odds; random worlds of seeds 0 to 29 tell how good it is. Needs scikit-learn, and for the second look JAX
-    and Optax: pip install 'peopleboy[train]'. Films that are there are not made again.
+    and Optax: pip install '.[train]'. Films that are there are not made again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.people_learning.people_lesson import give_people_lesson

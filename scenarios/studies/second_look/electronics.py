@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
+from peopleboy.sim.cameras.electronics.output import compress
 
 Grey = NDArray[np.uint8]
 
@@ -31,7 +32,7 @@ def through_electronics(shot: PeopleShot, rng: np.random.Generator) -> PeopleSho
             shot, grey=sharpened(shot.grey, rng.uniform(*_RADII_PX), rng.uniform(0.0, _MOST_SHARPENED))
         )
     if rng.random() < _COMPRESSED:
-        shot = replace(shot, grey=compressed(shot.grey, int(rng.integers(*_QUALITIES))))
+        shot = replace(shot, grey=compress(shot.grey, int(rng.integers(*_QUALITIES))))
     return shot
 
 
@@ -51,13 +52,10 @@ def equalised(shot: PeopleShot, share: float) -> PeopleShot:
 
 
 def sharpened(grey: Grey, radius_px: float, gain: float) -> Grey:
-    """Exaggerate what is finer than a radius, which leaves rims around what is warm."""
+    """Exaggerate what is finer than a radius, which leaves rims around what is warm.
+
+    The simulated camera does so in kelvin, before greys are told; here nothing but greys is known.
+    """
     image = grey.astype(np.float32)
     finer = image - cv2.GaussianBlur(image, (0, 0), radius_px)
     return np.asarray(np.rint(np.clip(image + gain * finer, 0.0, 255.0)), np.uint8)
-
-
-def compressed(grey: Grey, quality: int) -> Grey:
-    """Give an image as a JPEG file of a quality from 1 to 100 keeps it."""
-    _, file = cv2.imencode(".jpg", grey, [cv2.IMWRITE_JPEG_QUALITY, quality])
-    return np.asarray(cv2.imdecode(file, cv2.IMREAD_GRAYSCALE), np.uint8)
