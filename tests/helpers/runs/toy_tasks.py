@@ -16,6 +16,8 @@ from peopleboy.scenarios.running.engine.store import Result, Store
 from peopleboy.scenarios.running.engine.task import Task, Tell
 from peopleboy.scenarios.running.engine.workers import Workers
 
+_KEPT: list[bytes] = []
+
 
 @dataclass(frozen=True, slots=True)
 class ToyTask:
@@ -27,6 +29,7 @@ class ToyTask:
         takes_s: how long it takes.
         deaths: how often it kills its process.
         fault: what it raises instead; empty for nothing.
+        keeps_mb: by how much its process grows for good.
     """
 
     number: int
@@ -35,6 +38,7 @@ class ToyTask:
     deaths: int = 0
     fault: str = ""
     size: int = 1
+    keeps_mb: int = 0
 
     @property
     def name(self) -> str:
@@ -46,6 +50,7 @@ class ToyTask:
             raise {"refused": BadInput, "wrong": ArithmeticError}[self.fault](
                 f"{self.number} is {self.fault}"
             )
+        _KEPT.append(b"x" * (self.keeps_mb << 20))
         time.sleep(self.takes_s)
         tell(1)
         with (self.folder / "diary").open("a", encoding="utf-8") as diary:

@@ -73,6 +73,12 @@ def test_a_process_that_is_killed_loses_nothing_and_nothing_is_done_twice(
     assert len(list(tmp_path.glob("died-*"))) == 1
 
 
+def test_a_process_that_grows_is_replaced_without_a_word(tmp_path: Path, store: Store) -> None:
+    work([ToyTask(number, tmp_path, takes_s=0.6, keeps_mb=200) for number in range(12)], store, Workers(2))
+    assert squares(store) == ALL
+    assert len({process for _, process in diary_lines(tmp_path)}) > 2
+
+
 @pytest.mark.thorough
 def test_a_task_that_kills_every_process_fails_alone(tmp_path: Path, store: Store) -> None:
     tasks = [ToyTask(number, tmp_path, deaths=99 if number == 0 else 0) for number in range(6)]
