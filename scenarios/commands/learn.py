@@ -142,7 +142,12 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
 @click.option(
     "--second-look",
     is_flag=True,
-    help="Teach the network that looks again at what trees propose; all trees stay as they are.",
+    help="Teach the network that looks again at what trees propose; all else stays as it is.",
+)
+@click.option(
+    "--closer-look",
+    is_flag=True,
+    help="Teach the network that tells where exactly those are who were found; all else stays as it is.",
 )
 @workers_options
 def train_detector(
@@ -152,27 +157,32 @@ def train_detector(
     windows: tuple[str, ...],
     only_places: bool,
     second_look: bool,
+    closer_look: bool,
     workers: int | None,
     scheduler: str | None,
 ) -> None:
     """Learn what people look like to a thermal camera, from random worlds.
 
     Some are as drawn, others full of people, plain, both, or warm. A tenth is held back, to make scores log
-    odds; random worlds of seeds 0 to 29 tell how good it is. Needs scikit-learn, and for the second look JAX
-    and Optax: pip install '.[train]'. Films that are there are not made again.
+    odds; random worlds of seeds 0 to 29 tell how good it is. Needs scikit-learn, and for both looks JAX and
+    Optax: pip install '.[train]'. Films that are there are not made again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.studies.look_learning.closer_look_lesson import give_closer_look_lesson
+    from peopleboy.scenarios.studies.look_learning.second_look_lesson import give_second_look_lesson
     from peopleboy.scenarios.studies.people_learning.people_lesson import give_people_lesson
-    from peopleboy.scenarios.studies.second_look.network_lesson import give_second_look_lesson
     from peopleboy.tracker.proposals.window import Kind
 
     chosen, kinds = chosen_workers(workers, scheduler), [kind for kind in Kind if kind in windows]
-    if second_look and (only_places or len(kinds) < len(Kind)):
-        raise BadInput(
-            "train-detector: --second-look teaches no trees; leave out --windows and --only-places"
-        )
-    if second_look:
-        click.echo(give_second_look_lesson(out, chosen, worlds=worlds, ship=ship))
+    looks = {"--second-look": second_look, "--closer-look": closer_look}
+    asked = [flag for flag, is_asked in looks.items() if is_asked]
+    if len(asked) > 1:
+        raise BadInput("train-detector: --second-look and --closer-look are two lessons; choose one")
+    if asked and (only_places or len(kinds) < len(Kind)):
+        raise BadInput(f"train-detector: {asked[0]} teaches no trees; leave out --windows and --only-places")
+    if asked:
+        lesson = give_second_look_lesson if second_look else give_closer_look_lesson
+        click.echo(lesson(out, chosen, worlds=worlds, ship=ship))
         return
     click.echo(
         give_people_lesson(out, chosen, worlds=worlds, kinds=kinds, only_places=only_places, ship=ship)

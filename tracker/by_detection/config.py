@@ -27,9 +27,9 @@ class PathConfig:
 
     acceleration_m_s2: tuple[float, float, float] = (0.8, 0.2, 0.8)
     speed_m_s: tuple[float, float, float] = (1.0, 0.2, 1.0)
-    column: float = 0.05
-    head: float = 0.06
-    foot: float = 0.06
+    column: float = 0.06
+    head: float = 0.07
+    foot: float = 0.07
     build: float = 0.04
     posture: float = 0.02
     floor_m: float = 0.08
@@ -54,11 +54,11 @@ class MatchingConfig:
 
     gate: float = 3.5
     path: float = 0.35
-    overlap: float = 1.0
-    looks: float = 1.0
+    overlap: float = 1.5
+    looks: float = 1.3
     score: float = 0.05
     highest: float = 2.6
-    lost_s: float = 0.7
+    lost_s: float = 1.0
     looks_of_lost: float = 0.35
     colours_of_same: float = 0.3
 
@@ -119,7 +119,7 @@ class ExistenceConfig:
     highest_score: float = 2.0
     shared_doubt: float = 2.0
     highest: float = 8.0
-    confirmed: float = 1.2
+    confirmed: float = 1.5
     hopeless: float = -0.5
     missed: float = 1.0
     missed_hidden: float = 0.3

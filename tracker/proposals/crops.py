@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -16,8 +16,6 @@ Grey = NDArray[np.uint8]
 Crops = NDArray[np.uint8]
 Planes = NDArray[np.float32]
 
-ROWS: Final = 64
-COLUMNS: Final = 48
 PLANES: Final = 3
 """Of a crop: grey, by how much it changed, and what lies inside the image."""
 NUMBERS: Final = 9
@@ -25,7 +23,6 @@ NUMBERS: Final = 9
 SCORES: Final = 4.0
 """Log odds in a unit of the first of them."""
 
-_TALL: Final = 1.4  # heights of a box that a crop shows
 _USUAL_PX: Final = 80.0  # height of people in the middle of all sizes
 _STATURE_M: Final = 1.7
 _MOST: Final = 2.0
@@ -35,36 +32,52 @@ _MOST_GREY: Final = 4.0  # deviations
 _FLAGS: Final = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
 
 
-def crops_of(grey: Grey, change: Grey, boxes: Floats) -> Crops:
-    """Cut out what is in boxes (N, 4) [px] and around them, (N, 64, 48, 3).
+class CropSize(NamedTuple):
+    """How much of the surroundings of a box is shown, and how finely.
+
+    Attributes:
+        rows: of the crop [px].
+        columns: likewise.
+        heights: of the box, that all rows show.
+    """
+
+    rows: int
+    columns: int
+    heights: float
+
+
+def crops_of(grey: Grey, change: Grey, boxes: Floats, size: CropSize) -> Crops:
+    """Cut out what is in boxes (N, 4) [px] and around them, (N, rows, columns, 3).
 
     Args:
         grey: (H, W) image.
         change: (H, W) by how much greys changed.
-        boxes: from head to feet; 1.4 heights of each are shown, about its middle.
+        boxes: from head to feet; the crop of each is about its middle.
+        size: of the crops.
     """
-    crops = np.zeros((len(boxes), ROWS, COLUMNS, PLANES), np.uint8)
+    rows, columns, heights = size
+    crops = np.zeros((len(boxes), rows, columns, PLANES), np.uint8)
     images = [(grey, change)]
     for crop, (left, top, width, height) in zip(crops, boxes.tolist(), strict=True):
-        scale = _TALL * height / ROWS  # [px] of the image in one of the crop
+        scale = heights * height / rows  # [px] of the image in one of the crop
         halvings = max(int(np.floor(np.log2(scale) + 0.25)), 0)
         while len(images) <= halvings:
             images.append((_half(images[-1][0]), _half(images[-1][1])))
         half = 0.5**halvings
         middle = (left + width / 2.0 + 0.5, top + height / 2.0 + 0.5)
-        begin = [(m - scale * size / 2.0) * half for m, size in zip(middle, (COLUMNS, ROWS), strict=True)]
+        begin = [(m - scale * px / 2.0) * half for m, px in zip(middle, (columns, rows), strict=True)]
         step = scale * half
         turn = np.array([[step, 0.0, begin[0] + step / 2.0 - 0.5], [0.0, step, begin[1] + step / 2.0 - 0.5]])
         for plane, image in enumerate(images[halvings]):
             crop[..., plane] = cv2.warpAffine(
-                image, turn, (COLUMNS, ROWS), flags=_FLAGS, borderMode=cv2.BORDER_REPLICATE
+                image, turn, (columns, rows), flags=_FLAGS, borderMode=cv2.BORDER_REPLICATE
             )
-        crop[..., 2] = _inside(turn, images[halvings][0].shape)
+        crop[..., 2] = _inside(turn, size, images[halvings][0].shape)
     return crops
 
 
 def planes_of(crops: Crops) -> Planes:
-    """Express crops (N, 64, 48, 3) in their own deviations: neither brightness nor gain matter."""
+    """Express crops (N, rows, columns, 3) in their own deviations: neither brightness nor gain matter."""
     inside = (crops[..., 2:] > 0).astype(np.float32)
     count = np.maximum(inside.sum(axis=(1, 2), keepdims=True), 1.0)
     grey, change = crops[..., :1].astype(np.float32), crops[..., 1:2].astype(np.float32)
@@ -77,7 +90,7 @@ def planes_of(crops: Crops) -> Planes:
 
 
 def numbers_of(found: Proposals, crops: Crops, shape: tuple[int, int], mount: Mount | None) -> Planes:
-    """Tell of proposals what crops (N, 64, 48, 3) do not show.
+    """Tell of proposals what crops (N, rows, columns, 3) do not show.
 
     Args:
         found: N proposals.
@@ -109,9 +122,9 @@ def _half(image: Grey) -> Grey:
     return np.asarray(cv2.resize(image, half, interpolation=cv2.INTER_AREA), np.uint8)
 
 
-def _inside(turn: Floats, shape: tuple[int, ...]) -> Grey:
-    down = turn[1, 1] * np.arange(ROWS) + turn[1, 2]
-    right = turn[0, 0] * np.arange(COLUMNS) + turn[0, 2]
+def _inside(turn: Floats, size: CropSize, shape: tuple[int, ...]) -> Grey:
+    down = turn[1, 1] * np.arange(size.rows) + turn[1, 2]
+    right = turn[0, 0] * np.arange(size.columns) + turn[0, 2]
     is_row = (down > -0.5) & (down < shape[0] - 0.5)
     is_column = (right > -0.5) & (right < shape[1] - 0.5)
     return np.asarray(np.outer(is_row, is_column), np.uint8) * np.uint8(255)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.proposals.channels import Memory
+from peopleboy.tracker.proposals.closer_look import CloserLook, look_closer, shipped_closer_look
 from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
 from peopleboy.tracker.proposals.motion import change, shifted, turned
 from peopleboy.tracker.proposals.patches import summed
@@ -47,20 +48,23 @@ class PeopleDetector:
         self,
         model: PeopleModel | None = None,
         network: SecondLook | None = None,
+        placing: CloserLook | None = None,
         *,
         smallest_px: float = SMALLEST_PX,
         least_score: float = 0.0,
     ) -> None:
-        """Take the shipped trees and network, or others.
+        """Take the shipped trees and networks, or others.
 
         Args:
             model: the trees, which propose.
             network: looks again at what they propose.
+            placing: looks closer at who was found.
             smallest_px: height of the smallest people who are looked for.
             least_score: of what is told.
         """
         self._model = shipped_model() if model is None else model
         self._network = shipped_network() if network is None else network
+        self._placing = shipped_closer_look() if placing is None else placing
         self._smallest_px = smallest_px
         self._least_score = least_score
         self._past: deque[_Past] = deque()
@@ -79,7 +83,8 @@ class PeopleDetector:
         """
         moved = self._change(grey, time_s, odometry, mount)
         first = look(self._model, grey, moved, mount, self._smallest_px, WEAKEST, self._memory)
-        return look_again(self._network, grey, moved, first, mount, self._least_score)
+        found = look_again(self._network, grey, moved, first, mount, self._least_score)
+        return look_closer(self._placing, grey, moved, found, mount)
 
     def _change(self, grey: Grey, time_s: float, odometry: Odometry | None, mount: Mount | None) -> Grey:
         """Compare an image with the one of about 0.2 s ago, and keep it for later ones."""

@@ -1,10 +1,12 @@
 import numpy as np
 import pytest
 
-from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, PLANES, ROWS, crops_of, numbers_of, planes_of
+from peopleboy.tracker.proposals.crops import NUMBERS, PLANES, CropSize, crops_of, numbers_of, planes_of
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import Mount
 
+SIZE = CropSize(64, 48, 1.4)
+ROWS, COLUMNS, _ = SIZE
 BOX = np.array([[100.0, 60.0, 20.0, 64.0 / 1.4]])  # as large as a crop shows it
 MOUNT = Mount(100.0, 300.0, 1.2)
 
@@ -20,7 +22,7 @@ def proposed(box: np.ndarray, score: float = 0.0) -> Proposals:
 
 def test_a_crop_of_its_own_size_shows_the_pixels_round_the_middle_of_the_box() -> None:
     grey = np.random.default_rng(0).integers(0, 256, (200, 240)).astype(np.uint8)
-    crop = crops_of(grey, np.zeros_like(grey), BOX)[0, ..., 0]
+    crop = crops_of(grey, np.zeros_like(grey), BOX, SIZE)[0, ..., 0]
     # The middle of the box is at column 110.0 and row 82.86, pixels are counted from their middles.
     left, top = 110.5 - COLUMNS / 2.0, 60.0 + 32.0 / 1.4 + 0.5 - ROWS / 2.0
     rows, columns = round(top), int(left + 0.5)
@@ -31,7 +33,7 @@ def test_a_crop_of_its_own_size_shows_the_pixels_round_the_middle_of_the_box() -
 @pytest.mark.parametrize("height", [24.0, 46.0, 90.0, 150.0])
 def test_what_is_in_the_middle_stays_there_at_any_size(height: float) -> None:
     box = np.array([[120.0 - 0.11 * height, 100.0 - height / 2.0, 0.22 * height, height]])
-    crop = crops_of(ramp(), ramp(), box)[0].astype(float)
+    crop = crops_of(ramp(), ramp(), box, SIZE)[0].astype(float)
     inside = crop[..., 2] > 0
     across = (np.arange(COLUMNS) + 0.5 - COLUMNS / 2.0) * 1.4 * height / ROWS + 120.0
     expected = np.tile(across, (ROWS, 1))
@@ -39,10 +41,20 @@ def test_what_is_in_the_middle_stays_there_at_any_size(height: float) -> None:
     np.testing.assert_array_equal(crop[..., 0], crop[..., 1])
 
 
+@pytest.mark.parametrize("size", [SIZE, CropSize(96, 72, 1.3), CropSize(40, 40, 2.0)])
+def test_a_crop_shows_so_many_heights(size: CropSize) -> None:
+    grey = np.zeros((200, 240), np.uint8)
+    grey[60:140] = 200
+    box = np.array([[110.0, 60.0, 20.0, 80.0]])
+    crop = crops_of(grey, grey, box, size)[0]
+    assert crop.shape == (size.rows, size.columns, PLANES)
+    assert (crop[:, 20, 0] > 100).sum() == pytest.approx(size.rows / size.heights, abs=1.0)
+
+
 def test_what_is_beyond_the_image_is_told() -> None:
     grey = np.full((120, 160), 9, np.uint8)
     box = np.array([[70.0, 90.0, 20.0, 60.0]])
-    inside = crops_of(grey, grey, box)[0, ..., 2] > 0
+    inside = crops_of(grey, grey, box, SIZE)[0, ..., 2] > 0
     above = (120.0 - (120.0 - 0.7 * 60.0)) / (1.4 * 60.0)  # share of rows that the image has
     assert inside[: int(above * ROWS) - 1].all()
     assert not inside[int(above * ROWS) + 1 :].any()
@@ -51,14 +63,14 @@ def test_what_is_beyond_the_image_is_told() -> None:
 def test_gain_and_offset_of_an_image_do_not_matter() -> None:
     rng = np.random.default_rng(1)
     grey, change = rng.integers(40, 100, (200, 240)), rng.integers(0, 20, (200, 240))
-    one = planes_of(crops_of(grey.astype(np.uint8), change.astype(np.uint8), BOX))
-    other = planes_of(crops_of((2 * grey + 20).astype(np.uint8), (2 * change).astype(np.uint8), BOX))
+    one = planes_of(crops_of(grey.astype(np.uint8), change.astype(np.uint8), BOX, SIZE))
+    other = planes_of(crops_of((2 * grey + 20).astype(np.uint8), (2 * change).astype(np.uint8), BOX, SIZE))
     assert np.abs(one - other).max() < 0.3  # the noise that is always allowed for
 
 
 def test_nothing_proposed_has_no_crops() -> None:
     none = np.empty((0, 4))
-    crops = crops_of(ramp(), ramp(), none)
+    crops = crops_of(ramp(), ramp(), none, SIZE)
     assert crops.shape == (0, ROWS, COLUMNS, PLANES)
     assert planes_of(crops).shape == crops.shape
     assert numbers_of(proposed(none), crops, (200, 240), MOUNT).shape == (0, NUMBERS)
@@ -66,7 +78,7 @@ def test_nothing_proposed_has_no_crops() -> None:
 
 def numbers(box: tuple[float, float, float, float], mount: Mount | None) -> list[float]:
     boxes = np.array([box])
-    crops = crops_of(ramp(), ramp(), boxes)
+    crops = crops_of(ramp(), ramp(), boxes, SIZE)
     told = numbers_of(proposed(boxes, 2.0), crops, (200, 240), mount)
     return [float(number) for number in told[0]]
 

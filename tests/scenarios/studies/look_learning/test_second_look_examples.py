@@ -3,10 +3,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from peopleboy.scenarios.studies.look_learning.examples import LookExamples
+from peopleboy.scenarios.studies.look_learning.second_look_examples import looks_of
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
-from peopleboy.scenarios.studies.second_look.looks import LookExamples, looks_of
-from peopleboy.tracker.proposals.crops import COLUMNS, NUMBERS, ROWS
+from peopleboy.tracker.proposals.crops import NUMBERS
 from peopleboy.tracker.proposals.model import shipped_model
+from peopleboy.tracker.proposals.second_look import SecondLook
 from tests.helpers.images.drawn_films import drawn_film
 
 
@@ -23,7 +25,7 @@ def looked(shots: list[PeopleShot], *, varies: bool, seed: int = 0) -> LookExamp
 
 def test_what_is_proposed_is_told_with_whom_it_shows(shots: list[PeopleShot]) -> None:
     looks = looked(shots, varies=False)
-    assert looks.crops.shape[1:3] == (ROWS, COLUMNS)
+    assert looks.crops.shape[1:3] == SecondLook.FORM.crop[:2]
     assert len({len(each) for each in looks}) == 1
     assert looks.overlap.max() > 0.4
     someone = looks.overlap > 0.4

@@ -7,8 +7,6 @@ from typing import Final
 import jax
 import jax.numpy as jnp
 
-from peopleboy.tracker.proposals.crops import COLUMNS, ROWS
-
 _STILL: Final = 0.15  # of crops, whose motion is not shown
 _SWIFTER: Final = 0.2  # deviation of the logarithm of how much moves
 _NOISY: Final = 0.5  # of crops
@@ -20,9 +18,9 @@ _WIDE: Final = (0.1, 0.6)
 
 
 def varied(planes: jax.Array, key: jax.Array) -> jax.Array:
-    """Give crops (N, 64, 48, 3) with other motion, noise and a slope of greys, and some partly covered."""
+    """Give crops (N, rows, columns, 3) with other motion, noise and slopes of greys, some partly covered."""
     keys = iter(jax.random.split(key, 8))
-    count = len(planes)
+    count, rows, columns, _ = planes.shape
     grey, change, inside = planes[..., :1], planes[..., 1:2], planes[..., 2:]
 
     def share(*more: int) -> jax.Array:
@@ -33,21 +31,21 @@ def varied(planes: jax.Array, key: jax.Array) -> jax.Array:
 
     moving = jnp.where(share() < _STILL, 0.0, change * jnp.exp(_SWIFTER * deviates(1, 1, 1)))
     drawn = share(2)[..., None]
-    noise = jnp.where(drawn[:, 0] < _NOISY, _MOST_NOISE * drawn[:, 1], 0.0) * deviates(ROWS, COLUMNS, 1)
+    noise = jnp.where(drawn[:, 0] < _NOISY, _MOST_NOISE * drawn[:, 1], 0.0) * deviates(rows, columns, 1)
     slope = _SLOPE * deviates(2, 1, 1, 1)
-    down, right = jnp.linspace(-1.0, 1.0, ROWS)[:, None, None], jnp.linspace(-1.0, 1.0, COLUMNS)[:, None]
+    down, right = jnp.linspace(-1.0, 1.0, rows)[:, None, None], jnp.linspace(-1.0, 1.0, columns)[:, None]
     other = grey + (noise + slope[:, 0] * down + slope[:, 1] * right) * inside
-    is_covered = _cover(share(5)[..., None])
+    is_covered = _cover(share(5)[..., None], rows, columns)
     other = jnp.where(is_covered, deviates(1, 1, 1) * inside, other)
     return jnp.concatenate([other, jnp.where(is_covered, 0.0, moving), inside], axis=3)
 
 
-def _cover(drawn: jax.Array) -> jax.Array:
-    """Tell which pixels (N, 64, 48, 1) something covers, by numbers (N, 5, 1, 1, 1) from 0 to 1."""
+def _cover(drawn: jax.Array, rows: int, columns: int) -> jax.Array:
+    """Tell which pixels (N, rows, columns, 1) something covers, by numbers (N, 5, 1, 1, 1) from 0 to 1."""
     high, wide = (
         size * (least + (most - least) * drawn[:, k])
-        for k, (size, (least, most)) in enumerate(((ROWS, _TALL), (COLUMNS, _WIDE)))
+        for k, (size, (least, most)) in enumerate(((rows, _TALL), (columns, _WIDE)))
     )
-    off_row = jnp.abs(jnp.arange(ROWS)[:, None, None] - ROWS * drawn[:, 2])
-    off_column = jnp.abs(jnp.arange(COLUMNS)[:, None] - COLUMNS * drawn[:, 3])
+    off_row = jnp.abs(jnp.arange(rows)[:, None, None] - rows * drawn[:, 2])
+    off_column = jnp.abs(jnp.arange(columns)[:, None] - columns * drawn[:, 3])
     return (off_row < 0.5 * high) & (off_column < 0.5 * wide) & (drawn[:, 4] < _COVERED)

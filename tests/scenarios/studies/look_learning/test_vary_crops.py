@@ -1,20 +1,22 @@
 import jax
 import numpy as np
+import pytest
 
-from peopleboy.scenarios.studies.second_look.vary_crops import varied
-from peopleboy.tracker.proposals.crops import COLUMNS, PLANES, ROWS
+from peopleboy.scenarios.studies.look_learning.vary_crops import varied
+from peopleboy.tracker.proposals.crops import PLANES
 
 
-def drawn_planes(count: int) -> np.ndarray:
-    planes = np.random.default_rng(0).normal(0.0, 1.0, (count, ROWS, COLUMNS, PLANES)).astype(np.float32)
+def drawn_planes(count: int, rows: int = 64, columns: int = 48) -> np.ndarray:
+    planes = np.random.default_rng(0).normal(0.0, 1.0, (count, rows, columns, PLANES)).astype(np.float32)
     planes[..., 1] = np.abs(planes[..., 1])
     planes[..., 2] = 1.0
     planes[:, 50:, :, :] = 0.0  # below the image
     return planes
 
 
-def test_what_is_outside_the_image_stays_outside() -> None:
-    planes = drawn_planes(40)
+@pytest.mark.parametrize(("rows", "columns"), [(64, 48), (96, 72)])
+def test_what_is_outside_the_image_stays_outside(rows: int, columns: int) -> None:
+    planes = drawn_planes(40, rows, columns)
     after = np.asarray(varied(planes, jax.random.key(1)))
     assert after.shape == planes.shape
     np.testing.assert_array_equal(after[..., 2], planes[..., 2])

@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
-from peopleboy.scenarios.studies.second_look.electronics import (
+from peopleboy.scenarios.studies.look_learning.electronics import (
     equalised,
     sharpened,
     through_electronics,
 )
+from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.thermal.mount import Mount
 
 

@@ -1,11 +1,11 @@
-"""Teaching the network of the second look, with JAX and Optax; a running tracker does without them."""
+"""Teaching a network that looks at crops, with JAX and Optax; a running tracker does without them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 
@@ -16,13 +16,12 @@ try:
     import jax.numpy as jnp
     import optax
 except ImportError:
-    raise BadInput("teaching the second look needs JAX and Optax: pip install jax optax") from None
+    raise BadInput("teaching a network needs JAX and Optax: pip install jax optax") from None
 
-from peopleboy.scenarios.studies.second_look.looks import NOBODY, SOMEBODY, LookExamples
-from peopleboy.scenarios.studies.second_look.vary_crops import varied
-from peopleboy.tracker.proposals.crops import SCORES, Planes, planes_of
-from peopleboy.tracker.proposals.placing import OFFSETS
-from peopleboy.tracker.proposals.second_look import LAYERS, SCALES, USUAL, SecondLook, shapes
+from peopleboy.scenarios.studies.look_learning.examples import LookExamples
+from peopleboy.scenarios.studies.look_learning.vary_crops import varied
+from peopleboy.tracker.proposals.crops import Planes, planes_of
+from peopleboy.tracker.proposals.network import Form
 
 Weights = dict[str, jax.Array]
 Array = jax.Array | Planes
@@ -31,9 +30,6 @@ _BATCH: Final = 64
 _RATE: Final = 1.5e-3
 _WARM_UP: Final = 300  # batches
 _DECAY: Final = 0.02  # of kernels, in a batch, of the rate
-_LEFT_OUT: Final = 0.4  # of units, in each batch others (Srivastava et al., JMLR 2014)
-_PLACES: Final = 0.5  # weight of where people are, beside whether
-_FAR: Final = 2.0  # units from which on it does not matter how much farther off a place is (Huber)
 _FOLLOWED: Final = 0.002  # least share of a batch in the weights that are kept (Polyak and Juditsky 1992)
 _SOON: Final = 9.0  # batches, so that the n-th has a share of 9 / (9 + n) at first
 _TOLD: Final = 200  # batches
@@ -44,43 +40,65 @@ class Losses(NamedTuple):
     """How far off a batch was.
 
     Attributes:
-        whether: negative logarithm of the likelihood, a proposal.
+        all: what is made small.
+        whether: negative logarithm of the likelihood, a proposal; 0 where that is not told.
         where: units off, in the mean over what tells places.
     """
 
+    all: jax.Array
     whether: jax.Array
     where: jax.Array
 
 
-def first_weights(rng: np.random.Generator) -> dict[str, Planes]:
-    """Draw a network that knows nothing (He et al., ICCV 2015): it says what the first look does."""
+class Loss(Protocol):
+    """How far off a network is, by its weights and examples with their planes (N, rows, columns, 3)."""
+
+    def __call__(self, weights: Weights, planes: Array, batch: LookExamples, left: Array | float) -> Losses:
+        """Give the losses of a batch; units (N, units) are multiplied by what is left of them."""
+        ...
+
+
+class Lesson(NamedTuple):
+    """What is taught.
+
+    Attributes:
+        form: of the network.
+        loss: how far off it is.
+        left_out: share of units, in each batch others (Srivastava et al., JMLR 2014).
+    """
+
+    form: Form
+    loss: Loss
+    left_out: float
+
+
+def first_weights(form: Form, rng: np.random.Generator) -> dict[str, Planes]:
+    """Draw a network that knows hardly anything (He et al., ICCV 2015)."""
     weights: dict[str, Planes] = {}
-    for name, shape in shapes().items():
+    for name, shape in form.shapes().items():
         drawn = rng.standard_normal(shape) * math.sqrt(2.0 / shape[0]) if len(shape) > 1 else np.zeros(shape)
         weights[name] = drawn.astype(np.float32)
     weights["last"] *= np.float32(_LAST)
-    weights["line"] = np.array([1.0, 0.0], np.float32)
     return weights
 
 
 def teach_network(
-    looks: LookExamples, rng: np.random.Generator, *, rounds: int, say: Callable[[str], None]
-) -> SecondLook:
-    """Teach a network on what was proposed: each is seen once a round, in half of the batches mirrored.
+    lesson: Lesson, looks: LookExamples, rng: np.random.Generator, *, rounds: int, say: Callable[[str], None]
+) -> dict[str, Planes]:
+    """Teach a network on examples: each is seen once a round, in half of the batches mirrored.
 
-    What is kept are the weights of the last batches, in the mean.
+    Returns:
+        The weights of the last batches, in the mean.
 
     Raises:
         BadInput: there is too little to learn from.
     """
     batches = rounds * (len(looks.overlap) // _BATCH)
     if not batches:
-        raise BadInput(f"{len(looks.overlap)} proposals, at least {_BATCH} are needed; take more worlds")
-    first = first_weights(rng)
-    line = first.pop("line")
-    weights = {name: jnp.asarray(array) for name, array in first.items()}
+        raise BadInput(f"{len(looks.overlap)} examples, at least {_BATCH} are needed; take more worlds")
+    weights = {name: jnp.asarray(array) for name, array in first_weights(lesson.form, rng).items()}
     optimiser = _optimiser(batches)
-    step = jax.jit(partial(_step, optimiser))
+    step = jax.jit(partial(_step, lesson, optimiser))
     state, kept, total = optimiser.init(weights), weights, np.zeros(2)
     keys = jax.random.split(jax.random.key(int(rng.integers(2**31))), batches)
     for number, batch in enumerate(_batches(looks, rng, rounds), 1):
@@ -91,22 +109,23 @@ def teach_network(
         if number % _TOLD == 0:
             say(f"{number} of {batches} batches: loss {total[0] / _TOLD:.3f}, places {total[1] / _TOLD:.3f}")
             total[:] = 0.0
-    return SecondLook({**{name: np.asarray(array) for name, array in kept.items()}, "line": line})
+    return {name: np.asarray(array) for name, array in kept.items()}
 
 
-def told(weights: Weights, planes: Array, numbers: Array, left: Array | float = 1.0) -> jax.Array:
-    """Tell (N, 5) of crops (N, 64, 48, 3) with numbers (N, 9), as `SecondLook.told` does.
-
-    All is in units of `SCALES`, off `USUAL`.
+def last_of(
+    form: Form, weights: Weights, planes: Array, numbers: Array, left: Array | float = 1.0
+) -> jax.Array:
+    """Give what the last layer says (N, told) of crops with numbers, as `Network.last` does.
 
     Args:
-        weights: of the network.
-        planes: crops.
-        numbers: of the proposals.
-        left: (N, 128) by what units are multiplied.
+        form: of the network.
+        weights: of it.
+        planes: (N, rows, columns, 3) crops.
+        numbers: (N, numbers) of the proposals.
+        left: (N, units) by what units are multiplied.
     """
     here = jnp.asarray(planes)
-    for layer, (side, stride, depth) in enumerate(LAYERS):
+    for layer, (side, stride, depth) in enumerate(form.layers):
         edge = side // 2
         seen = jax.lax.conv_general_dilated(
             here,
@@ -118,26 +137,16 @@ def told(weights: Weights, planes: Array, numbers: Array, left: Array | float = 
         here = jax.nn.relu(seen + weights[f"bias{layer}"])
     flat = jnp.concatenate([here.reshape(len(here), -1), numbers], axis=1)
     units = left * jax.nn.relu(flat @ weights["all"] + weights["all_bias"])
-    last = jnp.asarray(units @ weights["last"] + weights["last_bias"])
-    return last.at[:, 0].add(SCORES * numbers[:, 0])
+    return jnp.asarray(units @ weights["last"] + weights["last_bias"])
 
 
-def loss(
-    weights: Weights, planes: Array, batch: LookExamples, left: Array | float
-) -> tuple[jax.Array, Losses]:
-    """Give the loss of a batch, and the two that make it."""
-    last = told(weights, planes, batch.numbers, left)
-    is_person = batch.overlap >= SOMEBODY
-    counts = is_person | (batch.overlap < NOBODY)
-    likely = jnp.logaddexp(0.0, jnp.where(is_person, -last[:, 0], last[:, 0])) * counts
-    off = jnp.abs(last[:, 1:] - (batch.offsets - USUAL[1:]) / SCALES[1:]) * is_person[:, None]
-    bent = jnp.where(off < _FAR, 0.5 * off * off, _FAR * (off - 0.5 * _FAR))
-    whether = likely.sum() / jnp.maximum(counts.sum(), 1)
-    where = off.sum() / jnp.maximum(is_person.sum(), 1) / OFFSETS
-    return likely.mean() + _PLACES * bent.mean(), Losses(whether, where)
+def bent(off: jax.Array, far: float) -> jax.Array:
+    """Give half of squares, that go on as lines from some units on (Huber 1964)."""
+    return jnp.where(off < far, 0.5 * off * off, far * (off - 0.5 * far))
 
 
 def _step(
+    lesson: Lesson,
     optimiser: optax.GradientTransformation,
     weights: Weights,
     state: optax.OptState,
@@ -147,11 +156,15 @@ def _step(
     key: jax.Array,
     followed: float,
 ) -> tuple[Weights, optax.OptState, Weights, Losses]:
+    def loss(weights: Weights) -> tuple[jax.Array, Losses]:
+        losses = lesson.loss(weights, seen, batch, left)
+        return losses.all, losses
+
     for_crops, for_units = jax.random.split(key)
-    units = weights["last"].shape[0]
-    left = (jax.random.uniform(for_units, (len(planes), units)) >= _LEFT_OUT) / (1.0 - _LEFT_OUT)
+    units, left_out = lesson.form.units, lesson.left_out
+    left = (jax.random.uniform(for_units, (len(planes), units)) >= left_out) / (1.0 - left_out)
     seen = varied(planes, for_crops)
-    (_, losses), slopes = jax.value_and_grad(loss, has_aux=True)(weights, seen, batch, left)
+    (_, losses), slopes = jax.value_and_grad(loss, has_aux=True)(weights)
     steps, state = optimiser.update(slopes, state, weights)
     weights = {name: array + steps[name] for name, array in weights.items()}
     kept = {name: array + followed * (weights[name] - array) for name, array in kept.items()}

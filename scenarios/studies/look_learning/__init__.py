@@ -1,0 +1,1 @@
+"""Teaching the networks that look at crops: again at what trees propose, and closer at who was found."""

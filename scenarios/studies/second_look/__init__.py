@@ -1,1 +1,0 @@
-"""Teaching the network that looks again at what trees propose."""

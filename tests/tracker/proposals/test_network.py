@@ -1,0 +1,100 @@
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from threadpoolctl import threadpool_limits
+
+from peopleboy.tracker.proposals.closer_look import CloserLook, shipped_closer_look
+from peopleboy.tracker.proposals.crops import PLANES
+from peopleboy.tracker.proposals.network import Network, in_parts, patches
+from peopleboy.tracker.proposals.second_look import SecondLook, shipped_network
+from tests.helpers.calls.refused import refused
+from tests.helpers.images.drawn_looks import drawn_weights
+
+KINDS = pytest.mark.parametrize("kind", [SecondLook, CloserLook])
+
+
+def drawn_network(kind: type[Network]) -> Network:
+    line = {"line": np.array([1.0, 0.0], np.float32)} if "line" in kind.shapes() else {}
+    return kind(drawn_weights(kind.FORM) | line, {"learned from": "nothing"})
+
+
+def test_a_kernel_is_a_filter() -> None:
+    rng = np.random.default_rng(0)
+    plane, kernel = rng.normal(size=(9, 7)).astype(np.float32), rng.normal(size=(3, 3)).astype(np.float32)
+    ours = patches(plane[None, :, :, None], 3, 1) @ kernel.ravel()
+    theirs = cv2.filter2D(plane, -1, kernel, borderType=cv2.BORDER_CONSTANT)
+    np.testing.assert_allclose(ours[0], theirs, atol=1e-5)
+    np.testing.assert_allclose(patches(plane[None, :, :, None], 3, 2) @ kernel.ravel(), ours[:, ::2, ::2])
+
+
+@pytest.mark.parametrize("shipped", [shipped_network(), shipped_closer_look()])
+@pytest.mark.parametrize("count", [1, 4, 7])
+def test_what_is_told_does_not_hang_on_how_many_threads_there_are(shipped: Network, count: int) -> None:
+    rng = np.random.default_rng(count)
+    rows, columns, _ = shipped.FORM.crop
+    planes = rng.standard_normal((count, rows, columns, PLANES)).astype(np.float32)
+    numbers = rng.standard_normal((count, shipped.FORM.numbers)).astype(np.float32)
+    told = []
+    for threads in (1, 2, 4):
+        with threadpool_limits(threads):
+            told.append(shipped.last(planes, numbers))
+    assert np.array_equal(told[0], told[1])
+    assert np.array_equal(told[0], told[2])
+
+
+def test_a_product_in_parts_is_the_product() -> None:
+    rng = np.random.default_rng(0)
+    one, other = rng.standard_normal((3, 1300)), rng.standard_normal((1300, 5))
+    product = in_parts(one.astype(np.float32), other.astype(np.float32))
+    np.testing.assert_allclose(product, one @ other, rtol=1e-4, atol=1e-4)
+
+
+@KINDS
+def test_shapes_follow_from_the_layers(kind: type[Network]) -> None:
+    rows, columns, _ = kind.FORM.crop
+    planes = np.zeros((2, rows, columns, PLANES), np.float32)
+    for layer, (side, stride, _) in enumerate(kind.FORM.layers):
+        planes = patches(planes, side, stride) @ np.zeros(kind.shapes()[f"kernel{layer}"], np.float32)
+    assert planes[0].size + kind.FORM.numbers == kind.shapes()["all"][0]
+
+
+@KINDS
+def test_a_network_comes_back_from_its_file(kind: type[Network], tmp_path: Path) -> None:
+    network = drawn_network(kind)
+    network.save(tmp_path / "net.npz")
+    read = kind.load(tmp_path / "net.npz")
+    assert read.about == network.about
+    for name, weights in network.weights.items():
+        np.testing.assert_allclose(read.weights[name], weights, rtol=1e-3, atol=1e-6)
+
+
+@pytest.mark.parametrize(("kind", "lesson"), [(SecondLook, "second-look"), (CloserLook, "closer-look")])
+def test_a_missing_file_names_the_command(kind: type[Network], lesson: str, tmp_path: Path) -> None:
+    with refused("none.npz", f"train-detector --{lesson}"):
+        kind.load(tmp_path / "none.npz")
+
+
+@KINDS
+@pytest.mark.parametrize(
+    ("name", "wrong"),
+    [
+        ("last", np.zeros((3, 5), np.float32)),
+        ("last_bias", np.full(5, np.nan, np.float32)),
+        ("kernel0", np.zeros((2, 2), np.float32)),
+    ],
+)
+def test_another_network_is_refused(
+    kind: type[Network], tmp_path: Path, name: str, wrong: np.ndarray
+) -> None:
+    kind({**drawn_network(kind).weights, name: wrong}).save(tmp_path / "other.npz")
+    rows, columns, _ = kind.FORM.crop
+    with refused("other.npz", f"holds no network for crops of {rows} x {columns}"):
+        kind.load(tmp_path / "other.npz")
+
+
+def test_a_network_for_other_crops_is_refused(tmp_path: Path) -> None:
+    drawn_network(SecondLook).save(tmp_path / "other.npz")
+    with refused("other.npz", "holds no network for crops of 96 x 72"):
+        CloserLook.load(tmp_path / "other.npz")
