@@ -72,7 +72,7 @@ def test_somebody_sure_is_told_by_the_third_image() -> None:
 
 def test_a_second_box_on_somebody_known_is_nobody_new() -> None:
     one, larger = walker(100.0), (80.0, 40.0, 40.0, 150.0)
-    seen = tracked([[one]] * 10 + [[one, larger]] * 20, score=1.5)
+    seen = tracked([[one]] * 10 + [[one, larger]] * 20, score=2.0)
     assert all(numbers(tracks) <= {1} for tracks in seen)
     assert numbers(seen[-1]) == {1}
 
