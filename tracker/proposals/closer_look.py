@@ -17,7 +17,7 @@ from peopleboy.tracker.proposals.crops import (
     numbers_of,
     planes_of,
 )
-from peopleboy.tracker.proposals.network import Form, Layer, Network
+from peopleboy.tracker.proposals.network import CropNetwork, Form, Layer
 from peopleboy.tracker.proposals.placing import OFFSETS, moved
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.proposals.window import Floats
@@ -35,7 +35,7 @@ NETWORK: Final = Path(__file__).parent / "weights" / "closer_look.npz"
 """The network that comes with the tracker."""
 
 
-class CloserLook(Network):
+class CloserLook(CropNetwork):
     """Tells where exactly somebody is; whether anybody is, it does not say."""
 
     FORM: ClassVar[Form] = Form(

@@ -81,10 +81,13 @@ class PeopleDetector:
             odometry: how the robot moved since the last one; None if that is not known.
             mount: how the camera sits; None if that is not known: then people may be anywhere.
         """
-        moved = self._change(grey, time_s, odometry, mount)
-        first = look(self._model, grey, moved, mount, self._smallest_px, WEAKEST, self._memory)
-        found = look_again(self._network, grey, moved, first, mount, self._least_score)
-        return look_closer(self._placing, grey, moved, found, mount)
+        return self.found(grey, self._change(grey, time_s, odometry, mount), mount)
+
+    def found(self, grey: Grey, change: Grey, mount: Mount | None) -> Proposals:
+        """Look for people in an image of which it is known by how much (H, W) greys changed."""
+        first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, self._memory)
+        found = look_again(self._network, grey, change, first, mount, self._least_score)
+        return look_closer(self._placing, grey, change, found, mount)
 
     def _change(self, grey: Grey, time_s: float, odometry: Odometry | None, mount: Mount | None) -> Grey:
         """Compare an image with the one of about 0.2 s ago, and keep it for later ones."""

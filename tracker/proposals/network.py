@@ -62,7 +62,7 @@ class Form(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Network:
+class CropNetwork:
     """Weights of a network of one form, which its classes tell.
 
     Attributes:

@@ -18,7 +18,7 @@ from peopleboy.tracker.proposals.crops import (
     numbers_of,
     planes_of,
 )
-from peopleboy.tracker.proposals.network import Form, Layer, Network
+from peopleboy.tracker.proposals.network import CropNetwork, Form, Layer
 from peopleboy.tracker.proposals.placing import OFFSETS, moved
 from peopleboy.tracker.proposals.suppression import Proposals, suppress
 from peopleboy.tracker.proposals.window import Floats
@@ -44,7 +44,7 @@ BELIEVED_OF_STRANGERS: Final = 0.3
 """The same of a camera whose mount is not known, which is no robot's own."""
 
 
-class SecondLook(Network):
+class SecondLook(CropNetwork):
     """Tells whether somebody is there; its weight `line` is gain and offset that make scores log odds."""
 
     FORM: ClassVar[Form] = Form(

@@ -15,7 +15,7 @@ from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.tracker.boxes import Floats, iou
 from peopleboy.tracker.proposals.closer_look import CloserLook
 from peopleboy.tracker.proposals.crops import planes_of
-from peopleboy.tracker.proposals.network import Network
+from peopleboy.tracker.proposals.network import CropNetwork
 from peopleboy.tracker.proposals.placing import moved
 from peopleboy.tracker.proposals.second_look import SecondLook
 
@@ -38,7 +38,7 @@ def mean_overlaps(offsets: Floats, looks: LookExamples, rows: NDArray[np.bool_])
     return float(looks.overlap[rows].mean()), float(told.mean())
 
 
-def write_network(network: Network, path: Path) -> Path:
+def write_network(network: CropNetwork, path: Path) -> Path:
     """Write a network whole, or not at all.
 
     Raises:

@@ -50,7 +50,7 @@ class Losses(NamedTuple):
     where: jax.Array
 
 
-class Loss(Protocol):
+class LookLoss(Protocol):
     """How far off a network is, by its weights and examples with their planes (N, rows, columns, 3)."""
 
     def __call__(self, weights: Weights, planes: Array, batch: LookExamples, left: Array | float) -> Losses:
@@ -68,7 +68,7 @@ class Lesson(NamedTuple):
     """
 
     form: Form
-    loss: Loss
+    loss: LookLoss
     left_out: float
 
 
@@ -115,7 +115,7 @@ def teach_network(
 def last_of(
     form: Form, weights: Weights, planes: Array, numbers: Array, left: Array | float = 1.0
 ) -> jax.Array:
-    """Give what the last layer says (N, told) of crops with numbers, as `Network.last` does.
+    """Give what the last layer says (N, told) of crops with numbers, as `CropNetwork.last` does.
 
     Args:
         form: of the network.

@@ -7,7 +7,7 @@ from threadpoolctl import threadpool_limits
 
 from peopleboy.tracker.proposals.closer_look import CloserLook, shipped_closer_look
 from peopleboy.tracker.proposals.crops import PLANES
-from peopleboy.tracker.proposals.network import Network, in_parts, patches
+from peopleboy.tracker.proposals.network import CropNetwork, in_parts, patches
 from peopleboy.tracker.proposals.second_look import SecondLook, shipped_network
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_looks import drawn_weights
@@ -15,7 +15,7 @@ from tests.helpers.images.drawn_looks import drawn_weights
 KINDS = pytest.mark.parametrize("kind", [SecondLook, CloserLook])
 
 
-def drawn_network(kind: type[Network]) -> Network:
+def drawn_network(kind: type[CropNetwork]) -> CropNetwork:
     line = {"line": np.array([1.0, 0.0], np.float32)} if "line" in kind.shapes() else {}
     return kind(drawn_weights(kind.FORM) | line, {"learned from": "nothing"})
 
@@ -31,7 +31,7 @@ def test_a_kernel_is_a_filter() -> None:
 
 @pytest.mark.parametrize("shipped", [shipped_network(), shipped_closer_look()])
 @pytest.mark.parametrize("count", [1, 4, 7])
-def test_what_is_told_does_not_hang_on_how_many_threads_there_are(shipped: Network, count: int) -> None:
+def test_what_is_told_does_not_hang_on_how_many_threads_there_are(shipped: CropNetwork, count: int) -> None:
     rng = np.random.default_rng(count)
     rows, columns, _ = shipped.FORM.crop
     planes = rng.standard_normal((count, rows, columns, PLANES)).astype(np.float32)
@@ -52,7 +52,7 @@ def test_a_product_in_parts_is_the_product() -> None:
 
 
 @KINDS
-def test_shapes_follow_from_the_layers(kind: type[Network]) -> None:
+def test_shapes_follow_from_the_layers(kind: type[CropNetwork]) -> None:
     rows, columns, _ = kind.FORM.crop
     planes = np.zeros((2, rows, columns, PLANES), np.float32)
     for layer, (side, stride, _) in enumerate(kind.FORM.layers):
@@ -61,7 +61,7 @@ def test_shapes_follow_from_the_layers(kind: type[Network]) -> None:
 
 
 @KINDS
-def test_a_network_comes_back_from_its_file(kind: type[Network], tmp_path: Path) -> None:
+def test_a_network_comes_back_from_its_file(kind: type[CropNetwork], tmp_path: Path) -> None:
     network = drawn_network(kind)
     network.save(tmp_path / "net.npz")
     read = kind.load(tmp_path / "net.npz")
@@ -71,7 +71,7 @@ def test_a_network_comes_back_from_its_file(kind: type[Network], tmp_path: Path)
 
 
 @pytest.mark.parametrize(("kind", "lesson"), [(SecondLook, "second-look"), (CloserLook, "closer-look")])
-def test_a_missing_file_names_the_command(kind: type[Network], lesson: str, tmp_path: Path) -> None:
+def test_a_missing_file_names_the_command(kind: type[CropNetwork], lesson: str, tmp_path: Path) -> None:
     with refused("none.npz", f"train-detector --{lesson}"):
         kind.load(tmp_path / "none.npz")
 
@@ -86,7 +86,7 @@ def test_a_missing_file_names_the_command(kind: type[Network], lesson: str, tmp_
     ],
 )
 def test_another_network_is_refused(
-    kind: type[Network], tmp_path: Path, name: str, wrong: np.ndarray
+    kind: type[CropNetwork], tmp_path: Path, name: str, wrong: np.ndarray
 ) -> None:
     kind({**drawn_network(kind).weights, name: wrong}).save(tmp_path / "other.npz")
     rows, columns, _ = kind.FORM.crop

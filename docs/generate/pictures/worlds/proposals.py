@@ -12,8 +12,7 @@ from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, film_upright
 from peopleboy.tracker.proposals.channels import BESIDE, FIRST_DIRECTION, GRADIENT, MOTION, OVER
-from peopleboy.tracker.proposals.detector import SMALLEST_PX, look
-from peopleboy.tracker.proposals.model import shipped_model
+from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector
 from peopleboy.tracker.proposals.pyramid import levels
 
 WORLDS = (3, 24, 28)
@@ -47,7 +46,7 @@ def _plainest(film: PeopleFilm) -> int:
 
 def _found(panel: Axes, film: PeopleFilm, k: int) -> None:
     show(panel, film.grey[k] // _STEP * _STEP)
-    found = look(shipped_model(), film.grey[k], film.change[k], film.seen_by(), SMALLEST_PX, 0.0)
+    found = PeopleDetector().found(film.grey[k], film.change[k], film.seen_by())
     for (left, top, width, height), score in zip(found.box.tolist(), found.score.tolist(), strict=True):
         panel.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor="tab:orange", lw=1.5))
         panel.text(left, max(top - 2.0, 12.0), f"{score:.1f}", color="tab:orange", fontsize=8)

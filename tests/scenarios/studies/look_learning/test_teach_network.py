@@ -6,7 +6,7 @@ from peopleboy.scenarios.studies.look_learning.second_look_loss import SECOND_LO
 from peopleboy.scenarios.studies.look_learning.teach_network import last_of, teach_network
 from peopleboy.tracker.proposals.closer_look import CloserLook
 from peopleboy.tracker.proposals.crops import SCORES, planes_of
-from peopleboy.tracker.proposals.network import Network
+from peopleboy.tracker.proposals.network import CropNetwork
 from peopleboy.tracker.proposals.second_look import SecondLook
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_looks import drawn_looks, drawn_weights
@@ -15,7 +15,7 @@ LINE = {"line": np.array([1.0, 0.0], np.float32)}
 
 
 @pytest.mark.parametrize("kind", [SecondLook, CloserLook])
-def test_what_is_taught_is_what_the_tracker_computes(kind: type[Network]) -> None:
+def test_what_is_taught_is_what_the_tracker_computes(kind: type[CropNetwork]) -> None:
     looks, weights = drawn_looks(kind.FORM, 4), drawn_weights(kind.FORM)
     planes, numbers = planes_of(looks.crops), looks.numbers[:, : kind.FORM.numbers]
     ours = kind(weights).last(planes, numbers)
