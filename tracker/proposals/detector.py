@@ -47,8 +47,8 @@ class PeopleDetector:
     def __init__(
         self,
         model: PeopleModel | None = None,
-        network: SecondLook | None = None,
-        placing: CloserLook | None = None,
+        second_look: SecondLook | None = None,
+        closer_look: CloserLook | None = None,
         *,
         smallest_px: float = SMALLEST_PX,
         least_score: float = 0.0,
@@ -57,14 +57,14 @@ class PeopleDetector:
 
         Args:
             model: the trees, which propose.
-            network: looks again at what they propose.
-            placing: looks closer at who was found.
+            second_look: looks again at what they propose.
+            closer_look: looks closer at who was found.
             smallest_px: height of the smallest people who are looked for.
             least_score: of what is told.
         """
         self._model = shipped_model() if model is None else model
-        self._network = shipped_network() if network is None else network
-        self._placing = shipped_closer_look() if placing is None else placing
+        self._second_look = shipped_network() if second_look is None else second_look
+        self._closer_look = shipped_closer_look() if closer_look is None else closer_look
         self._smallest_px = smallest_px
         self._least_score = least_score
         self._past: deque[_Past] = deque()
@@ -86,8 +86,8 @@ class PeopleDetector:
     def found(self, grey: Grey, change: Grey, mount: Mount | None) -> Proposals:
         """Look for people in an image of which it is known by how much (H, W) greys changed."""
         first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, self._memory)
-        found = look_again(self._network, grey, change, first, mount, self._least_score)
-        return look_closer(self._placing, grey, change, found, mount)
+        found = look_again(self._second_look, grey, change, first, mount, self._least_score)
+        return look_closer(self._closer_look, grey, change, found, mount)
 
     def _change(self, grey: Grey, time_s: float, odometry: Odometry | None, mount: Mount | None) -> Grey:
         """Compare an image with the one of about 0.2 s ago, and keep it for later ones."""

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.studies.look_learning.closer_look_examples import closer_looks_of
 from peopleboy.scenarios.studies.look_learning.examples import LookExamples
@@ -50,6 +51,8 @@ def give_closer_look_lesson(out: Path, workers: Workers, *, worlds: int, ship: b
         f"{len(films.learned)} films, {len(learned.overlap)} boxes to learn from, "
         f"{len(others.overlap)} others"
     )
+    if not len(others.overlap):
+        raise BadInput(f"nobody is seen in the {len(films.held)} films held back; take more worlds")
     weights = teach_network(CLOSER_LOOK, learned, np.random.default_rng(0), rounds=ROUNDS, say=say)
     about = {
         "learned from": f"{len(films.learned)} films, {len(learned.overlap)} boxes",

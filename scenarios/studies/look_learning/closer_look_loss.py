@@ -32,7 +32,7 @@ def closer_look_loss(weights: Weights, planes: Array, batch: LookExamples, left:
     off = jnp.abs(told - (batch.offsets - USUAL) / SCALES)
     shared = _iou(jnp.clip(told, -_WRONG, _WRONG) * SCALES + USUAL, jnp.asarray(batch.offsets))
     whole = _SHARED * (1.0 - shared) + _UNITS * jnp.minimum(bent(off, _FAR), _MOST).mean(axis=1)
-    return Losses(whole.mean(), jnp.zeros(()), off.mean())
+    return Losses(whole.mean(), {"overlap": shared.mean(), "units off": off.mean()})
 
 
 def _iou(one: jax.Array, other: jax.Array) -> jax.Array:

@@ -34,7 +34,8 @@ def second_look_loss(weights: Weights, planes: Array, batch: LookExamples, left:
     off = jnp.abs(last[:, 1:] - (batch.offsets - USUAL[1:]) / SCALES[1:]) * is_person[:, None]
     whether = likely.sum() / jnp.maximum(counts.sum(), 1)
     where = off.sum() / jnp.maximum(is_person.sum(), 1) / OFFSETS
-    return Losses(likely.mean() + _PLACES * bent(off, _FAR).mean(), whether, where)
+    all_of_it = likely.mean() + _PLACES * bent(off, _FAR).mean()
+    return Losses(all_of_it, {"log loss": whether, "units off": where})
 
 
 SECOND_LOOK: Final = Lesson(SecondLook.FORM, second_look_loss, left_out=0.4)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Final, NamedTuple, Protocol
@@ -41,13 +42,11 @@ class Losses(NamedTuple):
 
     Attributes:
         all: what is made small.
-        whether: negative logarithm of the likelihood, a proposal; 0 where that is not told.
-        where: units off, in the mean over what tells places.
+        shown: what is told of it while it is taught, by name.
     """
 
     all: jax.Array
-    whether: jax.Array
-    where: jax.Array
+    shown: dict[str, jax.Array]
 
 
 class LookLoss(Protocol):
@@ -99,16 +98,17 @@ def teach_network(
     weights = {name: jnp.asarray(array) for name, array in first_weights(lesson.form, rng).items()}
     optimiser = _optimiser(batches)
     step = jax.jit(partial(_step, lesson, optimiser))
-    state, kept, total = optimiser.init(weights), weights, np.zeros(2)
+    state, kept, total = optimiser.init(weights), weights, Counter[str]()
     keys = jax.random.split(jax.random.key(int(rng.integers(2**31))), batches)
     for number, batch in enumerate(_batches(looks, rng, rounds), 1):
         weights, state, kept, losses = step(
             weights, state, kept, planes_of(batch.crops), batch, keys[number - 1], _followed(number)
         )
-        total += [float(losses.whether), float(losses.where)]
+        total.update({name: float(value) for name, value in losses.shown.items()})
         if number % _TOLD == 0:
-            say(f"{number} of {batches} batches: loss {total[0] / _TOLD:.3f}, places {total[1] / _TOLD:.3f}")
-            total[:] = 0.0
+            means = ", ".join(f"{name} {value / _TOLD:.3f}" for name, value in total.items())
+            say(f"{number} of {batches} batches: {means}")
+            total.clear()
     return {name: np.asarray(array) for name, array in kept.items()}
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.look_learning.examples import LookExamples
+from peopleboy.scenarios.studies.look_learning.teach_network import first_weights
 from peopleboy.tracker.proposals.crops import NUMBERS, PLANES
 from peopleboy.tracker.proposals.network import Form
 from peopleboy.tracker.proposals.placing import OFFSETS
@@ -33,12 +34,8 @@ def drawn_looks(form: Form, count: int, seed: int = 0) -> LookExamples:
     return LookExamples(crops, numbers, np.where(is_person, 0.8, 0.0).astype(np.float32), offsets)
 
 
-def drawn_weights(form: Form, last: float = 0.5, seed: int = 3) -> dict[str, NDArray[np.float32]]:
-    """Draw weights, those of the last layer so many times as large as He's."""
-    rng = np.random.default_rng(seed)
-    weights = {
-        name: (rng.standard_normal(shape) * np.sqrt(2.0 / shape[0]) * (len(shape) > 1)).astype(np.float32)
-        for name, shape in form.shapes().items()
-    }
+def drawn_weights(form: Form, last: float = 5.0, seed: int = 3) -> dict[str, NDArray[np.float32]]:
+    """Draw weights, those of the last layer so many times as large as they are at first."""
+    weights = first_weights(form, np.random.default_rng(seed))
     weights["last"] *= np.float32(last)
     return weights

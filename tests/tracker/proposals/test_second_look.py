@@ -38,7 +38,7 @@ def test_nobody_below_the_least_is_told() -> None:
 
 
 def test_each_is_judged_by_itself() -> None:
-    network = drawn_network(3.0)
+    network = drawn_network(5.0)
     both = look_again(network, image(), image(), FIRST, None, -99.0)
     for k in range(2):
         one = Proposals(FIRST.box[k : k + 1], FIRST.score[k : k + 1])

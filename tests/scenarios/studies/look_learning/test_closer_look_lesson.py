@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from peopleboy.scenarios.studies.look_learning import closer_look_lesson, teach_network
+from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.tracker.proposals.closer_look import CloserLook
 from tests.helpers.calls.command_line import run_cli
@@ -25,6 +26,18 @@ def test_the_lesson_leaves_a_network_that_says_how_good_it_is(
     about = CloserLook.load(tmp_path / "closer_look.npz").about
     assert about["learned from"].startswith("9 films, ")
     assert "mean overlap" in about["on 1 others"]
+
+
+def test_a_lesson_that_nobody_could_judge_is_refused_before_it_begins(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(PeopleFilmTask, "__call__", lambda task, _: drawn_film(task.seed, 3).save(task.film))
+    none = LookExamples.joined([], CloserLook.FORM.crop)
+    monkeypatch.setattr(closer_look_lesson, "closer_looks_of", lambda *_, **__: none)
+    chosen = ("--worlds", 10, "--closer-look", "--out", tmp_path, "--workers", 1)
+    assert run_cli("train-detector", *chosen) == 2
+    assert "nobody is seen in the 1 films held back; take more worlds" in capsys.readouterr().err
+    assert not (tmp_path / "closer_look.npz").exists()
 
 
 @pytest.mark.parametrize("look", LOOKS)

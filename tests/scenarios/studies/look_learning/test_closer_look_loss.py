@@ -23,7 +23,7 @@ def test_the_loss_is_that_of_what_boxes_do_not_share_and_huber_s_of_places() -> 
     assert bent.max() < 8.0
     told = closer_look_loss(weights, planes, looks, 1.0)
     assert float(told.all) == pytest.approx(4.0 * (1.0 - shared).mean() + 0.3 * bent.mean(), rel=1e-3)
-    assert float(told.where) == pytest.approx(off.mean(), rel=1e-3)
+    assert float(told.shown["units off"]) == pytest.approx(off.mean(), rel=1e-3)
 
 
 def test_somebody_else_s_box_teaches_no_units() -> None:
