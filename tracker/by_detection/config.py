@@ -95,6 +95,8 @@ class ExistenceConfig:
         independent_s: images so far apart speak for themselves, at the soonest.
         still_s: the same of who stands still: what looks like somebody does so in the next image, too.
         look_m: who has gone so far is looked at anew.
+        as_seen_now: what counts at once of how much surer an image is than all before: who was hardly seen
+            in the first ones, as behind a door, does not look the same in the next.
         highest_score: what one image can say at most.
         shared_doubt: what is taken off the score of somebody new whose box is all within that of another.
         highest: what all can say.
@@ -116,10 +118,11 @@ class ExistenceConfig:
     independent_s: float = 0.25
     still_s: float = 4.0
     look_m: float = 0.25
-    highest_score: float = 2.0
+    as_seen_now: float = 0.4
+    highest_score: float = 3.0
     shared_doubt: float = 2.0
     highest: float = 8.0
-    confirmed: float = 1.5
+    confirmed: float = 2.0
     hopeless: float = -0.5
     missed: float = 1.0
     missed_hidden: float = 0.3

@@ -17,7 +17,7 @@ from peopleboy.tracker.track import Status
 _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
 _LEARNING_SOON: Final = 0.2  # the same of what is compared with it
 _OWN: Final = 0.6  # Bhattacharyya's coefficient above which it looks like itself
-_LEAST_SIGHTINGS: Final = 3
+_LEAST_SIGHTINGS: Final = 2
 
 
 class Finding(NamedTuple):
@@ -87,7 +87,8 @@ class Target:
             evidence -= config.shared_doubt * seen.shared
         looks_s = min(1.0 / config.independent_s, 1.0 / config.still_s + seen.speed_m_s / config.look_m)
         sum_of_both = self.log_odds + evidence * looks_s * dt_s
-        self.log_odds = min(max(sum_of_both, -config.highest), config.highest)
+        as_seen_now = self.log_odds + config.as_seen_now * (evidence - self.log_odds)
+        self.log_odds = min(max(sum_of_both, as_seen_now, -config.highest), config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-seen.score)) - self.confidence)
 
     def show(self, box: Floats) -> None:

@@ -66,8 +66,8 @@ def test_what_looks_rather_unlike_a_person_is_not_told() -> None:
     assert tracked([[walker(100.0)]] * 60, score=1.6)[-1]
 
 
-def test_somebody_sure_is_told_by_the_third_image() -> None:
-    assert [len(tracks) for tracks in tracked([[walker(100.0)]] * 4)] == [0, 0, 1, 1]
+def test_somebody_sure_is_told_by_the_second_image() -> None:
+    assert [len(tracks) for tracks in tracked([[walker(100.0)]] * 4)] == [0, 1, 1, 1]
 
 
 def test_a_second_box_on_somebody_known_is_nobody_new() -> None:

@@ -55,6 +55,24 @@ def test_who_was_away_is_told_with_the_first_image_that_shows_him(hider: int | N
     assert target.is_shown(time_s, CONFIG)
 
 
+def test_a_clear_image_counts_at_once_though_those_before_said_little() -> None:
+    target = known()
+    target.id, target.log_odds = 0, CONFIG.hopeless
+    seen(target, CONFIG.highest_score, 3, 0.0, speed_m_s=0.0)
+    left = (1.0 - CONFIG.as_seen_now) ** 3 * (CONFIG.highest_score - CONFIG.hopeless)
+    assert target.log_odds == pytest.approx(CONFIG.highest_score - left)
+    assert target.is_confirmed(CONFIG)
+
+
+@given(st.floats(0.0, 8.0), st.floats(-8.0, 8.0))
+def test_an_image_that_says_less_than_those_before_adds_its_own_part(before: float, score: float) -> None:
+    target = known()
+    target.log_odds = before
+    seen(target, min(score, before), 1, 0.0, speed_m_s=0.0)
+    own = min(score, before, CONFIG.highest_score) * DT_S / CONFIG.still_s
+    assert target.log_odds == pytest.approx(min(before + own, CONFIG.highest))
+
+
 def test_who_was_never_told_fades_when_not_found() -> None:
     target = known()
     target.id, target.log_odds = 0, CONFIG.hopeless
