@@ -100,6 +100,7 @@ class ExistenceConfig:
         highest_score: what one image can say at most.
         shared_doubt: what is taken off the score of somebody new whose box is all within that of another.
         highest: what all can say.
+        sightings: images in which somebody must have been found to be told.
         confirmed: log odds at which somebody is told.
         hopeless: log odds below which nobody is followed.
         missed: what an image without somebody says who should be seen.
@@ -122,6 +123,7 @@ class ExistenceConfig:
     highest_score: float = 3.0
     shared_doubt: float = 2.0
     highest: float = 8.0
+    sightings: int = 2
     confirmed: float = 2.0
     hopeless: float = -0.5
     missed: float = 1.0

@@ -17,7 +17,6 @@ from peopleboy.tracker.track import Status
 _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
 _LEARNING_SOON: Final = 0.2  # the same of what is compared with it
 _OWN: Final = 0.6  # Bhattacharyya's coefficient above which it looks like itself
-_LEAST_SIGHTINGS: Final = 2
 
 
 class Finding(NamedTuple):
@@ -150,7 +149,7 @@ class Target:
 
     def is_confirmed(self, config: ExistenceConfig) -> bool:
         """Tell whether enough speaks for it to be told."""
-        return self.sightings >= _LEAST_SIGHTINGS and self.log_odds > config.confirmed
+        return self.sightings >= config.sightings and self.log_odds > config.confirmed
 
 
 def _blended(before: Colours, now: Colours, share: float) -> Colours:
