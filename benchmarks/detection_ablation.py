@@ -16,11 +16,13 @@ import numpy as np
 from benchmarks.tracker_ablation import Recorded, print_row, record, recorded
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
-from peopleboy.tracker.by_detection.config import ByDetectionConfig
+from peopleboy.tracker.by_detection.colour_finder import ColourFinder, seen_by_both
+from peopleboy.tracker.by_detection.config import ByDetectionConfig, ColourConfig
 from peopleboy.tracker.by_detection.finder import ThermalFinder
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
-from peopleboy.tracker.frame import THERMAL, Floats, Frame
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.proposals.suppression import Proposals
 
 SCENES: Final = (
     "crossing_4",
@@ -45,6 +47,7 @@ _ALL: Final = ByDetectionConfig()
 
 VARIANTS: Final[Mapping[str, ByDetectionConfig]] = {
     "as it is": _ALL,
+    "by the thermal image alone": replace(_ALL, colour=replace(_ALL.colour, same=math.inf, alone=math.inf)),
     "everybody is 1.72 m tall": replace(_ALL, path=replace(_ALL.path, build=1e-3, posture=0.0)),
     "nested boxes are as good": replace(_ALL, existence=replace(_ALL.existence, shared_doubt=0.0)),
     "no late decisions": replace(_ALL, identity=replace(_ALL.identity, parted_s=math.inf, gone_s=math.inf)),
@@ -53,33 +56,35 @@ VARIANTS: Final[Mapping[str, ByDetectionConfig]] = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Proposed:
-    """A run, and who was proposed in its frames: boxes (M, 4) [px] and log odds (M,)."""
+    """A run, and who was proposed in its frames, by the thermal image and by the colour image."""
 
     run: Recorded
-    proposals: tuple[tuple[Floats, Floats], ...]
+    proposals: tuple[tuple[Proposals, Proposals], ...]
 
     @classmethod
     def of(cls, run: Recorded) -> Proposed:
         """Look for people once."""
-        find = ThermalFinder(_ALL.existence.weakest)
-        return cls(run, tuple(find(frame) for frame in run.frames))
+        thermal = ThermalFinder(_ALL.existence.weakest)
+        colour = ColourFinder(_ALL.colour, _ALL.existence.weakest)
+        return cls(run, tuple((thermal(frame), colour(frame)) for frame in run.frames))
 
 
 class Told:
     """Finds what was proposed before, frame by frame."""
 
-    def __init__(self, film: Proposed) -> None:
+    def __init__(self, film: Proposed, config: ColourConfig) -> None:
         """Begin with the first frame."""
         self._proposals = iter(film.proposals)
+        self._config = config
 
-    def __call__(self, frame: Frame) -> tuple[Floats, Floats]:  # noqa: ARG002
+    def __call__(self, frame: Frame) -> Proposals:  # noqa: ARG002
         """Give what was proposed in the next frame."""
-        return next(self._proposals)
+        return seen_by_both(*next(self._proposals), self._config)
 
 
 def tracked(film: Proposed, config: ByDetectionConfig) -> TrackBoxes:
     """Follow people in a film."""
-    tracker = ByDetectionTracker(config, Told(film))
+    tracker = ByDetectionTracker(config, Told(film, config.colour))
     found = [
         (number, track)
         for number, frame in enumerate(film.run.frames, start=1)

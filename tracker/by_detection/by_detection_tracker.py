@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
-from peopleboy.tracker.by_detection.finder import Finder, ThermalFinder
+from peopleboy.tracker.by_detection.finder import Finder, PeopleFinder
 from peopleboy.tracker.by_detection.identities import known_again, resolve
 from peopleboy.tracker.by_detection.matching import matched
 from peopleboy.tracker.by_detection.overlaps import CLEAR, beside, hidden_by, shared
@@ -53,9 +53,9 @@ class ByDetectionTracker:
     """
 
     def __init__(self, config: ByDetectionConfig | None = None, find: Finder | None = None) -> None:
-        """Make one that finds people by the learned detector, or by something else."""
+        """Make one that finds people by the learned detector in both images, or by something else."""
         self._config = ByDetectionConfig() if config is None else config
-        self._find = ThermalFinder(self._config.existence.weakest) if find is None else find
+        self._find = PeopleFinder(self._config) if find is None else find
         self._introduced: Box | None = None
         self._explanation = DetectionExplanation(boxes=np.empty((0, 4)), scores=np.empty(0))
         self._targets: list[Target] = []
@@ -66,7 +66,7 @@ class ByDetectionTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """The thermal camera, and the colour one, by which people are known again."""
+        """The thermal camera, and the colour one, by which people are found, too, and known again."""
         return (THERMAL, COLOUR)
 
     @property

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.tracker.by_detection.other_camera import carried_over
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame, PinholeCalibration
 
@@ -52,19 +53,7 @@ def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, 
     if not (isinstance(thermal, PinholeCalibration) and isinstance(colour, PinholeCalibration)):
         rows, columns = frame.grey(THERMAL).shape
         return np.asarray(boxes * np.tile([shape[1] / columns, shape[0] / rows], 2))
-    feet = view.feet(boxes)
-    left, top, width, height = boxes.T
-    ends = [np.stack([left + width / 2.0, row], axis=1) for row in (top, top + height)]
-    # Points of the person are as far ahead as the feet.
-    points = [thermal.rays(end) for end in ends]
-    level = [
-        ray / np.maximum(ray[:, :1], 1e-3) * feet[:, 2:] + np.array(thermal.position_m) for ray in points
-    ]
-    above, below = (colour.project(end) for end in level)
-    tall = below[:, 1] - above[:, 1]
-    wide = tall * width / height
-    there = np.stack([(above[:, 0] + below[:, 0] - wide) / 2.0, above[:, 1], wide, tall], axis=1)
-    return np.asarray(np.nan_to_num(there))
+    return carried_over(boxes, view, thermal, colour)
 
 
 def _part(image: NDArray[np.uint8], box: Floats, first: float, last: float) -> NDArray[np.uint8]:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from peopleboy.tracker.by_detection.colour_finder import ColourFinder, seen_by_both
+from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.frame import THERMAL, Floats, Frame
 from peopleboy.tracker.proposals.detector import PeopleDetector
+from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import mount_of
 
 
@@ -17,6 +20,20 @@ class Finder(Protocol):
         ...
 
 
+class PeopleFinder:
+    """The learned detector on the thermal image, and now and then on the colour image."""
+
+    def __init__(self, config: ByDetectionConfig) -> None:
+        """Make one for a tracker with such settings."""
+        weakest = config.existence.weakest
+        self._config = config.colour
+        self._thermal, self._colour = ThermalFinder(weakest), ColourFinder(config.colour, weakest)
+
+    def __call__(self, frame: Frame) -> Proposals:
+        """Look for people in the next frame."""
+        return seen_by_both(self._thermal(frame), self._colour(frame), self._config)
+
+
 class ThermalFinder:
     """The learned detector on the thermal image, where people may stand if the camera is known."""
 
@@ -24,9 +41,8 @@ class ThermalFinder:
         """Make one that keeps proposals from some log odds on."""
         self._detector = PeopleDetector(least_score=weakest)
 
-    def __call__(self, frame: Frame) -> tuple[Floats, Floats]:
+    def __call__(self, frame: Frame) -> Proposals:
         """Look for people in the next frame."""
         grey, calibration = frame.grey(THERMAL), frame.calibrations.get(THERMAL)
         mount = None if calibration is None else mount_of(calibration, grey.shape[0])
-        found = self._detector.update(grey, frame.time_s, frame.odometry, mount)
-        return found.box, found.score
+        return self._detector.update(grey, frame.time_s, frame.odometry, mount)

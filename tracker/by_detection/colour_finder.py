@@ -1,0 +1,82 @@
+"""Who is seen in the colour image: in a room as warm as people the thermal one shows nobody."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import cv2
+import numpy as np
+
+from peopleboy.tracker.boxes import area, cover, intersection, iou
+from peopleboy.tracker.by_detection.config import ColourConfig
+from peopleboy.tracker.by_detection.other_camera import carried_over
+from peopleboy.tracker.by_detection.viewpoint import Viewpoint
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry, PinholeCalibration
+from peopleboy.tracker.fusion.fresh_images import FreshImages, joined
+from peopleboy.tracker.proposals.detector import PeopleDetector
+from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.thermal.mount import mount_of
+
+NOBODY: Final = Proposals(np.empty((0, 4)), np.empty(0))
+"""Where nothing is proposed."""
+
+
+class ColourFinder:
+    """The learned detector on the brightness of the colour image, now and then.
+
+    What it knows is relative: neither what a grey means nor whether people are brighter than what is behind
+    them. So it knows people by daylight, though fewer of them.
+    """
+
+    def __init__(self, config: ColourConfig, weakest: float) -> None:
+        """Make one that keeps proposals from some log odds on."""
+        self._config = config
+        self._detector = PeopleDetector(least_score=weakest)
+        self._images = FreshImages(COLOUR)
+        self._last_s = -math.inf
+        self._way: Odometry | None = Odometry()
+
+    def __call__(self, frame: Frame) -> Proposals:
+        """Give who is seen, with boxes (M, 4) [px] in the thermal image and log odds (M,).
+
+        Nobody, if it is too soon, there is no new image, or not both cameras are calibrated.
+        """
+        fresh = self._images.of(frame)
+        here, there = frame.calibrations.get(COLOUR), frame.calibrations.get(THERMAL)
+        if fresh is None:
+            return NOBODY
+        self._way = joined(self._way, fresh.odometry)
+        if frame.time_s - self._last_s < self._config.every_s or not (
+            isinstance(here, PinholeCalibration) and isinstance(there, PinholeCalibration)
+        ):
+            return NOBODY
+        grey = np.asarray(cv2.cvtColor(frame.rgb(COLOUR), cv2.COLOR_RGB2GRAY), np.uint8)
+        found = self._detector.update(grey, frame.time_s, self._way, mount_of(here, grey.shape[0]))
+        self._last_s, self._way = frame.time_s, Odometry()
+        boxes = carried_over(found.box, Viewpoint.of(here, (grey.shape[0], grey.shape[1])), here, there)
+        is_seen = area(boxes) > 0.0
+        return Proposals(boxes[is_seen], self._config.believed * found.score[is_seen])
+
+
+def seen_by_both(thermal: Proposals, colour: Proposals, config: ColourConfig) -> Proposals:
+    """Take together what both cameras show, all in the thermal image, the surest first.
+
+    Of whom both show the box is the thermal one's, which is the more exact, and the score that of the surer
+    one. Colours alone show others only where the thermal image has nothing to say.
+    """
+    if len(colour.score) == 0:
+        return thermal
+    overlap = iou(thermal.box[:, None], colour.box[None])
+    smaller = np.minimum(area(thermal.box)[:, None], area(colour.box)[None])
+    is_same = overlap >= config.same
+    is_shared = cover(intersection(thermal.box[:, None], colour.box[None]), smaller) > config.shared
+    is_alone = ~(is_same | is_shared).any(axis=0) & (colour.score >= config.alone)
+    score = thermal.score.copy()
+    for column in np.flatnonzero(is_same.any(axis=0)):
+        row = overlap[:, column].argmax()
+        score[row] = max(score[row], colour.score[column])
+    box = np.concatenate([thermal.box, colour.box[is_alone]])
+    score = np.concatenate([score, colour.score[is_alone]])
+    order = np.argsort(-score, kind="stable")
+    return Proposals(box[order], score[order])
