@@ -1,0 +1,122 @@
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import closed_loop, make_frame
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.world import World
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
+from peopleboy.tracker.by_detection.colour_finder import NOBODY, ColourFinder, seen_by_both
+from peopleboy.tracker.by_detection.config import ByDetectionConfig, ColourConfig
+from peopleboy.tracker.by_detection.finder import ThermalFinder
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.track import confirmed
+from peopleboy.tracker.trackers import make_tracker
+
+CONFIG = ColourConfig()
+ONE = Proposals(np.array([[100.0, 40.0, 30.0, 100.0]]), np.array([1.0]))
+
+
+def proposals() -> st.SearchStrategy[Proposals]:
+    def of(count: int) -> st.SearchStrategy[Proposals]:
+        boxes = arrays(np.float64, (count, 4), elements=st.floats(5.0, 100.0))
+        scores = arrays(np.float64, count, elements=st.floats(-2.0, 4.0))
+        return st.builds(lambda box, score: Proposals(box, -np.sort(-score)), boxes, scores)
+
+    return st.integers(0, 5).flatmap(of)
+
+
+@given(proposals(), proposals())
+def test_colours_take_nobody_away_and_move_nobody(thermal: Proposals, colour: Proposals) -> None:
+    both = seen_by_both(thermal, colour, CONFIG)
+    assert (np.diff(both.score) <= 0.0).all()
+    for box, score in zip(*thermal, strict=True):
+        rows = (both.box == box).all(axis=1)
+        assert rows.any()
+        assert both.score[rows].max() >= score
+    new = len(both.box) - len(thermal.box)
+    assert 0 <= new <= (colour.score >= CONFIG.alone).sum()
+    if len(thermal.box) and new:
+        alone = [box for box in both.box if not (thermal.box == box).all(axis=1).any()]
+        assert all(iou(box, thermal.box).max() < CONFIG.same for box in alone)
+
+
+def test_of_whom_both_show_the_surer_score_and_the_thermal_box_are_told() -> None:
+    colour = Proposals(ONE.box + np.array([3.0, 2.0, 0.0, 0.0]), np.array([2.5]))
+    both = seen_by_both(ONE, colour, CONFIG)
+    assert both.score.tolist() == [2.5]
+    np.testing.assert_array_equal(both.box, ONE.box)
+    assert seen_by_both(colour, ONE, CONFIG).score.tolist() == [2.5]
+
+
+def test_whom_colours_alone_show_is_told_if_that_is_likely() -> None:
+    elsewhere = Proposals(ONE.box + np.array([80.0, 0.0, 0.0, 0.0]), np.array([2.0]))
+    assert seen_by_both(ONE, elsewhere, CONFIG).score.tolist() == [2.0, 1.0]
+    assert seen_by_both(NOBODY, elsewhere, CONFIG).score.tolist() == [2.0]
+    assert seen_by_both(ONE, replace_score(elsewhere, -0.5), CONFIG).score.tolist() == [1.0]
+    assert seen_by_both(ONE, NOBODY, CONFIG) is ONE
+
+
+def replace_score(found: Proposals, score: float) -> Proposals:
+    return Proposals(found.box, np.full(len(found.box), score))
+
+
+def test_a_part_of_somebody_known_is_nobody_else() -> None:
+    head = Proposals(np.array([[105.0, 42.0, 12.0, 40.0]]), np.array([3.0]))
+    assert seen_by_both(ONE, head, CONFIG).score.tolist() == [1.0]
+
+
+@pytest.fixture(scope="module")
+def frames() -> list[Frame]:
+    """What a robot sees that stands by while two people cross."""
+    scenario, frames, before = load_scenario("crossing_2"), [], None
+    with World(scenario.world(0)) as world:
+        tracker = make_tracker("peopleboy", stream(0, "tracker"))
+        for tick in closed_loop(world, tracker, scenario.make_behaviour(), 60):
+            frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
+            before = tick.observation.odometry
+    return frames
+
+
+def without_warmth(frames: list[Frame]) -> Iterator[Frame]:
+    """Show the frames as in a room as warm as people: there is nothing but noise in the thermal image."""
+    rng = np.random.default_rng(0)
+    for frame in frames:
+        noise = np.rint(rng.normal(128.0, 3.0, frame.grey(THERMAL).shape)).astype(np.uint8)
+        yield replace(frame, images={**frame.images, THERMAL: noise})
+
+
+def test_in_a_room_as_warm_as_people_they_are_found_by_colours(frames: list[Frame]) -> None:
+    tracker, thermal = ByDetectionTracker(), ThermalFinder(0.0)
+    told, warm = 0, 0
+    for frame in without_warmth(frames):
+        warm += len(thermal(frame).score)
+        told += len(list(confirmed(tracker.update(frame), THERMAL)))
+    assert warm < 0.05 * len(frames)
+    assert told > 0.3 * len(frames)
+
+
+def test_it_looks_now_and_then_and_where_both_cameras_are_known(frames: list[Frame]) -> None:
+    weakest = ByDetectionConfig().existence.weakest
+    find = ColourFinder(CONFIG, weakest)
+    looked = [frame.time_s for frame in frames if len(find(frame).score)]
+    assert len(looked) > 3
+    assert np.diff(looked).min() >= CONFIG.every_s
+    find = ColourFinder(CONFIG, weakest)
+    assert not any(len(find(replace(frame, calibrations={})).score) for frame in frames)
+    still = frames[len(frames) // 2]
+    find = ColourFinder(CONFIG, -np.inf)
+    find(still)
+    assert len(find(replace(still, time_s=still.time_s + 1.0)).score) == 0  # the image is no new one
+    images = {THERMAL: still.images[THERMAL]}
+    assert find(replace(still, images=images, time_s=still.time_s + 2.0)) is NOBODY
+    assert COLOUR in still.images
