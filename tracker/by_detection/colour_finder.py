@@ -1,4 +1,4 @@
-"""Who is seen in the colour image: in a room as warm as people the thermal one shows nobody."""
+"""Who is seen in the colour image, as in a room as warm as people, where the thermal one shows nobody."""
 
 from __future__ import annotations
 
