@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.boxes import intersection, iou
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.by_detection.finder import Finder, PeopleFinder
@@ -261,10 +261,14 @@ class ByDetectionTracker:
         return left, top, width, height
 
     def _tracks(self, frame: Frame, now: _Instant) -> tuple[Track, ...]:
+        rows, columns = frame.grey(THERMAL).shape
+        image = np.array([-0.5, -0.5, columns, rows])
+        boxes = self._boxes(now.view)
+        is_inside = intersection(boxes, image) > 0.0
         shown = [
             (target, self._told_box(target, box, now.time_s))
-            for target, box in zip(self._targets, self._boxes(now.view), strict=True)
-            if target.is_shown(now.time_s, self._config.existence)
+            for target, box, inside in zip(self._targets, boxes, is_inside, strict=True)
+            if inside and target.is_shown(now.time_s, self._config.existence)
         ]
         shown.sort(key=lambda pair: pair[0].id)
         statuses = [target.status(now.time_s) for target, _ in shown]

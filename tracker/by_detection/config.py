@@ -25,9 +25,9 @@ class PathConfig:
         shown: share of the box of this image in the one that is told; the rest is where the path leads.
     """
 
-    acceleration_m_s2: tuple[float, float, float] = (0.8, 0.2, 0.8)
+    acceleration_m_s2: tuple[float, float, float] = (0.6, 0.2, 0.6)
     speed_m_s: tuple[float, float, float] = (1.0, 0.2, 1.0)
-    column: float = 0.06
+    column: float = 0.05
     head: float = 0.07
     foot: float = 0.07
     build: float = 0.04
@@ -79,7 +79,7 @@ class RecognitionConfig:
     revised_s: float = 3.0
     parted_s: float = 0.5
     margin: float = 0.2
-    same: float = 0.65
+    same: float = 0.8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,7 +128,7 @@ class ExistenceConfig:
     hopeless: float = -0.5
     missed: float = 1.0
     missed_hidden: float = 0.3
-    doubt_s: float = 0.35
+    doubt_s: float = 0.25
     hidden_doubt_s: float = 1.0
     forget_s: float = 10.0
     brief_s: float = 1.0
