@@ -118,6 +118,15 @@ def test_who_is_behind_somebody_is_said_to_be_hidden_by_them() -> None:
     assert {track.occluder for track in hidden} == {1} or {track.occluder for track in hidden} == {2}
 
 
+def test_nobody_is_told_outside_the_image() -> None:
+    boxes = [[walker(120.0 + 8.0 * i)] if 120.0 + 8.0 * i < 330.0 else [] for i in range(40)]
+    seen = tracked(boxes)
+    assert len(seen[20]) == 1
+    told = [track.boxes[THERMAL] for tracks in seen for track in tracks]
+    assert max(left for left, *_ in told) < 319.5
+    assert not seen[-1]
+
+
 def test_who_is_pointed_out_is_told_at_once() -> None:
     boxes = [[walker(100.0 + 2.0 * i)] for i in range(5)]
     tracker = ByDetectionTracker(find=Told(boxes))
