@@ -88,3 +88,8 @@ def cover(shared: Floats, whole: Floats) -> Floats:
     """Give the shares (...) shared / whole, at most 1, and 0 where there is no whole to cover."""
     ratio = np.divide(shared, whole, out=np.zeros_like(shared), where=whole > 0.0)
     return np.minimum(ratio, 1.0)
+
+
+def shared_of_smaller(a: Floats, b: Floats) -> Floats:
+    """Give the share (...) of the smaller one's area that boxes a (..., 4) and b (..., 4) have in common."""
+    return cover(intersection(a, b), np.minimum(area(a), area(b)))

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from trackeval.datasets._base_dataset import _BaseDataset
 
-from peopleboy.tracker.boxes import area, corners, image_shares, intersection, iou
+from peopleboy.tracker.boxes import area, corners, image_shares, intersection, iou, shared_of_smaller
 
 
 def random_boxes(seed: int, count: int) -> np.ndarray:
@@ -28,6 +28,12 @@ def test_overlaps_match_those_worked_by_hand(other, shared, overlap):
     box, other = np.array([0.0, 0.0, 10.0, 10.0]), np.array(other, dtype=float)
     assert intersection(box, other) == shared
     assert iou(box, other) == pytest.approx(overlap)
+
+
+def test_who_is_within_somebody_else_is_all_shared():
+    box, others = np.array([0.0, 0.0, 10.0, 10.0]), np.array([[2.0, 2.0, 5, 5], [8, 0, 4, 5], [20, 0, 5, 5]])
+    assert_allclose(shared_of_smaller(box, others), [1.0, 0.5, 0.0])
+    assert_allclose(shared_of_smaller(others, box), [1.0, 0.5, 0.0])
 
 
 def test_two_boxes_without_area_do_not_overlap():

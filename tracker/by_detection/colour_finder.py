@@ -8,7 +8,7 @@ from typing import Final
 import cv2
 import numpy as np
 
-from peopleboy.tracker.boxes import area, cover, intersection, iou
+from peopleboy.tracker.boxes import area, iou, shared_of_smaller
 from peopleboy.tracker.by_detection.config import ColourConfig
 from peopleboy.tracker.by_detection.other_camera import carried_over
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
@@ -68,9 +68,8 @@ def seen_by_both(thermal: Proposals, colour: Proposals, config: ColourConfig) ->
     if len(colour.score) == 0:
         return thermal
     overlap = iou(thermal.box[:, None], colour.box[None])
-    smaller = np.minimum(area(thermal.box)[:, None], area(colour.box)[None])
     is_same = overlap >= config.same
-    is_shared = cover(intersection(thermal.box[:, None], colour.box[None]), smaller) > config.shared
+    is_shared = shared_of_smaller(thermal.box[:, None], colour.box[None]) > config.shared
     is_alone = ~(is_same | is_shared).any(axis=0) & (colour.score >= config.alone)
     score = thermal.score.copy()
     for column in np.flatnonzero(is_same.any(axis=0)):

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.boxes import area, cover, intersection, iou
+from peopleboy.tracker.boxes import area, cover, intersection, iou, shared_of_smaller
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -38,7 +38,6 @@ def hidden_by(expected: Floats, is_told: Flags, found: Iterable[int]) -> list[in
 
 def shared(boxes: Floats, theirs: Sequence[int]) -> Floats:
     """Tell what share of the smaller box each of (M, 4) has in common with one of some others, at most."""
-    common = intersection(boxes[:, None], boxes[None, theirs])
-    share = common / np.minimum(area(boxes)[:, None], area(boxes[theirs])[None])
+    share = shared_of_smaller(boxes[:, None], boxes[None, theirs])
     share[theirs, np.arange(len(theirs))] = 0.0
     return np.asarray(share.max(axis=1, initial=0.0))

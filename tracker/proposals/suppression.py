@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.boxes import area, cover, intersection, iou
+from peopleboy.tracker.boxes import area, cover, intersection, iou, shared_of_smaller
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ def suppress(box: Floats, score: Floats) -> Proposals:
     for k in range(len(box)):
         if not is_left[k]:
             continue
-        shared = cover(intersection(box[k], box), np.minimum(area(box[k]), area(box)))
+        shared = shared_of_smaller(box[k], box)
         weight = np.where(is_left & (iou(box[k], box) > _ALIKE), np.exp(score - score[k]), 0.0)
         means.append(weight @ box / weight.sum())
         kept.append(k)
