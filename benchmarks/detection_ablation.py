@@ -17,7 +17,7 @@ from benchmarks.tracker_ablation import Recorded, print_row, record, recorded
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.by_detection.colour_finder import ColourFinder, seen_by_both
-from peopleboy.tracker.by_detection.config import ByDetectionConfig, ColourConfig
+from peopleboy.tracker.by_detection.config import BothCamerasConfig, ByDetectionConfig
 from peopleboy.tracker.by_detection.finder import ThermalFinder
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
@@ -72,7 +72,7 @@ class Proposed:
 class Told:
     """Finds what was proposed before, frame by frame."""
 
-    def __init__(self, film: Proposed, config: ColourConfig) -> None:
+    def __init__(self, film: Proposed, config: BothCamerasConfig) -> None:
         """Begin with the first frame."""
         self._proposals = iter(film.proposals)
         self._config = config

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import intersection, iou
-from peopleboy.tracker.by_detection.config import ByDetectionConfig
+from peopleboy.tracker.by_detection.config import ByDetectionConfig, RecognitionConfig
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.by_detection.finder import Finder, PeopleFinder
 from peopleboy.tracker.by_detection.identities import known_again, resolve
@@ -229,14 +230,14 @@ class ByDetectionTracker:
         for target in self._targets:
             if target.seen_s == now.time_s and (target.is_confirmed(config) or target.is_told):
                 self._recognise(target, now)
-        resolve(self._targets, now.time_s, self._config.identity)
+        resolve(self._targets, now.time_s, self._recognition(now.view))
         kept = [row for row, one in enumerate(self._targets) if not one.is_forgotten(now.time_s, config)]
         self._paths = self._paths.take(np.array(kept, int))
         self._targets = [self._targets[row] for row in kept]
 
     def _recognise(self, target: Target, now: _Instant) -> None:
         """Tell of somebody, who may be one of those who were lost."""
-        config = self._config.identity
+        config = self._recognition(now.view)
         if now.time_s - target.told_s > config.revised_s:
             return
         since = now.time_s - config.gone_s
@@ -246,6 +247,10 @@ class ByDetectionTracker:
             target.take_over(before)
         elif not target.is_told:
             self._tell(target, now.time_s)
+
+    def _recognition(self, view: Viewpoint) -> RecognitionConfig:
+        config = self._config.identity
+        return config if view.floor_m is not None else replace(config, same=config.same_roughly)
 
     def _tell(self, target: Target, time_s: float) -> None:
         target.told_s = time_s

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from peopleboy.tracker.boxes import area, iou, shared_of_smaller
-from peopleboy.tracker.by_detection.config import ColourConfig
+from peopleboy.tracker.by_detection.config import BothCamerasConfig
 from peopleboy.tracker.by_detection.other_camera import carried_over
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry, PinholeCalibration
@@ -29,7 +29,7 @@ class ColourFinder:
     them. So it knows people by daylight, though fewer of them.
     """
 
-    def __init__(self, config: ColourConfig, weakest: float) -> None:
+    def __init__(self, config: BothCamerasConfig, weakest: float) -> None:
         """Make one that keeps proposals from some log odds on."""
         self._config = config
         self._detector = PeopleDetector(least_score=weakest)
@@ -59,7 +59,7 @@ class ColourFinder:
         return Proposals(boxes[is_seen], self._config.believed * found.score[is_seen])
 
 
-def seen_by_both(thermal: Proposals, colour: Proposals, config: ColourConfig) -> Proposals:
+def seen_by_both(thermal: Proposals, colour: Proposals, config: BothCamerasConfig) -> Proposals:
     """Take together what both cameras show, all in the thermal image, the surest first.
 
     Of whom both show the box is the thermal one's, which is the more exact, and the score that of the surer

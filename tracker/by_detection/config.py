@@ -73,6 +73,7 @@ class RecognitionConfig:
         parted_s: how long people who met are seen apart before it is decided who is who.
         margin: by how much better they must look like each other, in sums of Bhattacharyya's coefficient.
         same: coefficient from which on somebody new is one of those who were lost.
+        same_roughly: the same where cameras are not calibrated, so that the other one's boxes fit less well.
     """
 
     gone_s: float = 0.2
@@ -80,6 +81,7 @@ class RecognitionConfig:
     parted_s: float = 0.5
     margin: float = 0.2
     same: float = 0.8
+    same_roughly: float = 0.65
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,7 +138,7 @@ class ExistenceConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ColourConfig:
+class BothCamerasConfig:
     """What the detector, which was taught by thermal images, says of the brightness of colour images.
 
     Attributes:
@@ -162,4 +164,4 @@ class ByDetectionConfig:
     matching: MatchingConfig = field(default_factory=MatchingConfig)
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
     identity: RecognitionConfig = field(default_factory=RecognitionConfig)
-    colour: ColourConfig = field(default_factory=ColourConfig)
+    colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)

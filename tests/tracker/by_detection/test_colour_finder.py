@@ -15,14 +15,14 @@ from peopleboy.sim.world import World
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.by_detection.colour_finder import NOBODY, ColourFinder, seen_by_both
-from peopleboy.tracker.by_detection.config import ByDetectionConfig, ColourConfig
+from peopleboy.tracker.by_detection.config import BothCamerasConfig, ByDetectionConfig
 from peopleboy.tracker.by_detection.finder import ThermalFinder
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
 
-CONFIG = ColourConfig()
+CONFIG = BothCamerasConfig()
 ONE = Proposals(np.array([[100.0, 40.0, 30.0, 100.0]]), np.array([1.0]))
 
 
