@@ -42,6 +42,7 @@ ROOMS: Final[Mapping[str, Mapping[str, float]]] = {
     "a room of 31 degC": {"floor_c": 30.0, "walls_c": 31.0, "ceiling_c": 32.0, "surroundings_c": 31.0},
 }
 DURATION_S: Final = 12.0
+SEED: Final = 1
 _FOLDER: Final = click.Path(exists=True, file_okay=False, path_type=Path)
 
 
@@ -131,7 +132,7 @@ def _play(scene: str, temperatures: Mapping[str, float], home: Path) -> None:
     path = home.with_suffix(".yaml")
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(yaml.safe_dump(changed), encoding="utf-8")
-    options = RunOptions(seed=0, out=home, frames=True, tracker="truth", record=False)
+    options = RunOptions(seed=SEED, out=home, frames=True, tracker="truth", record=False)
     run(load_scenario(path), options, lambda *_: None)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 import cv2
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.local_grey import local_grey, noise_of
 from peopleboy.tracker.footage.read_picture import Raw
 
 Grey = NDArray[np.uint8]
@@ -20,7 +22,6 @@ CENTIKELVIN: Final = (0.01, -273.15)
 CLUTTER_GREY: Final = 11.0
 MEMORY_FRAMES: Final = 30
 NOISE_SPAN: Final = 40.0  # standard deviations of the noise in the least span
-LEAST_SPAN_C: Final = 8.0
 LEAST_SIDE_PX: Final = 24
 _ALIKE: Final = 12  # grey by which channels of a grey picture differ at most, after a lossy codec
 
@@ -111,10 +112,10 @@ def one_channel(picture: Raw, notes: list[str]) -> NDArray[Any]:
     return np.asarray(cv2.cvtColor(np.ascontiguousarray(picture), cv2.COLOR_RGB2GRAY))
 
 
-def robot_grey(values_c: NDArray[np.float32]) -> Grey:
-    """Turn degC (H, W) into the grey of the robot's own camera."""
-    low, high = ROBOT_SPAN_C
-    return _whole_grey((values_c - np.float32(low)) * np.float32(255.0 / (high - low)))
+def spanned(values: NDArray[np.float32], span: tuple[float, float] = ROBOT_SPAN_C) -> Grey:
+    """Give values (H, W) the greys that fill a span, by default those of degC of the robot's own camera."""
+    low, high = span
+    return _whole_grey((values - np.float32(low)) * np.float32(255.0 / (high - low)))
 
 
 def _whole_grey(grey: NDArray[np.float32]) -> Grey:
@@ -130,8 +131,7 @@ class AutomaticGrey:
     of a thing changes slowly.
     """
 
-    def __init__(self, least_span: float = 0.0) -> None:
-        self._least_span = least_span
+    def __init__(self) -> None:
         self._measured: NDArray[np.float64] | None = None
 
     def __call__(self, values: NDArray[np.float32]) -> Grey:
@@ -140,7 +140,7 @@ class AutomaticGrey:
         before = now if self._measured is None else self._measured
         self._measured = before + (now - before) / MEMORY_FRAMES
         low, high, clutter, noise = self._measured
-        span = max(high - low, NOISE_SPAN * noise, self._least_span, 255.0 / CLUTTER_GREY * clutter, 1e-6)
+        span = max(high - low, NOISE_SPAN * noise, 255.0 / CLUTTER_GREY * clutter, 1e-6)
         grey = 127.5 + (values - np.float32((low + high) / 2)) * np.float32(255.0 / span)
         return _whole_grey(grey)
 
@@ -152,9 +152,7 @@ def _measure(values: NDArray[np.float32]) -> NDArray[np.float64]:
     across, down = few[:, 2 * away :] - few[:, : -2 * away], few[2 * away :] - few[: -2 * away]
     clutter = np.percentile(np.abs(np.concatenate([across.ravel(), down.ravel()])), 70)
     low, high = np.percentile(few, [1, 99])
-    bend = values[:, 2:] + values[:, :-2] - 2 * values[:, 1:-1]
-    noise = np.median(np.abs(bend)) / 0.6745 / np.sqrt(6.0)
-    return np.array([low, high, clutter, noise], dtype=np.float64)
+    return np.array([low, high, clutter, noise_of(values)], dtype=np.float64)
 
 
 def grey_maker(
@@ -166,10 +164,8 @@ def grey_maker(
         radiometry: what is known of the pixels.
         is_grey: whether the pictures have 8 bits.
         is_robots: whether the tracker is one that knows degC, rather than that of footage, to which only
-            contrast matters.
+            contrast matters: it gets 8-bit pictures as they are.
     """
-    if radiometry.is_known and is_robots:
-        return robot_grey
-    if is_grey and not radiometry.is_known and not is_robots:
-        return _whole_grey
-    return AutomaticGrey(least_span=LEAST_SPAN_C if radiometry.is_known else 0.0)
+    if is_robots:
+        return spanned if radiometry.is_known else AutomaticGrey()
+    return partial(spanned, span=radiometry.span_c or (0.0, 255.0)) if is_grey else local_grey

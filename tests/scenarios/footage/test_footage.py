@@ -15,7 +15,7 @@ from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.tracker.evaluation.table import NEED_EVERYBODY
 from peopleboy.tracker.footage.box_kinds import TORSO_PER_HEIGHT, WHOLE_PER_HEIGHT, BoxKind
-from peopleboy.tracker.footage.grey import AutomaticGrey, Radiometry, parse_scale
+from peopleboy.tracker.footage.grey import AutomaticGrey, Radiometry, grey_maker, parse_scale
 from peopleboy.tracker.footage.picture_names import natural_order
 from peopleboy.tracker.footage.pictures import open_footage
 from peopleboy.tracker.footage.truth_files import find_truth, load_truth
@@ -140,6 +140,13 @@ def test_automatic_grey_does_not_depend_on_the_unit():
 def test_automatic_grey_does_not_blow_up_noise():
     noise = np.random.default_rng(0).normal(20.0, 0.05, (60, 80)).astype(np.float32)
     assert AutomaticGrey()(noise).std() < 10
+
+
+def test_pictures_of_eight_bits_are_taken_as_they_are_by_the_tracker_of_footage_whatever_greys_mean():
+    grey = walker(3)
+    for radiometry in (Radiometry(), Radiometry(span_c=(-7.3, 41.1))):
+        to_grey = grey_maker(radiometry, is_grey=True, is_robots=False)
+        np.testing.assert_array_equal(to_grey(radiometry.values(grey, [])), grey)
 
 
 def test_four_channels_lose_the_fourth_and_say_so(tmp_path):
