@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import intersection, iou
-from peopleboy.tracker.by_detection.config import ByDetectionConfig, RecognitionConfig
+from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig, RecognitionConfig
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.by_detection.finder import Finder, PeopleFinder
 from peopleboy.tracker.by_detection.identities import known_again, resolve
@@ -40,11 +39,13 @@ _TAKEN: Final = 0.45  # overlap with somebody from which a proposal is nobody ne
 
 
 class _Instant(NamedTuple):
-    """When a frame was taken [s], how long after the last one [s], and from where."""
+    """When a frame was taken [s], how long after the last one [s], from where, and what is believed there."""
 
     time_s: float
     dt_s: float
     view: Viewpoint
+    existence: ExistenceConfig
+    identity: RecognitionConfig
 
 
 class ByDetectionTracker:
@@ -87,11 +88,10 @@ class ByDetectionTracker:
         """
         image = frame.grey(THERMAL)
         view = self._viewpoint(frame.calibrations.get(THERMAL), (image.shape[0], image.shape[1]))
-        now = _Instant(frame.time_s, self._time_step(frame.time_s), view)
+        now = _Instant(frame.time_s, self._time_step(frame.time_s), view, *self._beliefs(view))
         self._carry_on(now.dt_s, frame.odometry or _STANDING)
         boxes, scores = self._find(frame)
-        existence = self._config.existence
-        proposed = Proposed.of(frame, boxes, existence.trust * scores + existence.lasting, view)
+        proposed = Proposed.of(frame, boxes, now.existence.trust * scores + now.existence.lasting, view)
         expected = self._boxes(view)
         found = self._matched(expected, proposed, now)
         self._take_in(found, expected, proposed, now)
@@ -140,7 +140,7 @@ class ByDetectionTracker:
 
     def _take_in(self, found: dict[int, int], expected: Floats, proposed: Proposed, now: _Instant) -> None:
         """Take in what is seen of those who were found, and look for who hides the others."""
-        config, is_told = self._config.existence, self._told()
+        is_told = self._told()
         front = hidden_by(expected, is_told, found)
         is_beside, common = beside(expected, is_told), shared(proposed.boxes, self._known(found))
         was_lost = np.array([self._is_lost(target, now) for target in self._targets], bool)
@@ -148,11 +148,11 @@ class ByDetectionTracker:
         for row, target in enumerate(self._targets):
             if row not in found:
                 hider = front[row]
-                target.miss(None if hider is None else self._targets[hider].id, now.dt_s, config)
+                target.miss(None if hider is None else self._targets[hider].id, now.dt_s, now.existence)
                 continue
             seen = found[row]
             finding = Finding(float(proposed.scores[seen]), float(common[seen]), float(speed[row]))
-            target.see(finding, now.time_s, now.dt_s, config)
+            target.see(finding, now.time_s, now.dt_s, now.existence)
             target.show(proposed.boxes[seen])
             if is_beside[row]:
                 target.overlap()
@@ -185,10 +185,9 @@ class ByDetectionTracker:
 
     def _begin(self, found: dict[int, int], proposed: Proposed, now: _Instant) -> None:
         """Begin to follow whoever is proposed where nobody is."""
-        config = self._config
-        is_free = proposed.scores >= config.existence.birth
+        is_free = proposed.scores >= now.existence.birth
         is_free[list(found.values())] = False
-        recent = [target.seen_s > now.time_s - config.matching.lost_s for target in self._targets]
+        recent = [target.seen_s > now.time_s - self._config.matching.lost_s for target in self._targets]
         if any(recent):
             known = self._boxes(now.view)[np.array(recent)]
             is_free &= (iou(proposed.boxes[:, None], known[None]) < _TAKEN).all(axis=1)
@@ -202,13 +201,12 @@ class ByDetectionTracker:
         self._paths = self._paths.take(kept)
         self._targets = [self._targets[row] for row in kept]
         self._add(np.zeros(1, int), Proposed.of(frame, box, np.zeros(1), now.view), now)
-        self._tell(self._targets[-1], -math.inf)  # whoever points at somebody knows whom
+        self._tell(self._targets[-1], -math.inf, now.existence)  # whoever points at somebody knows whom
 
     def _add(self, free: NDArray[np.intp], proposed: Proposed, now: _Instant) -> None:
         """Begin to follow some of those who are proposed."""
         if len(free) == 0:
             return
-        config = self._config.existence
         new = begun(proposed.boxes[free], now.view, self._config.path)
         self._paths = self._paths.joined(new)
         self._targets += [
@@ -219,44 +217,46 @@ class ByDetectionTracker:
                 colours=proposed.colours[row],
                 ratio=proposed.ratio(row),
                 shown=proposed.boxes[row],
-                log_odds=min(float(proposed.scores[row]), config.highest_score),
+                log_odds=min(float(proposed.scores[row]), now.existence.highest_score),
             )
             for row in free.tolist()
         ]
 
     def _judge(self, now: _Instant) -> None:
         """Tell of those who are sure, and forget those who are gone."""
-        config = self._config.existence
         for target in self._targets:
-            if target.seen_s == now.time_s and (target.is_confirmed(config) or target.is_told):
+            if target.seen_s == now.time_s and (target.is_confirmed(now.existence) or target.is_told):
                 self._recognise(target, now)
-        resolve(self._targets, now.time_s, self._recognition(now.view))
-        kept = [row for row, one in enumerate(self._targets) if not one.is_forgotten(now.time_s, config)]
+        resolve(self._targets, now.time_s, now.identity)
+        kept = [
+            row for row, one in enumerate(self._targets) if not one.is_forgotten(now.time_s, now.existence)
+        ]
         self._paths = self._paths.take(np.array(kept, int))
         self._targets = [self._targets[row] for row in kept]
 
     def _recognise(self, target: Target, now: _Instant) -> None:
         """Tell of somebody, who may be one of those who were lost."""
-        config = self._recognition(now.view)
-        if now.time_s - target.told_s > config.revised_s:
+        if now.time_s - target.told_s > now.identity.revised_s:
             return
-        since = now.time_s - config.gone_s
+        since = now.time_s - now.identity.gone_s
         lost = [other for other in self._targets if other.is_told and other.seen_s < since]
-        before = known_again(target, lost, config)
+        before = known_again(target, lost, now.identity)
         if before is not None:
             target.take_over(before)
         elif not target.is_told:
-            self._tell(target, now.time_s)
+            self._tell(target, now.time_s, now.existence)
 
-    def _recognition(self, view: Viewpoint) -> RecognitionConfig:
-        config = self._config.identity
-        return config if view.floor_m is not None else replace(config, same=config.same_roughly)
+    def _beliefs(self, view: Viewpoint) -> tuple[ExistenceConfig, RecognitionConfig]:
+        config = self._config
+        if view.floor_m is None:
+            return config.existence_uncalibrated, config.identity_uncalibrated
+        return config.existence, config.identity
 
-    def _tell(self, target: Target, time_s: float) -> None:
+    def _tell(self, target: Target, time_s: float, config: ExistenceConfig) -> None:
         target.told_s = time_s
         self._born += 1
         target.id = self._born
-        target.log_odds = max(target.log_odds, self._config.existence.confirmed)
+        target.log_odds = max(target.log_odds, config.confirmed)
 
     def _told_box(self, target: Target, box: Floats, time_s: float) -> Box:
         """Tell where somebody is: between where the path leads and what the image shows, if it does."""
@@ -273,7 +273,7 @@ class ByDetectionTracker:
         shown = [
             (target, self._told_box(target, box, now.time_s))
             for target, box, inside in zip(self._targets, boxes, is_inside, strict=True)
-            if inside and target.is_shown(now.time_s, self._config.existence)
+            if inside and target.is_shown(now.time_s, now.existence)
         ]
         shown.sort(key=lambda pair: pair[0].id)
         statuses = [target.status(now.time_s) for target, _ in shown]

@@ -73,7 +73,6 @@ class RecognitionConfig:
         parted_s: how long people who met are seen apart before it is decided who is who.
         margin: by how much better they must look like each other, in sums of Bhattacharyya's coefficient.
         same: coefficient from which on somebody new is one of those who were lost.
-        same_roughly: the same where cameras are not calibrated, so that the other one's boxes fit less well.
     """
 
     gone_s: float = 0.2
@@ -81,7 +80,6 @@ class RecognitionConfig:
     parted_s: float = 0.5
     margin: float = 0.2
     same: float = 0.8
-    same_roughly: float = 0.65
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,10 +156,27 @@ class BothCamerasConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ByDetectionConfig:
-    """All settings of the tracker by detection."""
+    """All settings of the tracker by detection.
+
+    Attributes:
+        path: how people move.
+        matching: what it costs to take a proposal for a person.
+        existence: when somebody is believed to be there.
+        identity: when people turn out to be others.
+        existence_uncalibrated: when somebody is, where nothing is known of the camera: neither does the
+            detector know images like its, nor is anybody known to stand on the floor.
+        identity_uncalibrated: when people turn out to be others there: boxes fit a colour image less well.
+        colour: what is believed of the colour image.
+    """
 
     path: PathConfig = field(default_factory=PathConfig)
     matching: MatchingConfig = field(default_factory=MatchingConfig)
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
     identity: RecognitionConfig = field(default_factory=RecognitionConfig)
+    existence_uncalibrated: ExistenceConfig = field(
+        default_factory=lambda: ExistenceConfig(
+            trust=0.7, birth=0.4, sightings=3, as_seen_now=0.3, highest=5.0, doubt_s=0.1
+        )
+    )
+    identity_uncalibrated: RecognitionConfig = field(default_factory=lambda: RecognitionConfig(same=0.65))
     colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)

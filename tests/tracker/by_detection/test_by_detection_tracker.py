@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, PinholeCalibration
 from peopleboy.tracker.track import Status, Track
 
 RATE_HZ = 15.0
 RED, BLUE = (200, 30, 30), (30, 30, 200)
+AS_CALIBRATED = ByDetectionConfig(existence_uncalibrated=ExistenceConfig())
 Box = tuple[float, float, float, float]
 
 
@@ -44,9 +47,12 @@ def frames(boxes: Sequence[Sequence[Box]], clothes: Sequence[tuple[int, int, int
 
 
 def tracked(
-    boxes: Sequence[Sequence[Box]], score: float = 3.0, clothes: Sequence[tuple[int, int, int]] = ()
+    boxes: Sequence[Sequence[Box]],
+    score: float = 3.0,
+    clothes: Sequence[tuple[int, int, int]] = (),
+    config: ByDetectionConfig | None = None,
 ) -> list[tuple[Track, ...]]:
-    tracker = ByDetectionTracker(find=Told(boxes, score))
+    tracker = ByDetectionTracker(config, find=Told(boxes, score))
     return [tracker.update(frame) for frame in frames(boxes, clothes)]
 
 
@@ -62,17 +68,31 @@ def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
 
 
 def test_what_looks_rather_unlike_a_person_is_not_told() -> None:
-    assert not any(tracked([[walker(100.0)]] * 60, score=-0.6))
-    assert tracked([[walker(100.0)]] * 60, score=1.6)[-1]
+    assert not any(tracked([[walker(100.0)]] * 90, score=-0.6))
+    assert tracked([[walker(100.0)]] * 90, score=1.6)[-1]
 
 
-def test_somebody_sure_is_told_by_the_second_image() -> None:
-    assert [len(tracks) for tracks in tracked([[walker(100.0)]] * 4)] == [0, 1, 1, 1]
+def test_somebody_sure_is_told_by_the_second_image_of_a_known_camera_and_the_third_of_another() -> None:
+    boxes = [[walker(100.0)]] * 4
+    assert [len(tracks) for tracks in tracked(boxes, config=AS_CALIBRATED)] == [0, 1, 1, 1]
+    assert [len(tracks) for tracks in tracked(boxes, score=4.0)] == [0, 0, 1, 1]
+
+
+def test_a_camera_that_is_calibrated_is_one_that_is_known() -> None:
+    pose = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 1.2], [0, 0, 0, 1]])
+    camera = PinholeCalibration(np.array([[300.0, 0, 159.5], [0, 300, 119.5], [0, 0, 1]]), pose)
+    feet, head = camera.project(np.array([[5.0, 0.0, 0.0], [5.0, 0.0, 1.72]]))
+    height = float(feet[1] - head[1])
+    box = (float(feet[0]) - 0.135 * height, float(head[1]), 0.27 * height, height)
+    tracker = ByDetectionTracker(find=Told([[box]] * 4))
+    calibrated = (replace(frame, calibrations={THERMAL: camera}) for frame in frames([[box]] * 4))
+    seen = [tracker.update(frame) for frame in calibrated]
+    assert [len(tracks) for tracks in seen] == [0, 1, 1, 1]
 
 
 def test_a_second_box_on_somebody_known_is_nobody_new() -> None:
     one, larger = walker(100.0), (80.0, 40.0, 40.0, 150.0)
-    seen = tracked([[one]] * 10 + [[one, larger]] * 20, score=2.0)
+    seen = tracked([[one]] * 10 + [[one, larger]] * 20, score=2.0, config=AS_CALIBRATED)
     assert all(numbers(tracks) <= {1} for tracks in seen)
     assert numbers(seen[-1]) == {1}
 
