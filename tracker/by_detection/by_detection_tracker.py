@@ -218,6 +218,7 @@ class ByDetectionTracker:
                 ratio=proposed.ratio(row),
                 shown=proposed.boxes[row],
                 log_odds=min(float(proposed.scores[row]), now.existence.highest_score),
+                surest=float(proposed.scores[row]),
             )
             for row in free.tolist()
         ]

@@ -101,6 +101,7 @@ class ExistenceConfig:
         shared_doubt: what is taken off the score of somebody new whose box is all within that of another.
         highest: what all can say.
         sightings: images in which somebody must have been found to be told.
+        at_once: score of a single image that is enough.
         confirmed: log odds at which somebody is told.
         hopeless: log odds below which nobody is followed.
         missed: what an image without somebody says who should be seen.
@@ -124,6 +125,7 @@ class ExistenceConfig:
     shared_doubt: float = 2.0
     highest: float = 8.0
     sightings: int = 2
+    at_once: float = 3.0
     confirmed: float = 2.0
     hopeless: float = -0.5
     missed: float = 1.0
@@ -174,9 +176,7 @@ class ByDetectionConfig:
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
     identity: RecognitionConfig = field(default_factory=RecognitionConfig)
     existence_uncalibrated: ExistenceConfig = field(
-        default_factory=lambda: ExistenceConfig(
-            trust=0.7, birth=0.4, sightings=3, as_seen_now=0.3, highest=5.0, doubt_s=0.1
-        )
+        default_factory=lambda: ExistenceConfig(birth=0.5, sightings=3, doubt_s=0.1)
     )
     identity_uncalibrated: RecognitionConfig = field(default_factory=lambda: RecognitionConfig(same=0.65))
     colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)

@@ -46,6 +46,7 @@ class Target:
         shown: (4,) its box in the image in which it was last seen [px].
         watched_s: for how long it was seen in all.
         log_odds: that it is a person.
+        surest: most that a single image said.
         id: 0 as long as it is not told.
         sightings: images in which it was found.
         confidence: 0..1, of the last images in which it was seen.
@@ -63,6 +64,7 @@ class Target:
     shown: Floats
     watched_s: float = 0.0
     log_odds: float = 0.0
+    surest: float = -math.inf
     id: int = 0
     sightings: int = 1
     confidence: float = 0.5
@@ -81,9 +83,9 @@ class Target:
         self.seen_s, self.occluder = time_s, None
         self.sightings += 1
         self.watched_s += dt_s
-        evidence = min(seen.score, config.highest_score)
-        if not self.is_told:
-            evidence -= config.shared_doubt * seen.shared
+        doubt = 0.0 if self.is_told else config.shared_doubt * seen.shared
+        self.surest = max(self.surest, seen.score - doubt)
+        evidence = min(seen.score, config.highest_score) - doubt
         looks_s = min(1.0 / config.independent_s, 1.0 / config.still_s + seen.speed_m_s / config.look_m)
         sum_of_both = self.log_odds + evidence * looks_s * dt_s
         as_seen_now = self.log_odds + config.as_seen_now * (evidence - self.log_odds)
@@ -149,7 +151,8 @@ class Target:
 
     def is_confirmed(self, config: ExistenceConfig) -> bool:
         """Tell whether enough speaks for it to be told."""
-        return self.sightings >= config.sightings and self.log_odds > config.confirmed
+        is_enough = self.sightings >= config.sightings or self.surest >= config.at_once
+        return is_enough and self.log_odds > config.confirmed
 
 
 def _blended(before: Colours, now: Colours, share: float) -> Colours:

@@ -75,7 +75,11 @@ def test_what_looks_rather_unlike_a_person_is_not_told() -> None:
 def test_somebody_sure_is_told_by_the_second_image_of_a_known_camera_and_the_third_of_another() -> None:
     boxes = [[walker(100.0)]] * 4
     assert [len(tracks) for tracks in tracked(boxes, config=AS_CALIBRATED)] == [0, 1, 1, 1]
-    assert [len(tracks) for tracks in tracked(boxes, score=4.0)] == [0, 0, 1, 1]
+    assert [len(tracks) for tracks in tracked(boxes)] == [0, 0, 1, 1]
+
+
+def test_whom_one_image_shows_beyond_doubt_is_told_at_once() -> None:
+    assert [len(tracks) for tracks in tracked([[walker(100.0)]] * 4, score=4.5)] == [1, 1, 1, 1]
 
 
 def test_a_camera_that_is_calibrated_is_one_that_is_known() -> None:
