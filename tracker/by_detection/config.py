@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -176,7 +177,7 @@ class ByDetectionConfig:
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
     identity: RecognitionConfig = field(default_factory=RecognitionConfig)
     existence_uncalibrated: ExistenceConfig = field(
-        default_factory=lambda: ExistenceConfig(birth=0.5, sightings=3, doubt_s=0.1)
+        default_factory=lambda: ExistenceConfig(birth=0.5, sightings=3, at_once=math.inf)
     )
     identity_uncalibrated: RecognitionConfig = field(default_factory=lambda: RecognitionConfig(same=0.65))
     colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)

@@ -79,7 +79,10 @@ def test_somebody_sure_is_told_by_the_second_image_of_a_known_camera_and_the_thi
 
 
 def test_whom_one_image_shows_beyond_doubt_is_told_at_once() -> None:
-    assert [len(tracks) for tracks in tracked([[walker(100.0)]] * 4, score=4.5)] == [1, 1, 1, 1]
+    boxes = [[walker(100.0)]] * 4
+    seen = tracked(boxes, score=4.5, config=AS_CALIBRATED)
+    assert [len(tracks) for tracks in seen] == [1, 1, 1, 1]
+    assert [len(tracks) for tracks in tracked(boxes, score=4.5)] == [0, 0, 1, 1]
 
 
 def test_a_camera_that_is_calibrated_is_one_that_is_known() -> None:
