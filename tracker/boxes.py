@@ -45,6 +45,20 @@ def image_shares(box: Box, width_px: int, height_px: int) -> ImageShares:
     )
 
 
+def within_image(box: Floats, width_px: int, height_px: int) -> Floats:
+    """Cut boxes (..., 4) off at the borders of an image; those outside have no area.
+
+    Args:
+        box: counted from the image's corner, so that the image spans 0 to its width and height.
+        width_px: of the image.
+        height_px: of the image.
+    """
+    size = np.array([width_px, height_px], float)
+    near = np.clip(box[..., :2], 0.0, size)
+    far = np.clip(box[..., :2] + box[..., 2:], 0.0, size)
+    return np.concatenate([near, far - near], axis=-1)
+
+
 def area(box: Floats) -> Floats:
     """Give the areas (...) [px^2] of boxes (..., 4)."""
     return np.asarray(box[..., 2] * box[..., 3])

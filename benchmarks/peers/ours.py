@@ -37,5 +37,5 @@ class Ours:
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
         """Update, and take the confirmed tracks."""
         tracks = self._tracker.update(frame)
-        found = list(confirmed(boxed_whole(tracks) if self._boxes_whole else tracks, THERMAL))
+        found = list(confirmed(boxed_whole(tracks, frame) if self._boxes_whole else tracks, THERMAL))
         return np.array([box for _, box in found]).reshape(-1, 4), [track.id for track, _ in found]

@@ -74,7 +74,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
                 with at_frame(log.frames + 1):
                     tracks = tracker.update(frame)
                     explanation = explanation_of(tracker)
-                log.add(frame, boxed_whole(tracks) if kind is BoxKind.WHOLE else tracks, explanation)
+                log.add(frame, boxed_whole(tracks, frame) if kind is BoxKind.WHOLE else tracks, explanation)
                 report(log.frames, views.expected)
         scores = log.finish()
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}

@@ -5,7 +5,15 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from trackeval.datasets._base_dataset import _BaseDataset
 
-from peopleboy.tracker.boxes import area, corners, image_shares, intersection, iou, shared_of_smaller
+from peopleboy.tracker.boxes import (
+    area,
+    corners,
+    image_shares,
+    intersection,
+    iou,
+    shared_of_smaller,
+    within_image,
+)
 
 
 def random_boxes(seed: int, count: int) -> np.ndarray:
@@ -34,6 +42,14 @@ def test_who_is_within_somebody_else_is_all_shared():
     box, others = np.array([0.0, 0.0, 10.0, 10.0]), np.array([[2.0, 2.0, 5, 5], [8, 0, 4, 5], [20, 0, 5, 5]])
     assert_allclose(shared_of_smaller(box, others), [1.0, 0.5, 0.0])
     assert_allclose(shared_of_smaller(others, box), [1.0, 0.5, 0.0])
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_what_is_within_an_image_is_what_a_box_shares_with_it(seed):
+    boxes, image = random_boxes(seed, 20), np.array([0.0, 0.0, 50.0, 40.0])
+    cut = within_image(boxes, 50, 40)
+    assert_allclose(area(cut), intersection(boxes, image), atol=1e-9)
+    assert_allclose(intersection(cut, image), area(cut), atol=1e-9)
 
 
 def test_two_boxes_without_area_do_not_overlap():

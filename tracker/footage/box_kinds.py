@@ -1,20 +1,22 @@
 """What boxes are drawn round: the torso, as ours are, or all of a person, as annotators and detectors do.
 
-Annotators also count pixels from the image's corner, and ours are counted from the middle of the first one.
+Annotators also count pixels from the image's corner, and ours are counted from the middle of the first one;
+theirs end at the image's borders, and ours go on.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from enum import StrEnum
 from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.boxes import Box
+from peopleboy.tracker.boxes import Box, within_image
 from peopleboy.tracker.evaluation.sequence import Rows, TrueBoxes
+from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
 
 TORSO_PER_HEIGHT: Final = 0.22
@@ -46,12 +48,24 @@ def width_per_height(boxes: Rows) -> float:
     return float(np.median(boxes.box[is_tall, 2] / boxes.box[is_tall, 3]))
 
 
-def boxed_whole(tracks: Iterable[Track]) -> tuple[Track, ...]:
-    """Give tracks with boxes round all of a person, in the place of those round the torso."""
-    return tuple(
-        replace(track, boxes={camera: whole_of(box) for camera, box in track.boxes.items()})
-        for track in tracks
-    )
+def boxed_whole(tracks: Iterable[Track], frame: Frame) -> tuple[Track, ...]:
+    """Give tracks with boxes round all of a person, in the place of those round the torso.
+
+    They end at the borders of the frame's images; who is outside an image has no box in it, and where there
+    is no image, none is cut off.
+    """
+    return tuple(replace(track, boxes=dict(_within(track.boxes, frame))) for track in tracks)
+
+
+def _within(torsos: Mapping[str, Box], frame: Frame) -> Iterator[tuple[str, Box]]:
+    for camera, torso in torsos.items():
+        box = whole_of(torso)
+        if camera in frame.images:
+            height_px, width_px = frame.images[camera].shape[:2]
+            left, top, width, height = within_image(np.array(box), width_px, height_px).tolist()
+            box = (left, top, width, height)
+        if min(box[2:]) > 0.0:
+            yield camera, box
 
 
 def whole_of(torso: Box) -> Box:

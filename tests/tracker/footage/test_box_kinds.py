@@ -16,6 +16,7 @@ from peopleboy.tracker.footage.box_kinds import (
     torso_of,
     whole_of,
 )
+from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Status, Track
 
 TORSO, WHOLE = (40.0, 10.0, 22.0, 100.0), (29.0, 10.5, 45.0, 100.0)
@@ -30,6 +31,10 @@ def truth(*widths: float) -> TrueBoxes:
         counted=np.ones(count, bool),
         visible=np.ones(count),
     )
+
+
+def frame(height: int = 200, width: int = 200) -> Frame:
+    return Frame(images={"thermal": np.zeros((height, width), np.uint8)}, time_s=0.0)
 
 
 def track(**boxes: dict[str, tuple[float, float, float, float]]) -> Track:
@@ -61,8 +66,26 @@ def test_boxes_without_height_tell_nothing() -> None:
 
 def test_whole_people_are_boxed_in_every_image() -> None:
     torso = track(boxes={"thermal": TORSO, "colour": TORSO})
-    (whole,) = boxed_whole([torso])
+    image = np.zeros((200, 200), np.uint8)
+    (whole,) = boxed_whole([torso], Frame(images={"thermal": image, "colour": image}, time_s=0.0))
     assert whole.boxes == {"thermal": pytest.approx(WHOLE), "colour": pytest.approx(WHOLE)}
+
+
+def test_boxes_of_whole_people_end_at_the_borders_of_the_image() -> None:
+    left, top, width, _ = WHOLE
+    (whole,) = boxed_whole([track(boxes={"thermal": TORSO})], frame(height=60, width=50))
+    assert whole.boxes["thermal"] == pytest.approx((left, top, 50.0 - left, 60.0 - top))
+    assert left + width > 50.0
+
+
+def test_boxes_in_images_that_were_not_taken_go_on() -> None:
+    (whole,) = boxed_whole([track(boxes={"colour": TORSO})], frame(width=50))
+    assert whole.boxes["colour"] == pytest.approx(WHOLE)
+
+
+def test_who_is_outside_the_image_has_no_box_in_it() -> None:
+    (whole,) = boxed_whole([track(boxes={"thermal": TORSO})], frame(width=20))
+    assert whole.boxes == {}
 
 
 @given(left=st.floats(-100.0, 500.0), top=st.floats(-100.0, 500.0), height=st.floats(5.0, 400.0))
