@@ -11,7 +11,12 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import intersection, iou
-from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig, RecognitionConfig
+from peopleboy.tracker.by_detection.config import (
+    ByDetectionConfig,
+    ExistenceConfig,
+    MatchingConfig,
+    RecognitionConfig,
+)
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.by_detection.finder import Finder, PeopleFinder
 from peopleboy.tracker.by_detection.identities import known_again, resolve
@@ -45,6 +50,7 @@ class _Instant(NamedTuple):
     dt_s: float
     view: Viewpoint
     existence: ExistenceConfig
+    matching: MatchingConfig
     identity: RecognitionConfig
 
 
@@ -135,7 +141,7 @@ class ByDetectionTracker:
             *proposed.likeness(self._targets),
             proposed.scores,
             now.time_s,
-            self._config.matching,
+            now.matching,
         )
 
     def _take_in(self, found: dict[int, int], expected: Floats, proposed: Proposed, now: _Instant) -> None:
@@ -177,7 +183,7 @@ class ByDetectionTracker:
         self._paths = self._paths.replaced(rows, later)
 
     def _is_lost(self, target: Target, now: _Instant) -> bool:
-        return target.is_told and target.seen_s < now.time_s - self._config.matching.lost_s
+        return target.is_told and target.seen_s < now.time_s - now.matching.lost_s
 
     def _known(self, found: dict[int, int]) -> list[int]:
         """Give the numbers of the proposals that are of those who are told."""
@@ -187,7 +193,7 @@ class ByDetectionTracker:
         """Begin to follow whoever is proposed where nobody is."""
         is_free = proposed.scores >= now.existence.birth
         is_free[list(found.values())] = False
-        recent = [target.seen_s > now.time_s - self._config.matching.lost_s for target in self._targets]
+        recent = [target.seen_s > now.time_s - now.matching.lost_s for target in self._targets]
         if any(recent):
             known = self._boxes(now.view)[np.array(recent)]
             is_free &= (iou(proposed.boxes[:, None], known[None]) < _TAKEN).all(axis=1)
@@ -247,11 +253,11 @@ class ByDetectionTracker:
         elif not target.is_told:
             self._tell(target, now.time_s, now.existence)
 
-    def _beliefs(self, view: Viewpoint) -> tuple[ExistenceConfig, RecognitionConfig]:
+    def _beliefs(self, view: Viewpoint) -> tuple[ExistenceConfig, MatchingConfig, RecognitionConfig]:
         config = self._config
         if view.floor_m is None:
-            return config.existence_uncalibrated, config.identity_uncalibrated
-        return config.existence, config.identity
+            return config.existence_uncalibrated, config.matching_uncalibrated, config.identity_uncalibrated
+        return config.existence, config.matching, config.identity
 
     def _tell(self, target: Target, time_s: float, config: ExistenceConfig) -> None:
         target.told_s = time_s

@@ -168,6 +168,8 @@ class ByDetectionConfig:
         identity: when people turn out to be others.
         existence_uncalibrated: when somebody is, where nothing is known of the camera: neither does the
             detector know images like its, nor is anybody known to stand on the floor.
+        matching_uncalibrated: what it costs to take a proposal for a person there, where no colours tell
+            people apart in crowds.
         identity_uncalibrated: when people turn out to be others there: boxes fit a colour image less well.
         colour: what is believed of the colour image.
     """
@@ -177,7 +179,12 @@ class ByDetectionConfig:
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
     identity: RecognitionConfig = field(default_factory=RecognitionConfig)
     existence_uncalibrated: ExistenceConfig = field(
-        default_factory=lambda: ExistenceConfig(birth=0.5, sightings=3, at_once=math.inf)
+        default_factory=lambda: ExistenceConfig(
+            birth=0.5, sightings=4, at_once=math.inf, confirmed=2.3, shared_doubt=4.0, hidden_doubt_s=0.5
+        )
+    )
+    matching_uncalibrated: MatchingConfig = field(
+        default_factory=lambda: MatchingConfig(highest=2.0, lost_s=4.0)
     )
     identity_uncalibrated: RecognitionConfig = field(default_factory=lambda: RecognitionConfig(same=0.65))
     colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)

@@ -27,7 +27,8 @@ class PeopleFinder:
         """Make one for a tracker with such settings."""
         weakest = config.existence.weakest
         self._config = config.colour
-        self._thermal, self._colour = ThermalFinder(weakest), ColourFinder(config.colour, weakest)
+        self._thermal = ThermalFinder(PeopleDetector(least_score=weakest))
+        self._colour = ColourFinder(config.colour, weakest)
 
     def __call__(self, frame: Frame) -> Proposals:
         """Look for people in the next frame."""
@@ -35,11 +36,11 @@ class PeopleFinder:
 
 
 class ThermalFinder:
-    """The learned detector on the thermal image, where people may stand if the camera is known."""
+    """A detector on the thermal image, where people may stand if the camera is known."""
 
-    def __init__(self, weakest: float) -> None:
-        """Make one that keeps proposals from some log odds on."""
-        self._detector = PeopleDetector(least_score=weakest)
+    def __init__(self, detector: PeopleDetector) -> None:
+        """Make one of a detector."""
+        self._detector = detector
 
     def __call__(self, frame: Frame) -> Proposals:
         """Look for people in the next frame."""

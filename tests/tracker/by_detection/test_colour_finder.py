@@ -18,6 +18,7 @@ from peopleboy.tracker.by_detection.colour_finder import NOBODY, ColourFinder, s
 from peopleboy.tracker.by_detection.config import BothCamerasConfig, ByDetectionConfig
 from peopleboy.tracker.by_detection.finder import ThermalFinder
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
@@ -96,7 +97,7 @@ def without_warmth(frames: list[Frame]) -> Iterator[Frame]:
 
 
 def test_in_a_room_as_warm_as_people_they_are_found_by_colours(frames: list[Frame]) -> None:
-    tracker, thermal = ByDetectionTracker(), ThermalFinder(0.0)
+    tracker, thermal = ByDetectionTracker(), ThermalFinder(PeopleDetector())
     told, warm = 0, 0
     for frame in without_warmth(frames):
         warm += len(thermal(frame).score)

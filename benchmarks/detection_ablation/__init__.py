@@ -1,0 +1,1 @@
+"""What each part of the tracker by detection gives."""

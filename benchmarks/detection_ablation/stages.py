@@ -1,0 +1,55 @@
+"""The detector as it is, or as far as one of its looks."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Final
+
+from peopleboy.tracker.by_detection.config import ByDetectionConfig
+from peopleboy.tracker.by_detection.finder import ThermalFinder
+from peopleboy.tracker.proposals.closer_look import look_closer, shipped_closer_look
+from peopleboy.tracker.proposals.detector import SMALLEST_PX, WEAKEST, Grey, PeopleDetector, look
+from peopleboy.tracker.proposals.model import shipped_model
+from peopleboy.tracker.proposals.second_look import look_again, shipped_network
+from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.thermal.mount import Mount
+
+LEAST: Final = ByDetectionConfig().existence.weakest
+
+
+class Stage(IntEnum):
+    """How far it looks."""
+
+    TREES = 1
+    SECOND_LOOK = 2
+    CLOSER_LOOK = 3
+
+
+class DetectorOfStage(PeopleDetector):
+    """A detector that looks no further than to a stage."""
+
+    def __init__(self, stage: Stage) -> None:
+        """Take the shipped trees and networks."""
+        super().__init__(least_score=LEAST)
+        self._stage = stage
+
+    def found(self, grey: Grey, change: Grey, mount: Mount | None) -> Proposals:
+        """Look for people in an image of which it is known by how much (H, W) greys changed."""
+        found = look(
+            shipped_model(),
+            grey,
+            change,
+            mount,
+            SMALLEST_PX,
+            LEAST if self._stage is Stage.TREES else WEAKEST,
+        )
+        if self._stage >= Stage.SECOND_LOOK:
+            found = look_again(shipped_network(), grey, change, found, mount, LEAST)
+        if self._stage >= Stage.CLOSER_LOOK:
+            found = look_closer(shipped_closer_look(), grey, change, found, mount)
+        return found
+
+
+def thermal_finder(stage: Stage) -> ThermalFinder:
+    """Make one that looks no further than to a stage."""
+    return ThermalFinder(DetectorOfStage(stage))
