@@ -184,7 +184,7 @@ class ByDetectionConfig:
         )
     )
     matching_uncalibrated: MatchingConfig = field(
-        default_factory=lambda: MatchingConfig(highest=2.0, lost_s=4.0)
+        default_factory=lambda: MatchingConfig(highest=2.3, lost_s=4.0)
     )
     identity_uncalibrated: RecognitionConfig = field(default_factory=lambda: RecognitionConfig(same=0.65))
     colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)

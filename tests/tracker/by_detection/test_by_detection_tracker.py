@@ -10,13 +10,15 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
-from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig
+from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig, MatchingConfig
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, PinholeCalibration
 from peopleboy.tracker.track import Status, Track
 
 RATE_HZ = 15.0
 RED, BLUE = (200, 30, 30), (30, 30, 200)
-AS_CALIBRATED = ByDetectionConfig(existence_uncalibrated=ExistenceConfig())
+AS_CALIBRATED = ByDetectionConfig(
+    existence_uncalibrated=ExistenceConfig(), matching_uncalibrated=MatchingConfig()
+)
 Box = tuple[float, float, float, float]
 
 
@@ -72,17 +74,22 @@ def test_what_looks_rather_unlike_a_person_is_not_told() -> None:
     assert tracked([[walker(100.0)]] * 90, score=1.6)[-1]
 
 
-def test_somebody_sure_is_told_by_the_second_image_of_a_known_camera_and_the_third_of_another() -> None:
+def test_somebody_sure_is_told_by_the_second_image_of_a_known_camera_and_the_fourth_of_another() -> None:
     boxes = [[walker(100.0)]] * 4
     assert [len(tracks) for tracks in tracked(boxes, config=AS_CALIBRATED)] == [0, 1, 1, 1]
-    assert [len(tracks) for tracks in tracked(boxes)] == [0, 0, 1, 1]
+    assert [len(tracks) for tracks in tracked(boxes, score=3.5)] == [0, 0, 0, 1]
+
+
+def test_who_walks_briskly_past_a_camera_of_which_nothing_is_known_is_kept() -> None:
+    boxes = [[walker(40.0 + 5.0 * i)] for i in range(40)]
+    assert all(numbers(tracks) == {1} for tracks in tracked(boxes)[8:])
 
 
 def test_whom_one_image_shows_beyond_doubt_is_told_at_once() -> None:
     boxes = [[walker(100.0)]] * 4
     seen = tracked(boxes, score=4.5, config=AS_CALIBRATED)
     assert [len(tracks) for tracks in seen] == [1, 1, 1, 1]
-    assert [len(tracks) for tracks in tracked(boxes, score=4.5)] == [0, 0, 1, 1]
+    assert [len(tracks) for tracks in tracked(boxes, score=4.5)] == [0, 0, 0, 1]
 
 
 def test_a_camera_that_is_calibrated_is_one_that_is_known() -> None:
@@ -147,7 +154,7 @@ def test_who_is_behind_somebody_is_said_to_be_hidden_by_them() -> None:
 
 def test_nobody_is_told_outside_the_image() -> None:
     boxes = [[walker(120.0 + 8.0 * i)] if 120.0 + 8.0 * i < 330.0 else [] for i in range(40)]
-    seen = tracked(boxes)
+    seen = tracked(boxes, config=AS_CALIBRATED)
     assert len(seen[20]) == 1
     told = [track.boxes[THERMAL] for tracks in seen for track in tracks]
     assert max(left for left, *_ in told) < 319.5
