@@ -1,0 +1,47 @@
+"""Tests of the ablation of the tracker by detection."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from benchmarks.detection_ablation.film import Film
+from benchmarks.detection_ablation.stages import LEAST, DetectorOfStage, Stage
+from benchmarks.detection_ablation.variants import VARIANTS, Proposed
+from benchmarks.tracker_ablation import recorded
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.proposals.detector import PeopleDetector
+
+
+@pytest.fixture(scope="module")
+def film() -> Film:
+    return Film.of_run(recorded(load_scenario("crossing_2").lasting(1.0), 100))
+
+
+def test_all_looks_together_are_those_of_the_detector(film: Film) -> None:
+    whole, all_stages = PeopleDetector(least_score=LEAST), DetectorOfStage(Stage.CLOSER_LOOK)
+    for frame in film.frames:
+        grey = frame.grey(THERMAL)
+        expected = whole.update(grey, frame.time_s)
+        for found, wanted in zip(all_stages.update(grey, frame.time_s), expected, strict=True):
+            assert_array_equal(found, wanted)
+
+
+def test_as_it_is_it_is_the_tracker(film: Film) -> None:
+    tracker = ByDetectionTracker()
+    expected = [tracker.update(frame) for frame in film.frames]
+    assert Proposed(film).tracked(VARIANTS["as it is"]) == expected
+    assert expected[-1]
+
+
+def test_every_variant_is_another_tracker() -> None:
+    assert len(set(map(repr, VARIANTS.values()))) == len(VARIANTS)
+
+
+def test_what_is_not_known_of_cameras_is_left_out(film: Film) -> None:
+    assert film.frames[0].calibrations
+    assert not any(frame.calibrations for frame in film.uncalibrated().frames)
+    assert np.shares_memory(film.uncalibrated().frames[0].images[THERMAL], film.frames[0].images[THERMAL])
