@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
+from enum import Enum, auto
 from typing import Final
 
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.by_detection.finder import ThermalFinder
-from peopleboy.tracker.proposals.closer_look import look_closer, shipped_closer_look
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, WEAKEST, Grey, PeopleDetector, look
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.second_look import look_again, shipped_network
@@ -17,12 +16,12 @@ from peopleboy.tracker.thermal.mount import Mount
 LEAST: Final = ByDetectionConfig().existence.weakest
 
 
-class Stage(IntEnum):
+class Stage(Enum):
     """How far it looks."""
 
-    TREES = 1
-    SECOND_LOOK = 2
-    CLOSER_LOOK = 3
+    TREES = auto()
+    SECOND_LOOK = auto()
+    CLOSER_LOOK = auto()
 
 
 class DetectorOfStage(PeopleDetector):
@@ -35,19 +34,12 @@ class DetectorOfStage(PeopleDetector):
 
     def found(self, grey: Grey, change: Grey, mount: Mount | None) -> Proposals:
         """Look for people in an image of which it is known by how much (H, W) greys changed."""
-        found = look(
-            shipped_model(),
-            grey,
-            change,
-            mount,
-            SMALLEST_PX,
-            LEAST if self._stage is Stage.TREES else WEAKEST,
-        )
-        if self._stage >= Stage.SECOND_LOOK:
-            found = look_again(shipped_network(), grey, change, found, mount, LEAST)
-        if self._stage >= Stage.CLOSER_LOOK:
-            found = look_closer(shipped_closer_look(), grey, change, found, mount)
-        return found
+        if self._stage is Stage.CLOSER_LOOK:
+            return super().found(grey, change, mount)
+        if self._stage is Stage.TREES:
+            return look(shipped_model(), grey, change, mount, SMALLEST_PX, LEAST)
+        first = look(shipped_model(), grey, change, mount, SMALLEST_PX, WEAKEST)
+        return look_again(shipped_network(), grey, change, first, mount, LEAST)
 
 
 def thermal_finder(stage: Stage) -> ThermalFinder:

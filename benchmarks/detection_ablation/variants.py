@@ -10,7 +10,7 @@ from typing import Final
 from benchmarks.detection_ablation.film import Film
 from benchmarks.detection_ablation.stages import LEAST, Stage, thermal_finder
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
-from peopleboy.tracker.by_detection.colour_finder import NOBODY, ColourFinder, seen_by_both
+from peopleboy.tracker.by_detection.colour_finder import ColourFinder, seen_by_both
 from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig, RecognitionConfig
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.proposals.suppression import Proposals
@@ -42,11 +42,11 @@ class Variant:
     config: ByDetectionConfig = _ALL
 
 
-def _existing(old: ExistenceConfig) -> ExistenceConfig:
+def _without_doubt(old: ExistenceConfig) -> ExistenceConfig:
     return replace(old, shared_doubt=0.0)
 
 
-def _recognised(old: RecognitionConfig) -> RecognitionConfig:
+def _without_revision(old: RecognitionConfig) -> RecognitionConfig:
     return replace(old, parted_s=math.inf, gone_s=math.inf)
 
 
@@ -62,15 +62,15 @@ VARIANTS: Final[Mapping[str, Variant]] = {
     "nested boxes are as good": Variant(
         config=replace(
             _ALL,
-            existence=_existing(_ALL.existence),
-            existence_uncalibrated=_existing(_ALL.existence_uncalibrated),
+            existence=_without_doubt(_ALL.existence),
+            existence_uncalibrated=_without_doubt(_ALL.existence_uncalibrated),
         )
     ),
     "no late decisions": Variant(
         config=replace(
             _ALL,
-            identity=_recognised(_ALL.identity),
-            identity_uncalibrated=_recognised(_ALL.identity_uncalibrated),
+            identity=_without_revision(_ALL.identity),
+            identity_uncalibrated=_without_revision(_ALL.identity_uncalibrated),
         )
     ),
 }
@@ -95,7 +95,7 @@ class Proposed:
         """Propose nobody yet."""
         self._films = {True: film, False: film.uncalibrated()}
         self._thermal: dict[tuple[Stage, bool], list[Proposals]] = {}
-        self._colour: list[Proposals] = []
+        self._colour: list[Proposals] | None = None
 
     def film(self, variant: Variant) -> Film:
         """Give what a variant sees."""
@@ -117,7 +117,7 @@ class Proposed:
         return (seen_by_both(*pair, _ALL.colour) for pair in pairs)
 
     def _seen_in_colours(self, film: Film) -> list[Proposals]:
-        if not self._colour:
+        if self._colour is None:
             find = ColourFinder(_ALL.colour, LEAST)
             self._colour = [find(frame) for frame in film.frames]
-        return self._colour or [NOBODY] * len(film.frames)
+        return self._colour
