@@ -16,6 +16,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.told_boxes import told_boxes
 from benchmarks.tracker_ablation import print_row
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
@@ -28,9 +29,8 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
-from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
-from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import make_tracker
 
 SCENES: Final = ("crossing_2", "single_stationary")
@@ -151,20 +151,8 @@ def _boxes(truths: list[Truth]) -> TrueBoxes:
 def track(film: Film, tracker: str, seed: int, *, is_calibrated: bool) -> Scores:
     """Score a tracker on a film."""
     eyes = make_tracker(tracker, stream(seed, "tracker"))
-    rows = []
-    for number, frame in enumerate(film.frames, start=1):
-        given = frame if is_calibrated else replace(frame, calibrations={})
-        rows += [
-            (number, one.id, one.boxes[THERMAL], one.confidence)
-            for one in eyes.update(given)
-            if one.status is not Status.TENTATIVE and THERMAL in one.boxes
-        ]
-    found = TrackBoxes(
-        frame=np.array([row[0] for row in rows], int),
-        id=np.array([row[1] for row in rows], int),
-        box=np.array([row[2] for row in rows]).reshape(-1, 4),
-        confidence=np.array([row[3] for row in rows], float),
-    )
+    given = film.frames if is_calibrated else [replace(frame, calibrations={}) for frame in film.frames]
+    found = told_boxes(eyes.update(frame) for frame in given)
     return evaluate(film.truth, found, frames=len(film.frames))
 
 

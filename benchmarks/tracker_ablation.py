@@ -13,6 +13,7 @@ from typing import Any
 import click
 import numpy as np
 
+from benchmarks.told_boxes import told_boxes
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
@@ -20,12 +21,11 @@ from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
-from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_OCCLUSION
-from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import make_tracker
 
 ONE = ("single_stationary", "single_follow")
@@ -206,15 +206,7 @@ def recorded(loaded: Scenario, seed: int) -> Recorded:
 def replay(run: Recorded, config: TrackerConfig, seed: int) -> Scores:
     """Score a tracker on a recorded run."""
     tracker = PeopleTracker(config, np.random.default_rng(seed))
-    found: list[tuple[int, Track]] = []
-    for number, frame in enumerate(run.frames, start=1):
-        found += [(number, track) for track in tracker.update(frame) if track.status is not Status.TENTATIVE]
-    tracks = TrackBoxes(
-        frame=np.array([number for number, _ in found]),
-        id=np.array([track.id for _, track in found]),
-        box=np.array([track.boxes[THERMAL] for _, track in found]).reshape(-1, 4),
-        confidence=np.array([track.confidence for _, track in found]),
-    )
+    tracks = told_boxes(tracker.update(frame) for frame in run.frames)
     return evaluate(run.truth, tracks, frames=len(run.frames))
 
 

@@ -7,17 +7,16 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 
-import numpy as np
-
 from benchmarks.clips.clip import Clip
+from benchmarks.told_boxes import told_boxes
 from benchmarks.tracker_ablation import Recorded
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import open_views
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
-from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.box_kinds import boxed_whole
-from peopleboy.tracker.frame import THERMAL, Frame
-from peopleboy.tracker.track import Track, confirmed
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.track import Track
 
 CLIPS_HZ = 30.0
 
@@ -59,15 +58,7 @@ class Film:
 
     def score(self, found: Sequence[Sequence[Track]], min_visible: float = 0.0) -> Scores:
         """Score what a tracker gave in each frame, by those of whom more than a share is visible."""
-        rows = [
-            (number, track.id, box, track.confidence)
-            for number, (frame, tracks) in enumerate(zip(self.frames, found, strict=True), start=1)
-            for track, box in confirmed(boxed_whole(tracks, frame) if self.boxes_whole else tracks, THERMAL)
-        ]
-        boxes = TrackBoxes(
-            frame=np.array([row[0] for row in rows], int),
-            id=np.array([row[1] for row in rows], int),
-            box=np.array([row[2] for row in rows], float).reshape(-1, 4),
-            confidence=np.array([row[3] for row in rows], float),
-        )
-        return evaluate(self.truth, boxes, frames=len(self.frames), min_visible=min_visible)
+        told = found
+        if self.boxes_whole:
+            told = [boxed_whole(tracks, frame) for tracks, frame in zip(found, self.frames, strict=True)]
+        return evaluate(self.truth, told_boxes(told), frames=len(self.frames), min_visible=min_visible)
