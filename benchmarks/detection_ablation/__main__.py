@@ -13,7 +13,7 @@ import click
 
 from benchmarks.clips.clip import CHOSEN_BY, open_clips
 from benchmarks.detection_ablation.film import Film
-from benchmarks.detection_ablation.variants import VARIANTS, Proposed, Variant
+from benchmarks.detection_ablation.variants import VARIANTS, Variant
 from benchmarks.tracker_ablation import print_row, record, recorded
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
@@ -41,10 +41,10 @@ COLUMNS_OF_CLIPS: Final = ("clips: HOTA", "false per 1000 frames")
 _SEEN: Final = 0.3
 
 
-def of_worlds(scenes: Sequence[Proposed], worlds: Sequence[Proposed], variant: Variant) -> list[str]:
+def of_worlds(scenes: Sequence[Film], worlds: Sequence[Film], variant: Variant) -> list[str]:
     """Give a row's figures, as `COLUMNS` names them."""
-    library = combine([film.film(variant).score(film.tracked(variant)) for film in scenes])
-    ways = [(film.film(variant), film.tracked(variant)) for film in worlds]
+    library = combine([film.score(variant.tracked(film)) for film in scenes])
+    ways = [(film, variant.tracked(film)) for film in worlds]
     everybody = combine([film.score(way) for film, way in ways])
     seen = combine([film.score(way, min_visible=_SEEN) for film, way in ways])
     return [
@@ -57,9 +57,9 @@ def of_worlds(scenes: Sequence[Proposed], worlds: Sequence[Proposed], variant: V
     ]
 
 
-def of_clips(clips: Sequence[Proposed], variant: Variant) -> list[str]:
+def of_clips(clips: Sequence[Film], variant: Variant) -> list[str]:
     """Give a row's figures, as `COLUMNS_OF_CLIPS` names them."""
-    scores = combine([film.film(variant).score(film.tracked(variant)) for film in clips])
+    scores = combine([film.score(variant.tracked(film)) for film in clips])
     return [f"{scores.mot.hota.hota:.1f}", _false(scores)]
 
 
@@ -79,9 +79,9 @@ def _false(scores: Scores) -> str:
 )
 def main(seed: int, worlds: int, clips: Path | None) -> None:
     """Print how the tracker does as it is, and without each of its parts, as a Markdown table."""
-    real = [] if clips is None else [Proposed(Film.of_clip(clip)) for clip in open_clips(clips, CHOSEN_BY)]
-    scenes = [Proposed(Film.of_run(record(name, seed))) for name in SCENES]
-    drawn = [Proposed(Film.of_run(recorded(random_scenario(number), number))) for number in range(worlds)]
+    real = [] if clips is None else [Film.of_clip(clip) for clip in open_clips(clips, CHOSEN_BY)]
+    scenes = [Film.of_run(record(name, seed)) for name in SCENES]
+    drawn = [Film.of_run(recorded(random_scenario(number), number)) for number in range(worlds)]
     columns = (*COLUMNS, *(COLUMNS_OF_CLIPS if real else ()))
     print_row("", columns)
     print_row("---", ["---:"] * len(columns))

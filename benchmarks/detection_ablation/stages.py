@@ -32,13 +32,20 @@ class DetectorOfStage(PeopleDetector):
         super().__init__(least_score=LEAST)
         self._stage = stage
 
-    def found(self, grey: Grey, change: Grey, mount: Mount | None) -> Proposals:
-        """Look for people in an image of which it is known by how much (H, W) greys changed."""
+    def found(
+        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals | None = None
+    ) -> Proposals:
+        """Look for people in an image of which it is known by how much (H, W) greys changed.
+
+        Trees look everywhere, whoever is expected.
+        """
         if self._stage is Stage.CLOSER_LOOK:
-            return super().found(grey, change, mount)
+            return super().found(grey, change, mount, expected)
         if self._stage is Stage.TREES:
             return look(shipped_model(), grey, change, mount, SMALLEST_PX, LEAST)
-        first = look(shipped_model(), grey, change, mount, SMALLEST_PX, WEAKEST)
+        first = expected
+        if first is None:
+            first = look(shipped_model(), grey, change, mount, SMALLEST_PX, WEAKEST)
         return look_again(shipped_network(), grey, change, first, mount, LEAST)
 
 

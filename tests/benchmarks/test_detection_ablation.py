@@ -8,7 +8,7 @@ from numpy.testing import assert_array_equal
 
 from benchmarks.detection_ablation.film import Film
 from benchmarks.detection_ablation.stages import LEAST, DetectorOfStage, Stage
-from benchmarks.detection_ablation.variants import VARIANTS, Proposed
+from benchmarks.detection_ablation.variants import VARIANTS
 from benchmarks.tracker_ablation import recorded
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
@@ -33,7 +33,7 @@ def test_all_looks_together_are_those_of_the_detector(film: Film) -> None:
 def test_as_it_is_it_is_the_tracker(film: Film) -> None:
     tracker = ByDetectionTracker()
     expected = [tracker.update(frame) for frame in film.frames]
-    assert Proposed(film).tracked(VARIANTS["as it is"]) == expected
+    assert VARIANTS["as it is"].tracked(film) == expected
     assert expected[-1]
 
 

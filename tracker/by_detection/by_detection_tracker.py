@@ -35,6 +35,7 @@ from peopleboy.tracker.by_detection.proposed import Proposed
 from peopleboy.tracker.by_detection.target import Finding, Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
+from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.whereabouts import places_on_floor
 from peopleboy.tracker.track import Box, FloorPlace, Track
 
@@ -44,11 +45,15 @@ _TAKEN: Final = 0.45  # overlap with somebody from which a proposal is nobody ne
 
 
 class _Instant(NamedTuple):
-    """When a frame was taken [s], how long after the last one [s], from where, and what is believed there."""
+    """When a frame was taken [s], how long after the last one [s], from where, and what is believed there.
+
+    Its outline is (4,) [px].
+    """
 
     time_s: float
     dt_s: float
     view: Viewpoint
+    outline: Floats
     existence: ExistenceConfig
     matching: MatchingConfig
     identity: RecognitionConfig
@@ -69,6 +74,7 @@ class ByDetectionTracker:
         self._targets: list[Target] = []
         self._paths = NOBODY
         self._last_s: float | None = None
+        self._everywhere_s = -math.inf
         self._born = 0
         self._view: tuple[Calibration | None, tuple[int, int], Viewpoint] | None = None
 
@@ -92,16 +98,21 @@ class ByDetectionTracker:
         Raises:
             BadInput: time that does not go forward.
         """
-        image = frame.grey(THERMAL)
-        view = self._viewpoint(frame.calibrations.get(THERMAL), (image.shape[0], image.shape[1]))
-        now = _Instant(frame.time_s, self._time_step(frame.time_s), view, *self._beliefs(view))
+        rows, columns = frame.grey(THERMAL).shape
+        view = self._viewpoint(frame.calibrations.get(THERMAL), (rows, columns))
+        outline = np.array([-0.5, -0.5, columns, rows])
+        before_s = self._last_s
+        now = _Instant(frame.time_s, self._time_step(frame.time_s), view, outline, *self._beliefs(view))
         self._carry_on(now.dt_s, frame.odometry or _STANDING)
-        boxes, scores = self._find(frame)
-        proposed = Proposed.of(frame, boxes, now.existence.trust * scores + now.existence.lasting, view)
         expected = self._boxes(view)
+        alone = self._looked_for(expected, before_s, now)
+        seen = self._find(frame, alone)
+        seen = seen._replace(score=now.existence.trust * seen.score + now.existence.lasting)
+        proposed = Proposed.of(frame, seen, view)
         found = self._matched(expected, proposed, now)
         self._take_in(found, expected, proposed, now)
-        self._begin(found, proposed, now)
+        if alone is None:
+            self._begin(found, proposed, now)
         if self._introduced is not None:
             self._meet(np.array([self._introduced]), frame, now)
             self._introduced = None
@@ -124,6 +135,17 @@ class ByDetectionTracker:
 
     def _carry_on(self, dt_s: float, moved: Odometry) -> None:
         self._paths = advanced(self._paths, dt_s, moved, self._config.path)
+
+    def _looked_for(self, expected: Floats, before_s: float | None, now: _Instant) -> Proposals | None:
+        """Give who was seen in the last image, if they alone are looked for in this one."""
+        if now.time_s - self._everywhere_s >= self._config.everywhere_s:
+            self._everywhere_s = now.time_s
+            return None
+        was_seen = np.array([target.seen_s == before_s for target in self._targets], bool)
+        rows = np.flatnonzero(was_seen & (intersection(expected, now.outline) > 0.0))
+        trees = np.array([self._targets[row].trees for row in rows.tolist()], np.float64)
+        alone = Proposals.of_trees(expected[rows], trees)
+        return alone.taken(np.argsort(-trees, kind="stable"))
 
     def _told(self) -> NDArray[np.bool_]:
         return np.array([target.is_told for target in self._targets], np.bool_)
@@ -160,6 +182,7 @@ class ByDetectionTracker:
             finding = Finding(float(proposed.scores[seen]), float(common[seen]), float(speed[row]))
             target.see(finding, now.time_s, now.dt_s, now.existence)
             target.show(proposed.boxes[seen])
+            target.trees = float(proposed.trees[seen])
             if is_beside[row]:
                 target.overlap()
             else:
@@ -206,7 +229,8 @@ class ByDetectionTracker:
         kept = np.flatnonzero(strangers) if self._targets else np.empty(0, int)
         self._paths = self._paths.take(kept)
         self._targets = [self._targets[row] for row in kept]
-        self._add(np.zeros(1, int), Proposed.of(frame, box, np.zeros(1), now.view), now)
+        met = Proposed.of(frame, Proposals.of_trees(box, np.zeros(1)), now.view)
+        self._add(np.zeros(1, int), met, now)
         self._tell(self._targets[-1], -math.inf, now.existence)  # whoever points at somebody knows whom
 
     def _add(self, free: NDArray[np.intp], proposed: Proposed, now: _Instant) -> None:
@@ -223,6 +247,7 @@ class ByDetectionTracker:
                 colours=proposed.colours[row],
                 ratio=proposed.ratio(row),
                 shown=proposed.boxes[row],
+                trees=float(proposed.trees[row]),
                 log_odds=min(float(proposed.scores[row]), now.existence.highest_score),
                 surest=float(proposed.scores[row]),
             )
@@ -273,10 +298,8 @@ class ByDetectionTracker:
         return left, top, width, height
 
     def _tracks(self, frame: Frame, now: _Instant) -> tuple[Track, ...]:
-        rows, columns = frame.grey(THERMAL).shape
-        image = np.array([-0.5, -0.5, columns, rows])
         boxes = self._boxes(now.view)
-        is_inside = intersection(boxes, image) > 0.0
+        is_inside = intersection(boxes, now.outline) > 0.0
         shown = [
             (target, self._told_box(target, box, now.time_s))
             for target, box, inside in zip(self._targets, boxes, is_inside, strict=True)

@@ -18,7 +18,7 @@ from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import mount_of
 
-NOBODY: Final = Proposals(np.empty((0, 4)), np.empty(0))
+NOBODY: Final = Proposals.of_trees(np.empty((0, 4)), np.empty(0))
 """Where nothing is proposed."""
 
 
@@ -42,21 +42,25 @@ class ColourFinder:
 
         Nobody, if it is too soon, there is no new image, or not both cameras are calibrated.
         """
-        fresh = self._images.of(frame)
         here, there = frame.calibrations.get(COLOUR), frame.calibrations.get(THERMAL)
-        if fresh is None:
+        if not self.is_new(frame) or frame.time_s - self._last_s < self._config.every_s:
             return NOBODY
-        self._way = joined(self._way, fresh.odometry)
-        if frame.time_s - self._last_s < self._config.every_s or not (
-            isinstance(here, PinholeCalibration) and isinstance(there, PinholeCalibration)
-        ):
+        if not (isinstance(here, PinholeCalibration) and isinstance(there, PinholeCalibration)):
             return NOBODY
         grey = np.asarray(cv2.cvtColor(frame.rgb(COLOUR), cv2.COLOR_RGB2GRAY), np.uint8)
         found = self._detector.update(grey, frame.time_s, self._way, mount_of(here, grey.shape[0]))
         self._last_s, self._way = frame.time_s, Odometry()
         boxes = carried_over(found.box, Viewpoint.of(here, (grey.shape[0], grey.shape[1])), here, there)
-        is_seen = area(boxes) > 0.0
-        return Proposals(boxes[is_seen], self._config.believed * found.score[is_seen])
+        seen = Proposals(boxes, self._config.believed * found.score, found.trees)
+        return seen.taken(area(boxes) > 0.0)
+
+    def is_new(self, frame: Frame) -> bool:
+        """Tell whether a frame has a new image, and take in how the robot moved until then."""
+        fresh = self._images.of(frame)
+        if fresh is None:
+            return False
+        self._way = joined(self._way, fresh.odometry)
+        return True
 
 
 def seen_by_both(thermal: Proposals, colour: Proposals, config: BothCamerasConfig) -> Proposals:
@@ -75,7 +79,9 @@ def seen_by_both(thermal: Proposals, colour: Proposals, config: BothCamerasConfi
     for column in np.flatnonzero(is_same.any(axis=0)):
         row = overlap[:, column].argmax()
         score[row] = max(score[row], colour.score[column])
-    box = np.concatenate([thermal.box, colour.box[is_alone]])
-    score = np.concatenate([score, colour.score[is_alone]])
-    order = np.argsort(-score, kind="stable")
-    return Proposals(box[order], score[order])
+    both = Proposals(
+        np.concatenate([thermal.box, colour.box[is_alone]]),
+        np.concatenate([score, colour.score[is_alone]]),
+        np.concatenate([thermal.trees, np.minimum(colour.score[is_alone], 0.0)]),
+    )
+    return both.taken(np.argsort(-both.score, kind="stable"))

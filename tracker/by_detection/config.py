@@ -143,14 +143,14 @@ class BothCamerasConfig:
     """What the detector, which was taught by thermal images, says of the brightness of colour images.
 
     Attributes:
-        every_s: how often it looks there; of 15 images a second at each third.
+        every_s: how often it looks there, at the most.
         believed: share of its log odds that is believed.
         same: IoU from which on what both cameras show is one person.
         shared: of the smaller box: up to there whom colours alone show is another one.
         alone: least score of whom colours alone show.
     """
 
-    every_s: float = 0.19
+    every_s: float = 0.39
     believed: float = 0.85
     same: float = 0.45
     shared: float = 0.65
@@ -172,6 +172,8 @@ class ByDetectionConfig:
             people apart in crowds.
         identity_uncalibrated: when people turn out to be others there: boxes fit a colour image less well.
         colour: what is believed of the colour image.
+        everywhere_s: how often people are looked for everywhere, at the most: of 15 images a second in each
+            other one. In those between, whoever was just seen is looked for where he is expected.
     """
 
     path: PathConfig = field(default_factory=PathConfig)
@@ -188,3 +190,4 @@ class ByDetectionConfig:
     )
     identity_uncalibrated: RecognitionConfig = field(default_factory=lambda: RecognitionConfig(same=0.65))
     colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)
+    everywhere_s: float = 0.09

@@ -6,7 +6,7 @@ from typing import Protocol
 
 from peopleboy.tracker.by_detection.colour_finder import ColourFinder, seen_by_both
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
-from peopleboy.tracker.frame import THERMAL, Floats, Frame
+from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import mount_of
@@ -15,8 +15,13 @@ from peopleboy.tracker.thermal.mount import mount_of
 class Finder(Protocol):
     """Whatever proposes people, frame by frame."""
 
-    def __call__(self, frame: Frame) -> tuple[Floats, Floats]:
-        """Give boxes (M, 4) [px] in the thermal image, as wide as the torso, and log odds (M,)."""
+    def __call__(self, frame: Frame, expected: Proposals | None) -> Proposals:
+        """Give boxes [px] in the thermal image, as wide as the torso, and log odds.
+
+        Args:
+            frame: the next one.
+            expected: who alone is looked for; None for whoever is there.
+        """
         ...
 
 
@@ -30,9 +35,13 @@ class PeopleFinder:
         self._thermal = ThermalFinder(PeopleDetector(least_score=weakest))
         self._colour = ColourFinder(config.colour, weakest)
 
-    def __call__(self, frame: Frame) -> Proposals:
-        """Look for people in the next frame."""
-        return seen_by_both(self._thermal(frame), self._colour(frame), self._config)
+    def __call__(self, frame: Frame, expected: Proposals | None = None) -> Proposals:
+        """Look for people in the next frame; for those who are expected in the thermal image alone."""
+        seen = self._thermal(frame, expected)
+        if expected is not None:
+            self._colour.is_new(frame)
+            return seen
+        return seen_by_both(seen, self._colour(frame), self._config)
 
 
 class ThermalFinder:
@@ -42,8 +51,8 @@ class ThermalFinder:
         """Make one of a detector."""
         self._detector = detector
 
-    def __call__(self, frame: Frame) -> Proposals:
-        """Look for people in the next frame."""
+    def __call__(self, frame: Frame, expected: Proposals | None = None) -> Proposals:
+        """Look for people in the next frame, or for those who are expected."""
         grey, calibration = frame.grey(THERMAL), frame.calibrations.get(THERMAL)
         mount = None if calibration is None else mount_of(calibration, grey.shape[0])
-        return self._detector.update(grey, frame.time_s, frame.odometry, mount)
+        return self._detector.update(grey, frame.time_s, frame.odometry, mount, expected)

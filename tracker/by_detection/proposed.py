@@ -12,6 +12,7 @@ from peopleboy.tracker.by_detection.looks import Pattern, patterns
 from peopleboy.tracker.by_detection.target import Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import THERMAL, Floats, Frame
+from peopleboy.tracker.proposals.suppression import Proposals
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,20 +22,22 @@ class Proposed:
     Attributes:
         boxes: (M, 4) [px].
         scores: (M,) log odds.
+        trees: (M,) likewise, as the detector's trees see it alone.
         looks: (M, 72) in the thermal image.
         colours: (M, 512) of clothes; 0 where nobody knows.
     """
 
     boxes: Floats
     scores: Floats
+    trees: Floats
     looks: Pattern
     colours: Colours
 
     @classmethod
-    def of(cls, frame: Frame, boxes: Floats, scores: Floats, view: Viewpoint) -> Proposed:
+    def of(cls, frame: Frame, found: Proposals, view: Viewpoint) -> Proposed:
         """Look at what is proposed in a frame."""
         image = frame.grey(THERMAL).astype(np.float32)
-        return cls(boxes, scores, patterns(image, boxes), colours_of(frame, boxes, view))
+        return cls(*found, patterns(image, found.box), colours_of(frame, found.box, view))
 
     def __len__(self) -> int:
         return len(self.boxes)

@@ -45,6 +45,7 @@ class Target:
         ratio: width of its box over the height.
         shown: (4,) its box in the image in which it was last seen [px].
         watched_s: for how long it was seen in all.
+        trees: log odds by the detector's trees alone, when it was last found among all.
         log_odds: that it is a person.
         surest: most that a single image said.
         id: 0 as long as it is not told.
@@ -63,6 +64,7 @@ class Target:
     ratio: float
     shown: Floats
     watched_s: float = 0.0
+    trees: float = 0.0
     log_odds: float = 0.0
     surest: float = -math.inf
     id: int = 0

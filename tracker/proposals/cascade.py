@@ -6,7 +6,8 @@ by then is let go.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -14,15 +15,17 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.proposals.channels import Cells
-from peopleboy.tracker.proposals.patches import Patches, Sums, patch
+from peopleboy.tracker.proposals.patches import Layout, Patches, Sums, patch
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 
 DEPTH: Final = 3
 NODES: Final = 2**DEPTH - 1
 LEAVES: Final = 2**DEPTH
 STRIDE: Final = 2  # [cells] between windows of the first look
-_LOOKED: Final = 64
-"""Trees that a window must come through for those beside it to be looked at, too."""
+_LAYOUTS: Final = 40
+"""Sizes of levels for which is kept where patches lie: those of one image are half as many."""
+_BESIDE: Final = 2.5
+"""Log odds by which a window may be surer than the one beside it that was looked at."""
 
 
 class Hits(NamedTuple):
@@ -57,24 +60,28 @@ class Cascade:
     threshold: NDArray[np.float32]
     leaf: NDArray[np.float32]
     least: NDArray[np.float32]
+    _layouts: dict[tuple[int, int], Layout] = field(default_factory=dict, init=False, repr=False)
 
-    def scan(self, sums: Sums, rows: tuple[int, int], *, stride: int = STRIDE) -> Hits:
+    def scan(
+        self, sums: Sums, rows: tuple[int, int], *, stride: int = STRIDE, least_score: float = -math.inf
+    ) -> Hits:
         """Look through all windows of a level, with their first cell in some rows, borders included.
 
         Args:
             sums: (9, h + 1, w + 1) of its channels.
             rows: the first one, and the one after the last.
             stride: cells between windows; with 2 and more, those beside a promising one are looked at, too.
+            least_score: of those that anybody cares for; others may be among them.
         """
         _, high, wide = sums.shape
         first, end = max(rows[0], 0), min(rows[1], high - ROWS)
         if end <= first or wide - 1 < COLUMNS:
             return Hits(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
-        offset, weight = self.patches.corners(self.feature.ravel(), high, wide)
+        offset, weight = self._laid_out(high, wide)
         found = np.full((end - first, wide - COLUMNS), -np.inf, np.float32)
         _scan(
             sums.ravel(), wide, first, offset, weight, self.threshold.ravel(), self.leaf.ravel(), self.least,
-            stride, found,
+            stride, np.float32(least_score - _BESIDE), found,
         )  # fmt: skip
         at_row, at_column = np.nonzero(found > -np.inf)
         return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
@@ -85,6 +92,15 @@ class Cascade:
         leaf[0] += np.float32(offset)
         least = self.least * np.float32(gain) + np.float32(offset)
         return Cascade(self.patches, self.feature, self.threshold, leaf, least)
+
+    def _laid_out(self, high: int, wide: int) -> Layout:
+        """Tell where patches lie in sums of such a size, as in those of the last images."""
+        kept = self._layouts
+        if (high, wide) not in kept:
+            if len(kept) >= _LAYOUTS:
+                kept.clear()
+            kept[high, wide] = self.patches.corners(self.feature.ravel(), high, wide)
+        return kept[high, wide]
 
     def running(self, sums: Sums) -> NDArray[np.float32]:
         """Give the scores (N, T) after each tree of windows with sums in their columns (9 * 21 * 11, N)."""
@@ -106,6 +122,7 @@ def _scan(
     leaf: Cells,
     least: Cells,
     stride: int,
+    promising: np.float32,
     found: Cells,
 ) -> None:  # pragma: no cover
     """Look at every so many windows, then at those beside promising ones; leave their scores."""
@@ -118,16 +135,13 @@ def _scan(
             left[count] = j
             count += 1
         base = (i + first) * wide
-        count = _walk(sums, base, left, count, offset, weight, threshold, leaf, least, 0, _LOOKED, score)
-        for k in range(count):
-            top, bottom = max(i - stride + 1, 0), min(i + stride, rows)
-            begin = max(np.int64(left[k]) - stride + 1, 0)
-            is_wanted[top:bottom, begin : min(np.int64(left[k]) + stride, columns)] = True
-        count = _walk(
-            sums, base, left, count, offset, weight, threshold, leaf, least, _LOOKED, len(least), score
-        )
+        count = _walk(sums, base, left, count, offset, weight, threshold, leaf, least, score)
+        top, bottom = max(i - stride + 1, 0), min(i + stride, rows)
         for k in range(count):
             found[i, left[k]] = score[left[k]]
+            if score[left[k]] >= promising:
+                begin = max(np.int64(left[k]) - stride + 1, 0)
+                is_wanted[top:bottom, begin : min(np.int64(left[k]) + stride, columns)] = True
     for i in range(rows):
         count = 0
         for j in range(columns):
@@ -135,7 +149,7 @@ def _scan(
                 left[count] = j
                 count += 1
         base = (i + first) * wide
-        count = _walk(sums, base, left, count, offset, weight, threshold, leaf, least, 0, len(least), score)
+        count = _walk(sums, base, left, count, offset, weight, threshold, leaf, least, score)
         for k in range(count):
             found[i, left[k]] = score[left[k]]
 
@@ -151,17 +165,14 @@ def _walk(
     threshold: Cells,
     leaf: Cells,
     least: Cells,
-    start: int,
-    end: int,
     score: Cells,
 ) -> int:  # pragma: no cover
-    """Take windows of a row through some trees, and keep those that are left; give how many.
+    """Take windows of a row through all trees, and keep those that are left; give how many.
 
     All windows go through a tree before the next one: none waits for what another one reads.
     """
-    if start == 0:
-        score[:] = 0.0
-    for tree in range(start, min(end, len(least))):
+    score[:] = 0.0
+    for tree in range(len(least)):
         kept = 0
         nodes, leaves, limit = np.uint32(tree * NODES), np.uint32(tree * LEAVES), least[tree]
         for k in range(count):

@@ -56,7 +56,7 @@ def look_closer(
         return found
     crops = crops_of(grey, change, found.box, CloserLook.FORM.crop)
     numbers = numbers_of(found, crops, (grey.shape[0], grey.shape[1]), mount)
-    return Proposals(moved(found.box, network.told(planes_of(crops), numbers)), found.score)
+    return found._replace(box=moved(found.box, network.told(planes_of(crops), numbers)))
 
 
 @cache

@@ -31,7 +31,7 @@ SMALLEST_PX: Final = 24.0
 WEAKEST: Final = -3.5
 """Score of what trees propose from which on it is looked at again."""
 
-_OLDEST_S: Final = 2.0 * EARLIER_S
+_OLDEST_S: Final = 2.5 * EARLIER_S
 
 
 class _Past(NamedTuple):
@@ -71,7 +71,12 @@ class PeopleDetector:
         self._memory = Memory()
 
     def update(
-        self, grey: Grey, time_s: float, odometry: Odometry | None = None, mount: Mount | None = None
+        self,
+        grey: Grey,
+        time_s: float,
+        odometry: Odometry | None = None,
+        mount: Mount | None = None,
+        expected: Proposals | None = None,
     ) -> Proposals:
         """Look for people.
 
@@ -80,12 +85,18 @@ class PeopleDetector:
             time_s: when it was taken.
             odometry: how the robot moved since the last one; None if that is not known.
             mount: how the camera sits; None if that is not known: then people may be anywhere.
+            expected: who alone is looked for, by what trees said of them when they were found; None for
+                whoever is there.
         """
-        return self.found(grey, self._change(grey, time_s, odometry, mount), mount)
+        return self.found(grey, self._change(grey, time_s, odometry, mount), mount, expected)
 
-    def found(self, grey: Grey, change: Grey, mount: Mount | None) -> Proposals:
+    def found(
+        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals | None = None
+    ) -> Proposals:
         """Look for people in an image of which it is known by how much (H, W) greys changed."""
-        first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, self._memory)
+        first = expected
+        if first is None:
+            first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, self._memory)
         found = look_again(self._second_look, grey, change, first, mount, self._least_score)
         return look_closer(self._closer_look, grey, change, found, mount)
 
@@ -126,9 +137,9 @@ def look(
         sums = summed(level.cells)
         for kind, trees in model.trees.items():
             for rows in level.rows[kind]:
-                hits = trees.cascade.scan(sums, rows)
+                hits = trees.cascade.scan(sums, rows, least_score=least_score)
                 is_sure = hits.score >= least_score
                 row, column = hits.row[is_sure], hits.column[is_sure]
                 boxes.append(trees.placing.boxes(sums, row, column, level.boxes(row, column)))
                 scores.append(hits.score[is_sure])
-    return suppress(np.concatenate(boxes), np.concatenate(scores))
+    return suppress(Proposals.of_trees(np.concatenate(boxes), np.concatenate(scores)))

@@ -19,6 +19,9 @@ from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 Sums = NDArray[np.int32]
 """(9, h + 1, w + 1): of all cells above and to the left, in parts of `PART`."""
 
+Layout = tuple[NDArray[np.uint32], Cells]
+"""Of patches: offsets (N, 8) of their corners in sums, and by what to multiply (N, 2) both rectangles'."""
+
 PART: Final = np.float32(512.0)
 CORNERS: Final = 8
 """Of two rectangles: each adds its last and first ones and loses the others."""
@@ -41,12 +44,8 @@ class Patches:
     def __len__(self) -> int:
         return len(self.channel)
 
-    def corners(self, feature: NDArray[np.int32], high: int, wide: int) -> tuple[NDArray[np.uint32], Cells]:
-        """Tell where to look for patches (N,) in sums of `high` by `wide`, seen from a window's first cell.
-
-        Returns:
-            Offsets (N, 8) of the corners, and by what to multiply (N, 2) the sums of both rectangles.
-        """
+    def corners(self, feature: NDArray[np.int32], high: int, wide: int) -> Layout:
+        """Tell where patches (N,) lie in sums of `high` by `wide`, seen from a window's first cell."""
         offset, weight = np.empty((len(feature), CORNERS), np.uint32), np.empty((len(feature), 2), np.float32)
         _corners(feature, self.channel, self.first, self.second, high, wide, offset, weight)
         return offset, weight

@@ -83,8 +83,8 @@ def look_again(
     told = network.told(planes_of(crops), numbers)
     believed = BELIEVED_OF_STRANGERS if mount is None else BELIEVED
     score = first.score + believed * (told[:, 0] - first.score)
-    is_sure = score >= least_score
-    return suppress(moved(first.box, told[:, 1:])[is_sure], score[is_sure])
+    again = Proposals(moved(first.box, told[:, 1:]), score, first.trees)
+    return suppress(again.taken(score >= least_score))
 
 
 @cache

@@ -23,25 +23,32 @@ class Proposals(NamedTuple):
     Attributes:
         box: (N, 4) [px] from head to feet, the surest first.
         score: (N,) log odds, as far as training goes: 0 is even.
+        trees: (N,) likewise, as trees see it alone.
     """
 
     box: Floats
     score: Floats
+    trees: Floats
+
+    @classmethod
+    def of_trees(cls, box: Floats, score: Floats) -> Proposals:
+        """Take what trees propose, at which nothing else has looked yet."""
+        return cls(box, score, score)
+
+    def taken(self, rows: NDArray[np.bool_] | NDArray[np.intp]) -> Proposals:
+        """Give some of them."""
+        return Proposals(self.box[rows], self.score[rows], self.trees[rows])
 
 
-def suppress(box: Floats, score: Floats) -> Proposals:
+def suppress(found: Proposals) -> Proposals:
     """Keep the best of boxes that share much of the smaller one's area, each the mean of those like it.
 
     Greedy (Dollár et al., PAMI 2012). A box weighs exp(score) in the mean. Of those kept, one is left out
     that lies between two surer ones and is mostly theirs.
-
-    Args:
-        box: (N, 4) [px].
-        score: (N,).
     """
-    order = np.argsort(-score, kind="stable")
-    box, score = box[order], score[order]
-    is_left, kept, means = np.ones(len(box), np.bool_), [], []
+    box, score, trees = found.taken(np.argsort(-found.score, kind="stable"))
+    is_left, means = np.ones(len(box), np.bool_), []
+    kept: list[int] = []
     for k in range(len(box)):
         if not is_left[k]:
             continue
@@ -50,9 +57,8 @@ def suppress(box: Floats, score: Floats) -> Proposals:
         means.append(weight @ box / weight.sum())
         kept.append(k)
         is_left &= shared <= _SHARED
-    found = Proposals(np.array(means).reshape(-1, 4), score[kept])
-    is_own = ~_is_between(found)
-    return Proposals(found.box[is_own], found.score[is_own])
+    ours = Proposals(np.array(means).reshape(-1, 4), score[kept], trees[kept])
+    return ours.taken(~_is_between(ours))
 
 
 def _is_between(found: Proposals) -> NDArray[np.bool_]:

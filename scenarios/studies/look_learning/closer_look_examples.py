@@ -47,7 +47,7 @@ def _looks(one: LookedAt) -> LookExamples:
     people = shot.box[_is_learned_from(shot, rng)]
     boxes = _about(people, rng)
     crops = crops_of(shot.grey, shot.change, boxes, CloserLook.FORM.crop)
-    numbers = numbers_of(Proposals(boxes, np.zeros(len(boxes))), crops, shape, mount)
+    numbers = numbers_of(Proposals.of_trees(boxes, np.zeros(len(boxes))), crops, shape, mount)
     overlap = iou(boxes, people).astype(np.float32)
     return LookExamples(crops, numbers, overlap, offsets(boxes, people).astype(np.float32))
 

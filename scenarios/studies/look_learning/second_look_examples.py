@@ -70,7 +70,7 @@ def _jittered(found: Proposals, rng: np.random.Generator) -> Proposals:
     middle, centre = left + width / 2.0 + right, top + height / 2.0 + down
     box = np.stack([middle - wide / 2.0, centre - tall / 2.0, wide, tall], axis=1)
     score = found.score[again] + rng.normal(0.0, _SURER, len(again))
-    return Proposals(np.concatenate([found.box, box]), np.concatenate([found.score, score]))
+    return Proposals.of_trees(np.concatenate([found.box, box]), np.concatenate([found.score, score]))
 
 
 def _whom(box: Floats, people: Floats) -> tuple[Floats, Floats]:

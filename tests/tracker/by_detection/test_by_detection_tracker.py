@@ -12,6 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig, MatchingConfig
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, PinholeCalibration
+from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import Status, Track
 
 RATE_HZ = 15.0
@@ -27,10 +28,12 @@ class Told:
 
     def __init__(self, boxes: Sequence[Sequence[Box]], score: float = 3.0) -> None:
         self._boxes, self._score = iter(boxes), score
+        self.expected: list[Proposals | None] = []
 
-    def __call__(self, frame: Frame) -> tuple[np.ndarray, np.ndarray]:  # noqa: ARG002
+    def __call__(self, frame: Frame, expected: Proposals | None) -> Proposals:  # noqa: ARG002
+        self.expected.append(expected)
         boxes = np.array(next(self._boxes), np.float64).reshape(-1, 4)
-        return boxes, np.full(len(boxes), self._score)
+        return Proposals(boxes, np.full(len(boxes), self._score), np.arange(1.0, 1.0 + len(boxes)))
 
 
 def walker(middle: float, height: float = 100.0) -> Box:
@@ -159,6 +162,38 @@ def test_nobody_is_told_outside_the_image() -> None:
     told = [track.boxes[THERMAL] for tracks in seen for track in tracks]
     assert max(left for left, *_ in told) < 319.5
     assert not seen[-1]
+
+
+def test_in_each_other_image_only_who_was_just_seen_is_looked_for_where_he_is_expected() -> None:
+    boxes = [[walker(60.0 + 3.0 * i), walker(200.0)] for i in range(20)] + [[walker(200.0)]] * 3
+    find = Told(boxes)
+    tracker = ByDetectionTracker(find=find)
+    for frame in frames(boxes):
+        tracker.update(frame)
+    assert [one is None for one in find.expected] == [number % 2 == 0 for number in range(23)]
+    both, alone = find.expected[19], find.expected[21]
+    assert both is not None
+    assert alone is not None
+    np.testing.assert_allclose(both.box[::-1], boxes[19], atol=3.0)
+    assert both.trees.tolist() == both.score.tolist() == [2.0, 1.0]  # as trees said of the image before
+    np.testing.assert_allclose(alone.box, boxes[21], atol=3.0)
+
+
+def test_of_a_slow_camera_everybody_is_looked_for_in_all_images() -> None:
+    boxes = [[walker(100.0)]] * 10
+    find = Told(boxes)
+    tracker = ByDetectionTracker(find=find)
+    for number, frame in enumerate(frames(boxes)):
+        tracker.update(replace(frame, time_s=number / 10.0))
+    assert find.expected == [None] * 10
+
+
+def test_nobody_new_is_begun_with_where_only_others_are_looked_for() -> None:
+    one, other = walker(100.0), walker(220.0)
+    boxes = [[one]] * 10 + [[one], [one, other]] * 5
+    assert all(numbers(tracks) <= {1} for tracks in tracked(boxes, score=4.5, config=AS_CALIBRATED))
+    boxes = [[one]] * 10 + [[one, other], [one]] * 5
+    assert numbers(tracked(boxes, score=4.5, config=AS_CALIBRATED)[10]) == {1, 2}
 
 
 def test_who_is_pointed_out_is_told_at_once() -> None:

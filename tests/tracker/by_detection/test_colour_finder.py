@@ -24,14 +24,14 @@ from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
 
 CONFIG = BothCamerasConfig()
-ONE = Proposals(np.array([[100.0, 40.0, 30.0, 100.0]]), np.array([1.0]))
+ONE = Proposals.of_trees(np.array([[100.0, 40.0, 30.0, 100.0]]), np.array([1.0]))
 
 
 def proposals() -> st.SearchStrategy[Proposals]:
     def of(count: int) -> st.SearchStrategy[Proposals]:
         boxes = arrays(np.float64, (count, 4), elements=st.floats(5.0, 100.0))
         scores = arrays(np.float64, count, elements=st.floats(-2.0, 4.0))
-        return st.builds(lambda box, score: Proposals(box, -np.sort(-score)), boxes, scores)
+        return st.builds(lambda box, score: Proposals.of_trees(box, -np.sort(-score)), boxes, scores)
 
     return st.integers(0, 5).flatmap(of)
 
@@ -40,7 +40,7 @@ def proposals() -> st.SearchStrategy[Proposals]:
 def test_colours_take_nobody_away_and_move_nobody(thermal: Proposals, colour: Proposals) -> None:
     both = seen_by_both(thermal, colour, CONFIG)
     assert (np.diff(both.score) <= 0.0).all()
-    for box, score in zip(*thermal, strict=True):
+    for box, score in zip(thermal.box, thermal.score, strict=True):
         rows = (both.box == box).all(axis=1)
         assert rows.any()
         assert both.score[rows].max() >= score
@@ -52,7 +52,7 @@ def test_colours_take_nobody_away_and_move_nobody(thermal: Proposals, colour: Pr
 
 
 def test_of_whom_both_show_the_surer_score_and_the_thermal_box_are_told() -> None:
-    colour = Proposals(ONE.box + np.array([3.0, 2.0, 0.0, 0.0]), np.array([2.5]))
+    colour = Proposals.of_trees(ONE.box + np.array([3.0, 2.0, 0.0, 0.0]), np.array([2.5]))
     both = seen_by_both(ONE, colour, CONFIG)
     assert both.score.tolist() == [2.5]
     np.testing.assert_array_equal(both.box, ONE.box)
@@ -60,7 +60,7 @@ def test_of_whom_both_show_the_surer_score_and_the_thermal_box_are_told() -> Non
 
 
 def test_whom_colours_alone_show_is_told_if_that_is_likely() -> None:
-    elsewhere = Proposals(ONE.box + np.array([80.0, 0.0, 0.0, 0.0]), np.array([2.0]))
+    elsewhere = Proposals.of_trees(ONE.box + np.array([80.0, 0.0, 0.0, 0.0]), np.array([2.0]))
     assert seen_by_both(ONE, elsewhere, CONFIG).score.tolist() == [2.0, 1.0]
     assert seen_by_both(NOBODY, elsewhere, CONFIG).score.tolist() == [2.0]
     assert seen_by_both(ONE, replace_score(elsewhere, -0.5), CONFIG).score.tolist() == [1.0]
@@ -68,11 +68,11 @@ def test_whom_colours_alone_show_is_told_if_that_is_likely() -> None:
 
 
 def replace_score(found: Proposals, score: float) -> Proposals:
-    return Proposals(found.box, np.full(len(found.box), score))
+    return Proposals.of_trees(found.box, np.full(len(found.box), score))
 
 
 def test_a_part_of_somebody_known_is_nobody_else() -> None:
-    head = Proposals(np.array([[105.0, 42.0, 12.0, 40.0]]), np.array([3.0]))
+    head = Proposals.of_trees(np.array([[105.0, 42.0, 12.0, 40.0]]), np.array([3.0]))
     assert seen_by_both(ONE, head, CONFIG).score.tolist() == [1.0]
 
 

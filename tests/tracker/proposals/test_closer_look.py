@@ -10,7 +10,9 @@ from peopleboy.tracker.thermal.mount import Mount
 from tests.helpers.images.drawn_looks import drawn_weights
 
 PAGE = Path(__file__).parents[3] / "docs" / "how" / "proposals.md"
-FOUND = Proposals(np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0]))
+FOUND = Proposals.of_trees(
+    np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0])
+)
 MOUNT = Mount(60.0, 160.0, 1.2)
 
 
@@ -38,13 +40,13 @@ def test_each_is_placed_by_itself() -> None:
     network = CloserLook(drawn_weights(CloserLook.FORM))
     both = look_closer(network, image(), image(), FOUND, MOUNT)
     for k in range(2):
-        one = Proposals(FOUND.box[k : k + 1], FOUND.score[k : k + 1])
+        one = Proposals.of_trees(FOUND.box[k : k + 1], FOUND.score[k : k + 1])
         alone = look_closer(network, image(), image(), one, MOUNT)
         np.testing.assert_allclose(alone.box[0], both.box[k], atol=1e-3)
 
 
 def test_nobody_found_is_nobody_placed() -> None:
-    none = Proposals(np.empty((0, 4)), np.empty(0))
+    none = Proposals.of_trees(np.empty((0, 4)), np.empty(0))
     assert len(look_closer(shipped_closer_look(), image(), image(), none, None).box) == 0
 
 

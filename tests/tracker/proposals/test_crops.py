@@ -17,7 +17,7 @@ def ramp() -> np.ndarray:
 
 
 def proposed(box: np.ndarray, score: float = 0.0) -> Proposals:
-    return Proposals(box, np.full(len(box), score))
+    return Proposals.of_trees(box, np.full(len(box), score))
 
 
 def test_a_crop_of_its_own_size_shows_the_pixels_round_the_middle_of_the_box() -> None:

@@ -17,7 +17,9 @@ def image() -> np.ndarray:
 
 
 PAGE = Path(__file__).parents[3] / "docs" / "how" / "proposals.md"
-FIRST = Proposals(np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0]))
+FIRST = Proposals.of_trees(
+    np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0])
+)
 
 
 def test_who_knows_nothing_says_what_the_first_look_did() -> None:
@@ -33,7 +35,7 @@ def test_who_knows_nothing_says_what_the_first_look_did() -> None:
 def test_nobody_below_the_least_is_told() -> None:
     assert len(look_again(drawn_network(), image(), image(), FIRST, None, 0.0).score) == 1
     assert len(look_again(drawn_network(), image(), image(), FIRST, None, 9.0).score) == 0
-    none = Proposals(np.empty((0, 4)), np.empty(0))
+    none = Proposals.of_trees(np.empty((0, 4)), np.empty(0))
     assert len(look_again(drawn_network(), image(), image(), none, None, -9.0).score) == 0
 
 
@@ -41,7 +43,7 @@ def test_each_is_judged_by_itself() -> None:
     network = drawn_network(5.0)
     both = look_again(network, image(), image(), FIRST, None, -99.0)
     for k in range(2):
-        one = Proposals(FIRST.box[k : k + 1], FIRST.score[k : k + 1])
+        one = Proposals.of_trees(FIRST.box[k : k + 1], FIRST.score[k : k + 1])
         alone = look_again(network, image(), image(), one, None, -99.0)
         assert np.isclose(both.score, alone.score[0], atol=1e-3).any()
 

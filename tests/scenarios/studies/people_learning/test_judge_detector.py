@@ -35,7 +35,7 @@ def test_figures_of_what_was_found() -> None:
 def propose(monkeypatch: pytest.MonkeyPatch, shot: PeopleShot, is_person: NDArray[np.bool_]) -> None:
     """Let the detector propose the person of a shot with some scores, and what is none with the others."""
     box = np.where(is_person[:, None], shot.box, shot.box + np.array([500.0, 0.0, 0.0, 0.0]))
-    monkeypatch.setattr(judge_detector, "look", lambda *_: Proposals(box, SCORES))
+    monkeypatch.setattr(judge_detector, "look", lambda *_: Proposals.of_trees(box, SCORES))
 
 
 def test_scores_become_the_log_odds_that_it_is_somebody(
