@@ -109,6 +109,8 @@ class ExistenceConfig:
         missed_hidden: the same of somebody behind others.
         doubt_s: who was not found for so long is told no more.
         hidden_doubt_s: the same of somebody behind others.
+        hidden_share: the same, as a share of how long he was watched: a mistake that is made beside somebody
+            seems to be hidden by him in the end.
         forget_s: who was not found for so long is forgotten.
         brief_s: of who was seen for less than that, `brief_forget_s`.
         brief_forget_s: who was hardly seen is forgotten sooner.
@@ -133,6 +135,7 @@ class ExistenceConfig:
     missed_hidden: float = 0.3
     doubt_s: float = 0.25
     hidden_doubt_s: float = 1.0
+    hidden_share: float = 0.5
     forget_s: float = 10.0
     brief_s: float = 1.0
     brief_forget_s: float = 2.0
@@ -172,8 +175,8 @@ class ByDetectionConfig:
             people apart in crowds.
         identity_uncalibrated: when people turn out to be others there: boxes fit a colour image less well.
         colour: what is believed of the colour image.
-        everywhere_s: how often people are looked for everywhere, at the most: of 15 images a second in each
-            other one. In those between, whoever was just seen is looked for where he is expected.
+        soon_s: an image that comes so soon after one that was searched everywhere is searched where those
+            are expected who were seen in it, and nowhere else; so is each other of 15 images a second.
     """
 
     path: PathConfig = field(default_factory=PathConfig)
@@ -190,4 +193,4 @@ class ByDetectionConfig:
     )
     identity_uncalibrated: RecognitionConfig = field(default_factory=lambda: RecognitionConfig(same=0.65))
     colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)
-    everywhere_s: float = 0.09
+    soon_s: float = 0.08

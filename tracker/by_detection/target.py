@@ -141,7 +141,9 @@ class Target:
 
     def is_shown(self, time_s: float, config: ExistenceConfig) -> bool:
         """Tell whether it is still said to be where it is expected."""
-        doubt = config.doubt_s if self.occluder is None else config.hidden_doubt_s
+        doubt = config.doubt_s
+        if self.occluder is not None:
+            doubt = max(doubt, min(config.hidden_doubt_s, config.hidden_share * self.watched_s))
         return self.is_told and self.log_odds > config.hopeless and time_s - self.seen_s <= doubt
 
     def is_forgotten(self, time_s: float, config: ExistenceConfig) -> bool:
