@@ -175,8 +175,9 @@ class ByDetectionConfig:
             people apart in crowds.
         identity_uncalibrated: when people turn out to be others there: boxes fit a colour image less well.
         colour: what is believed of the colour image.
-        soon_s: an image that comes so soon after one that was searched everywhere is searched where those
-            are expected who were seen in it, and nowhere else; so is each other of 15 images a second.
+        soon_s: an image of a camera that is known and comes so soon after one that was searched everywhere is
+            searched where those are expected who were seen in it, and nowhere else; so is each other of 15
+            images a second.
     """
 
     path: PathConfig = field(default_factory=PathConfig)
