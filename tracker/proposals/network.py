@@ -120,7 +120,9 @@ class CropNetwork:
 def patches(planes: Planes, side: int, stride: int) -> Planes:
     """Give what a kernel sees at each place, (N, H', W', side side C), of planes (N, H, W, C)."""
     edge = side // 2
-    padded = np.pad(planes, ((0, 0), (edge, edge), (edge, edge), (0, 0)))
+    number, high, wide, deep = planes.shape
+    padded = np.zeros((number, high + 2 * edge, wide + 2 * edge, deep), np.float32)
+    padded[:, edge : edge + high, edge : edge + wide] = planes
     seen = np.lib.stride_tricks.sliding_window_view(padded, (side, side), (1, 2))[:, ::stride, ::stride]
     count, rows, columns, depth = seen.shape[:4]
     whole = np.ascontiguousarray(seen.transpose(0, 1, 2, 4, 5, 3))
