@@ -24,7 +24,7 @@ LEAVES: Final = 2**DEPTH
 STRIDE: Final = 2  # [cells] between windows of the first look
 _LAYOUTS: Final = 40
 """Sizes of levels for which is kept where patches lie: those of one image are half as many."""
-_BESIDE: Final = 2.5
+BESIDE: Final = 2.5
 """Log odds by which a window may be surer than the one beside it that was looked at."""
 
 
@@ -81,7 +81,7 @@ class Cascade:
         found = np.full((end - first, wide - COLUMNS), -np.inf, np.float32)
         _scan(
             sums.ravel(), wide, first, offset, weight, self.threshold.ravel(), self.leaf.ravel(), self.least,
-            stride, np.float32(least_score - _BESIDE), found,
+            stride, np.float32(least_score - BESIDE), found,
         )  # fmt: skip
         at_row, at_column = np.nonzero(found > -np.inf)
         return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
@@ -96,11 +96,12 @@ class Cascade:
     def _laid_out(self, high: int, wide: int) -> Layout:
         """Tell where patches lie in sums of such a size, as in those of the last images."""
         kept = self._layouts
-        if (high, wide) not in kept:
+        layout = kept.get((high, wide))
+        if layout is None:
             if len(kept) >= _LAYOUTS:
                 kept.clear()
-            kept[high, wide] = self.patches.corners(self.feature.ravel(), high, wide)
-        return kept[high, wide]
+            layout = kept[high, wide] = self.patches.corners(self.feature.ravel(), high, wide)
+        return layout
 
     def running(self, sums: Sums) -> NDArray[np.float32]:
         """Give the scores (N, T) after each tree of windows with sums in their columns (9 * 21 * 11, N)."""

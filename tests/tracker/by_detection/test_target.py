@@ -90,6 +90,19 @@ def images_until_told(score: float, speed_m_s: float) -> int:
     raise AssertionError("never told")
 
 
+@given(st.floats(0.0, 10.0), st.floats(0.0, 3.0))
+def test_hidden_people_are_told_for_a_share_of_how_long_they_were_watched(
+    watched_s: float, gone_s: float
+) -> None:
+    hidden, away = known(), known()
+    for one in (hidden, away):
+        one.watched_s, one.log_odds = watched_s, CONFIG.highest
+    hidden.occluder = 2
+    longest_s = max(min(CONFIG.hidden_share * watched_s, CONFIG.hidden_doubt_s), CONFIG.doubt_s)
+    assert hidden.is_shown(gone_s, CONFIG) == (gone_s <= longest_s)
+    assert away.is_shown(gone_s, CONFIG) == (gone_s <= CONFIG.doubt_s)
+
+
 def test_who_stands_still_is_no_new_sight_in_every_image() -> None:
     walks, stands = images_until_told(0.5, 1.0), images_until_told(0.5, 0.0)
     sights = (CONFIG.confirmed - 0.5) / 0.5

@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.cascade import Cascade
+from peopleboy.tracker.proposals.cascade import BESIDE, STRIDE, Cascade
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 from tests.helpers.images import drawn_trees
@@ -45,6 +47,27 @@ def test_beside_a_window_that_comes_through_all_are_looked_at() -> None:
     assert set(zip(*cascade.scan(sums, (0, 34)), strict=True)) == set(
         zip(*cascade.scan(sums, (0, 34), stride=1), strict=True)
     )
+
+
+@given(st.floats(-12.0, 12.0))
+def test_windows_beside_promising_ones_are_looked_at_and_no_others(least: float) -> None:
+    sums, cascade = summed(drawn_cells()), drawn_cascade()
+    every, found = cascade.scan(sums, (0, 34), stride=1), cascade.scan(sums, (0, 34), least_score=least)
+    scores = dict(zip(zip(every.row, every.column, strict=True), every.score, strict=True))
+    places = list(zip(found.row.tolist(), found.column.tolist(), strict=True))
+    assert all(scores[place] == score for place, score in zip(places, found.score, strict=True))
+    own = {place for place in scores if place[0] % STRIDE == place[1] % STRIDE == 0}
+    promising = {place for place in own if scores[place] >= least - BESIDE}
+    beside = {(a + i, b + j) for a, b in promising for i in (-1, 0, 1) for j in (-1, 0, 1)}
+    assert set(places) == own | (beside & scores.keys())
+
+
+def test_sums_of_many_sizes_are_looked_through_as_those_of_one() -> None:
+    cascade, cells = drawn_cascade(), drawn_cells()
+    for columns in [*range(COLUMNS, cells.shape[2]), *range(COLUMNS, cells.shape[2])] * 3:
+        sums = summed(np.ascontiguousarray(cells[:, :, :columns]))
+        for one, other in zip(cascade.scan(sums, (0, 34)), drawn_cascade().scan(sums, (0, 34)), strict=True):
+            np.testing.assert_array_equal(one, other)
 
 
 def test_only_the_rows_that_are_asked_for_are_looked_at() -> None:
