@@ -186,7 +186,13 @@ class ByDetectionConfig:
     identity: RecognitionConfig = field(default_factory=RecognitionConfig)
     existence_uncalibrated: ExistenceConfig = field(
         default_factory=lambda: ExistenceConfig(
-            birth=0.5, sightings=4, at_once=math.inf, confirmed=2.3, shared_doubt=4.0, hidden_doubt_s=0.5
+            birth=0.5,
+            sightings=4,
+            at_once=math.inf,
+            confirmed=2.3,
+            shared_doubt=4.0,
+            hidden_doubt_s=0.5,
+            hidden_share=math.inf,
         )
     )
     matching_uncalibrated: MatchingConfig = field(
