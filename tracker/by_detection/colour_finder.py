@@ -43,7 +43,7 @@ class ColourFinder:
         Nobody, if it is too soon, there is no new image, or not both cameras are calibrated.
         """
         here, there = frame.calibrations.get(COLOUR), frame.calibrations.get(THERMAL)
-        if not self.is_new(frame) or frame.time_s - self._last_s < self._config.every_s:
+        if not self.takes_in(frame) or frame.time_s - self._last_s < self._config.every_s:
             return NOBODY
         if not (isinstance(here, PinholeCalibration) and isinstance(there, PinholeCalibration)):
             return NOBODY
@@ -54,8 +54,8 @@ class ColourFinder:
         seen = Proposals(boxes, self._config.believed * found.score, found.trees)
         return seen.taken(area(boxes) > 0.0)
 
-    def is_new(self, frame: Frame) -> bool:
-        """Tell whether a frame has a new image, and take in how the robot moved until then."""
+    def takes_in(self, frame: Frame) -> bool:
+        """Take in how the robot moved until the next new image, and tell whether a frame has that."""
         fresh = self._images.of(frame)
         if fresh is None:
             return False
@@ -79,6 +79,7 @@ def seen_by_both(thermal: Proposals, colour: Proposals, config: BothCamerasConfi
     for column in np.flatnonzero(is_same.any(axis=0)):
         row = overlap[:, column].argmax()
         score[row] = max(score[row], colour.score[column])
+    # By heat trees found nobody there: at most they leave it open.
     both = Proposals(
         np.concatenate([thermal.box, colour.box[is_alone]]),
         np.concatenate([score, colour.score[is_alone]]),

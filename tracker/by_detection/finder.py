@@ -39,7 +39,7 @@ class PeopleFinder:
         """Look for people in the next frame; for those who are expected in the thermal image alone."""
         seen = self._thermal(frame, expected)
         if expected is not None:
-            self._colour.is_new(frame)
+            self._colour.takes_in(frame)
             return seen
         return seen_by_both(seen, self._colour(frame), self._config)
 
