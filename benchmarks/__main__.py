@@ -10,6 +10,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from benchmarks import call
 from benchmarks.environments import (
     CASES,
     MANY,
@@ -31,7 +32,6 @@ from benchmarks.speed.filter_step import step_time_ms
 from benchmarks.speed.many_worlds import PIXELS, THREADS, TRUTH, many_rates
 from benchmarks.speed.render import render_times
 from benchmarks.speed.whole_tracker import WholeTracker, films, whole_tracker
-from peopleboy.bad_input import BadInput
 from peopleboy.sim.physics.physics import PHYSICS
 
 COUNTS = (300, 1000)
@@ -151,8 +151,4 @@ def _drone() -> Iterator[BenchFigure]:
 
 
 if __name__ == "__main__":
-    try:
-        main(standalone_mode=False)
-    except (BadInput, click.ClickException) as error:
-        click.echo(f"benchmarks: {error}", err=True)
-        raise SystemExit(2) from error
+    call(main, "benchmarks")

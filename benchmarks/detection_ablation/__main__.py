@@ -11,11 +11,11 @@ from typing import Final
 
 import click
 
+from benchmarks import call
 from benchmarks.clips.clip import CHOSEN_BY, open_clips
 from benchmarks.detection_ablation.film import Film
 from benchmarks.detection_ablation.variants import VARIANTS, Variant
 from benchmarks.tracker_ablation import print_row, record, recorded
-from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 
@@ -90,8 +90,4 @@ def main(seed: int, worlds: int, clips: Path | None) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main(standalone_mode=False)
-    except (BadInput, click.ClickException) as error:
-        click.echo(f"benchmarks.detection_ablation: {error}", err=True)
-        raise SystemExit(2) from error
+    call(main, "benchmarks.detection_ablation")

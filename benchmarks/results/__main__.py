@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import click
 
+from benchmarks import call
 from benchmarks.results.measured import take_in
 from benchmarks.results.tables import PATH, ResultTables, as_yaml, read_tables
 from peopleboy.bad_input import BadInput
@@ -32,8 +33,4 @@ def main(names: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main(standalone_mode=False)
-    except (BadInput, click.ClickException) as error:
-        click.echo(f"benchmarks.results: {error}", err=True)
-        raise SystemExit(2) from error
+    call(main, "benchmarks.results")
