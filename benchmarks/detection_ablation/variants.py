@@ -47,7 +47,7 @@ def _without_revision(old: RecognitionConfig) -> RecognitionConfig:
     return replace(old, parted_s=math.inf, gone_s=math.inf)
 
 
-_EVERYWHERE: Final = replace(_ALL, soon_s=0.0)
+_EVERYWHERE: Final = replace(_ALL, existence=replace(_ALL.existence, soon_s=0.0))
 
 VARIANTS: Final[Mapping[str, Variant]] = {
     "as it is": Variant(),

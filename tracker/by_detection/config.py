@@ -88,6 +88,8 @@ class ExistenceConfig:
     """When somebody is believed to be there, by the log odds that add up.
 
     Attributes:
+        soon_s: an image that comes so soon after one that was searched everywhere is searched where those
+            are expected who were seen in it, and nowhere else; so is each other of 15 images a second.
         weakest: proposals of a lower score are not looked at.
         trust: what a unit of the others counts, in images of cameras that the detector does not know.
         lasting: what is added to them: who is hardly somebody, in one image after another, is nobody more
@@ -116,6 +118,7 @@ class ExistenceConfig:
         brief_forget_s: who was hardly seen is forgotten sooner.
     """
 
+    soon_s: float = 0.08
     weakest: float = -2.0
     trust: float = 0.8
     lasting: float = -0.2
@@ -175,9 +178,6 @@ class ByDetectionConfig:
             people apart in crowds.
         identity_uncalibrated: when people turn out to be others there: boxes fit a colour image less well.
         colour: what is believed of the colour image.
-        soon_s: an image of a camera that is known and comes so soon after one that was searched everywhere is
-            searched where those are expected who were seen in it, and nowhere else; so is each other of 15
-            images a second.
     """
 
     path: PathConfig = field(default_factory=PathConfig)
@@ -186,6 +186,7 @@ class ByDetectionConfig:
     identity: RecognitionConfig = field(default_factory=RecognitionConfig)
     existence_uncalibrated: ExistenceConfig = field(
         default_factory=lambda: ExistenceConfig(
+            soon_s=0.0,
             birth=0.5,
             sightings=4,
             at_once=math.inf,
@@ -200,4 +201,3 @@ class ByDetectionConfig:
     )
     identity_uncalibrated: RecognitionConfig = field(default_factory=lambda: RecognitionConfig(same=0.65))
     colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)
-    soon_s: float = 0.08
