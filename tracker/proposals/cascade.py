@@ -24,6 +24,8 @@ LEAVES: Final = 2**DEPTH
 STRIDE: Final = 2  # [cells] between windows of the first look
 _LAYOUTS: Final = 40
 """Sizes of levels for which is kept where patches lie: those of one image are half as many."""
+_EARLY: Final = 32
+"""Trees after which few windows are left."""
 BESIDE: Final = 2.5
 """Log odds by which a window may be surer than the one beside it that was looked at."""
 
@@ -126,68 +128,70 @@ def _scan(
     promising: np.float32,
     found: Cells,
 ) -> None:  # pragma: no cover
-    """Look at every so many windows, then at those beside promising ones; leave their scores."""
+    """Look at every so many windows, then at those beside promising ones; leave their scores.
+
+    Rows are kept apart while many are let go, of windows that read what is near; then few are left, and all
+    of a level go through a tree at once, as trees take more room than what they read.
+    """
     rows, columns = found.shape
-    score, left = np.empty(columns, np.float32), np.empty(columns, np.uint32)
+    early = min(_EARLY, len(least))
+    at, score = np.empty(rows * columns, np.uint32), np.empty(rows * columns, np.float32)
     is_wanted = np.zeros((rows, columns), np.bool_)
+    left = 0
     for i in range(0, rows, stride):
         count = 0
         for j in range(0, columns, stride):
-            left[count] = j
+            at[left + count], score[left + count] = (i + first) * wide + j, 0.0
             count += 1
-        base = (i + first) * wide
-        count = _walk(sums, base, left, count, offset, weight, threshold, leaf, least, score)
-        top, bottom = max(i - stride + 1, 0), min(i + stride, rows)
-        for k in range(count):
-            found[i, left[k]] = score[left[k]]
-            if score[left[k]] >= promising:
-                begin = max(np.int64(left[k]) - stride + 1, 0)
-                is_wanted[top:bottom, begin : min(np.int64(left[k]) + stride, columns)] = True
+        some, theirs = at[left : left + count], score[left : left + count]
+        left += _walk(sums, some, theirs, count, offset, weight, threshold, leaf, least[:early], 0)
+    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, early)
+    for k in range(left):
+        row, column = np.int64(at[k]) // wide - first, np.int64(at[k]) % wide
+        found[row, column] = score[k]
+        if score[k] >= promising:
+            top, begin = max(row - stride + 1, 0), max(column - stride + 1, 0)
+            is_wanted[top : min(row + stride, rows), begin : min(column + stride, columns)] = True
+    left = 0
     for i in range(rows):
-        count = 0
         for j in range(columns):
             if is_wanted[i, j] and (i % stride != 0 or j % stride != 0):
-                left[count] = j
-                count += 1
-        base = (i + first) * wide
-        count = _walk(sums, base, left, count, offset, weight, threshold, leaf, least, score)
-        for k in range(count):
-            found[i, left[k]] = score[left[k]]
+                at[left], score[left] = (i + first) * wide + j, 0.0
+                left += 1
+    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, 0)
+    for k in range(left):
+        found[np.int64(at[k]) // wide - first, np.int64(at[k]) % wide] = score[k]
 
 
 @njit(cache=True, nogil=True)
 def _walk(
     sums: Sums,
-    base: int,
-    left: NDArray[np.uint32],
+    at: NDArray[np.uint32],
+    score: Cells,
     count: int,
     offset: NDArray[np.uint32],
     weight: Cells,
     threshold: Cells,
     leaf: Cells,
     least: Cells,
-    score: Cells,
+    begin: int,
 ) -> int:  # pragma: no cover
-    """Take windows of a row through all trees, and keep those that are left; give how many.
+    """Take windows that begin at places in sums through trees from one on; move those left to the front.
 
     All windows go through a tree before the next one: none waits for what another one reads.
     """
-    score[:] = 0.0
-    for tree in range(len(least)):
+    for tree in range(begin, len(least)):
         kept = 0
         nodes, leaves, limit = np.uint32(tree * NODES), np.uint32(tree * LEAVES), least[tree]
         for k in range(count):
-            window = left[k]
-            at = np.uint32(base) + window
             node = np.uint32(0)
             for _ in range(DEPTH):
                 corner, by = offset[nodes + node], weight[nodes + node]
-                seen = patch(sums, at, corner, by)
+                seen = patch(sums, at[k], corner, by)
                 is_right = seen > threshold[nodes + node]
                 node = np.uint32(2) * node + np.uint32(1) + np.uint32(is_right)
-            total = score[window] + leaf[leaves + node - np.uint32(NODES)]
-            score[window] = total
-            left[kept] = window
+            total = score[k] + leaf[leaves + node - np.uint32(NODES)]
+            at[kept], score[kept] = at[k], total
             kept += total >= limit
         count = kept
         if count == 0:

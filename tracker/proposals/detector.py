@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.proposals.channels import Memory
-from peopleboy.tracker.proposals.closer_look import CloserLook, look_closer, shipped_closer_look
+from peopleboy.tracker.proposals.looks.closer_look import CloserLook, look_closer, shipped_closer_look
+from peopleboy.tracker.proposals.looks.second_look import SecondLook, look_again, shipped_network
 from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
 from peopleboy.tracker.proposals.motion import change, shifted, turned
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.pyramid import levels
-from peopleboy.tracker.proposals.second_look import SecondLook, look_again, shipped_network
 from peopleboy.tracker.proposals.suppression import Proposals, suppress
 from peopleboy.tracker.proposals.window import Floats
 from peopleboy.tracker.thermal.mount import Mount

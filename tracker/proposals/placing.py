@@ -79,16 +79,17 @@ def _place(
     leaf: Cells,
     told: Cells,
 ) -> None:  # pragma: no cover
+    """Add up what trees say, one after the other, of all windows: trees take more room than windows."""
     trees = leaf.shape[1]
-    for number in range(len(begin)):
-        at = np.uint32(begin[number])
-        for offset_of in range(leaf.shape[0]):
-            total = np.float32(0.0)
-            for tree in range(trees):
-                node, nodes = 0, (offset_of * trees + tree) * NODES
+    told[:] = 0.0
+    for offset_of in range(leaf.shape[0]):
+        for tree in range(trees):
+            nodes = (offset_of * trees + tree) * NODES
+            for number in range(len(begin)):
+                at = np.uint32(begin[number])
+                node = 0
                 for _ in range(DEPTH):
                     corner, by = offset[nodes + node], weight[nodes + node]
                     seen = patch(sums, at, corner, by)
                     node = 2 * node + 1 + (seen > threshold[nodes + node])
-                total += leaf[offset_of, tree, node - NODES]
-            told[number, offset_of] = total
+                told[number, offset_of] += leaf[offset_of, tree, node - NODES]

@@ -12,8 +12,8 @@ from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.scenarios.studies.look_learning.varied_shots import LookedAt, as_they_are, varied_shots
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.boxes import area, cover, intersection, iou
-from peopleboy.tracker.proposals.closer_look import CloserLook
-from peopleboy.tracker.proposals.crops import crops_of, numbers_of
+from peopleboy.tracker.proposals.looks.closer_look import CloserLook
+from peopleboy.tracker.proposals.looks.crops import crops_of, numbers_of
 from peopleboy.tracker.proposals.placing import offsets
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.proposals.window import Floats

@@ -20,7 +20,7 @@ from peopleboy.scenarios.studies.look_learning.learned_network import (
 )
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.shots import shots_of
-from peopleboy.tracker.proposals.closer_look import NETWORK, CloserLook
+from peopleboy.tracker.proposals.looks.closer_look import NETWORK, CloserLook
 
 ROUNDS: Final = 2
 

@@ -16,7 +16,7 @@ from peopleboy.scenarios.studies.look_learning.teach_network import (
     bent,
     last_of,
 )
-from peopleboy.tracker.proposals.closer_look import SCALES, USUAL, CloserLook
+from peopleboy.tracker.proposals.looks.closer_look import SCALES, USUAL, CloserLook
 
 _SHARED: Final = 4.0  # weight of what boxes do not share
 _UNITS: Final = 0.3  # weight of units off

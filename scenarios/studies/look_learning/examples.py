@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.crops import NUMBERS, PLANES, Crops, CropSize, Planes
+from peopleboy.tracker.proposals.looks.crops import NUMBERS, PLANES, Crops, CropSize, Planes
 from peopleboy.tracker.proposals.placing import OFFSETS
 
 

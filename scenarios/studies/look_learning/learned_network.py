@@ -13,11 +13,11 @@ from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.tracker.boxes import Floats, iou
-from peopleboy.tracker.proposals.closer_look import CloserLook
-from peopleboy.tracker.proposals.crops import planes_of
-from peopleboy.tracker.proposals.network import CropNetwork
+from peopleboy.tracker.proposals.looks.closer_look import CloserLook
+from peopleboy.tracker.proposals.looks.crops import planes_of
+from peopleboy.tracker.proposals.looks.network import CropNetwork
+from peopleboy.tracker.proposals.looks.second_look import SecondLook
 from peopleboy.tracker.proposals.placing import moved
-from peopleboy.tracker.proposals.second_look import SecondLook
 
 _AT_ONCE: Final = 256  # crops
 

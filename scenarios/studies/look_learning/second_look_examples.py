@@ -13,11 +13,11 @@ from peopleboy.scenarios.studies.look_learning.varied_shots import LookedAt, as_
 from peopleboy.scenarios.studies.people_learning.many_threads import in_threads
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.proposals.crops import crops_of, numbers_of
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, WEAKEST, look
+from peopleboy.tracker.proposals.looks.crops import crops_of, numbers_of
+from peopleboy.tracker.proposals.looks.second_look import SecondLook
 from peopleboy.tracker.proposals.model import PeopleModel
 from peopleboy.tracker.proposals.placing import OFFSETS, offsets
-from peopleboy.tracker.proposals.second_look import SecondLook
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.proposals.window import Floats
 

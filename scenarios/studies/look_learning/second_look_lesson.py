@@ -23,9 +23,9 @@ from peopleboy.scenarios.studies.look_learning.second_look_examples import NOBOD
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.shots import shots_of
 from peopleboy.tracker.boxes import Floats
-from peopleboy.tracker.proposals.crops import SCORES
+from peopleboy.tracker.proposals.looks.crops import SCORES
+from peopleboy.tracker.proposals.looks.second_look import NETWORK, SecondLook
 from peopleboy.tracker.proposals.model import shipped_model
-from peopleboy.tracker.proposals.second_look import NETWORK, SecondLook
 
 ROUNDS: Final = 4
 

@@ -16,9 +16,9 @@ from peopleboy.scenarios.studies.look_learning.teach_network import (
     bent,
     last_of,
 )
-from peopleboy.tracker.proposals.crops import SCORES
+from peopleboy.tracker.proposals.looks.crops import SCORES
+from peopleboy.tracker.proposals.looks.second_look import SCALES, USUAL, SecondLook
 from peopleboy.tracker.proposals.placing import OFFSETS
-from peopleboy.tracker.proposals.second_look import SCALES, USUAL, SecondLook
 
 _PLACES: Final = 0.5  # weight of where people are, beside whether
 _FAR: Final = 2.0  # units from which on it does not matter how much farther off a place is

@@ -21,8 +21,8 @@ except ImportError:
 
 from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.scenarios.studies.look_learning.vary_crops import varied
-from peopleboy.tracker.proposals.crops import Planes, planes_of
-from peopleboy.tracker.proposals.network import Form
+from peopleboy.tracker.proposals.looks.crops import Planes, planes_of
+from peopleboy.tracker.proposals.looks.network import Form
 
 Weights = dict[str, jax.Array]
 Array = jax.Array | Planes

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.scenarios.studies.look_learning.teach_network import first_weights
-from peopleboy.tracker.proposals.crops import NUMBERS, PLANES
-from peopleboy.tracker.proposals.network import Form
+from peopleboy.tracker.proposals.looks.crops import NUMBERS, PLANES
+from peopleboy.tracker.proposals.looks.network import Form
 from peopleboy.tracker.proposals.placing import OFFSETS
 
 

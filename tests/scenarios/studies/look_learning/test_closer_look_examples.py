@@ -5,7 +5,7 @@ import pytest
 
 from peopleboy.scenarios.studies.look_learning.closer_look_examples import closer_looks_of
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
-from peopleboy.tracker.proposals.closer_look import CloserLook
+from peopleboy.tracker.proposals.looks.closer_look import CloserLook
 from tests.helpers.images.drawn_films import drawn_film
 
 

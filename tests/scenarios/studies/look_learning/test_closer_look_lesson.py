@@ -8,7 +8,7 @@ import pytest
 from peopleboy.scenarios.studies.look_learning import closer_look_lesson, teach_network
 from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
-from peopleboy.tracker.proposals.closer_look import CloserLook
+from peopleboy.tracker.proposals.looks.closer_look import CloserLook
 from tests.helpers.calls.command_line import run_cli
 from tests.helpers.images.drawn_films import drawn_film
 

@@ -3,8 +3,8 @@ import pytest
 
 from peopleboy.scenarios.studies.look_learning.closer_look_loss import closer_look_loss
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.proposals.closer_look import SCALES, CloserLook
-from peopleboy.tracker.proposals.crops import planes_of
+from peopleboy.tracker.proposals.looks.closer_look import SCALES, CloserLook
+from peopleboy.tracker.proposals.looks.crops import planes_of
 from peopleboy.tracker.proposals.placing import moved
 from tests.helpers.images.drawn_looks import drawn_looks, drawn_weights
 

@@ -4,7 +4,7 @@ import pytest
 from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.scenarios.studies.look_learning.learned_network import mean_overlaps
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.proposals.closer_look import CloserLook
+from peopleboy.tracker.proposals.looks.closer_look import CloserLook
 from peopleboy.tracker.proposals.placing import moved
 
 

@@ -6,9 +6,9 @@ import pytest
 from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.scenarios.studies.look_learning.second_look_examples import looks_of
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
-from peopleboy.tracker.proposals.crops import NUMBERS
+from peopleboy.tracker.proposals.looks.crops import NUMBERS
+from peopleboy.tracker.proposals.looks.second_look import SecondLook
 from peopleboy.tracker.proposals.model import shipped_model
-from peopleboy.tracker.proposals.second_look import SecondLook
 from tests.helpers.images.drawn_films import drawn_film
 
 

@@ -9,8 +9,8 @@ from peopleboy.scenarios.studies.look_learning import second_look_lesson, teach_
 from peopleboy.scenarios.studies.look_learning.examples import LookExamples
 from peopleboy.scenarios.studies.look_learning.second_look_lesson import refuse_one_kind, with_log_odds
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
-from peopleboy.tracker.proposals.crops import NUMBERS, PLANES, SCORES, planes_of
-from peopleboy.tracker.proposals.second_look import SecondLook
+from peopleboy.tracker.proposals.looks.crops import NUMBERS, PLANES, SCORES, planes_of
+from peopleboy.tracker.proposals.looks.second_look import SecondLook
 from tests.helpers.calls.command_line import run_cli
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_films import drawn_film

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.studies.look_learning.second_look_loss import second_look_loss
-from peopleboy.tracker.proposals.crops import planes_of
-from peopleboy.tracker.proposals.second_look import SCALES, SecondLook
+from peopleboy.tracker.proposals.looks.crops import planes_of
+from peopleboy.tracker.proposals.looks.second_look import SCALES, SecondLook
 from tests.helpers.images.drawn_looks import drawn_looks, drawn_weights
 
 FORM = SecondLook.FORM

@@ -4,10 +4,10 @@ import pytest
 from peopleboy.scenarios.studies.look_learning.closer_look_loss import CLOSER_LOOK
 from peopleboy.scenarios.studies.look_learning.second_look_loss import SECOND_LOOK
 from peopleboy.scenarios.studies.look_learning.teach_network import last_of, teach_network
-from peopleboy.tracker.proposals.closer_look import CloserLook
-from peopleboy.tracker.proposals.crops import SCORES, planes_of
-from peopleboy.tracker.proposals.network import CropNetwork
-from peopleboy.tracker.proposals.second_look import SecondLook
+from peopleboy.tracker.proposals.looks.closer_look import CloserLook
+from peopleboy.tracker.proposals.looks.crops import SCORES, planes_of
+from peopleboy.tracker.proposals.looks.network import CropNetwork
+from peopleboy.tracker.proposals.looks.second_look import SecondLook
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_looks import drawn_looks, drawn_weights
 

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.studies.look_learning.vary_crops import varied
-from peopleboy.tracker.proposals.crops import PLANES
+from peopleboy.tracker.proposals.looks.crops import PLANES
 
 
 def drawn_planes(count: int, rows: int = 64, columns: int = 48) -> np.ndarray:

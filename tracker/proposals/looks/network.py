@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.proposals.crops import PLANES, CropSize, Planes
+from peopleboy.tracker.proposals.looks.convolution import Desk, convolved, convolved_by_tiles, turned
+from peopleboy.tracker.proposals.looks.crops import PLANES, CropSize, Planes
+from peopleboy.tracker.proposals.looks.one_thread import one_thread
 from peopleboy.tracker.weights_archive import opened_archive
 
 _ABOUT: Final = "about"
-_PART: Final = 512  # terms of a sum
 
 
 class Layer(NamedTuple):
@@ -31,6 +32,11 @@ class Layer(NamedTuple):
     side: int
     stride: int
     planes: int
+
+    @property
+    def is_by_tiles(self) -> bool:
+        """Whether the half of the products is enough for it."""
+        return self.side == 3 and self.stride == 1
 
 
 class Form(NamedTuple):
@@ -76,6 +82,16 @@ class CropNetwork:
 
     weights: Mapping[str, Planes]
     about: Mapping[str, str] = field(default_factory=dict)
+    _turned: Mapping[int, Planes] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Turn the kernels of those layers that look by tiles."""
+        kernels = {
+            number: turned(self.weights[f"kernel{number}"])
+            for number, layer in enumerate(self.FORM.layers)
+            if layer.is_by_tiles
+        }
+        object.__setattr__(self, "_turned", kernels)
 
     @classmethod
     def shapes(cls) -> dict[str, tuple[int, ...]]:
@@ -84,13 +100,25 @@ class CropNetwork:
 
     def last(self, planes: Planes, numbers: Planes) -> Planes:
         """Give what the last layer says (N, told) of crops (N, rows, columns, 3) and their numbers."""
-        here = planes
-        for layer, (side, stride, _) in enumerate(self.FORM.layers):
-            seen = in_parts(patches(here, side, stride), self.weights[f"kernel{layer}"])
-            here = np.maximum(seen + self.weights[f"bias{layer}"], np.float32(0.0))
-        flat = np.concatenate([here.reshape(len(here), -1), numbers], axis=1)
-        units = np.maximum(in_parts(flat, self.weights["all"]) + self.weights["all_bias"], np.float32(0.0))
-        return np.asarray(units @ self.weights["last"] + self.weights["last_bias"], np.float32)
+        weights, desk, seen = self.weights, Desk(), numbers.shape[1]
+        flat = np.empty((len(planes), len(weights["all"])), np.float32)
+        flat[:, -seen:] = numbers
+        with one_thread():
+            for row, crop in zip(flat, planes, strict=True):
+                row[:-seen] = self._convolved(crop, desk).ravel()
+            units = np.maximum(flat @ weights["all"] + weights["all_bias"], np.float32(0.0))
+            return np.asarray(units @ weights["last"] + weights["last_bias"], np.float32)
+
+    def _convolved(self, crop: Planes, desk: Desk) -> Planes:
+        """Give what all convolutions make of a crop (rows, columns, 3); it holds until the next one's."""
+        here = crop
+        for number, layer in enumerate(self.FORM.layers):
+            bias = self.weights[f"bias{number}"]
+            if layer.is_by_tiles:
+                here = convolved_by_tiles(here, self._turned[number], bias, desk)
+            else:
+                here = convolved(here, self.weights[f"kernel{number}"], bias, layer.side, layer.stride, desk)
+        return here
 
     def save(self, path: Path) -> None:
         """Write a NumPy archive without pickles; weights have 11 bits there."""
@@ -115,29 +143,6 @@ class CropNetwork:
                 f"holds no network for crops of {rows} x {columns}; `{cls.COMMAND}` makes one", file=str(path)
             )
         return cls({name: array.astype(np.float32) for name, array in arrays.items()}, about)
-
-
-def patches(planes: Planes, side: int, stride: int) -> Planes:
-    """Give what a kernel sees at each place, (N, H', W', side side C), of planes (N, H, W, C)."""
-    edge = side // 2
-    number, high, wide, deep = planes.shape
-    padded = np.zeros((number, high + 2 * edge, wide + 2 * edge, deep), np.float32)
-    padded[:, edge : edge + high, edge : edge + wide] = planes
-    seen = np.lib.stride_tricks.sliding_window_view(padded, (side, side), (1, 2))[:, ::stride, ::stride]
-    count, rows, columns, depth = seen.shape[:4]
-    whole = np.ascontiguousarray(seen.transpose(0, 1, 2, 4, 5, 3))
-    return np.asarray(whole.reshape(count, rows, columns, side * side * depth), np.float32)
-
-
-def in_parts(one: Planes, other: Planes) -> Planes:
-    """Multiply matrices (..., K) and (K, M), part of K by part.
-
-    Of long sums a BLAS gives each thread a part, and results would hang on how many threads there are.
-    """
-    total = one[..., :_PART] @ other[:_PART]
-    for begin in range(_PART, len(other), _PART):
-        total += one[..., begin : begin + _PART] @ other[begin : begin + _PART]
-    return total
 
 
 def _fits(array: NDArray[Any], shape: tuple[int, ...]) -> bool:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.proposals.suppression import Proposals
@@ -78,15 +80,29 @@ def crops_of(grey: Grey, change: Grey, boxes: Floats, size: CropSize) -> Crops:
 
 def planes_of(crops: Crops) -> Planes:
     """Express crops (N, rows, columns, 3) in their own deviations: neither brightness nor gain matter."""
-    inside = (crops[..., 2:] > 0).astype(np.float32)
-    count = np.maximum(inside.sum(axis=(1, 2), keepdims=True), 1.0)
-    grey, change = crops[..., :1].astype(np.float32), crops[..., 1:2].astype(np.float32)
-    mean = (grey * inside).sum(axis=(1, 2), keepdims=True) / count
-    off = (grey - mean) * inside
-    spread = np.sqrt((off * off).sum(axis=(1, 2), keepdims=True) / count) + np.float32(_LEAST_GREY)
-    told = np.clip(off / spread, -_MOST_GREY, _MOST_GREY)
-    moving = np.minimum(change * inside / spread, _MOST_GREY)
-    return np.concatenate([told, moving, inside], axis=3).astype(np.float32)
+    planes = np.empty(crops.shape, np.float32)
+    for crop, told in zip(crops, planes, strict=True):
+        _relate(crop.reshape(-1, PLANES), told.reshape(-1, PLANES))
+    return planes
+
+
+@njit(cache=True, nogil=True)
+def _relate(crop: Crops, planes: Planes) -> None:  # pragma: no cover
+    """Express pixels (M, 3) in their mean and deviation inside the image."""
+    count, total, squares = 0, 0.0, 0.0
+    for one, _, inside in crop:
+        if inside > 0:
+            grey = float(one)
+            count, total, squares = count + 1, total + grey, squares + grey * grey
+    mean = total / max(count, 1)
+    spread = math.sqrt(max(squares / max(count, 1) - mean * mean, 0.0)) + _LEAST_GREY
+    middle, share, most = np.float32(mean), np.float32(1.0 / spread), np.float32(_MOST_GREY)
+    for k in range(len(crop)):
+        is_inside = np.float32(crop[k, 2] > 0)
+        told = (np.float32(crop[k, 0]) - middle) * share * is_inside
+        planes[k, 0] = min(max(told, -most), most)
+        planes[k, 1] = min(np.float32(crop[k, 1]) * share * is_inside, most)
+        planes[k, 2] = is_inside
 
 
 def numbers_of(found: Proposals, crops: Crops, shape: tuple[int, int], mount: Mount | None) -> Planes:

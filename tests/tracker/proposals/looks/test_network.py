@@ -1,14 +1,14 @@
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from peopleboy.tracker.proposals.closer_look import CloserLook, shipped_closer_look
-from peopleboy.tracker.proposals.crops import PLANES
-from peopleboy.tracker.proposals.network import CropNetwork, in_parts, patches
-from peopleboy.tracker.proposals.second_look import SecondLook, shipped_network
+from peopleboy.tracker.proposals.looks.closer_look import CloserLook, shipped_closer_look
+from peopleboy.tracker.proposals.looks.convolution import Desk, convolved
+from peopleboy.tracker.proposals.looks.crops import PLANES
+from peopleboy.tracker.proposals.looks.network import CropNetwork
+from peopleboy.tracker.proposals.looks.second_look import SecondLook, shipped_network
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_looks import drawn_weights
 
@@ -18,15 +18,6 @@ KINDS = pytest.mark.parametrize("kind", [SecondLook, CloserLook])
 def drawn_network(kind: type[CropNetwork]) -> CropNetwork:
     line = {"line": np.array([1.0, 0.0], np.float32)} if "line" in kind.shapes() else {}
     return kind(drawn_weights(kind.FORM) | line, {"learned from": "nothing"})
-
-
-def test_a_kernel_is_a_filter() -> None:
-    rng = np.random.default_rng(0)
-    plane, kernel = rng.normal(size=(9, 7)).astype(np.float32), rng.normal(size=(3, 3)).astype(np.float32)
-    ours = patches(plane[None, :, :, None], 3, 1) @ kernel.ravel()
-    theirs = cv2.filter2D(plane, -1, kernel, borderType=cv2.BORDER_CONSTANT)
-    np.testing.assert_allclose(ours[0], theirs, atol=1e-5)
-    np.testing.assert_allclose(patches(plane[None, :, :, None], 3, 2) @ kernel.ravel(), ours[:, ::2, ::2])
 
 
 @pytest.mark.parametrize("shipped", [shipped_network(), shipped_closer_look()])
@@ -44,20 +35,14 @@ def test_what_is_told_does_not_hang_on_how_many_threads_there_are(shipped: CropN
     assert np.array_equal(told[0], told[2])
 
 
-def test_a_product_in_parts_is_the_product() -> None:
-    rng = np.random.default_rng(0)
-    one, other = rng.standard_normal((3, 1300)), rng.standard_normal((1300, 5))
-    product = in_parts(one.astype(np.float32), other.astype(np.float32))
-    np.testing.assert_allclose(product, one @ other, rtol=1e-4, atol=1e-4)
-
-
 @KINDS
 def test_shapes_follow_from_the_layers(kind: type[CropNetwork]) -> None:
     rows, columns, _ = kind.FORM.crop
-    planes = np.zeros((2, rows, columns, PLANES), np.float32)
-    for layer, (side, stride, _) in enumerate(kind.FORM.layers):
-        planes = patches(planes, side, stride) @ np.zeros(kind.shapes()[f"kernel{layer}"], np.float32)
-    assert planes[0].size + kind.FORM.numbers == kind.shapes()["all"][0]
+    planes = np.zeros((rows, columns, PLANES), np.float32)
+    for layer, (side, stride, deep) in enumerate(kind.FORM.layers):
+        kernel = np.zeros(kind.shapes()[f"kernel{layer}"], np.float32)
+        planes = convolved(planes, kernel, np.zeros(deep, np.float32), side, stride, Desk())
+    assert planes.size + kind.FORM.numbers == kind.shapes()["all"][0]
 
 
 @KINDS

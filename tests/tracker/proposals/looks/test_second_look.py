@@ -2,7 +2,7 @@ from pathlib import Path
 
 import numpy as np
 
-from peopleboy.tracker.proposals.second_look import SecondLook, look_again, shipped_network
+from peopleboy.tracker.proposals.looks.second_look import SecondLook, look_again, shipped_network
 from peopleboy.tracker.proposals.suppression import Proposals
 from tests.helpers.images.drawn_looks import drawn_weights
 
@@ -16,7 +16,7 @@ def image() -> np.ndarray:
     return np.random.default_rng(2).integers(0, 256, (120, 160)).astype(np.uint8)
 
 
-PAGE = Path(__file__).parents[3] / "docs" / "how" / "proposals.md"
+PAGE = Path(__file__).parents[4] / "docs" / "how" / "proposals.md"
 FIRST = Proposals.of_trees(
     np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0])
 )

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from peopleboy.tracker.proposals.crops import NUMBERS, PLANES, CropSize, crops_of, numbers_of, planes_of
+from peopleboy.tracker.proposals.looks.crops import NUMBERS, PLANES, CropSize, crops_of, numbers_of, planes_of
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import Mount
 

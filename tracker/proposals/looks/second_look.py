@@ -9,7 +9,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.crops import (
+from peopleboy.tracker.proposals.looks.crops import (
     NUMBERS,
     SCORES,
     CropSize,
@@ -18,7 +18,7 @@ from peopleboy.tracker.proposals.crops import (
     numbers_of,
     planes_of,
 )
-from peopleboy.tracker.proposals.network import CropNetwork, Form, Layer
+from peopleboy.tracker.proposals.looks.network import CropNetwork, Form, Layer
 from peopleboy.tracker.proposals.placing import OFFSETS, moved
 from peopleboy.tracker.proposals.suppression import Proposals, suppress
 from peopleboy.tracker.proposals.window import Floats

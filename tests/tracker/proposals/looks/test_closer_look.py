@@ -4,12 +4,12 @@ import cv2
 import numpy as np
 
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.proposals.closer_look import CloserLook, look_closer, shipped_closer_look
+from peopleboy.tracker.proposals.looks.closer_look import CloserLook, look_closer, shipped_closer_look
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import Mount
 from tests.helpers.images.drawn_looks import drawn_weights
 
-PAGE = Path(__file__).parents[3] / "docs" / "how" / "proposals.md"
+PAGE = Path(__file__).parents[4] / "docs" / "how" / "proposals.md"
 FOUND = Proposals.of_trees(
     np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0])
 )

@@ -1,0 +1,1 @@
+"""Small networks that look again, and closer, at what trees propose."""
