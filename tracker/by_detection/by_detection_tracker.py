@@ -138,7 +138,7 @@ class ByDetectionTracker:
 
     def _looked_for(self, expected: Floats, before_s: float | None, now: _Instant) -> Proposals | None:
         """Give who was seen in the last image, if they alone are looked for in this one."""
-        if self._everywhere_s != before_s or now.dt_s > now.existence.soon_s:
+        if now.time_s - self._everywhere_s > now.existence.soon_s:
             self._everywhere_s = now.time_s
             return None
         was_seen = np.array([target.seen_s == before_s for target in self._targets], bool)

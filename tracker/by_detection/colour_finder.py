@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 import cv2
 import numpy as np
@@ -18,15 +17,13 @@ from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import mount_of
 
-NOBODY: Final = Proposals.of_trees(np.empty((0, 4)), np.empty(0))
-"""Where nothing is proposed."""
-
 
 class ColourFinder:
     """The learned detector on the brightness of the colour image, now and then.
 
     What it knows is relative: neither what a grey means nor whether people are brighter than what is behind
-    them. So it knows people by daylight, though fewer of them.
+    them. So it knows people by daylight, though fewer of them. It looks more often while it shows people
+    whom the thermal image does not.
     """
 
     def __init__(self, config: BothCamerasConfig, weakest: float) -> None:
@@ -35,18 +32,26 @@ class ColourFinder:
         self._detector = PeopleDetector(least_score=weakest)
         self._images = FreshImages(COLOUR)
         self._last_s = -math.inf
+        self._pause_s = config.every_s
         self._way: Odometry | None = Odometry()
 
-    def __call__(self, frame: Frame) -> Proposals:
-        """Give who is seen, with boxes (M, 4) [px] in the thermal image and log odds (M,).
+    def __call__(self, frame: Frame, thermal: Proposals) -> Proposals:
+        """Give who is seen in a frame, by heat or in colours, with boxes (M, 4) [px] in the thermal image.
 
-        Nobody, if it is too soon, there is no new image, or not both cameras are calibrated.
+        By heat alone, if it is too soon, there is no new image, or not both cameras are calibrated.
         """
         here, there = frame.calibrations.get(COLOUR), frame.calibrations.get(THERMAL)
-        if not self.takes_in(frame) or frame.time_s - self._last_s < self._config.every_s:
-            return NOBODY
+        if not self.takes_in(frame) or frame.time_s - self._last_s < self._pause_s:
+            return thermal
         if not (isinstance(here, PinholeCalibration) and isinstance(there, PinholeCalibration)):
-            return NOBODY
+            return thermal
+        both = seen_by_both(thermal, self._found(frame, here, there), self._config)
+        is_alone = len(both.score) > len(thermal.score)
+        self._pause_s = self._config.alone_every_s if is_alone else self._config.every_s
+        return both
+
+    def _found(self, frame: Frame, here: PinholeCalibration, there: PinholeCalibration) -> Proposals:
+        """Look for people in the colour image, and carry them over to the thermal one."""
         grey = np.asarray(cv2.cvtColor(frame.rgb(COLOUR), cv2.COLOR_RGB2GRAY), np.uint8)
         found = self._detector.update(grey, frame.time_s, self._way, mount_of(here, grey.shape[0]))
         self._last_s, self._way = frame.time_s, Odometry()

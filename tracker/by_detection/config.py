@@ -88,8 +88,8 @@ class ExistenceConfig:
     """When somebody is believed to be there, by the log odds that add up.
 
     Attributes:
-        soon_s: an image that comes so soon after one that was searched everywhere is searched where those
-            are expected who were seen in it, and nowhere else; so is each other of 15 images a second.
+        soon_s: images that come so soon after one that was searched everywhere are searched where those are
+            expected who were seen just before, and nowhere else: of 15 images a second two of three.
         weakest: proposals of a lower score are not looked at.
         trust: what a unit of the others counts, in images of cameras that the detector does not know.
         lasting: what is added to them: who is hardly somebody, in one image after another, is nobody more
@@ -118,7 +118,7 @@ class ExistenceConfig:
         brief_forget_s: who was hardly seen is forgotten sooner.
     """
 
-    soon_s: float = 0.08
+    soon_s: float = 0.14
     weakest: float = -2.0
     trust: float = 0.8
     lasting: float = -0.2
@@ -150,13 +150,15 @@ class BothCamerasConfig:
 
     Attributes:
         every_s: how often it looks there, at the most.
+        alone_every_s: the same while colours show somebody whom the thermal image does not.
         believed: share of its log odds that is believed.
         same: IoU from which on what both cameras show is one person.
         shared: of the smaller box: up to there whom colours alone show is another one.
         alone: least score of whom colours alone show.
     """
 
-    every_s: float = 0.39
+    every_s: float = 0.79
+    alone_every_s: float = 0.19
     believed: float = 0.85
     same: float = 0.45
     shared: float = 0.65

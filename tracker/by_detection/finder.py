@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from peopleboy.tracker.by_detection.colour_finder import ColourFinder, seen_by_both
+from peopleboy.tracker.by_detection.colour_finder import ColourFinder
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.proposals.detector import PeopleDetector
@@ -31,7 +31,6 @@ class PeopleFinder:
     def __init__(self, config: ByDetectionConfig) -> None:
         """Make one for a tracker with such settings."""
         weakest = config.existence.weakest
-        self._config = config.colour
         self._thermal = ThermalFinder(PeopleDetector(least_score=weakest))
         self._colour = ColourFinder(config.colour, weakest)
 
@@ -41,7 +40,7 @@ class PeopleFinder:
         if expected is not None:
             self._colour.takes_in(frame)
             return seen
-        return seen_by_both(seen, self._colour(frame), self._config)
+        return self._colour(frame, seen)
 
 
 class ThermalFinder:

@@ -6,7 +6,6 @@ by then is let go.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
@@ -25,9 +24,9 @@ STRIDE: Final = 2  # [cells] between windows of the first look
 _LAYOUTS: Final = 40
 """Sizes of levels for which is kept where patches lie: those of one image are half as many."""
 _EARLY: Final = 32
-"""Trees after which few windows are left."""
-BESIDE: Final = 2.5
-"""Log odds by which a window may be surer than the one beside it that was looked at."""
+"""Trees that nearly no window comes through."""
+PROMISING: Final = 256
+"""Trees: beside windows that come through so many there may be a better one."""
 
 
 class Hits(NamedTuple):
@@ -65,7 +64,7 @@ class Cascade:
     _layouts: dict[tuple[int, int], Layout] = field(default_factory=dict, init=False, repr=False)
 
     def scan(
-        self, sums: Sums, rows: tuple[int, int], *, stride: int = STRIDE, least_score: float = -math.inf
+        self, sums: Sums, rows: tuple[int, int], *, stride: int = STRIDE, promising: int = PROMISING
     ) -> Hits:
         """Look through all windows of a level, with their first cell in some rows, borders included.
 
@@ -73,7 +72,7 @@ class Cascade:
             sums: (9, h + 1, w + 1) of its channels.
             rows: the first one, and the one after the last.
             stride: cells between windows; with 2 and more, those beside a promising one are looked at, too.
-            least_score: of those that anybody cares for; others may be among them.
+            promising: how many trees such a one must come through.
         """
         _, high, wide = sums.shape
         first, end = max(rows[0], 0), min(rows[1], high - ROWS)
@@ -83,7 +82,7 @@ class Cascade:
         found = np.full((end - first, wide - COLUMNS), -np.inf, np.float32)
         _scan(
             sums.ravel(), wide, first, offset, weight, self.threshold.ravel(), self.leaf.ravel(), self.least,
-            stride, np.float32(least_score - BESIDE), found,
+            stride, min(promising, len(self.least)), found,
         )  # fmt: skip
         at_row, at_column = np.nonzero(found > -np.inf)
         return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
@@ -125,7 +124,7 @@ def _scan(
     leaf: Cells,
     least: Cells,
     stride: int,
-    promising: np.float32,
+    promising: int,
     found: Cells,
 ) -> None:  # pragma: no cover
     """Look at every so many windows, then at those beside promising ones; leave their scores.
@@ -134,7 +133,7 @@ def _scan(
     of a level go through a tree at once, as trees take more room than what they read.
     """
     rows, columns = found.shape
-    early = min(_EARLY, len(least))
+    early = min(_EARLY, promising)
     at, score = np.empty(rows * columns, np.uint32), np.empty(rows * columns, np.float32)
     is_wanted = np.zeros((rows, columns), np.bool_)
     left = 0
@@ -145,13 +144,14 @@ def _scan(
             count += 1
         some, theirs = at[left : left + count], score[left : left + count]
         left += _walk(sums, some, theirs, count, offset, weight, threshold, leaf, least[:early], 0)
-    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, early)
+    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least[:promising], early)
     for k in range(left):
         row, column = np.int64(at[k]) // wide - first, np.int64(at[k]) % wide
-        found[row, column] = score[k]
-        if score[k] >= promising:
-            top, begin = max(row - stride + 1, 0), max(column - stride + 1, 0)
-            is_wanted[top : min(row + stride, rows), begin : min(column + stride, columns)] = True
+        top, begin = max(row - stride + 1, 0), max(column - stride + 1, 0)
+        is_wanted[top : min(row + stride, rows), begin : min(column + stride, columns)] = True
+    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, promising)
+    for k in range(left):
+        found[np.int64(at[k]) // wide - first, np.int64(at[k]) % wide] = score[k]
     left = 0
     for i in range(rows):
         for j in range(columns):

@@ -137,7 +137,7 @@ def look(
         sums = summed(level.cells)
         for kind, trees in model.trees.items():
             for rows in level.rows[kind]:
-                hits = trees.cascade.scan(sums, rows, least_score=least_score)
+                hits = trees.cascade.scan(sums, rows)
                 is_sure = hits.score >= least_score
                 row, column = hits.row[is_sure], hits.column[is_sure]
                 boxes.append(trees.placing.boxes(sums, row, column, level.boxes(row, column)))

@@ -1,4 +1,4 @@
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -14,16 +14,17 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
-from peopleboy.tracker.by_detection.colour_finder import NOBODY, ColourFinder, seen_by_both
+from peopleboy.tracker.by_detection.colour_finder import ColourFinder, seen_by_both
 from peopleboy.tracker.by_detection.config import BothCamerasConfig, ByDetectionConfig
 from peopleboy.tracker.by_detection.finder import ThermalFinder
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
 
 CONFIG = BothCamerasConfig()
+NOBODY = Proposals.of_trees(np.empty((0, 4)), np.empty(0))
 ONE = Proposals.of_trees(np.array([[100.0, 40.0, 30.0, 100.0]]), np.array([1.0]))
 
 
@@ -106,18 +107,21 @@ def test_in_a_room_as_warm_as_people_they_are_found_by_colours(frames: list[Fram
     assert told > 0.3 * len(frames)
 
 
-def test_it_looks_now_and_then_and_where_both_cameras_are_known(frames: list[Frame]) -> None:
-    weakest = ByDetectionConfig().existence.weakest
-    find = ColourFinder(CONFIG, weakest)
-    looked = [frame.time_s for frame in frames if len(find(frame).score)]
-    assert len(looked) > 3
-    assert np.diff(looked).min() >= CONFIG.every_s
-    find = ColourFinder(CONFIG, weakest)
-    assert not any(len(find(replace(frame, calibrations={})).score) for frame in frames)
+def looks_s(frames: Iterable[Frame], thermal: Proposals) -> list[float]:
+    """When something came of looking."""
+    find = ColourFinder(CONFIG, ByDetectionConfig().existence.weakest)
+    return [frame.time_s for frame in frames if find(frame, thermal) is not thermal]
+
+
+def test_it_looks_now_and_then_and_more_often_while_heat_shows_nobody(frames: list[Frame]) -> None:
+    everywhere = Proposals.of_trees(np.array([[0.0, 0.0, 320.0, 240.0]]), np.array([5.0]))
+    seldom, often = looks_s(frames, everywhere), looks_s(frames, NOBODY)
+    assert len(seldom) > 2
+    assert CONFIG.every_s <= np.diff(seldom).min() < CONFIG.every_s + 0.1
+    assert CONFIG.alone_every_s <= np.diff(often).min() < CONFIG.alone_every_s + 0.1
+
+
+def test_it_looks_where_both_cameras_are_known_and_the_image_is_new(frames: list[Frame]) -> None:
+    assert looks_s([replace(frame, calibrations={}) for frame in frames], NOBODY) == []
     still = frames[len(frames) // 2]
-    find = ColourFinder(CONFIG, -np.inf)
-    find(still)
-    assert len(find(replace(still, time_s=still.time_s + 1.0)).score) == 0  # the image is no new one
-    images = {THERMAL: still.images[THERMAL]}
-    assert find(replace(still, images=images, time_s=still.time_s + 2.0)) is NOBODY
-    assert COLOUR in still.images
+    assert len(looks_s([still, replace(still, time_s=still.time_s + 1.0)], NOBODY)) <= 1
