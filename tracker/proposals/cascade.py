@@ -14,15 +14,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.proposals.channels import Cells
-from peopleboy.tracker.proposals.patches import Layout, Patches, Sums, patch
+from peopleboy.tracker.proposals.patches import Layouts, Patches, Sums, patch
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 
 DEPTH: Final = 3
 NODES: Final = 2**DEPTH - 1
 LEAVES: Final = 2**DEPTH
 STRIDE: Final = 2  # [cells] between windows of the first look
-_LAYOUTS: Final = 40
-"""Sizes of levels for which is kept where patches lie: those of one image are half as many."""
 _EARLY: Final = 32
 """Trees that nearly no window comes through."""
 PROMISING: Final = 256
@@ -61,7 +59,11 @@ class Cascade:
     threshold: NDArray[np.float32]
     leaf: NDArray[np.float32]
     least: NDArray[np.float32]
-    _layouts: dict[tuple[int, int], Layout] = field(default_factory=dict, init=False, repr=False)
+    _layouts: Layouts = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Keep where patches lie."""
+        object.__setattr__(self, "_layouts", Layouts(self.patches, self.feature))
 
     def scan(
         self, sums: Sums, rows: tuple[int, int], *, stride: int = STRIDE, promising: int = PROMISING
@@ -78,7 +80,7 @@ class Cascade:
         first, end = max(rows[0], 0), min(rows[1], high - ROWS)
         if end <= first or wide - 1 < COLUMNS:
             return Hits(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
-        offset, weight = self._laid_out(high, wide)
+        offset, weight = self._layouts.of(sums)
         found = np.full((end - first, wide - COLUMNS), -np.inf, np.float32)
         _scan(
             sums.ravel(), wide, first, offset, weight, self.threshold.ravel(), self.leaf.ravel(), self.least,
@@ -93,16 +95,6 @@ class Cascade:
         leaf[0] += np.float32(offset)
         least = self.least * np.float32(gain) + np.float32(offset)
         return Cascade(self.patches, self.feature, self.threshold, leaf, least)
-
-    def _laid_out(self, high: int, wide: int) -> Layout:
-        """Tell where patches lie in sums of such a size, as in those of the last images."""
-        kept = self._layouts
-        layout = kept.get((high, wide))
-        if layout is None:
-            if len(kept) >= _LAYOUTS:
-                kept.clear()
-            layout = kept[high, wide] = self.patches.corners(self.feature.ravel(), high, wide)
-        return layout
 
     def running(self, sums: Sums) -> NDArray[np.float32]:
         """Give the scores (N, T) after each tree of windows with sums in their columns (9 * 21 * 11, N)."""

@@ -139,6 +139,8 @@ def look(
             for rows in level.rows[kind]:
                 hits = trees.cascade.scan(sums, rows)
                 is_sure = hits.score >= least_score
+                if not is_sure.any():
+                    continue
                 row, column = hits.row[is_sure], hits.column[is_sure]
                 boxes.append(trees.placing.boxes(sums, row, column, level.boxes(row, column)))
                 scores.append(hits.score[is_sure])

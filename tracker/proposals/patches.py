@@ -26,6 +26,9 @@ PART: Final = np.float32(512.0)
 CORNERS: Final = 8
 """Of two rectangles: each adds its last and first ones and loses the others."""
 
+_LAYOUTS: Final = 40
+"""Sizes that are kept: those of one image are half as many."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Patches:
@@ -56,6 +59,26 @@ class Patches:
         told = np.empty(sums.shape[1], np.float32)
         _told(sums, offset[0], weight[0], told)
         return told
+
+
+class Layouts:
+    """Where patches lie in sums of several sizes, as levels of one image after another have."""
+
+    def __init__(self, patches: Patches, feature: NDArray[np.int32]) -> None:
+        """Keep what some nodes ask for."""
+        self._patches = patches
+        self._feature = feature.ravel()
+        self._kept: dict[tuple[int, int], Layout] = {}
+
+    def of(self, sums: Sums) -> Layout:
+        """Give the layout in sums (9, h + 1, w + 1)."""
+        _, high, wide = sums.shape
+        layout = self._kept.get((high, wide))
+        if layout is None:
+            if len(self._kept) >= _LAYOUTS:
+                self._kept.clear()
+            layout = self._kept[high, wide] = self._patches.corners(self._feature, high, wide)
+        return layout
 
 
 def summed(cells: Cells) -> Sums:

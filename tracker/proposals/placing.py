@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.proposals.cascade import DEPTH, NODES
 from peopleboy.tracker.proposals.channels import Cells
-from peopleboy.tracker.proposals.patches import Patches, Sums, patch
+from peopleboy.tracker.proposals.patches import Layouts, Patches, Sums, patch
 from peopleboy.tracker.proposals.window import Floats
 
 OFFSETS: Final = 4
@@ -33,14 +33,17 @@ class Placing:
     feature: NDArray[np.int32]
     threshold: NDArray[np.float32]
     leaf: NDArray[np.float32]
+    _layouts: Layouts = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Keep where patches lie."""
+        object.__setattr__(self, "_layouts", Layouts(self.patches, self.feature))
 
     def boxes(self, sums: Sums, row: NDArray[np.int64], column: NDArray[np.int64], window: Floats) -> Floats:
         """Give the boxes (N, 4) of those who fill windows that begin in some cells, with boxes (N, 4)."""
         told = np.empty((len(row), OFFSETS), np.float32)
-        if len(row):
-            _, high, wide = sums.shape
-            offset, weight = self.patches.corners(self.feature.ravel(), high, wide)
-            _place(sums.ravel(), row * wide + column, offset, weight, self.threshold.ravel(), self.leaf, told)
+        at = row * sums.shape[2] + column
+        _place(sums.ravel(), at, *self._layouts.of(sums), self.threshold.ravel(), self.leaf, told)
         return moved(window, told.astype(np.float64))
 
 
