@@ -5,12 +5,20 @@ from __future__ import annotations
 import click
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.running.engine.task import TasksFailed
 
 
 def call(command: click.Command, name: str) -> None:
-    """Call `python -m NAME`; what the user got wrong is one line, and exit code 2."""
+    """Call `python -m NAME`; what the user got wrong is one line, and exit code 2; what failed, and 1."""
     try:
         command.main(standalone_mode=False)
     except (BadInput, click.ClickException) as error:
-        click.echo(f"{name}: {error}", err=True)
-        raise SystemExit(2) from error
+        _end(name, error, 2)
+    except TasksFailed as error:
+        _end(name, error, 1)
+
+
+def _end(name: str, error: Exception, code: int) -> None:
+    told = error.format_message() if isinstance(error, click.ClickException) else str(error)
+    click.echo(f"{name}: {told}", err=True)
+    raise SystemExit(code) from error

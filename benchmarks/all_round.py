@@ -19,6 +19,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks import call
 from benchmarks.peers.detectors import Hog
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
@@ -364,4 +365,4 @@ def _print_laps(runs: Sequence[Played]) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.all_round")

@@ -18,6 +18,8 @@ import click
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks import call
+
 HERE = Path(__file__).parents[1]
 STANDING = ("single_stationary", "crossing_3", "crowd_8", "hidden_2s", "dark_crossing", "empty_room")
 DRIVING = ("single_follow", "crossing_2_moving", "follow_occluded", "corridor_t_by_image")
@@ -112,4 +114,4 @@ def main(other: Path, scenarios: str, seed: int, workers: int) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.bytes")

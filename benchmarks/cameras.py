@@ -16,6 +16,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks import call
 from benchmarks.told_boxes import told_boxes
 from benchmarks.tracker_ablation import print_row
 from peopleboy.scenarios.files.load import load_scenario
@@ -176,6 +177,9 @@ def rows(names: tuple[str, ...], seeds: int, tracker: str) -> Iterator[tuple[str
 @click.argument("cameras", nargs=-1, type=click.Choice(tuple(CAMERAS)))
 def main(seeds: int, tracker: str, cameras: tuple[str, ...]) -> None:
     """Print how a tracker does with these cameras, or with all, as a Markdown table [%]."""
+    make_tracker(
+        tracker, stream(0, "tracker")
+    )  # that there is none of that name is told before films are made
     figures = ("CP", "CR", "IDF1", "HOTA")
     print_row("camera", (*(f"{one}, calibrated" for one in figures), *(f"{one}, not" for one in figures)))
     print_row("---", ["---:"] * 8)
@@ -184,4 +188,4 @@ def main(seeds: int, tracker: str, cameras: tuple[str, ...]) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.cameras")

@@ -17,13 +17,12 @@ import yaml
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks import call
 from benchmarks.clips.bench import ClipsOptions, bench_clips
 from benchmarks.clips.watch import PEERS
-from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import track_footage
-from peopleboy.scenarios.running.engine.task import TasksFailed
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.trackers import FOOTAGE_TRACKER
@@ -83,17 +82,10 @@ def main(clips: Path | None, seeds: int, **how: Any) -> None:
     Figures are percent. Those of --clips are left in runs/clips.json, too.
     """
     if clips is not None:
-        _show_clips(ClipsOptions(home=clips, seeds=seeds, **how))
+        bench_clips(ClipsOptions(home=clips, seeds=seeds, **how))
         return
     with tempfile.TemporaryDirectory() as folder:
         _show_rooms(Path(folder))
-
-
-def _show_clips(options: ClipsOptions) -> None:
-    try:
-        bench_clips(options)
-    except (BadInput, TasksFailed) as error:
-        raise click.UsageError(str(error)) from error
 
 
 def _show_rooms(folder: Path) -> None:
@@ -144,4 +136,4 @@ def _tracked(options: TrackOptions) -> Scores:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.footage")

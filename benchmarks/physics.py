@@ -21,6 +21,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks import call
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.scenarios.files.load import library, load_scenario
@@ -187,4 +188,4 @@ def main(scenarios: Sequence[str], observation: str, seeds: int) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.physics")

@@ -14,6 +14,7 @@ import click
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks import call
 from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import ORACLE
@@ -150,4 +151,4 @@ def _words(told: Told | None) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.realism")

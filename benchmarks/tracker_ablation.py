@@ -13,6 +13,7 @@ from typing import Any
 import click
 import numpy as np
 
+from benchmarks import call
 from benchmarks.told_boxes import told_boxes
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
@@ -242,4 +243,4 @@ def print_row(name: str, cells: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.tracker_ablation")

@@ -14,6 +14,7 @@ try:
 except ImportError as error:
     raise SystemExit("benchmarks.peers: the package trackers is missing; `make peers` installs it") from error
 
+from benchmarks import call
 from benchmarks.peers.compete import FilmTask, Result
 from benchmarks.peers.contestants import contestants
 from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results, write_results
@@ -21,7 +22,6 @@ from peopleboy.scenarios.commands.options import workers_options
 from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.scenarios.files.suite import load_suite
 from peopleboy.scenarios.running.engine.engine import work_through
-from peopleboy.scenarios.running.engine.task import TasksFailed
 from peopleboy.scenarios.running.engine.workers import Workers, chosen_workers
 
 _QUICK = "crossing_2,crossing_3,same_uniform,pass_behind_pillar,hidden_0_5s,hidden_2s,hidden_5s,crowd_8"
@@ -80,7 +80,4 @@ def _compete_all(
 
 
 if __name__ == "__main__":
-    try:
-        main(standalone_mode=False)
-    except (BadInput, TasksFailed, click.ClickException) as error:
-        raise SystemExit(f"benchmarks.peers: {error}") from error
+    call(main, "benchmarks.peers")

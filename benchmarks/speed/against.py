@@ -17,6 +17,8 @@ from typing import Final
 
 import click
 
+from benchmarks import call
+
 HERE: Final = Path(__file__).parents[2]
 SCENARIO: Final = "crossing_pair"
 _CODE: Final = f"""
@@ -80,4 +82,4 @@ def main(other: Path, rounds: int) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.speed.against")

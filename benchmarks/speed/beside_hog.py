@@ -1,4 +1,4 @@
-"""The whole tracker and a step of its filter beside OpenCV's HOG detector, by turns.
+"""The whole tracker, a step of its filter, and that by detection beside OpenCV's HOG detector, by turns.
 
 A machine that does other work is now quick and now slow: what takes turns within a second meets the same.
 """
@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from statistics import median
+from statistics import mean, median
 from typing import Final
 
 import cv2
@@ -19,7 +19,7 @@ from benchmarks.speed.filter_step import FilterStep
 from benchmarks.speed.whole_tracker import MOST, people_in
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, FOOTAGE_TRACKER, make_tracker
 
 COUNT: Final = 1000
 _FRAMES: Final = 10  # of a turn: one after the other, as in a run
@@ -33,11 +33,13 @@ class Turn:
     Attributes:
         frame_ms: of the tracker, of those frames in which each person has a filter.
         step_ms: of a filter with 1000 samples.
+        detection_ms: of the tracker by detection, mean of the same frames, as some take longer than others.
         hog_ms: of HOG, once.
     """
 
     frame_ms: float
     step_ms: float
+    detection_ms: float
     hog_ms: float
 
 
@@ -62,6 +64,16 @@ class BesideHog:
         """How many times longer HOG takes than a step of a filter, likewise."""
         return median(turn.hog_ms / turn.step_ms for turn in self.turns)
 
+    @property
+    def detection_ms(self) -> float:
+        """What the tracker by detection takes [ms], median over the turns."""
+        return median(turn.detection_ms for turn in self.turns)
+
+    @property
+    def detection_ratio(self) -> float:
+        """How many times longer HOG takes than the tracker by detection, likewise."""
+        return median(turn.hog_ms / turn.detection_ms for turn in self.turns)
+
 
 def beside_hog(film: Sequence[Frame]) -> BesideHog:
     """Track four people, and let a filter and HOG, which has one thread, take turns with that."""
@@ -74,20 +86,28 @@ def beside_hog(film: Sequence[Frame]) -> BesideHog:
 
 
 def _turns(film: Sequence[Frame]) -> list[Turn]:
-    tracker = make_tracker(DEFAULT_TRACKER, stream(0, "tracker"))
+    tracker, other = (make_tracker(name, stream(0, "tracker")) for name in (DEFAULT_TRACKER, FOOTAGE_TRACKER))
     hog, step = Hog(uses_colour=True), FilterStep(COUNT)
     hog.detect(film[0])
     turns = []
     for first in range(0, len(film), _FRAMES):
-        frames_ms = []
+        frames_ms, others_ms = [], []
         for frame in film[first : first + _FRAMES]:
-            spent_ms = _spent_ms(partial(tracker.update, frame))
+            spent_ms, other_ms = (_spent_ms(partial(one.update, frame)) for one in (tracker, other))
             if len(people_in(tracker)) == MOST:
                 frames_ms.append(spent_ms)
+                others_ms.append(other_ms)
         steps_ms = [_spent_ms(step) for _ in range(_STEPS)]
         hog_ms = _spent_ms(partial(hog.detect, film[first]))
         if frames_ms:
-            turns.append(Turn(frame_ms=median(frames_ms), step_ms=median(steps_ms), hog_ms=hog_ms))
+            turns.append(
+                Turn(
+                    frame_ms=median(frames_ms),
+                    step_ms=median(steps_ms),
+                    detection_ms=mean(others_ms),
+                    hog_ms=hog_ms,
+                )
+            )
     return turns
 
 

@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 
 import click
 
+from benchmarks import call
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions, run
@@ -89,4 +90,4 @@ def main(seeds: int, rounds: int) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.speed.engine")

@@ -16,6 +16,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from benchmarks import call
 from peopleboy.behaviours.command import Command
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
@@ -109,4 +110,4 @@ def main(scenarios: Sequence[str], instants: int | None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.speed.full_detail")

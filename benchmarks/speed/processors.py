@@ -18,6 +18,7 @@ from tempfile import TemporaryDirectory
 
 import click
 
+from benchmarks import call
 from benchmarks.speed.whole_tracker import SCENARIO
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.frame_cache import film, frames_of, open_film
@@ -87,4 +88,4 @@ def main(trackers: str, shot: Path | None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.speed.processors")

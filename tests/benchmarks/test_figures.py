@@ -36,6 +36,9 @@ def test_a_persons_cost_is_the_slope_over_the_crowds() -> None:
 
 def test_a_machine_that_is_slow_for_some_turns_changes_no_ratio() -> None:
     slow = [1.0, 1.0, 2.0, 2.0, 1.5]
-    turns = tuple(Turn(frame_ms=2.0 * by, step_ms=0.1 * by, hog_ms=60.0 * by) for by in slow)
+    turns = tuple(
+        Turn(frame_ms=2.0 * by, step_ms=0.1 * by, detection_ms=10.0 * by, hog_ms=60.0 * by) for by in slow
+    )
     assert BesideHog(turns).frame_ratio == pytest.approx(30.0)
     assert BesideHog(turns).step_ratio == pytest.approx(600.0)
+    assert BesideHog(turns).detection_ratio == pytest.approx(6.0)
