@@ -125,7 +125,10 @@ def _of_other_kind(folder: Path, by: Yardstick, truth: TrueBoxes, tracks: TrackB
     other = BoxKind.TORSO if by.boxes is BoxKind.WHOLE else BoxKind.WHOLE
     there = true_boxes(*truth_files(folder, by.camera), other)
     given, wide, elsewhere = (width_per_height(rows) for rows in (tracks, truth, there))
-    if not min(given, wide, elsewhere) > 0.0 or abs(math.log(elsewhere / wide)) < _LEAST_APART:
+    if (
+        not all(one > 0.0 for one in (given, wide, elsewhere))
+        or abs(math.log(elsewhere / wide)) < _LEAST_APART
+    ):
         return ""
     if math.log(given / wide) / math.log(elsewhere / wide) < _NEAR_OTHER:
         return ""

@@ -102,6 +102,15 @@ def test_torsos_are_the_default_and_called_so_if_held_against_whole_people(
     assert_names(note, "--boxes torso")
 
 
+def test_boxes_where_nobody_is_are_of_no_kind(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    empty = make_run(SEEN | {"name": "empty", "people": []}, tmp_path / "empty", "--tracker", "truth")
+    ghost = tmp_path / "ghost.txt"
+    ghost.write_text("3,1,20,10,12,50,1,-1,-1,-1\n", encoding="utf-8")
+    out = tmp_path / "haunted"
+    assert run_cli("adopt", empty, ghost, "--name", "seer", "--no-rrd", "--out", out) == 0
+    assert figures(capsys, out)["notes"] == []
+
+
 def test_a_slow_camera_has_its_images_counted_as_in_an_export(
     seen: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
