@@ -20,15 +20,17 @@ _BINS: Final = (4, 8, 8)  # of brightness and of both opponent colours
 _SPREAD: Final = 60.0  # of the opponent colours that the bins cover
 _DARK: Final = 24.0  # grey up to which nothing is told of colours
 _LEAST_PX: Final = 12
+_LEAST_INSIDE: Final = 0.6  # share of a part's height in the image: hips are no legs
 
-FEATURES: Final = len(_PARTS) * _BINS[0] * _BINS[1] * _BINS[2]
+PARTS: Final = len(_PARTS)
+FEATURES: Final = PARTS * _BINS[0] * _BINS[1] * _BINS[2]
 
 
 def colours_of(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     """Describe who has boxes (M, 4) in the thermal image by colours (M, FEATURES).
 
     The product of two rows is Bhattacharyya's coefficient: 1 for the same colours, 0 for none in common. Of
-    who is not seen a row is 0.
+    whose torso is not seen a row is 0, and so is the half of legs that are mostly outside the image.
     """
     told = np.zeros((len(boxes), FEATURES), np.float32)
     if COLOUR not in frame.images or len(boxes) == 0:
@@ -37,14 +39,35 @@ def colours_of(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     there = _seen_there(frame, boxes, view, (image.shape[0], image.shape[1]))
     for row, box in enumerate(there):
         parts = [_histogram(_part(image, box, *part)) for part in _PARTS]
-        if all(part is not None for part in parts):
-            told[row] = np.concatenate([part for part in parts if part is not None]) / np.sqrt(len(_PARTS))
+        if parts[0] is None:
+            continue
+        for half, part, extent in zip(told[row].reshape(PARTS, -1), parts, _PARTS, strict=True):
+            if part is not None and _share_inside(box, extent, image.shape[0]) >= _LEAST_INSIDE:
+                half[:] = part / np.sqrt(PARTS)
     return told
 
 
 def alike(one: Colours, other: Colours) -> float:
     """Give Bhattacharyya's coefficient of colours: of the same clothes above 0.8, of others below 0.4."""
-    return float(one @ other)
+    return float(coefficients(one[None], other[None])[0][0, 0])
+
+
+def coefficients(some: Colours, others: Colours) -> tuple[Colours, NDArray[np.bool_]]:
+    """Compare colours (K, FEATURES) and (M, FEATURES) by the parts that are seen of both.
+
+    Returns:
+        (K, M) Bhattacharyya's coefficients, 0 where nothing is, and whether something is (K, M).
+    """
+    ours, theirs = (rows.reshape(len(rows), PARTS, -1) for rows in (some, others))
+    seen = np.einsum("kp,mp->km", ours.any(axis=2).astype(np.float32), theirs.any(axis=2).astype(np.float32))
+    return some @ others.T * (PARTS / np.maximum(seen, np.float32(1.0))), seen > 0.0
+
+
+def blended(before: Colours, now: Colours, share: float) -> Colours:
+    """Give the colours that are remembered after others are seen, by the parts that are."""
+    was, is_ = (one.reshape(PARTS, -1) for one in (before, now))
+    gain = np.where(was.any(axis=1), np.float32(share), np.float32(1.0)) * is_.any(axis=1)
+    return np.asarray((was + gain[:, None] * (is_ - was)).ravel(), np.float32)
 
 
 def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, int]) -> Floats:
@@ -61,6 +84,12 @@ def _part(image: NDArray[np.uint8], box: Floats, first: float, last: float) -> N
     inset = (1.0 - _WIDE) / 2.0 * width
     rows = slice(max(round(top + first * height), 0), max(round(top + last * height), 0))
     return image[rows, max(round(left + inset), 0) : max(round(left + width - inset), 0)]
+
+
+def _share_inside(box: Floats, extent: tuple[float, float], rows: int) -> float:
+    """Tell which share of a part's height is among the rows of the image."""
+    top, bottom = box[1] + box[3] * np.array(extent)
+    return float((min(bottom, rows) - max(top, 0.0)) / (bottom - top))
 
 
 def _histogram(pixels: NDArray[np.uint8]) -> Colours | None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.by_detection.colours import Colours, colours_of
+from peopleboy.tracker.by_detection.colours import Colours, coefficients, colours_of
 from peopleboy.tracker.by_detection.looks import Pattern, patterns
 from peopleboy.tracker.by_detection.target import Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
@@ -55,8 +55,8 @@ class Proposed:
         """
         warm = np.stack([target.looks for target in targets]) @ self.looks.T
         worn = np.stack([target.colours for target in targets])
-        is_known = np.logical_and.outer(worn.any(axis=1), self.colours.any(axis=1))
-        return np.where(is_known, 2.0 * worn @ self.colours.T - 1.0, warm).astype(np.float64), is_known
+        same, is_known = coefficients(worn, self.colours)
+        return np.where(is_known, 2.0 * same - 1.0, warm).astype(np.float64), is_known
 
     def ratio(self, row: int) -> float:
         """Give the width of a box over its height."""

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from peopleboy.tracker.by_detection.colours import FEATURES, Colours, alike
+from peopleboy.tracker.by_detection.colours import FEATURES, Colours, alike, blended
 from peopleboy.tracker.by_detection.config import ExistenceConfig
 from peopleboy.tracker.by_detection.looks import Pattern
 from peopleboy.tracker.frame import Floats
@@ -103,9 +103,9 @@ class Target:
         """Take in how it looks now, apart from others."""
         self.looks = self.looks + np.float32(_LEARNING) * (looks - self.looks)
         self.clear_s += dt_s
-        self.recent = _blended(self.recent, colours, _LEARNING_SOON)
+        self.recent = blended(self.recent, colours, _LEARNING_SOON)
         if not self.colours.any() or alike(self.recent, self.colours) > _OWN:
-            self.colours = _blended(self.colours, colours, max(_LEARNING, 1.0 / self.sightings))
+            self.colours = blended(self.colours, colours, max(_LEARNING, 1.0 / self.sightings))
 
     def overlap(self) -> None:
         """Take in that it is not seen apart from others now."""
@@ -115,7 +115,7 @@ class Target:
         """Go on as somebody who was lost, and is no more."""
         self.id, self.born_s = before.id, before.born_s
         self.told_s = min(self.told_s, before.told_s)
-        self.colours = _blended(before.colours, self.colours, _LEARNING)
+        self.colours = blended(before.colours, self.colours, _LEARNING)
         self.looks = before.looks + np.float32(_LEARNING) * (self.looks - before.looks)
         self.watched_s += before.watched_s
         self.log_odds = max(self.log_odds, before.log_odds)
@@ -157,10 +157,3 @@ class Target:
         """Tell whether enough speaks for it to be told."""
         is_enough = self.sightings >= config.sightings or self.surest >= config.at_once
         return is_enough and self.log_odds > config.confirmed
-
-
-def _blended(before: Colours, now: Colours, share: float) -> Colours:
-    """Give what is remembered after something else is seen, if anything is."""
-    if not now.any() or not before.any():
-        return now if now.any() else before
-    return np.asarray(before + np.float32(share) * (now - before), np.float32)

@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from peopleboy.tracker.by_detection.colours import (
+    FEATURES,
+    PARTS,
+    alike,
+    blended,
+    coefficients,
+    colours_of,
+)
+from peopleboy.tracker.by_detection.viewpoint import Viewpoint
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+
+ROWS, COLUMNS = 240, 320
+BOX = np.array([[100.0, 40.0, 50.0, 160.0]])
+RED, BLUE, GREEN = (200, 40, 40), (40, 40, 200), (40, 160, 40)
+
+
+def worn(box: NDArray[np.float64], torso: tuple[int, int, int], legs: tuple[int, int, int]) -> NDArray:
+    """The colours of somebody in a box of a grey image."""
+    image = np.full((ROWS, COLUMNS, 3), 90, np.uint8)
+    left, top, width, height = box[0]
+    middle, rows = round(top + 0.52 * height), slice(max(round(left), 0), round(left + width))
+    image[max(round(top), 0) : middle, rows] = torso
+    image[middle : round(top + height), rows] = legs
+    frame = Frame(images={THERMAL: np.zeros((ROWS, COLUMNS), np.uint8), COLOUR: image}, time_s=0.0)
+    return colours_of(frame, box, Viewpoint.of(None, (ROWS, COLUMNS)))[0]
+
+
+def lower(by: float) -> NDArray[np.float64]:
+    return BOX + np.array([0.0, by, 0.0, 0.0])
+
+
+def test_the_same_clothes_are_alike_and_others_are_not() -> None:
+    one = worn(BOX, RED, BLUE)
+    assert alike(one, worn(lower(10.0), RED, BLUE)) > 0.95
+    assert alike(one, worn(BOX, RED, GREEN)) == pytest.approx(0.5, abs=0.1)
+    assert alike(one, worn(BOX, GREEN, GREEN)) < 0.1
+
+
+def test_who_is_seen_without_legs_is_known_by_the_torso() -> None:
+    whole, cut = worn(BOX, RED, BLUE), worn(lower(95.0), RED, BLUE)
+    assert not cut.reshape(PARTS, -1)[1].any()
+    assert alike(whole, cut) > 0.95
+    assert alike(cut, cut) == pytest.approx(1.0, abs=1e-5)
+    assert alike(worn(BOX, GREEN, BLUE), cut) < 0.1
+
+
+def test_of_whose_torso_is_not_seen_nothing_is_known() -> None:
+    nothing = worn(lower(195.0), RED, BLUE)
+    assert not nothing.any()
+    same, is_known = coefficients(np.stack([nothing, worn(BOX, RED, BLUE)]), nothing[None])
+    assert not same.any()
+    assert not is_known.any()
+
+
+def test_legs_are_remembered_while_the_torso_is_learned() -> None:
+    whole, cut = worn(BOX, RED, BLUE), worn(lower(95.0), GREEN, BLUE)
+    torso, legs = blended(whole, cut, 0.3).reshape(PARTS, -1)
+    np.testing.assert_array_equal(legs, whole.reshape(PARTS, -1)[1])
+    np.testing.assert_allclose(
+        torso, 0.7 * whole.reshape(PARTS, -1)[0] + 0.3 * cut.reshape(PARTS, -1)[0], atol=1e-6
+    )
+    nothing = np.zeros(FEATURES, np.float32)
+    np.testing.assert_array_equal(blended(whole, nothing, 0.3), whole)
+    np.testing.assert_array_equal(blended(nothing, cut, 0.3), cut)
