@@ -177,9 +177,7 @@ def rows(names: tuple[str, ...], seeds: int, tracker: str) -> Iterator[tuple[str
 @click.argument("cameras", nargs=-1, type=click.Choice(tuple(CAMERAS)))
 def main(seeds: int, tracker: str, cameras: tuple[str, ...]) -> None:
     """Print how a tracker does with these cameras, or with all, as a Markdown table [%]."""
-    make_tracker(
-        tracker, stream(0, "tracker")
-    )  # that there is none of that name is told before films are made
+    make_tracker(tracker, stream(0, "tracker"))  # refused now rather than after films are made
     figures = ("CP", "CR", "IDF1", "HOTA")
     print_row("camera", (*(f"{one}, calibrated" for one in figures), *(f"{one}, not" for one in figures)))
     print_row("---", ["---:"] * 8)

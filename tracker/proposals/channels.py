@@ -49,12 +49,12 @@ def noise_of(grey: Image) -> float:
 
 
 class Memory:
-    """Room for channels that is used again: a fresh megabyte costs more than what is written there."""
+    """Room that is used again: a fresh megabyte costs more than what is written there."""
 
     def __init__(self) -> None:
         self._room = np.empty(0, np.float32)
 
-    def take(self, shape: tuple[int, int, int]) -> Cells:
+    def take(self, shape: tuple[int, ...]) -> Cells:
         """Give an array; it holds until the next one is taken."""
         size = math.prod(shape)
         if size > self._room.size:

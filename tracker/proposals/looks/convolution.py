@@ -5,14 +5,13 @@ For the latter Winograd's minimal filtering F(2 x 2, 3 x 3) is used (Lavin and G
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Planes = NDArray[np.float32]
+from peopleboy.tracker.proposals.channels import Memory
+from peopleboy.tracker.proposals.looks.crops import Planes
 
 TILE: Final = 4
 """Side of the tiles [px] that F(2 x 2, 3 x 3) takes, 2 px apart, which give 2 x 2 px each."""
@@ -21,13 +20,13 @@ _INTO: Final = np.array([[1.0, 0.0, 0.0], [0.5, 0.5, 0.5], [0.5, -0.5, 0.5], [0.
 
 
 class Desk:
-    """Room for one convolution after another: a fresh megabyte costs more than what is written there.
+    """Room for one convolution after another.
 
     What a convolution gives holds until the next but one.
     """
 
     def __init__(self) -> None:
-        self._room: dict[str, Planes] = {}
+        self._rooms: dict[str, Memory] = {}
         self._is_odd = False
 
     def given(self, shape: tuple[int, ...]) -> Planes:
@@ -37,11 +36,7 @@ class Desk:
 
     def take(self, name: str, shape: tuple[int, ...]) -> Planes:
         """Give an array; it holds until the next one of that name is taken."""
-        size = math.prod(shape)
-        room = self._room.get(name)
-        if room is None or size > room.size:
-            room = self._room[name] = np.empty(size, np.float32)
-        return room[:size].reshape(shape)
+        return self._rooms.setdefault(name, Memory()).take(shape)
 
 
 def convolved(planes: Planes, kernel: Planes, bias: Planes, side: int, stride: int, desk: Desk) -> Planes:
