@@ -6,6 +6,11 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+# What is taught in a moment is not worth the seconds that make the steps of teaching fast.
+os.environ.setdefault(
+    "XLA_FLAGS", "--xla_backend_optimization_level=0 --xla_llvm_disable_expensive_passes=true"
+)
+
 # A busy machine is no failure, and a change is judged by the same examples as the one before it;
 # HYPOTHESIS_PROFILE=explore looks for new ones.
 settings.register_profile("repeat", deadline=None, derandomize=True)

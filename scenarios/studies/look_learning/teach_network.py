@@ -96,9 +96,8 @@ def teach_network(
     if not batches:
         raise BadInput(f"{len(looks.overlap)} examples, at least {_BATCH} are needed; take more worlds")
     weights = {name: jnp.asarray(array) for name, array in first_weights(lesson.form, rng).items()}
-    optimiser = _optimiser(batches)
-    step = jax.jit(partial(_step, lesson, optimiser))
-    state, kept, total = optimiser.init(weights), weights, Counter[str]()
+    step = partial(_step, lesson, batches)
+    state, kept, total = _optimiser(batches).init(weights), weights, Counter[str]()
     keys = jax.random.split(jax.random.key(int(rng.integers(2**31))), batches)
     for number, batch in enumerate(_batches(looks, rng, rounds), 1):
         weights, state, kept, losses = step(
@@ -145,9 +144,10 @@ def bent(off: jax.Array, far: float) -> jax.Array:
     return jnp.where(off < far, 0.5 * off * off, far * (off - 0.5 * far))
 
 
+@partial(jax.jit, static_argnums=(0, 1))
 def _step(
     lesson: Lesson,
-    optimiser: optax.GradientTransformation,
+    batches: int,
     weights: Weights,
     state: optax.OptState,
     kept: Weights,
@@ -165,7 +165,7 @@ def _step(
     left = (jax.random.uniform(for_units, (len(planes), units)) >= left_out) / (1.0 - left_out)
     seen = varied(planes, for_crops)
     (_, losses), slopes = jax.value_and_grad(loss, has_aux=True)(weights)
-    steps, state = optimiser.update(slopes, state, weights)
+    steps, state = _optimiser(batches).update(slopes, state, weights)
     weights = {name: array + steps[name] for name, array in weights.items()}
     kept = {name: array + followed * (weights[name] - array) for name, array in kept.items()}
     return weights, state, kept, losses

@@ -16,6 +16,7 @@ from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_films import drawn_film
 
 
+@pytest.mark.usefixtures("small")
 def test_the_lesson_leaves_a_network_that_says_how_good_it_is(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -38,6 +39,7 @@ def test_people_alone_or_none_are_refused(overlap: list[float], told: str) -> No
         refuse_one_kind(none._replace(overlap=np.array(overlap, np.float32)))
 
 
+@pytest.mark.usefixtures("small")
 def test_scores_become_log_odds() -> None:
     # A network that says nothing new, of a first look that is four times too sure.
     rng = np.random.default_rng(0)

@@ -5,13 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.studies.people_learning import cut_off, people_lesson
+from peopleboy.scenarios.studies.people_learning import cut_off, people_lesson, teach_placing
 from peopleboy.scenarios.studies.people_learning.boosting import Boosting
 from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector
+from peopleboy.scenarios.studies.people_learning.patch_pool import patch_pool
 from peopleboy.scenarios.studies.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot
 from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import KINDS
 from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
+from peopleboy.tracker.proposals.patches import Patches
 from peopleboy.tracker.proposals.window import Kind
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
@@ -23,12 +25,20 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """A lesson on drawn films, of few trees."""
     rounds = (Boosting(3, 0.5, features=20), Boosting(4, 0.5, features=20))
     monkeypatch.setattr(people_lesson, "ROUNDS", dict.fromkeys(Kind, rounds))
+    monkeypatch.setattr(teach_placing, "_BOOSTING", Boosting(20, 0.3, features=60))
     monkeypatch.setattr(people_lesson, "TESTS", 2)
     monkeypatch.setattr(cut_off, "_TALL_PX", 40.0)
     monkeypatch.setattr(PeopleFilmTask, "__call__", lambda task, _: drawn_film(task.seed, 3).save(task.film))
 
 
-@pytest.mark.usefixtures("quick")
+@pytest.fixture
+def few_patches(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = patch_pool()
+    some = Patches(whole.channel[::8], whole.first[::8], whole.second[::8])
+    monkeypatch.setattr(people_lesson, "patch_pool", lambda: some)
+
+
+@pytest.mark.usefixtures("quick", "few_patches")
 def test_drawn_people_are_learned_and_found_in_other_images(shots: list[PeopleShot]) -> None:
     model = PeopleModel(people_lesson.teach(shots[:30], shots[30:36], [Kind.WHOLE]))
     found = judge_detector(model, shots[36:], knows_mount=False)
@@ -37,7 +47,7 @@ def test_drawn_people_are_learned_and_found_in_other_images(shots: list[PeopleSh
     assert found.overlap[found.is_person].mean() > 0.65
 
 
-@pytest.mark.usefixtures("quick")
+@pytest.mark.usefixtures("quick", "few_patches")
 def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: Path) -> None:
     assert run_cli("train-detector", "--worlds", 5, "--out", tmp_path, "--workers", 1) == 0
     names = {path.name for path in (tmp_path / "films").iterdir()}
