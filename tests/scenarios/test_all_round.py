@@ -98,6 +98,7 @@ def test_its_recording_draws_what_both_trackers_see_by(came: Path) -> None:
         assert min(sheet.size) > 300
 
 
+@pytest.mark.thorough
 def test_the_same_run_in_a_fresh_process_gives_the_same_tracks(came: Path, tmp_path: Path) -> None:
     out = tmp_path / "again"
     call = ["run", came.parent / "scene.yaml", "--tracker", "handover", "--out", out, "--no-rrd"]

@@ -15,6 +15,7 @@ from peopleboy.scenarios.run_folder.finished_run import read_run
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.runs.exported import SCENE
+from tests.helpers.some_of import some_of
 
 BRIEF: dict[str, Any] = SCENE | {"name": "brief", "duration_s": 0.5}
 TRACKER = """\
@@ -82,7 +83,7 @@ def write_tracker(home: Path, answer: str, module: str) -> str:
     return f"{module}:Mine"
 
 
-@pytest.mark.parametrize("answer", WRONG)
+@pytest.mark.parametrize("answer", some_of(WRONG, 4))
 def test_a_wrong_value_is_told_in_a_line_with_what_would_be_right(
     answer: str, home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

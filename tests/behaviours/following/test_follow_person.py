@@ -293,6 +293,7 @@ def test_through_a_door_the_person_is_followed_without_touching_the_posts(openin
     assert 2.0 < log.distance[-1] < 4.6
 
 
+@pytest.mark.thorough
 @settings(max_examples=6, deadline=None)
 @given(
     start=st.tuples(st.floats(1.0, 4.0), st.floats(-2.0, 2.0)),

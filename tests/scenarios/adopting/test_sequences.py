@@ -36,6 +36,7 @@ def exported(runs: Path) -> Path:
     return results
 
 
+@pytest.mark.thorough
 def test_results_in_the_layout_of_an_export_come_back_as_runs_with_the_same_tracks(
     runs: Path, exported: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -25,6 +25,7 @@ env.reset()  # and leave
 """
 
 
+@pytest.mark.thorough
 def test_without_a_screen_a_page_of_this_machine_shows_it_until_it_is_closed_or_left(tmp_path: Path) -> None:
     environment = {name: value for name, value in os.environ.items() if "DISPLAY" not in name}
     shown = subprocess.run(

@@ -267,6 +267,7 @@ def test_the_folder_is_a_bag_of_ros_2_with_little_endian_messages_in_order_of_ti
     assert times == sorted(times)
 
 
+@pytest.mark.thorough
 def test_rerun_understands_the_file(bag: Path, tmp_path: Path) -> None:
     def rerun(*arguments: object) -> str:
         call = [sys.executable, "-m", "rerun", *map(str, arguments)]

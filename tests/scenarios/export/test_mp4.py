@@ -19,6 +19,7 @@ def film(crossing: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return export(crossing, "mp4", tmp_path_factory.mktemp("mp4") / "set") / "tiny-3.mp4"
 
 
+@pytest.mark.thorough
 def test_every_browser_can_play_the_film(film: Path) -> None:
     with av.open(str(film)) as opened:
         stream = opened.streams.video[0]

@@ -38,6 +38,7 @@ def people(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return home / "people"
 
 
+@pytest.mark.thorough
 def test_coco_has_annotations_and_images_of_each_split_apart(
     people: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

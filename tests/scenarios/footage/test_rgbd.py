@@ -78,6 +78,7 @@ def places(path: Path) -> dict[tuple[int, int], tuple[float, float]]:
     return {(row["frame"], row["id"]): (row["place_x_m"], row["place_y_m"]) for row in rows}
 
 
+@pytest.mark.thorough
 def test_a_runs_pictures_give_the_people_of_the_run(run: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = call(

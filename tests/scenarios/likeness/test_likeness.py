@@ -120,6 +120,7 @@ def test_what_tells_a_single_scene_is_of_no_use_on_others() -> None:
     assert tell_apart(*sides, 0, "patches").auc.mean < 0.8
 
 
+@pytest.mark.thorough
 def test_a_page_that_needs_nothing_else_and_the_same_figures_as_json(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

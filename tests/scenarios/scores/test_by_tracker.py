@@ -123,6 +123,7 @@ def test_figures_as_json_are_those_of_metrics_json(folder: Path, capsys: pytest.
     assert alone["all_frames"]["thesis"] == told["trackers"]["peopleboy"]["all_frames"]["thesis"]
 
 
+@pytest.mark.thorough
 def test_run_sweep_and_compare_print_one_document_or_nothing(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

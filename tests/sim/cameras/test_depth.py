@@ -250,6 +250,7 @@ def digest(images: dict[str, np.ndarray]) -> str:
     return whole.hexdigest()
 
 
+@pytest.mark.thorough
 def test_a_fresh_process_gives_the_same_bytes(images: dict[str, np.ndarray]) -> None:
     done = subprocess.run([sys.executable, "-c", _HASH], check=True, capture_output=True, text=True)
     assert done.stdout.strip() == digest(images)

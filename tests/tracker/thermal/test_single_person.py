@@ -147,6 +147,7 @@ def test_the_same_seed_gives_the_same_tracks_and_another_seed_does_not(name):
     assert not np.array_equal(*clouds)
 
 
+@pytest.mark.thorough
 def test_a_fresh_process_gives_the_same_tracks():
     code = (
         "from tests.helpers.images.drawn_people import person_frame; "

@@ -98,6 +98,7 @@ def test_an_episode_has_the_truth_and_the_figures_of_a_run_of_its_commands(
         ]
 
 
+@pytest.mark.thorough
 def test_an_episode_along_a_corridor_has_the_figures_of_the_run(tmp_path: Path) -> None:
     path = write_short(tmp_path, "corridor_straight", 11.0)
     env = PeopleBoyEnv(path, observation="truth", task="corridor")

@@ -64,6 +64,7 @@ def test_what_every_task_refuses_is_bad_input(tmp_path: Path, store: Store) -> N
         work([ToyTask(number, tmp_path, fault="refused") for number in range(2)], store, Workers(1))
 
 
+@pytest.mark.thorough
 def test_a_process_that_is_killed_loses_nothing_and_nothing_is_done_twice(
     tmp_path: Path, store: Store
 ) -> None:
@@ -73,6 +74,7 @@ def test_a_process_that_is_killed_loses_nothing_and_nothing_is_done_twice(
     assert len(list(tmp_path.glob("died-*"))) == 1
 
 
+@pytest.mark.thorough
 def test_a_process_that_grows_is_replaced_without_a_word(tmp_path: Path, store: Store) -> None:
     work([ToyTask(number, tmp_path, takes_s=0.3, keeps_mb=400) for number in range(6)], store, Workers(2))
     assert squares(store) == {number: number**2 for number in range(6)}

@@ -62,6 +62,7 @@ def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: 
     assert "average precision" in about["on worlds 0 to 1, mount known"]
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("quick")
 def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
     chosen = ("--worlds", 5, "--windows", "cut", "--workers", 1)

@@ -43,6 +43,7 @@ def test_in_a_room_people_are_on_average_as_warm_as_without() -> None:
         assert abs(painted) < 0.5, part
 
 
+@pytest.mark.thorough
 def test_people_differ_more_than_without_and_one_s_parts_go_together() -> None:
     plain, fine = crowd(None), crowd(21.0)
 
