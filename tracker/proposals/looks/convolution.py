@@ -53,9 +53,12 @@ def convolved(planes: Planes, kernel: Planes, bias: Planes, side: int, stride: i
     Returns:
         (H', W', K).
     """
-    rows, columns = -(-planes.shape[0] // stride), -(-planes.shape[1] // stride)
+    high, wide, deep = planes.shape
+    rows, columns, edge = -(-high // stride), -(-wide // stride), side // 2
+    edged = desk.take("edged", (high + 2 * edge, (wide + 2 * edge) * deep))
+    _edge(planes, edge, edged)
     seen = desk.take("seen", (rows * columns, len(kernel)))
-    _gather(planes, side, stride, columns, seen)
+    _gather(edged, side, side * deep, stride, stride * deep, columns, seen)
     given = desk.given((rows * columns, len(bias)))
     np.matmul(seen, kernel, out=given)
     _rectify(given, bias)
@@ -82,29 +85,36 @@ def convolved_by_tiles(planes: Planes, kernel: Planes, bias: Planes, desk: Desk)
     return given
 
 
+# Below, places are unsigned: the compiler copies many numbers at once where none can count from the end.
+
+
 @njit(cache=True, nogil=True)
-def _gather(planes: Planes, side: int, stride: int, columns: int, seen: Planes) -> None:  # pragma: no cover
-    """Put what the kernel sees at each place into a row."""
+def _edge(planes: Planes, edge: int, edged: Planes) -> None:  # pragma: no cover
+    """Surround planes by zeros."""
     high, wide, deep = planes.shape
-    edge, run = side // 2, side * deep
-    rows = planes.reshape(high, wide * deep)
+    given, put = planes.ravel(), edged.ravel()
+    run, row, begin = np.uint64(wide * deep), np.uint64(edged.shape[1]), np.uint64(edge * deep)
+    put[:] = np.float32(0.0)
+    for i in range(np.uint64(high)):
+        to = (i + np.uint64(edge)) * row + begin
+        for k in range(run):
+            put[to + k] = given[i * run + k]
+
+
+@njit(cache=True, nogil=True)
+def _gather(
+    edged: Planes, side: int, run: int, down: int, right: int, columns: int, seen: Planes
+) -> None:  # pragma: no cover
+    """Put what the kernel sees at each place into a row: `side` runs of numbers, one below the other."""
+    given, put, row = edged.ravel(), seen.ravel(), np.uint64(edged.shape[1])
+    to, length = np.uint64(0), np.uint64(run)
     for place in range(len(seen)):
-        top, left = (place // columns) * stride - edge, (place % columns) * stride - edge
-        first, last = max(-left, 0) * deep, (min(left + side, wide) - left) * deep
-        at = left * deep
-        for i in range(side):
-            here = seen[place, i * run : (i + 1) * run]
-            if top + i < 0 or top + i >= high:
-                for k in range(run):
-                    here[k] = 0.0
-                continue
-            row = rows[top + i]
-            for k in range(first):
-                here[k] = 0.0
-            for k in range(first, last):
-                here[k] = row[at + k]
-            for k in range(last, run):
-                here[k] = 0.0
+        at = np.uint64(place // columns * down) * row + np.uint64(place % columns * right)
+        for _ in range(side):
+            for k in range(length):
+                put[to + k] = given[at + k]
+            to += length
+            at += row
 
 
 @njit(cache=True, nogil=True)
