@@ -202,7 +202,8 @@ class ByDetectionTracker:
         """Take in where people are; of who was lost the way was guessed, and begins anew."""
         config = self._config.path
         later = corrected(self._paths.take(rows), boxes, view, config)
-        later = later.replaced(np.flatnonzero(was_lost), begun(boxes[was_lost], view, config))
+        if was_lost.any():
+            later = later.replaced(np.flatnonzero(was_lost), begun(boxes[was_lost], view, config))
         self._paths = self._paths.replaced(rows, later)
 
     def _is_lost(self, target: Target, now: _Instant) -> bool:

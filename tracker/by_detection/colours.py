@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.by_detection.other_camera import carried_over
@@ -58,16 +58,21 @@ def coefficients(some: Colours, others: Colours) -> tuple[Colours, NDArray[np.bo
     Returns:
         (K, M) Bhattacharyya's coefficients, 0 where nothing is, and whether something is (K, M).
     """
-    ours, theirs = (rows.reshape(len(rows), PARTS, -1) for rows in (some, others))
-    seen = np.einsum("kp,mp->km", ours.any(axis=2).astype(np.float32), theirs.any(axis=2).astype(np.float32))
+    ours, theirs = (_are_seen(rows).astype(np.float32) for rows in (some, others))
+    seen = ours @ theirs.T
     return some @ others.T * (PARTS / np.maximum(seen, np.float32(1.0))), seen > 0.0
 
 
 def blended(before: Colours, now: Colours, share: float) -> Colours:
     """Give the colours that are remembered after others are seen, by the parts that are."""
     was, is_ = (one.reshape(PARTS, -1) for one in (before, now))
-    gain = np.where(was.any(axis=1), np.float32(share), np.float32(1.0)) * is_.any(axis=1)
+    gain = np.where(_are_seen(before[None])[0], np.float32(share), np.float32(1.0)) * _are_seen(now[None])[0]
     return np.asarray((was + gain[:, None] * (is_ - was)).ravel(), np.float32)
+
+
+def _are_seen(colours: Colours) -> NDArray[np.bool_]:
+    """Tell of colours (K, FEATURES) of which parts (K, PARTS) something is seen."""
+    return np.asarray(colours.reshape(len(colours), PARTS, -1).max(axis=2) > 0.0)
 
 
 def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, int]) -> Floats:
@@ -94,15 +99,41 @@ def _share_inside(box: Floats, extent: tuple[float, float], rows: int) -> float:
 
 def _histogram(pixels: NDArray[np.uint8]) -> Colours | None:
     """Give the root of the shares (256,) of pixels (h, w, 3) by brightness and opponent colours."""
-    if pixels.shape[0] * pixels.shape[1] < _LEAST_PX:
+    count = pixels.shape[0] * pixels.shape[1]
+    if count < _LEAST_PX:
         return None
-    red, green, blue = (pixels[..., k].astype(np.float32).ravel() for k in range(3))
-    light = (red + green + blue) / 3.0
-    if float(light.mean()) < _DARK:
-        return None
-    planes = np.stack([light * (_SPREAD / 128.0) - _SPREAD, red - green, blue - (red + green) / 2.0], axis=1)
-    clipped = np.clip(planes, -_SPREAD + 1e-3, _SPREAD - 1e-3)
-    bins = cv2.calcHist(
-        [np.ascontiguousarray(clipped[None])], [0, 1, 2], None, list(_BINS), [-_SPREAD, _SPREAD] * 3
-    )
-    return np.asarray(np.sqrt(bins.ravel() / bins.sum()), np.float32)
+    bins = np.zeros(_BINS, np.float32)
+    light = _count(pixels, *_BIN_OF, bins)
+    return None if light / (3 * count) < _DARK else np.sqrt(bins.ravel() / np.float32(count))
+
+
+def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:
+    """Tell in which of so many bins values are, which share out -_SPREAD to _SPREAD; beyond, in the outer ones."""
+    return np.clip(np.floor((values + _SPREAD) * bins / (2.0 * _SPREAD)), 0, bins - 1).astype(np.uint8)
+
+
+# Of red + green + blue from 0 on, red - green from -255 on, and 2 blue - red - green from -510 on.
+_BIN_OF: Final = (
+    _bins_of(np.arange(766) / 3.0 * (_SPREAD / 128.0) - _SPREAD, _BINS[0]),
+    _bins_of(np.arange(-255, 256) / 1.0, _BINS[1]),
+    _bins_of(np.arange(-510, 511) / 2.0, _BINS[2]),
+)
+
+
+@njit(cache=True, nogil=True)
+def _count(
+    pixels: NDArray[np.uint8],
+    of_light: NDArray[np.uint8],
+    of_red: NDArray[np.uint8],
+    of_blue: NDArray[np.uint8],
+    bins: Colours,
+) -> int:  # pragma: no cover
+    """Count pixels in bins, and give the sum of all they have of red, green and blue."""
+    total = 0
+    for row in pixels:
+        for one in row:
+            red, green, blue = np.int64(one[0]), np.int64(one[1]), np.int64(one[2])
+            light = red + green + blue
+            bins[of_light[light], of_red[red - green + 255], of_blue[2 * blue - red - green + 510]] += 1.0
+            total += light
+    return total

@@ -1,10 +1,14 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
 from peopleboy.tracker.by_detection.colours import (
     FEATURES,
     PARTS,
+    _histogram,
     alike,
     blended,
     coefficients,
@@ -66,3 +70,18 @@ def test_legs_are_remembered_while_the_torso_is_learned() -> None:
     nothing = np.zeros(FEATURES, np.float32)
     np.testing.assert_array_equal(blended(whole, nothing, 0.3), whole)
     np.testing.assert_array_equal(blended(nothing, cut, 0.3), cut)
+
+
+@given(pixels=arrays(np.uint8, st.tuples(st.integers(3, 9), st.integers(4, 9), st.just(3))))
+def test_colours_are_the_shares_of_numpys_own_bins(pixels: NDArray[np.uint8]) -> None:
+    red, green, blue = pixels.reshape(-1, 3).T.astype(np.float64)
+    light = (red + green + blue) / 3.0
+    told = _histogram(pixels)
+    if light.mean() < 24.0:
+        assert told is None
+        return
+    axes = [light, np.clip(red - green, -59.9, 59.9), np.clip(blue - (red + green) / 2.0, -59.9, 59.9)]
+    edges = [np.linspace(0.0, 256.0, 5), np.linspace(-60.0, 60.0, 9), np.linspace(-60.0, 60.0, 9)]
+    counts, _ = np.histogramdd(np.stack(axes, axis=1), edges)
+    assert told is not None
+    np.testing.assert_allclose(told**2, counts.ravel() / len(light), atol=1e-6)
