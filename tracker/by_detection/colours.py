@@ -108,7 +108,7 @@ def _histogram(pixels: NDArray[np.uint8]) -> Colours | None:
 
 
 def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:
-    """Tell in which of so many bins values are, which share out -_SPREAD to _SPREAD; beyond, in the outer ones."""
+    """Tell in which of so many bins values are; what is beyond -_SPREAD to _SPREAD is in the outer ones."""
     return np.clip(np.floor((values + _SPREAD) * bins / (2.0 * _SPREAD)), 0, bins - 1).astype(np.uint8)
 
 
@@ -132,7 +132,7 @@ def _count(
     total = 0
     for row in pixels:
         for one in row:
-            red, green, blue = np.int64(one[0]), np.int64(one[1]), np.int64(one[2])
+            red, green, blue = int(one[0]), int(one[1]), int(one[2])
             light = red + green + blue
             bins[of_light[light], of_red[red - green + 255], of_blue[2 * blue - red - green + 510]] += 1.0
             total += light
