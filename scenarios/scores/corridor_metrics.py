@@ -94,7 +94,7 @@ def score_corridor(*, time_s: Floats, robot: Floats, is_contact: Flags, legs: Se
         lateral_rms_m=math.sqrt(float(np.mean(lateral**2))) if len(lateral) else math.nan,
         lateral_max_m=float(np.max(lateral)) if len(lateral) else math.nan,
         heading_error_rad=float(np.mean(heading)) if len(heading) else math.nan,
-        contacts=count_contacts(is_contact),
+        contacts=count_contacts(time_s, is_contact),
         mean_speed_m_s=way_m / lasted_s if lasted_s > 0.0 else math.nan,
         way_m=way_m,
         legs=sum(len(lateral) > 0 for lateral, _ in errors),

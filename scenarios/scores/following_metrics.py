@@ -175,7 +175,7 @@ def score_following(run: FollowingRun, task: FollowingTask | None = None) -> Fol
         mean_distance_error_m=_mean(error),
         rms_distance_error_m=math.sqrt(_mean(error**2)),
         min_distance_m=float(np.min(distance[is_there])) if is_there.any() else math.nan,
-        collisions=count_contacts(run.is_contact),
+        collisions=count_contacts(time_s, run.is_contact),
         times_lost=int(np.sum(lost >= task.lost_s)),
         longest_lost_s=float(np.max(lost, initial=0.0)),
         followed_to_end=_is_at_end(run, task.reached_s),

@@ -67,7 +67,9 @@ def test_the_heading_in_which_everything_happens_does_not_matter():
 
 
 def test_contacts_are_counted_when_they_begin():
-    assert score([3.0] * 7, contact=[True, True, False, True, False, False, True]).collisions == 3
+    apart = [False] * (round(0.3 / STEP_S) + 1)
+    touched = [True, True, *apart, True, *apart]
+    assert score([3.0] * len(touched), contact=touched).collisions == 2
 
 
 def test_lost_periods_are_counted_from_their_length_on():
