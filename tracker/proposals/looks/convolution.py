@@ -5,6 +5,7 @@ For the latter Winograd's minimal filtering F(2 x 2, 3 x 3) is used (Lavin and G
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import Final
 
 import numpy as np
@@ -26,7 +27,7 @@ class Desk:
     """
 
     def __init__(self) -> None:
-        self._rooms: dict[str, Memory] = {}
+        self._rooms: defaultdict[str, Memory] = defaultdict(Memory)
         self._is_odd = False
 
     def given(self, shape: tuple[int, ...]) -> Planes:
@@ -36,7 +37,7 @@ class Desk:
 
     def take(self, name: str, shape: tuple[int, ...]) -> Planes:
         """Give an array; it holds until the next one of that name is taken."""
-        return self._rooms.setdefault(name, Memory()).take(shape)
+        return self._rooms[name].take(shape)
 
 
 def convolved(planes: Planes, kernel: Planes, bias: Planes, side: int, stride: int, desk: Desk) -> Planes:
