@@ -164,8 +164,9 @@ def train_detector(
     """Learn what people look like to a thermal camera, from random worlds.
 
     Some are as drawn, others full of people, plain, both, or warm. A tenth is held back, to make scores log
-    odds; random worlds of seeds 0 to 29 tell how good it is. Needs scikit-learn, and for both looks JAX and
-    Optax: pip install '.[train]'. Films that are there are not made again.
+    odds and to tell how good looks are; how good trees are, random worlds of seeds 0 to 29 tell. Needs
+    scikit-learn, and for both looks JAX and Optax: pip install '.[train]'. Films that are there are not made
+    again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
     from peopleboy.scenarios.studies.look_learning.closer_look_lesson import give_closer_look_lesson

@@ -46,6 +46,15 @@ def test_what_a_page_of_the_repository_points_to_is_there(name: str) -> None:
     assert not [link for link in links if not (page.parent / link).exists()]
 
 
+def test_what_a_page_says_of_the_api_is_a_link_into_the_reference() -> None:
+    # mkdocs leaves the brackets of others as they are, and says nothing.
+    pages = {path: path.read_text(encoding="utf-8") for path in (ROOT / "docs").rglob("*.md")}
+    modules = {name for text in pages.values() for name in re.findall(r"^::: (\S+)", text, re.MULTILINE)}
+    asked = {name for text in pages.values() for name in re.findall(r"\]\[(peopleboy[\w.]+)\]", text)}
+    assert len(asked) > 20
+    assert not [name for name in sorted(asked) if not {name, name.rpartition(".")[0]} & modules]
+
+
 def test_the_files_that_contributors_are_sent_to_are_there() -> None:
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     named = [word for word in re.findall(r"`([\w./]+/[\w./]*)`", text) if "NAME" not in word]

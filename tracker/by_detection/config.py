@@ -50,7 +50,8 @@ class MatchingConfig:
         highest: cost that is too high.
         lost_s: who was not seen for longer comes after all others.
         looks_of_lost: least likeness of who was lost, -1 to 1, where colours are not known.
-        colours_of_same: likeness of colours from which on somebody is the same, wherever he comes back.
+        colours_of_same: likeness of colours from which on somebody may be one who was lost, however far from
+            where he is expected.
     """
 
     gate: float = 3.5
@@ -91,7 +92,8 @@ class ExistenceConfig:
         soon_s: images that come so soon after one that was searched everywhere are searched where those are
             expected who were seen just before, and nowhere else: of 15 images a second two of three.
         weakest: proposals of a lower score are not looked at.
-        trust: what a unit of the others counts, in images of cameras that the detector does not know.
+        trust: what a unit of the others counts: of cameras unlike those that taught it the detector is too
+            sure.
         lasting: what is added to them: who is hardly somebody, in one image after another, is nobody more
             often than single images say.
         birth: score of a proposal that may be somebody new.
@@ -101,7 +103,8 @@ class ExistenceConfig:
         as_seen_now: what counts at once of how much surer an image is than all before: who was hardly seen
             in the first ones, as behind a door, does not look the same in the next.
         highest_score: what one image can say at most.
-        shared_doubt: what is taken off the score of somebody new whose box is all within that of another.
+        shared_doubt: what is taken off the score of somebody new whose box is all within that of another,
+            from the second image on.
         highest: what all can say.
         sightings: images in which somebody must have been found to be told.
         at_once: score of a single image that is enough.

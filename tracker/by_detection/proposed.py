@@ -51,7 +51,7 @@ class Proposed:
 
         Returns:
             (K, M) -1 to 1, by colours where they are known, else by warmth, and whether they are (K, M).
-            Colours of the same clothes are mostly above 0.5, and of others below -0.4; warmth tells little.
+            Colours of the same clothes are mostly above 0.6, and of others below -0.2; warmth tells little.
         """
         warm = np.stack([target.looks for target in targets]) @ self.looks.T
         worn = np.stack([target.colours for target in targets])

@@ -1,1 +1,1 @@
-"""Where people may be, told by boosted trees that were taught with rendered thermal images alone."""
+"""Where people may be, told by boosted trees and two networks that were taught with rendered images alone."""

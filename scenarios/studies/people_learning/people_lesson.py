@@ -1,4 +1,4 @@
-"""The whole lesson: films of random worlds, four rounds of mistakes, and how good it is in other worlds."""
+"""The whole lesson: films of random worlds, rounds of mistakes, and how good it is in other worlds."""
 
 from __future__ import annotations
 

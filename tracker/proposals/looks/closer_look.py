@@ -1,4 +1,4 @@
-"""A closer look at who was found: a network that sees twice as finely tells where exactly somebody is."""
+"""A closer look at who was found: a network that sees 1.6 times as finely tells where exactly somebody is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Convolutions of small planes by matrix products, and those of 3 x 3 with less than half of the products.
+"""Convolutions by matrix products; those of 3 x 3 at every pixel with less than half of the products.
 
 For the latter Winograd's minimal filtering F(2 x 2, 3 x 3) is used (Lavin and Gray, CVPR 2016, section 4.1).
 """
