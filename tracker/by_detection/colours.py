@@ -20,7 +20,11 @@ _BINS: Final = (4, 8, 8)  # of brightness and of both opponent colours
 _SPREAD: Final = 60.0  # of the opponent colours that the bins cover
 _DARK: Final = 24.0  # grey up to which nothing is told of colours
 _LEAST_PX: Final = 12
-_LEAST_INSIDE: Final = 0.6  # share of a part's height in the image: hips are no legs
+_LEAST_INSIDE: Final = 0.6
+"""Share of a part's height in the image: hips are no legs.
+
+Where the floor is not known nobody knows how far legs go on below the image, and what is seen counts.
+"""
 
 PARTS: Final = len(_PARTS)
 FEATURES: Final = PARTS * _BINS[0] * _BINS[1] * _BINS[2]
@@ -30,19 +34,21 @@ def colours_of(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     """Describe who has boxes (M, 4) in the thermal image by colours (M, FEATURES).
 
     The product of two rows is Bhattacharyya's coefficient: 1 for the same colours, 0 for none in common. Of
-    whose torso is not seen a row is 0, and so is the half of legs that are mostly outside the image.
+    whose torso is not seen a row is 0, and so is the half of legs that are mostly outside the image of a
+    camera that is known.
     """
     told = np.zeros((len(boxes), FEATURES), np.float32)
     if COLOUR not in frame.images or len(boxes) == 0:
         return told
     image = frame.rgb(COLOUR)
     there = _seen_there(frame, boxes, view, (image.shape[0], image.shape[1]))
+    least = -np.inf if view.floor_m is None else _LEAST_INSIDE
     for row, box in enumerate(there):
         parts = [_histogram(_part(image, box, *part)) for part in _PARTS]
         if parts[0] is None:
             continue
         for half, part, extent in zip(told[row].reshape(PARTS, -1), parts, _PARTS, strict=True):
-            if part is not None and _share_inside(box, extent, image.shape[0]) >= _LEAST_INSIDE:
+            if part is not None and _share_inside(box, extent, image.shape[0]) >= least:
                 half[:] = part / np.sqrt(PARTS)
     return told
 

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -22,15 +24,21 @@ BOX = np.array([[100.0, 40.0, 50.0, 160.0]])
 RED, BLUE, GREEN = (200, 40, 40), (40, 40, 200), (40, 160, 40)
 
 
-def worn(box: NDArray[np.float64], torso: tuple[int, int, int], legs: tuple[int, int, int]) -> NDArray:
-    """The colours of somebody in a box of a grey image."""
+def worn(
+    box: NDArray[np.float64],
+    torso: tuple[int, int, int],
+    legs: tuple[int, int, int],
+    floor_m: float | None = 1.2,
+) -> NDArray:
+    """The colours of somebody in a box of a grey image, of a camera so high above the floor."""
     image = np.full((ROWS, COLUMNS, 3), 90, np.uint8)
     left, top, width, height = box[0]
     middle, rows = round(top + 0.52 * height), slice(max(round(left), 0), round(left + width))
     image[max(round(top), 0) : middle, rows] = torso
     image[middle : round(top + height), rows] = legs
     frame = Frame(images={THERMAL: np.zeros((ROWS, COLUMNS), np.uint8), COLOUR: image}, time_s=0.0)
-    return colours_of(frame, box, Viewpoint.of(None, (ROWS, COLUMNS)))[0]
+    view = replace(Viewpoint.of(None, (ROWS, COLUMNS)), floor_m=floor_m)
+    return colours_of(frame, box, view)[0]
 
 
 def lower(by: float) -> NDArray[np.float64]:
@@ -50,6 +58,11 @@ def test_who_is_seen_without_legs_is_known_by_the_torso() -> None:
     assert alike(whole, cut) > 0.95
     assert alike(cut, cut) == pytest.approx(1.0, abs=1e-5)
     assert alike(worn(BOX, GREEN, BLUE), cut) < 0.1
+
+
+def test_what_is_seen_of_legs_counts_where_the_floor_is_not_known() -> None:
+    _, legs = worn(lower(95.0), RED, BLUE, floor_m=None).reshape(PARTS, -1)
+    assert legs.any()
 
 
 def test_of_whose_torso_is_not_seen_nothing_is_known() -> None:
