@@ -120,9 +120,9 @@ def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:
 
 # Of red + green + blue from 0 on, red - green from -255 on, and 2 blue - red - green from -510 on.
 _BIN_OF: Final = (
-    _bins_of(np.arange(766) / 3.0 * (_SPREAD / 128.0) - _SPREAD, _BINS[0]),
-    _bins_of(np.arange(-255, 256) / 1.0, _BINS[1]),
-    _bins_of(np.arange(-510, 511) / 2.0, _BINS[2]),
+    _bins_of(np.arange(766.0) / 3.0 * (_SPREAD / 128.0) - _SPREAD, _BINS[0]),
+    _bins_of(np.arange(-255.0, 256.0), _BINS[1]),
+    _bins_of(np.arange(-510.0, 511.0) / 2.0, _BINS[2]),
 )
 
 
