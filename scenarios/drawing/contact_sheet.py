@@ -96,38 +96,33 @@ class ContactSheet:
             BadInput: it cannot be written there.
         """
         with writing_to(path):
-            self.draw().save(path, compress_level=3, pnginfo=self._note())
+            page, note = self._drawn()
+            page.save(path, compress_level=3, pnginfo=note)
 
     def draw(self) -> Image.Image:
         """Draw the sheet, `WIDTH_PX` wide."""
+        return self._drawn()[0]
+
+    def _drawn(self) -> tuple[Image.Image, PngInfo]:
+        """Draw it, and note where each moment's images are (left, top, right, bottom), and what it shows."""
         moments = self._moments.choose(MOMENTS)
         tiles = [self._tile(moment) for moment in moments]
-        rows = [tiles[start : start + COLUMNS] for start in range(0, len(tiles), COLUMNS)]
-        heights = [max(tile.height for tile in row) for row in rows]
+        rows = [slice(start, start + COLUMNS) for start in range(0, len(tiles), COLUMNS)]
+        heights = [max(tile.height for tile in tiles[row]) for row in rows]
         bottom = HEAD_PX + sum(heights) + _GAP * (len(rows) - 1) + MARGIN_PX
-        page = Image.new("RGB", (WIDTH_PX, bottom), PAGE)
+        page, places = Image.new("RGB", (WIDTH_PX, bottom), PAGE), []
         draw_head(page, self._title, self._length())
         top = HEAD_PX
         for row, height in zip(rows, heights, strict=True):
-            for column, tile in enumerate(row):
-                page.paste(tile, (MARGIN_PX + column * (_TILE + _GAP), top))
-            top += height + _GAP
-        return page
-
-    def _note(self) -> PngInfo:
-        """Where the images of each moment are: left, top, right, bottom, and what they show."""
-        note, top, tiles = PngInfo(), HEAD_PX, []
-        moments = self._moments.choose(MOMENTS)
-        for start in range(0, len(moments), COLUMNS):
-            row = moments[start : start + COLUMNS]
-            bottom = top + max(self._tile(moment).height for moment in row)
-            for column, moment in enumerate(row):
+            for column, (moment, tile) in enumerate(zip(moments[row], tiles[row], strict=True)):
                 left = MARGIN_PX + column * (_TILE + _GAP)
+                page.paste(tile, (left, top))
                 words = f"{moment.time_s:.1f} s: {'; '.join(moment.words)}"
-                tiles.append({"box": [left, top + _CAPTION, left + _TILE, bottom], "words": words})
-            top = bottom + _GAP
-        note.add_text(_NOTE, json.dumps(tiles))
-        return note
+                places.append({"box": [left, top + _CAPTION, left + _TILE, top + height], "words": words})
+            top += height + _GAP
+        note = PngInfo()
+        note.add_text(_NOTE, json.dumps(places))
+        return page, note
 
     def _length(self) -> str:
         if self._last is None:

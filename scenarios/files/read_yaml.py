@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import yaml
+from yaml.composer import Composer
 
 from peopleboy.bad_input import BadInput, found_in
 
@@ -22,12 +23,20 @@ _NUMBERS: Final = {
 }
 
 
-class _Loader(yaml.SafeLoader):
-    """Reads YAML as a person expects it: only true and false are booleans; nothing is repeated or shared."""
+class _Loader(Composer, yaml.CSafeLoader):
+    """Reads YAML as a person expects it: only true and false are booleans; nothing is repeated or shared.
+
+    libyaml parses, and what it tells of is composed here, where each node can be looked at.
+    """
+
+    def __init__(self, text: str) -> None:
+        """Begin to read a text."""
+        Composer.__init__(self)
+        yaml.CSafeLoader.__init__(self, text)
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         """Refuse aliases, which let a short file stand for endless data, and tags, which make objects."""
-        event = self.peek_event()  # type: ignore[no-untyped-call]
+        event: Any = self.peek_event()
         fault = None
         if isinstance(event, yaml.AliasEvent):
             fault = f"alias '*{event.anchor}' is not allowed; write the value out"
