@@ -160,6 +160,7 @@ def fingerprints(seed: int) -> list[str]:
     return digests
 
 
+@pytest.mark.thorough
 def test_a_seed_gives_the_same_bytes_in_a_fresh_process_and_another_seed_does_not() -> None:
     here = fingerprints(3)
     program = "from tests.sim.test_world import fingerprints; print(*fingerprints(3))"

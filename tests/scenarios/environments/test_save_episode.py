@@ -38,6 +38,7 @@ def played(folder: Path, observation: str, steps: int = STEPS, **changes: Any) -
     return env
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("observation", some_of(["tracks", "truth"], 2))
 def test_its_figures_are_those_of_the_episode_and_it_is_looked_into_as_any_run(
     observation: str, tmp_path: Path

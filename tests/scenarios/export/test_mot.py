@@ -162,6 +162,7 @@ def test_a_second_run_of_the_same_seed_and_tracker_is_refused(
     assert [path.name for path in tmp_path.iterdir()] == ["again"]
 
 
+@pytest.mark.thorough
 def test_trackers_that_have_not_seen_the_same_sequences_are_refused(
     thesis: Path, following: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -143,6 +143,7 @@ def test_a_set_of_random_worlds_says_what_was_drawn_and_is_the_same_in_another_p
     assert (here / "splits" / "val.txt").read_text() == "world_12\n"
 
 
+@pytest.mark.thorough
 def test_seven_worlds_in_a_row_have_all_splits() -> None:
     assert of_worlds(7, 3).lacking == ""
 

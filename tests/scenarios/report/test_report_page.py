@@ -247,6 +247,7 @@ def test_a_report_without_pybullet_draws_boxes_and_says_so(
     assert Origin.NO_PHYSICS in page.lines
 
 
+@pytest.mark.thorough
 def test_the_simulator_is_not_loaded_for_a_report() -> None:
     code = "import sys, peopleboy.scenarios.report.page; print('peopleboy.sim.world' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

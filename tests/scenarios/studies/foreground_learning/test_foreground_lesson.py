@@ -40,6 +40,7 @@ def load_scenario_of(seed):
     return parse_scenario(random_scene(seed), source="drawn", folder=Path()).spec
 
 
+@pytest.mark.thorough
 def test_another_lesson_uses_the_films_that_are_there_and_writes_the_same_bytes(lesson):
     first = (lesson / "foreground.npz").read_bytes()
     filmed = (lesson / "films" / "scene_100.npz").stat().st_mtime_ns
@@ -59,9 +60,9 @@ def test_a_perfect_answer_is_judged_perfect_and_none_as_none(lesson):
 
 
 def test_scenes_differ_and_most_robots_drive():
-    scenes = [random_scene(seed) for seed in range(100, 130)]
+    scenes = [random_scene(seed) for seed in range(100, 120)]
     assert random_scene(100) == scenes[0]
-    assert 10 <= sum("commands" in scene["robot"] for scene in scenes) <= 28
+    assert 6 <= sum("commands" in scene["robot"] for scene in scenes) <= 18
     assert len({scene["place"]["kind"] for scene in scenes}) >= 3
     assert {len(scene.get("people", [])) for scene in scenes} >= {1, 2, 3, 4}
 

@@ -16,6 +16,7 @@ from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_films import drawn_film
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("small")
 def test_the_lesson_leaves_a_network_that_says_how_good_it_is(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -26,6 +26,7 @@ def test_what_is_taught_is_what_the_tracker_computes(kind: type[CropNetwork]) ->
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("small")
 def test_people_are_told_from_others_after_a_short_lesson() -> None:
     said: list[str] = []

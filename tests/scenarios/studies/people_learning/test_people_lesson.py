@@ -75,6 +75,7 @@ def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
     assert taught.about["cut people"].startswith("2 random worlds")
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("quick")
 def test_places_alone_are_taught_for_the_trees_that_are_there(tmp_path: Path) -> None:
     chosen = ("--worlds", 5, "--windows", "whole", "--only-places", "--workers", 1)

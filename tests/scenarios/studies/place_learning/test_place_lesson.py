@@ -48,6 +48,7 @@ def test_it_learns_who_is_there_where_and_how_sure_that_is() -> None:
     assert 0.4 < np.mean((off / believed) ** 2) < 2.5
 
 
+@pytest.mark.thorough
 def test_the_same_examples_give_the_same_networks() -> None:
     one, two = (teach_places(plain(0)) for _ in range(2))
     for name in ("presence", "place", "doubt"):

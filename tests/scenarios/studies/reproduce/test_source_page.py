@@ -432,6 +432,7 @@ def test_the_full_plan_has_all_data_sets_and_ten_repeats(tmp_path: Path) -> None
     )
 
 
+@pytest.mark.thorough
 def test_fewer_repeats_are_part_of_more(tmp_path: Path) -> None:
     few, all_of_them = full_plan(tmp_path, 2), full_plan(tmp_path)
     assert (few.repeats, few.pair_seeds, few.ablated, few.drives) == (2, 2, 2, 2)

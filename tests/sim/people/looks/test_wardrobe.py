@@ -1,5 +1,6 @@
 import itertools
 from collections import Counter
+from functools import cache
 
 import pytest
 
@@ -7,10 +8,11 @@ from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOP
 from peopleboy.sim.people.looks.wardrobe import usual_clothes
 from peopleboy.sim.random_streams import stream
 
-DRAWS = 2000
+DRAWS = 1000
 WARM_TOPS = {"jacket", "fleece", "wool_jumper", "striped_jumper"}
 
 
+@cache
 def draws(sex: str, air_c: float) -> list[Clothes]:
     rng = stream(0, f"{sex} at {air_c}")
     return [usual_clothes(rng, sex, air_c) for _ in range(DRAWS)]
