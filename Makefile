@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed# what `peopleboy` needs
 READY := $(VENV)/.ready# and what its development does
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+PIP := $(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --constraint constraints.txt
 
 # Bytecode that is kept saves each of the processes that tests start some of its start.
 unexport PYTHONDONTWRITEBYTECODE

@@ -12,10 +12,18 @@ os.environ.setdefault(
 )
 
 # A busy machine is no failure, and a change is judged by the same examples as the one before it;
-# HYPOTHESIS_PROFILE=explore looks for new ones.
-settings.register_profile("repeat", deadline=None, derandomize=True)
+# HYPOTHESIS_PROFILE=explore looks for new ones, and more.
+settings.register_profile("repeat", deadline=None, derandomize=True, max_examples=50)
 settings.register_profile("explore", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeat"))
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Put files into the order in which workers take them."""
+    if config.pluginmanager.has_plugin("xdist"):
+        from tests.helpers.from_both_ends import from_both_ends
+
+        items.sort(key=lambda item: from_both_ends(item.path))
 
 
 @pytest.hookimpl(optionalhook=True)

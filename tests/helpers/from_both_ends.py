@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Final
+
 import pytest
 from xdist.scheduler import LoadFileScheduling
 from xdist.workermanage import WorkerController
 
+_COMPILE_MOST: Final = ("benchmarks",)
+_COMPILE_NOTHING: Final = ("scenarios/studies/reproduce", "docs", "test_", "tracker/evaluation")
+
+
+def from_both_ends(file: Path) -> int:
+    """Give the order in which files are tested: first who compile most kernels, last who compile none."""
+    here = file.relative_to(Path(__file__).parents[1]).as_posix()
+    return here.startswith(_COMPILE_NOTHING) - here.startswith(_COMPILE_MOST)
+
 
 class FromBothEnds(LoadFileScheduling):
-    """Hands out files in the order of their names, to every other worker from the last one on.
+    """Hands out files in their order, to every other worker from the last one on.
 
-    Workers that begin with the same room would all compile its kernels, each for itself; one that begins with
-    the trackers finds those of the simulator in numba's cache when it gets there, and the other way round.
+    Workers that begin alike would all compile the simulator's kernels, each for itself; one that begins with
+    what needs none finds them in numba's cache when it gets there.
     """
 
     def __init__(self, config: pytest.Config, log: object = None) -> None:

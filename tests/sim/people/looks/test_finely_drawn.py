@@ -57,7 +57,7 @@ def test_the_seed_repeats_what_is_drawn_finely() -> None:
     assert not np.array_equal(one["thermal_c"], other["thermal_c"])
 
 
-@pytest.mark.parametrize("air_c", [0.0, 30.0])
+@pytest.mark.parametrize("air_c", [0.0, pytest.param(30.0, marks=pytest.mark.thorough)])
 def test_the_air_of_the_place_is_what_people_follow(air_c: float) -> None:
     (image, cover, _) = play(FULL)[-1]
     (other, _, _) = play(replace(FULL, place=replace(FULL.place, surroundings_c=air_c)))[-1]
