@@ -6,7 +6,6 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
@@ -14,6 +13,7 @@ from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.model_files import data_folder, is_in_data
 from peopleboy.sim.physics.urdf import find_urdf, mesh_files, read_urdf
 from peopleboy.sim.places.place import Fixture
+from peopleboy.sim.shapes.meshes import load_triangles
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 Extent = NDArray[np.float64]  # (2, 3) [m]: lowest and highest x, y, z
@@ -70,11 +70,8 @@ def mesh_extent(path: Path) -> Extent:
     Raises:
         BadInput: the file cannot be read as a mesh.
     """
-    try:
-        mesh = trimesh.load(path, force="mesh", skip_materials=True)
-        return np.asarray(mesh.bounds, float).reshape(2, 3)
-    except Exception as error:  # trimesh raises whatever its many loaders raise
-        raise BadInput(f"mesh {path} cannot be read: {error}") from error
+    corners = load_triangles(path).reshape(-1, 3)
+    return np.stack([corners.min(axis=0), corners.max(axis=0)])
 
 
 @cache

@@ -8,7 +8,6 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
@@ -24,6 +23,8 @@ def load_triangles(path: Path) -> NDArray[np.float64]:
     Raises:
         BadInput: there is no such file, it cannot be read, or it holds no triangle.
     """
+    import trimesh  # here, as it takes a second to load, and most worlds have no meshes
+
     try:
         mesh: Any = trimesh.load(path, force="mesh", process=False, skip_materials=True)
         triangles = np.array(mesh.triangles, np.float64) * _unit_m(path)
