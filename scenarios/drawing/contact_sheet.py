@@ -97,7 +97,7 @@ class ContactSheet:
         """
         with writing_to(path):
             page, note = self._drawn()
-            page.save(path, compress_level=3, pnginfo=note)
+            page.save(path, compress_level=1, pnginfo=note)
 
     def draw(self) -> Image.Image:
         """Draw the sheet, `WIDTH_PX` wide."""
