@@ -7,7 +7,8 @@ from typing import Final
 
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.by_detection.finder import ThermalFinder
-from peopleboy.tracker.proposals.detector import SMALLEST_PX, Expected, Grey, PeopleDetector, look
+from peopleboy.tracker.proposals.detector import SMALLEST_PX, WEAKEST, Grey, PeopleDetector, look
+from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_network
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import Mount
@@ -32,7 +33,7 @@ class DetectorOfStage(PeopleDetector):
         self._stage = stage
 
     def found(
-        self, grey: Grey, change: Grey, mount: Mount | None, expected: Expected | None = None
+        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals | None = None
     ) -> Proposals:
         """Look for people in an image of which it is known by how much (H, W) greys changed.
 
@@ -42,7 +43,10 @@ class DetectorOfStage(PeopleDetector):
             return super().found(grey, change, mount, expected)
         if self._stage is Stage.TREES:
             return look(shipped_model(), grey, change, mount, SMALLEST_PX, LEAST)
-        return self.found_again(grey, change, mount, expected)
+        first = expected
+        if first is None:
+            first = look(shipped_model(), grey, change, mount, SMALLEST_PX, WEAKEST)
+        return look_again(shipped_network(), grey, change, first, mount, LEAST)
 
 
 def thermal_finder(stage: Stage) -> ThermalFinder:

@@ -35,7 +35,6 @@ from peopleboy.tracker.by_detection.proposed import Proposed
 from peopleboy.tracker.by_detection.target import Finding, Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
-from peopleboy.tracker.proposals.detector import Expected
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.whereabouts import places_on_floor
 from peopleboy.tracker.track import Box, FloorPlace, Track
@@ -76,7 +75,6 @@ class ByDetectionTracker:
         self._paths = NOBODY
         self._last_s: float | None = None
         self._everywhere_s = -math.inf
-        self._searches = 0
         self._born = 0
         self._view: tuple[Calibration | None, tuple[int, int], Viewpoint] | None = None
 
@@ -107,13 +105,13 @@ class ByDetectionTracker:
         now = _Instant(frame.time_s, self._time_step(frame.time_s), view, outline, *self._beliefs(view))
         self._carry_on(now.dt_s, frame.odometry or _STANDING)
         expected = self._boxes(view)
-        known = self._known_to_be_there(expected, before_s, now)
-        seen = self._find(frame, known)
+        alone = self._looked_for(expected, before_s, now)
+        seen = self._find(frame, alone)
         seen = seen._replace(score=now.existence.trust * seen.score + now.existence.lasting)
         proposed = Proposed.of(frame, seen, view)
         found = self._matched(expected, proposed, now)
         self._take_in(found, expected, proposed, now)
-        if known is None or not known.alone:
+        if alone is None:
             self._begin(found, proposed, now)
         if self._introduced is not None:
             self._meet(np.array([self._introduced]), frame, now)
@@ -138,19 +136,16 @@ class ByDetectionTracker:
     def _carry_on(self, dt_s: float, moved: Odometry) -> None:
         self._paths = advanced(self._paths, dt_s, moved, self._config.path)
 
-    def _known_to_be_there(self, expected: Floats, before_s: float | None, now: _Instant) -> Expected | None:
-        """Give who was seen in the last image, unless all are to be found anew."""
-        is_alone = now.time_s - self._everywhere_s <= now.existence.soon_s
-        if not is_alone:
+    def _looked_for(self, expected: Floats, before_s: float | None, now: _Instant) -> Proposals | None:
+        """Give who was seen in the last image, if they alone are looked for in this one."""
+        if now.time_s - self._everywhere_s > now.existence.soon_s:
             self._everywhere_s = now.time_s
-            self._searches += 1
-            if self._searches % now.existence.anew == 1 % now.existence.anew:
-                return None
+            return None
         was_seen = np.array([target.seen_s == before_s for target in self._targets], bool)
         rows = np.flatnonzero(was_seen & (intersection(expected, now.outline) > 0.0))
         trees = np.array([self._targets[row].trees for row in rows.tolist()], np.float64)
-        people = Proposals.of_trees(expected[rows], trees)
-        return Expected(people.taken(np.argsort(-trees, kind="stable")), is_alone)
+        alone = Proposals.of_trees(expected[rows], trees)
+        return alone.taken(np.argsort(-trees, kind="stable"))
 
     def _told(self) -> NDArray[np.bool_]:
         return np.array([target.is_told for target in self._targets], np.bool_)

@@ -91,8 +91,6 @@ class ExistenceConfig:
     Attributes:
         soon_s: images that come so soon after one that was searched everywhere are searched where those are
             expected who were seen just before, and nowhere else: of 15 images a second two of three.
-        anew: of so many of the others in one all are found anew, and else those who were seen just before are
-            looked for where they are expected, and whoever else is there everywhere.
         weakest: proposals of a lower score are not looked at.
         trust: what a unit of the others counts: of cameras unlike those that taught it the detector is too
             sure.
@@ -124,7 +122,6 @@ class ExistenceConfig:
     """
 
     soon_s: float = 0.14
-    anew: int = 2
     weakest: float = -2.0
     trust: float = 0.8
     lasting: float = -0.2

@@ -7,7 +7,7 @@ from typing import Protocol
 from peopleboy.tracker.by_detection.colour_finder import ColourFinder
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.frame import THERMAL, Frame
-from peopleboy.tracker.proposals.detector import Expected, PeopleDetector
+from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import mount_of
 
@@ -15,12 +15,12 @@ from peopleboy.tracker.thermal.mount import mount_of
 class Finder(Protocol):
     """Whatever proposes people, frame by frame."""
 
-    def __call__(self, frame: Frame, expected: Expected | None) -> Proposals:
+    def __call__(self, frame: Frame, expected: Proposals | None) -> Proposals:
         """Give boxes [px] in the thermal image, as wide as the torso, and log odds.
 
         Args:
             frame: the next one.
-            expected: who is known to be there, and whether they alone are looked for; None for nobody.
+            expected: who alone is looked for; None for whoever is there.
         """
         ...
 
@@ -34,10 +34,10 @@ class PeopleFinder:
         self._thermal = ThermalFinder(PeopleDetector(least_score=weakest))
         self._colour = ColourFinder(config.colour, weakest)
 
-    def __call__(self, frame: Frame, expected: Expected | None = None) -> Proposals:
-        """Look for people in the next frame; for those who alone are expected in the thermal image only."""
+    def __call__(self, frame: Frame, expected: Proposals | None = None) -> Proposals:
+        """Look for people in the next frame; for those who are expected in the thermal image alone."""
         seen = self._thermal(frame, expected)
-        if expected is not None and expected.alone:
+        if expected is not None:
             self._colour.takes_in(frame)
             return seen
         return self._colour(frame, seen)
@@ -50,8 +50,8 @@ class ThermalFinder:
         """Make one of a detector."""
         self._detector = detector
 
-    def __call__(self, frame: Frame, expected: Expected | None = None) -> Proposals:
-        """Look for people in the next frame, of whom some may be known to be there."""
+    def __call__(self, frame: Frame, expected: Proposals | None = None) -> Proposals:
+        """Look for people in the next frame, or for those who are expected."""
         grey, calibration = frame.grey(THERMAL), frame.calibrations.get(THERMAL)
         mount = None if calibration is None else mount_of(calibration, grey.shape[0])
         return self._detector.update(grey, frame.time_s, frame.odometry, mount, expected)

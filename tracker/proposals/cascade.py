@@ -66,20 +66,13 @@ class Cascade:
         object.__setattr__(self, "_layouts", Layouts(self.patches, self.feature))
 
     def scan(
-        self,
-        sums: Sums,
-        rows: tuple[int, int],
-        skipped: NDArray[np.bool_] | None = None,
-        *,
-        stride: int = STRIDE,
-        promising: int = PROMISING,
+        self, sums: Sums, rows: tuple[int, int], *, stride: int = STRIDE, promising: int = PROMISING
     ) -> Hits:
         """Look through all windows of a level, with their first cell in some rows, borders included.
 
         Args:
             sums: (9, h + 1, w + 1) of its channels.
             rows: the first one, and the one after the last.
-            skipped: (h - 19, w - 9) which windows of the level are not looked at; None for none.
             stride: cells between windows; with 2 and more, those beside a promising one are looked at, too.
             promising: how many trees such a one must come through.
         """
@@ -89,10 +82,9 @@ class Cascade:
             return Hits(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
         offset, weight = self._layouts.of(sums)
         found = np.full((end - first, wide - COLUMNS), -np.inf, np.float32)
-        passed_by = np.zeros(found.shape, np.bool_) if skipped is None else skipped[first:end]
         _scan(
             sums.ravel(), wide, first, offset, weight, self.threshold.ravel(), self.leaf.ravel(), self.least,
-            stride, min(promising, len(self.least)), passed_by, found,
+            stride, min(promising, len(self.least)), found,
         )  # fmt: skip
         at_row, at_column = np.nonzero(found > -np.inf)
         return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
@@ -125,7 +117,6 @@ def _scan(
     least: Cells,
     stride: int,
     promising: int,
-    skipped: NDArray[np.bool_],
     found: Cells,
 ) -> None:  # pragma: no cover
     """Look at every so many windows, then at those beside promising ones; leave their scores.
@@ -142,7 +133,7 @@ def _scan(
         count = 0
         for j in range(0, columns, stride):
             at[left + count], score[left + count] = (i + first) * wide + j, 0.0
-            count += not skipped[i, j]
+            count += 1
         some, theirs = at[left : left + count], score[left : left + count]
         left += _walk(sums, some, theirs, count, offset, weight, threshold, leaf, least[:early], 0)
     left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least[:promising], early)
@@ -156,7 +147,7 @@ def _scan(
     left = 0
     for i in range(rows):
         for j in range(columns):
-            if is_wanted[i, j] and not skipped[i, j] and (i % stride != 0 or j % stride != 0):
+            if is_wanted[i, j] and (i % stride != 0 or j % stride != 0):
                 at[left], score[left] = (i + first) * wide + j, 0.0
                 left += 1
     left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, 0)

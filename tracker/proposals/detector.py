@@ -34,18 +34,6 @@ WEAKEST: Final = -3.5
 _OLDEST_S: Final = 2.5 * EARLIER_S
 
 
-class Expected(NamedTuple):
-    """Who is looked for at once by networks, as trees found them before.
-
-    Attributes:
-        people: where they are expected, and what trees said of them.
-        alone: whether nobody else is looked for.
-    """
-
-    people: Proposals
-    alone: bool
-
-
 class _Past(NamedTuple):
     grey: Grey
     time_s: float
@@ -88,7 +76,7 @@ class PeopleDetector:
         time_s: float,
         odometry: Odometry | None = None,
         mount: Mount | None = None,
-        expected: Expected | None = None,
+        expected: Proposals | None = None,
     ) -> Proposals:
         """Look for people.
 
@@ -97,27 +85,20 @@ class PeopleDetector:
             time_s: when it was taken.
             odometry: how the robot moved since the last one; None if that is not known.
             mount: how the camera sits; None if that is not known: then people may be anywhere.
-            expected: who is known to be there; None for nobody.
+            expected: who alone is looked for, by what trees said of them when they were found; None for
+                whoever is there.
         """
         return self.found(grey, self._change(grey, time_s, odometry, mount), mount, expected)
 
     def found(
-        self, grey: Grey, change: Grey, mount: Mount | None, expected: Expected | None = None
+        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals | None = None
     ) -> Proposals:
         """Look for people in an image of which it is known by how much (H, W) greys changed."""
-        found = self.found_again(grey, change, mount, expected)
+        first = expected
+        if first is None:
+            first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, self._memory)
+        found = look_again(self._second_look, grey, change, first, mount, self._least_score)
         return look_closer(self._closer_look, grey, change, found, mount)
-
-    def found_again(
-        self, grey: Grey, change: Grey, mount: Mount | None, expected: Expected | None
-    ) -> Proposals:
-        """Look for people as `found` does, but not closer."""
-        if expected is not None and expected.alone:
-            first = expected.people
-        else:
-            known = None if expected is None else expected.people
-            first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, self._memory, known)
-        return look_again(self._second_look, grey, change, first, mount, self._least_score)
 
     def _change(self, grey: Grey, time_s: float, odometry: Odometry | None, mount: Mount | None) -> Grey:
         """Compare an image with the one of about 0.2 s ago, and keep it for later ones."""
@@ -148,20 +129,15 @@ def look(
     smallest_px: float,
     least_score: float,
     memory: Memory | None = None,
-    known: Proposals | None = None,
 ) -> Proposals:
-    """Let trees look for people in an image of which it is known by how much (H, W) greys changed.
-
-    Those who are known are given as they are, and windows that show them are not looked at.
-    """
-    boxes: list[Floats] = [np.empty((0, 4)) if known is None else known.box]
-    scores: list[Floats] = [np.empty(0) if known is None else known.trees]
+    """Let trees look for people in an image of which it is known by how much (H, W) greys changed."""
+    boxes: list[Floats] = [np.empty((0, 4))]
+    scores: list[Floats] = [np.empty(0)]
     for level in levels(grey, change, mount, smallest_px, memory or Memory()):
         sums = summed(level.cells)
-        skipped = None if known is None else level.showing(known.box)
         for kind, trees in model.trees.items():
             for rows in level.rows[kind]:
-                hits = trees.cascade.scan(sums, rows, skipped)
+                hits = trees.cascade.scan(sums, rows)
                 is_sure = hits.score >= least_score
                 if not is_sure.any():
                     continue

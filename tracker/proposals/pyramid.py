@@ -38,7 +38,6 @@ _LEAST_ROWS: Final = 7  # of cells in an image: a third of a window
 _LEAST_WHOLE_ROWS: Final = 12  # likewise; it shows the larger part of whom it cuts off
 _CONTEXT: Final = 12
 """Cells above and below a window that its channels depend on."""
-_SHOWN: Final = 0.5  # IoU of somebody with the person who would fill a window
 
 
 Rows = tuple[int, int]
@@ -69,23 +68,6 @@ class Level:
     def windows(self, box: Floats) -> Floats:
         """Give row and column (N, 2) in `cells` of the windows that people of boxes (N, 4) fill."""
         return np.asarray(cells_of(box, self.scale) + np.array([OVER - self.first, BESIDE]), np.float64)
-
-    def showing(self, people: Floats) -> NDArray[np.bool_]:
-        """Tell which windows (h - 19, w - 9) of `cells` show some people of boxes (K, 4) [px]."""
-        _, high, wide = self.cells.shape
-        row, column = np.arange(max(high - ROWS + 1, 0)), np.arange(max(wide - COLUMNS + 1, 0))
-        down, across = (
-            self.boxes(row, np.zeros(len(row), int)),
-            self.boxes(np.zeros(len(column), int), column),
-        )
-        is_shown = np.zeros((len(row), len(column)), np.bool_)
-        for left, top, width, height in people.tolist():
-            beside = np.minimum(across[:, 0] + across[:, 2], left + width) - np.maximum(across[:, 0], left)
-            above = np.minimum(down[:, 1] + down[:, 3], top + height) - np.maximum(down[:, 1], top)
-            common = np.outer(above.clip(0.0), beside.clip(0.0))
-            both = across[:1, 2] * across[:1, 3] + width * height - common
-            is_shown |= common >= _SHOWN * both
-        return is_shown
 
 
 def levels(

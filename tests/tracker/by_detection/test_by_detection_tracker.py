@@ -12,7 +12,6 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig, MatchingConfig
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, PinholeCalibration
-from peopleboy.tracker.proposals.detector import Expected
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import Status, Track
 
@@ -29,9 +28,9 @@ class Told:
 
     def __init__(self, boxes: Sequence[Sequence[Box]], score: float = 3.0) -> None:
         self._boxes, self._score = iter(boxes), score
-        self.expected: list[Expected | None] = []
+        self.expected: list[Proposals | None] = []
 
-    def __call__(self, frame: Frame, expected: Expected | None) -> Proposals:  # noqa: ARG002
+    def __call__(self, frame: Frame, expected: Proposals | None) -> Proposals:  # noqa: ARG002
         self.expected.append(expected)
         boxes = np.array(next(self._boxes), np.float64).reshape(-1, 4)
         return Proposals(boxes, np.full(len(boxes), self._score), np.arange(1.0, 1.0 + len(boxes)))
@@ -183,15 +182,13 @@ def test_in_two_of_three_images_only_who_was_just_seen_is_looked_for_where_he_is
     tracker = ByDetectionTracker(find=find)
     for frame in calibrated(boxes):
         tracker.update(frame)
-    is_alone = [one is not None and one.alone for one in find.expected]
-    assert is_alone == [number % 3 != 0 for number in range(23)]
-    both, left = find.expected[19], find.expected[22]
+    assert [one is None for one in find.expected] == [number % 3 == 0 for number in range(23)]
+    both, alone = find.expected[19], find.expected[22]
     assert both is not None
-    assert left is not None
-    np.testing.assert_allclose(both.people.box[::-1], boxes[19], atol=3.0)
-    # As trees said of the image before.
-    assert both.people.trees.tolist() == both.people.score.tolist() == [2.0, 1.0]
-    np.testing.assert_allclose(left.people.box, boxes[22], atol=3.0)
+    assert alone is not None
+    np.testing.assert_allclose(both.box[::-1], boxes[19], atol=3.0)
+    assert both.trees.tolist() == both.score.tolist() == [2.0, 1.0]  # as trees said of the image before
+    np.testing.assert_allclose(alone.box, boxes[22], atol=3.0)
 
 
 def test_every_image_of_a_slow_camera_or_one_that_is_not_known_is_searched_everywhere() -> None:
@@ -201,23 +198,7 @@ def test_every_image_of_a_slow_camera_or_one_that_is_not_known_is_searched_every
         tracker = ByDetectionTracker(find=find)
         for frame in shots:
             tracker.update(frame)
-        assert not any(one is not None and one.alone for one in find.expected)
-
-
-@pytest.mark.parametrize("anew", [1, 2, 3])
-def test_in_some_searches_everybody_is_found_anew_and_in_the_others_who_was_just_seen_is_known(
-    anew: int,
-) -> None:
-    boxes = [[standing(0.0)]] * 10
-    find = Told(boxes)
-    existence = ExistenceConfig(soon_s=0.0, anew=anew)
-    tracker = ByDetectionTracker(ByDetectionConfig(existence=existence), find)
-    for frame in calibrated(boxes):
-        tracker.update(frame)
-    assert [one is None for one in find.expected] == [number % anew == 0 for number in range(10)]
-    for one in find.expected:
-        if one is not None:
-            np.testing.assert_allclose(one.people.box, boxes[0], atol=3.0)
+        assert find.expected == [None] * 10
 
 
 def test_nobody_new_is_begun_with_where_only_others_are_looked_for() -> None:

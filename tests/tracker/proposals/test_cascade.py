@@ -78,28 +78,6 @@ def test_windows_beside_promising_ones_are_looked_at_and_no_others(promising: in
     assert set(zip(found.row.tolist(), found.column.tolist(), strict=True)) == own | (beside & set(places))
 
 
-@given(st.integers(0, 99), st.integers(1, 2))
-def test_windows_that_are_skipped_are_not_found_and_those_far_from_them_as_ever(
-    seed: int, stride: int
-) -> None:
-    sums, cascade = summed(drawn_cells()), drawn_cascade(least=-1.0)
-    shape = (drawn_trees.ROWS - ROWS + 1, drawn_trees.COLUMNS - COLUMNS + 1)
-    skipped = np.random.default_rng(seed).random(shape) < 0.2
-    every, some = (
-        dict(zip(zip(hits.row.tolist(), hits.column.tolist(), strict=True), hits.score, strict=True))
-        for hits in (cascade.scan(sums, (0, 34), rule, stride=stride) for rule in (None, skipped))
-    )
-    assert not any(skipped[place] for place in some)
-    assert some.items() <= every.items()
-    for row, column in every.keys() - some.keys():
-        # Who is not skipped is missed only beside somebody promising who is.
-        beside = (
-            slice(max(row - stride + 1, 0), row + stride),
-            slice(max(column - stride + 1, 0), column + stride),
-        )
-        assert skipped[beside].any()
-
-
 def test_sums_of_many_sizes_are_looked_through_as_those_of_one() -> None:
     cascade, cells = drawn_cascade(), drawn_cells()
     for columns in [*range(COLUMNS, cells.shape[2]), *range(COLUMNS, cells.shape[2])] * 3:

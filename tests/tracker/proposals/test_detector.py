@@ -8,7 +8,7 @@ from peopleboy.scenarios.studies.people_learning.people_film import film_upright
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.proposals.detector import SMALLEST_PX, Expected, PeopleDetector, look
+from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector, look
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.thermal.mount import Mount
 
@@ -75,29 +75,6 @@ def test_scores_fall_and_nobody_below_the_least_is_told(shots: list[PeopleShot])
     assert (np.diff(found.score) <= 0.0).all()
     assert (found.score >= 0.5).all()
     assert len(PeopleDetector(least_score=np.inf).update(image, 0.0).score) == 0
-
-
-def test_who_is_known_is_given_as_he_is_and_others_are_found_as_ever(shots: list[PeopleShot]) -> None:
-    others = 0
-    for shot in shots:
-        every = look(shipped_model(), shot.grey, shot.change, None, SMALLEST_PX, 0.0)
-        known = every.taken(np.arange(1))._replace(trees=np.full(1, 9.0))
-        some = look(shipped_model(), shot.grey, shot.change, None, SMALLEST_PX, 0.0, known=known)
-        assert some.score[0] == 9.0
-        np.testing.assert_allclose(some.box[0], known.box[0], atol=0.1)  # others like it weigh nothing
-        apart = every.taken(iou(every.box, known.box) == 0.0)
-        others += len(apart.box)
-        assert all((iou(box, some.box) > 0.9).any() for box in apart.box)
-    assert others >= 3
-
-
-def test_who_alone_is_looked_for_is_the_only_one_found(shots: list[PeopleShot]) -> None:
-    detector = PeopleDetector()
-    for shot in shots:
-        every = detector.found(shot.grey, shot.change, None)
-        known = look(shipped_model(), shot.grey, shot.change, None, SMALLEST_PX, 0.0).taken(np.arange(1))
-        (alone,) = detector.found(shot.grey, shot.change, None, Expected(known, alone=True)).box
-        assert (iou(alone, every.box) > 0.8).any()
 
 
 def plain(value: int) -> Grey:

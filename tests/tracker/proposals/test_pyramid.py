@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.proposals.channels import CHANNELS, OVER
 from peopleboy.tracker.proposals.pyramid import STEP, levels
 from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS, Kind, boxes_of, cells_of
@@ -88,17 +87,3 @@ def test_who_is_cut_off_is_looked_for_beyond_the_image() -> None:
             beyond = [(OVER - row, row + ROWS - OVER - high) for row in range(first, end)]
             assert all(above >= 6 or below >= 9 for above, below in beyond)
             assert all(above <= OVER and below <= OVER for above, below in beyond)
-
-
-def test_windows_show_whom_they_overlap_by_half() -> None:
-    people = np.array([[60.0, 30.0, 22.0, 60.0], [100.5, 41.0, 40.0, 90.0], [-8.0, 20.0, 20.0, 50.0]])
-    shown = 0
-    for level in levels(GREY, STILL, None, 24.0):
-        told = level.showing(people)
-        row, column = np.divmod(np.arange(told.size), told.shape[1])
-        assert told.shape == (level.cells.shape[1] - ROWS + 1, level.cells.shape[2] - COLUMNS + 1)
-        overlap = iou(level.boxes(row, column)[:, None], people[None]).max(axis=1)
-        np.testing.assert_array_equal(told.ravel(), overlap >= 0.5)
-        assert not level.showing(people[:0]).any()
-        shown += int(told.sum())
-    assert shown > 100
