@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import trimesh
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.physics.model_files import find_model
+from peopleboy.sim.places.extent import mesh_extent
 from peopleboy.sim.rendering.render import render
 from peopleboy.sim.shapes.meshes import load_triangles
 from peopleboy.sim.shapes.shape_table import make_shape_table
@@ -69,3 +71,14 @@ def test_dae_files_have_the_size_that_tinyrenderer_gives_them(model: str) -> Non
         )
     assert np.mean(cast.part == 0) > 0.01
     assert np.mean(cast.part != drawn.part) < 1e-4
+
+
+def test_a_mesh_in_centimetres_takes_up_the_room_that_it_is_drawn_with(tmp_path: Path) -> None:
+    path = tmp_path / "box.dae"
+    box = trimesh.creation.box((10.0, 20.0, 30.0))
+    text = trimesh.exchange.dae.export_collada(box).decode("utf-8")
+    centimetres = re.sub(
+        r"<unit[^>]*/>|(?<=<asset>)", '<unit name="centimeter" meter="0.01"/>', text, count=1
+    )
+    path.write_text(centimetres, encoding="utf-8")
+    np.testing.assert_allclose(mesh_extent(path), [[-0.05, -0.1, -0.15], [0.05, 0.1, 0.15]])
