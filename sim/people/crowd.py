@@ -21,6 +21,7 @@ from peopleboy.sim.people.scripted.script import (
     write_script,
 )
 from peopleboy.sim.people.walking.social_force import PlanarState
+from peopleboy.sim.people.walking.surroundings import Present
 from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.places.place import Place, air_of, is_outdoors
 from peopleboy.sim.random_streams import stream
@@ -108,20 +109,17 @@ class Crowd:
 
     def step(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
         """Let everybody walk on for dt_s from time_s, knowing where the others and the robot are now."""
-        states = {person.name: _state(person) for person in self.people if person.present}
+        present = those_present(self.people)
         obstacles = self._place.obstacles_at(time_s)
-        progress = {p.name: p.progress for p in self.people if p.present and p.config.group is not None}
+        members = [(p, p.progress) for p in self.people if p.present and p.config.group is not None]
         for person in self.people:
             self._before[person.name] = person.position.copy()
-            others = {name: state for name, state in states.items() if name != person.name}
             company = [
-                progress[other.name]
-                for other in self.people
-                if other.name in progress
-                and other is not person
-                and other.config.group == person.config.group
+                progress
+                for other, progress in members
+                if other is not person and other.config.group == person.config.group
             ]
-            person.step(time_s, dt_s, others, robot, obstacles, company)
+            person.step(time_s, dt_s, present, robot, obstacles, company)
 
     def move_bodies(self, share: float) -> None:
         """Move the solid capsules to where people are when this share of the control step has passed."""
@@ -202,5 +200,8 @@ class Crowd:
         self._physics.set_pose(f"{person.name}/{_SOLID}", at, UPRIGHT)
 
 
-def _state(person: Person) -> PlanarState:
-    return PlanarState(position=person.position.copy(), velocity=person.velocity.copy())
+def those_present(people: Sequence[Person]) -> Present:
+    """Tell where those are who are in the world now, and how they move."""
+    there = [person for person in people if person.present]
+    motion = np.array([(*person.position, *person.velocity) for person in there], np.float64)
+    return Present({person.name: row for row, person in enumerate(there)}, motion.reshape(-1, 4))

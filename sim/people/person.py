@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,7 +38,7 @@ from peopleboy.sim.people.reacting.encounter import Situation
 from peopleboy.sim.people.reacting.mind import Mind
 from peopleboy.sim.people.timetable import timetable
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.people.walking.surroundings import Surroundings
+from peopleboy.sim.people.walking.surroundings import Present, Surroundings
 from peopleboy.sim.people.walking.walk import Walker
 from peopleboy.sim.people.walking.waypoint import Waypoint
 from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
@@ -159,7 +159,7 @@ class Person:
         self,
         time_s: float,
         dt_s: float,
-        others: Mapping[str, PlanarState],
+        people: Present,
         robot: PlanarState | None,
         walls: Array,
         company: Iterable[float] = (),
@@ -169,7 +169,7 @@ class Person:
         Args:
             time_s: [s] at the start of the step.
             dt_s: [s] length of the step.
-            others: the other people who are present, by name.
+            people: all who are present.
             robot: None if there is none.
             walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
             company: progress of the others of its group who are present.
@@ -180,7 +180,7 @@ class Person:
         self.stance["time_s"] = now_s
         has_left = config.leave_s is not None and now_s > config.leave_s - 1e-9
         self.present = config.enter_s <= now_s + 1e-9 and not has_left
-        around = Surroundings(others=others, robot=robot, walls=walls)
+        around = Surroundings(people=people, walker=people.rows.get(self.name, -1), robot=robot, walls=walls)
         if self.present and was_present:
             self._wish = self._make_up_mind(dt_s, around, company)
             self._walker.step(dt_s, around, self._wish)

@@ -1,12 +1,12 @@
-"""How people give way: the social force model."""
+"""How people give way: the social force model (numba kernels)."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -26,6 +26,7 @@ TOUCH_STRENGTH = 8.0  # [m/s2]
 TOUCH_RANGE_M = 0.08
 # Ours: who comes head-on is passed on the right, so that nobody gets stuck; a force bends by this much.
 KEEP_RIGHT_RAD = 0.25
+MOST_M_S2 = 4.0
 POINT_RADIUS_M = 0.25  # the size of the bodies that the constants were made for
 
 
@@ -46,89 +47,134 @@ class PlanarState:
     heading_rad: float = 0.0
 
 
+@njit(cache=True, nogil=True)
+def velocity_by_force(
+    at: tuple[float, float],
+    velocity: tuple[float, float],
+    goal: tuple[float, float],
+    wanted_m_s: float,
+    people: Array,
+    walker: int,
+    robot: tuple[float, float, float, float, float],
+    walls: Array,
+    bend_rad: float,
+    dt_s: float,
+) -> tuple[float, float]:
+    """Give the velocity [m/s] after a step of a person who wants to a goal [m], at a speed.
+
+    Nobody's is changed by more than `MOST_M_S2`; for the rest see `social_force`.
+    """
+    gap_x, gap_y = goal[0] - at[0], goal[1] - at[1]
+    pace = wanted_m_s / max(math.hypot(gap_x, gap_y), 1e-9)
+    x, y = social_force(at, velocity, (gap_x * pace, gap_y * pace), people, walker, robot, walls, bend_rad)
+    share = dt_s * min(MOST_M_S2 / max(math.hypot(x, y), 1e-9), 1.0)
+    return velocity[0] + share * x, velocity[1] + share * y
+
+
+@njit(cache=True, nogil=True)
 def social_force(
-    position: Array,
-    velocity: Array,
-    desired: Array,
-    others: Sequence[PlanarState],
+    at: tuple[float, float],
+    velocity: tuple[float, float],
+    desired: tuple[float, float],
+    people: Array,
+    walker: int,
+    robot: tuple[float, float, float, float, float],
     walls: Array,
     bend_rad: float = KEEP_RIGHT_RAD,
-) -> Array:
+) -> tuple[float, float]:
     """Sum what pulls a person to the goal and pushes it away from others and walls.
 
     Source: Helbing and Molnar (1995), eqs. 2 to 10, without attraction and fluctuations.
 
     Args:
-        position: (2,) [m].
-        velocity: (2,) [m/s].
-        desired: (2,) [m/s] velocity towards the goal.
-        others: people and robots.
+        at: [m].
+        velocity: [m/s].
+        desired: [m/s] velocity towards the goal.
+        people: (N, 4) x, y [m] and velocities [m/s] of all.
+        walker: whose row of `people` is the person's own; -1 if none is.
+        robot: the same of the robot, and its radius [m]; negative if there is none.
         walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
         bend_rad: [rad] by how much a push from ahead is turned to pass on the right; negative for the left.
 
     Returns:
-        (2,) [m/s2] acceleration.
+        [m/s2] acceleration.
     """
-    force: Array = (desired - velocity) / RELAXATION_S
-    if others:
-        heading = desired if _length(desired) > 1e-6 else velocity
-        gaps = position - np.array([other.position for other in others])  # (N, 2)
-        pushes = _push_of(gaps, velocity, others)
-        weights = _sight_weight(heading, -gaps)
-        force = force + weights @ _bend(pushes, heading, bend_rad)
+    x, y = (desired[0] - velocity[0]) / RELAXATION_S, (desired[1] - velocity[1]) / RELAXATION_S
+    heading = desired if math.hypot(desired[0], desired[1]) > 1e-6 else velocity
+    turn = math.cos(bend_rad), math.sin(bend_rad)
+    for k in range(len(people)):
+        if k != walker:
+            other = people[k]
+            push = _push_of(
+                at[0] - other[0], at[1] - other[1], other[2] - velocity[0], other[3] - velocity[1],
+                POINT_RADIUS_M, heading, turn,
+            )  # fmt: skip
+            x, y = x + push[0], y + push[1]
+    if robot[4] >= 0.0:
+        push = _push_of(
+            at[0] - robot[0], at[1] - robot[1], robot[2] - velocity[0], robot[3] - velocity[1],
+            robot[4], heading, turn,
+        )  # fmt: skip
+        x, y = x + push[0], y + push[1]
     if len(walls):
-        force = force + _push_of_wall(position, walls)
-    return force
+        push = _push_of_wall(at, walls)
+        x, y = x + push[0], y + push[1]
+    return x, y
 
 
-def _push_of(gaps: Array, velocity: Array, others: Sequence[PlanarState]) -> Array:
-    """(N, 2) [m/s2] repulsion by others, which falls off with ellipses that reach out along the coming step.
+@njit(cache=True)
+def _push_of(
+    gap_x: float,
+    gap_y: float,
+    step_x: float,
+    step_y: float,
+    radius_m: float,
+    heading: tuple[float, float],
+    turn: tuple[float, float],
+) -> tuple[float, float]:
+    """Give the repulsion [m/s2] by another one, who is as far away as the gap [m] says.
 
-    Our change to eq. 4: the step is that of the velocity relative to the walker, half as long (Johansson,
-    Helbing and Shukla 2007), so that a robot that stands still is avoided like a person who comes.
+    It falls off with ellipses that reach out along the coming step. Our change to eq. 4: the step is that of
+    the velocity relative to the walker, half as long (Johansson, Helbing and Shukla 2007), so that a robot
+    that stands still is avoided like a person who comes. What comes from ahead is turned by an angle, whose
+    cosine and sine are told; what lies out of sight weighs less (eqs. 8 and 9).
     """
-    distance = np.maximum(_length(gaps), 1e-3)
-    beyond = np.array([other.radius_m for other in others]) - POINT_RADIUS_M
-    shrink = np.maximum(1.0 - beyond / distance, 0.2)
-    gaps, distance = gaps * shrink[:, None], distance * shrink
-    touch = TOUCH_STRENGTH * np.exp((2.0 * POINT_RADIUS_M - distance) / TOUCH_RANGE_M)
-    step = (np.array([other.velocity for other in others]) - velocity) * STEP_TIME_S
-    ahead = gaps - step
-    ahead_distance = np.maximum(_length(ahead), 1e-3)
-    b = np.sqrt(np.maximum((distance + ahead_distance) ** 2 - _length(step) ** 2, 1e-2)) / 2.0
-    strength = PEOPLE_STRENGTH / PEOPLE_RANGE_M * np.exp(-b / PEOPLE_RANGE_M)
-    slope = (distance + ahead_distance) / (4.0 * b)
-    direction = gaps / distance[:, None] + ahead / ahead_distance[:, None]
-    pushes: Array = (strength * slope)[:, None] * direction + (touch / distance)[:, None] * gaps
-    return pushes
+    sight = _sight_weight(heading, -gap_x, -gap_y)
+    distance = max(math.hypot(gap_x, gap_y), 1e-3)
+    shrink = max(1.0 - (radius_m - POINT_RADIUS_M) / distance, 0.2)
+    gap_x, gap_y, distance = gap_x * shrink, gap_y * shrink, distance * shrink
+    touch = TOUCH_STRENGTH * math.exp((2.0 * POINT_RADIUS_M - distance) / TOUCH_RANGE_M)
+    step_x, step_y = step_x * STEP_TIME_S, step_y * STEP_TIME_S
+    ahead_x, ahead_y = gap_x - step_x, gap_y - step_y
+    ahead = max(math.hypot(ahead_x, ahead_y), 1e-3)
+    both = distance + ahead
+    b = math.sqrt(max(both * both - (step_x * step_x + step_y * step_y), 1e-2)) / 2.0
+    push = PEOPLE_STRENGTH / PEOPLE_RANGE_M * math.exp(-b / PEOPLE_RANGE_M) * both / (4.0 * b)
+    x = push * (gap_x / distance + ahead_x / ahead) + touch / distance * gap_x
+    y = push * (gap_y / distance + ahead_y / ahead) + touch / distance * gap_y
+    if x * heading[0] + y * heading[1] < -0.5 * math.hypot(x, y) * math.hypot(heading[0], heading[1]):
+        x, y = x * turn[0] - y * turn[1], x * turn[1] + y * turn[0]
+    return sight * x, sight * y
 
 
-def _bend(pushes: Array, heading: Array, bend_rad: float) -> Array:
-    """Turn (N, 2) pushes that come from ahead so that they move the walker to one side."""
-    is_ahead = pushes @ heading < -0.5 * _length(pushes) * _length(heading)
-    cos, sin = math.cos(bend_rad), math.sin(bend_rad)
-    return np.where(is_ahead[:, None], pushes @ np.array([[cos, sin], [-sin, cos]]), pushes)
+@njit(cache=True)
+def _sight_weight(heading: tuple[float, float], x: float, y: float) -> float:
+    """Give the weight of what lies in a direction: 1 in sight, `BEHIND` out of it (eqs. 8 and 9)."""
+    limit = math.hypot(heading[0], heading[1]) * math.hypot(x, y) * math.cos(HALF_SIGHT_RAD)
+    return 1.0 if x * heading[0] + y * heading[1] >= limit else BEHIND
 
 
-def _sight_weight(heading: Array, towards: Array) -> Array:
-    """(N,) weight of what lies in directions (N, 2): 1 in sight, `BEHIND` out of it (eqs. 8 and 9)."""
-    limit = _length(heading) * _length(towards) * math.cos(HALF_SIGHT_RAD)
-    return np.where(towards @ heading >= limit, 1.0, BEHIND)
-
-
-def _length(vectors: Array) -> Array:
-    length: Array = np.sqrt((vectors * vectors).sum(axis=-1))
-    return length
-
-
-def _push_of_wall(position: Array, walls: Array) -> Array:
-    """Repulsion (2,) [m/s2] by the nearest point of the nearest wall (eq. 5)."""
-    nearest = np.clip(position, walls[:, :2], walls[:, 2:])
-    gaps = position - nearest
-    distances = np.hypot(gaps[:, 0], gaps[:, 1])
-    k = int(np.argmin(distances))
-    distance = max(float(distances[k]), 1e-3)
-    if distance < 2e-3:
-        return np.array([0.0, 0.0])
-    push: Array = WALL_STRENGTH / WALL_RANGE_M * math.exp(-distance / WALL_RANGE_M) * gaps[k] / distance
-    return push
+@njit(cache=True)
+def _push_of_wall(at: tuple[float, float], walls: Array) -> tuple[float, float]:
+    """Give the repulsion [m/s2] by the nearest point of the nearest wall (eq. 5)."""
+    nearest, gap_x, gap_y = math.inf, 0.0, 0.0
+    for wall in walls:
+        x = at[0] - min(max(at[0], wall[0]), wall[2])
+        y = at[1] - min(max(at[1], wall[1]), wall[3])
+        distance = math.hypot(x, y)
+        if distance < nearest:
+            nearest, gap_x, gap_y = distance, x, y
+    if nearest < 2e-3:
+        return 0.0, 0.0
+    push = WALL_STRENGTH / WALL_RANGE_M * math.exp(-nearest / WALL_RANGE_M) / nearest
+    return push * gap_x, push * gap_y

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,17 +14,34 @@ from peopleboy.sim.people.walking.social_force import PlanarState
 Array = NDArray[np.float64]
 
 
+class Present(NamedTuple):
+    """People who are there.
+
+    Attributes:
+        rows: of `motion`, by name.
+        motion: (N, 4) where they are and how they move: x, y [m], and their velocities [m/s].
+    """
+
+    rows: Mapping[str, int]
+    motion: Array
+
+
+NOBODY: Final = Present({}, np.empty((0, 4)))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Surroundings:
     """What a walker may have to give way to.
 
     Attributes:
-        others: people by name.
+        people: who is there, the walker as well.
+        walker: its row among them; -1 if it is not there.
         robot: None if there is none.
         walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
     """
 
-    others: Mapping[str, PlanarState]
+    people: Present
+    walker: int
     robot: PlanarState | None
     walls: Array
 
@@ -31,8 +49,18 @@ class Surroundings:
         """Position (2,) [m] of what somebody turns to; None if it is not there."""
         if not isinstance(face, str):
             return np.array(face)
-        state = self.robot if face == "robot" else self.others.get(face)
-        return None if state is None else state.position
+        if face == "robot":
+            return None if self.robot is None else self.robot.position
+        row = self.people.rows.get(face)
+        return None if row is None else self.people.motion[row, :2]
+
+    def is_taken(self, place: tuple[float, float], within_m: float) -> bool:
+        """Whether anybody else is within a distance [m] of a place [m]."""
+        gaps = self.people.motion[:, :2] - place
+        is_near = np.hypot(gaps[:, 0], gaps[:, 1]) < within_m
+        if self.walker >= 0:
+            is_near[self.walker] = False
+        return bool(is_near.any())
 
 
-ALONE = Surroundings(others={}, robot=None, walls=np.empty((0, 4)))
+ALONE: Final = Surroundings(people=NOBODY, walker=-1, robot=None, walls=np.empty((0, 4)))

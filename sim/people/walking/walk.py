@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.postures import RISE_S, Posture
-from peopleboy.sim.people.walking.path import PathPiece, is_about_turn, route, turn_between
+from peopleboy.sim.people.walking.path import PathPiece, Point, is_about_turn, route, turn_between
 from peopleboy.sim.people.walking.social_force import (
     KEEP_RIGHT_RAD,
     POINT_RADIUS_M,
     PlanarState,
-    social_force,
+    velocity_by_force,
 )
 from peopleboy.sim.people.walking.surroundings import Surroundings
 from peopleboy.sim.people.walking.waypoint import Waypoint
@@ -30,13 +30,14 @@ BRAKE_M_S2 = 2.0
 KEEP_CLEAR_M = 0.25  # of the robot, where a person that waits for it comes to stand
 STEER_GAIN = 8.0  # [1/s]
 START_WITHIN_RAD = math.radians(25.0)
-_GIVING_WAY_M_S2 = 4.0
 _TRY_SIDE_S = 2.0  # how long one tries to pass on one side
 _ERRAND_M_S = 1.2  # how fast one goes where no script sends one
 _TAKEN_WITHIN_M = 1.0  # how near to a waypoint one looks whether somebody stands on it
+_TAKEN_BY_M = 0.6  # how near to it somebody stands then
 _NEARLY_M = 0.1  # how near to the goal of an errand one has arrived
 _SIDESTEP_M = 0.8  # the last of an errand, on which one does not turn away from what one faces
 _HURRY = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
+_NO_ROBOT = (0.0, 0.0, 0.0, 0.0, -1.0)
 
 
 class Walker:
@@ -201,13 +202,12 @@ class Walker:
             self._on_feet_in = RISE_S
         self._is_astray, self._is_turned_away, self._pieces = True, False, ()
         self._on_feet_in -= dt_s
-        gap = goal - self.position
-        distance = float(np.hypot(*gap))
+        distance = math.dist(goal.tolist(), self.position.tolist())
         if self._on_feet_in > 0.0 or distance < _NEARLY_M:
             self._halt(dt_s, around, wish)
             return
         wanted = min(_ERRAND_M_S, _braking_speed(distance, 0.0, ACCELERATION_M_S2, dt_s))
-        self._be_pushed(dt_s, gap / distance * wanted, _ERRAND_M_S, around, wish)
+        self._be_pushed(dt_s, _pair(goal), wanted, _ERRAND_M_S, around, wish)
         if wish.faces is not None and distance < _SIDESTEP_M:
             self._turn(dt_s, self._bearing(wish.faces))
 
@@ -305,51 +305,57 @@ class Walker:
         """Move by social force towards the next waypoint."""
         self._is_astray = self._is_astray or not self._yields
         goal = self._pieces[0].goal
-        target = np.array(self._path[goal].at_m, dtype=float)
-        gap = target - self.position
-        distance = float(np.hypot(*gap))
+        target, speed = self._path[goal].at_m, self._path[goal].speed_m_s
         is_last = goal == self._pieces[-1].goal
-        speed = self._path[goal].speed_m_s
-        wanted = min(speed, _braking_speed(distance, 0.0, ACCELERATION_M_S2, dt_s)) if is_last else speed
+        wanted = speed
+        if is_last:
+            distance = math.dist(target, self.position.tolist())
+            wanted = min(speed, _braking_speed(distance, 0.0, ACCELERATION_M_S2, dt_s))
         wanted = wish.pace * wanted
-        others = self._be_pushed(dt_s, gap / max(distance, 1e-9) * wanted, speed, around, wish)
+        robot = self._be_pushed(dt_s, target, wanted, speed, around, wish)
         is_blocked = self._speed < 0.5 * wanted
         self._blocked_s = self._blocked_s + dt_s if is_blocked else max(self._blocked_s - dt_s, 0.0)
-        self._pass_waypoint(target, is_last, others)
+        self._pass_waypoint(target, is_last, around, robot)
 
     def _be_pushed(
-        self, dt_s: float, desired: Array, speed: float, around: Surroundings, wish: Wish
-    ) -> list[PlanarState]:
-        """Move by social force at a desired velocity (2,) [m/s], a little faster than a speed [m/s] at most.
+        self, dt_s: float, goal: Point, wanted: float, speed: float, around: Surroundings, wish: Wish
+    ) -> PlanarState | None:
+        """Move by social force towards a goal [m], a little faster than a speed [m/s] at most.
 
         Returns:
-            Those whom it made way for.
+            The robot as it made way for it; None if it does not heed it, or there is none.
         """
         robot = None if around.robot is None else _as_wished(around.robot, wish)
-        others = [*around.others.values(), *([robot] if robot is not None else [])]
-        force = social_force(self.position, self.velocity, desired, others, around.walls, self._bend())
-        velocity = self.velocity + _shorten(force, _GIVING_WAY_M_S2) * dt_s
+        x, y = velocity_by_force(
+            _pair(self.position), _pair(self.velocity), goal, wanted, around.people.motion, around.walker,
+            _NO_ROBOT if robot is None else _motion(robot), around.walls, self._bend(), dt_s,
+        )  # fmt: skip
         limit = _HURRY * speed
         if robot is None:
-            limit = min(limit, self._limit_by_robot(around.robot, math.atan2(velocity[1], velocity[0])))
-        self.velocity = _shorten(velocity, limit)
+            limit = min(limit, self._limit_by_robot(around.robot, math.atan2(y, x)))
+        fast = math.hypot(x, y)
+        self._speed = min(fast, limit)
+        self.velocity = np.array([x, y]) * (1.0 if fast <= limit else limit / fast)
         self.position = self.position + self.velocity * dt_s
-        self._speed = float(np.hypot(*self.velocity))
         if self._speed > 0.15:
-            self._turn(dt_s, math.atan2(self.velocity[1], self.velocity[0]))
-        return others
+            self._turn(dt_s, math.atan2(y, x))
+        return robot
 
     def _bend(self) -> float:
         """To which side to give way [rad]: to the right; if that does not help, left and right in turn."""
         side = 1.0 if int(self._blocked_s / _TRY_SIDE_S) % 2 == 0 else -1.0
         return side * KEEP_RIGHT_RAD * (1.0 + min(self._blocked_s / _TRY_SIDE_S, 4.0))
 
-    def _pass_waypoint(self, target: Array, is_last: bool, others: Sequence[PlanarState]) -> None:
+    def _pass_waypoint(
+        self, target: Point, is_last: bool, around: Surroundings, robot: PlanarState | None
+    ) -> None:
         """Go on to the next waypoint where this one is reached, or where others stand on it."""
-        distance = float(np.hypot(*(target - self.position)))
+        distance = math.dist(target, self.position.tolist())
         if distance >= _TAKEN_WITHIN_M:
             return
-        is_taken = any(np.hypot(*(other.position - target)) < 0.6 for other in others)
+        is_taken = around.is_taken(target, _TAKEN_BY_M)
+        if robot is not None:
+            is_taken = is_taken or math.dist(robot.position.tolist(), target) < _TAKEN_BY_M
         if is_last:
             if distance < 0.04 or (is_taken and self._speed < 0.4):
                 self._arrive()
@@ -386,6 +392,18 @@ def _braking_speed(distance: float, final: float, brake: float, dt_s: float) -> 
     return math.sqrt(lost**2 + 2.0 * brake * max(distance, 0.0) + final**2) - lost
 
 
+def _motion(robot: PlanarState) -> tuple[float, float, float, float, float]:
+    """Tell where a robot is, how it moves, and how wide it is, as `social_force` asks for it."""
+    x, y = robot.position.tolist()
+    along_x, along_y = robot.velocity.tolist()
+    return x, y, along_x, along_y, robot.radius_m
+
+
+def _pair(vector: Array) -> tuple[float, float]:
+    x, y = vector.tolist()
+    return x, y
+
+
 def _shorten(vector: Array, longest: float) -> Array:
-    length = float(np.hypot(*vector))
+    length = math.hypot(*vector.tolist())
     return vector if length <= longest else vector * (longest / length)

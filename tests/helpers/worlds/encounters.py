@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.joints import JOINT_NAMES
 from peopleboy.sim.people.person import Person, PlanarState
+from peopleboy.sim.people.walking.surroundings import NOBODY
 from tests.helpers.worlds.walkers import NO_WALLS
 
 Array = NDArray[np.float64]
@@ -57,7 +58,7 @@ def meet(person: Person, way: Callable[[float], Array], seconds: float, walls: A
         if np.hypot(*velocity) > 1e-6:
             heading = float(np.arctan2(velocity[1], velocity[0]))
         state = PlanarState(position=place, velocity=velocity, radius_m=0.355, heading_rad=heading)
-        person.step(time_s, 1.0 / RATE_HZ, {}, state, walls)
+        person.step(time_s, 1.0 / RATE_HZ, NOBODY, state, walls)
         gaze = gaze_of(person)
         x, y = place - person.position
         rows.append(

@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from peopleboy.sim.people.person import Person, PersonConfig, PlanarState, Waypoint
+from peopleboy.sim.people.crowd import those_present
+from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
+from peopleboy.sim.people.walking.surroundings import NOBODY
 
 NO_WALLS = np.empty((0, 4))
 
@@ -16,7 +18,7 @@ def make_person(seed=0, **settings):
 def walk(person, seconds, dt=1 / 60, start=0.0, robot=None, walls=NO_WALLS):
     """Step one person alone; yields the time after each step."""
     for k in range(round(seconds / dt)):
-        person.step(start + k * dt, dt, {}, robot, walls)
+        person.step(start + k * dt, dt, NOBODY, robot, walls)
         yield start + (k + 1) * dt
 
 
@@ -30,13 +32,8 @@ def walk_together(people, seconds, dt=1 / 15, robot=None, walls=NO_WALLS):
     """(T, N, 2) [m] positions of people who see each other."""
     track = []
     for k in range(round(seconds / dt)):
-        states = {
-            p.name: PlanarState(position=p.position.copy(), velocity=p.velocity.copy())
-            for p in people
-            if p.present
-        }
+        present = those_present(people)
         for p in people:
-            others = {name: state for name, state in states.items() if name != p.name}
-            p.step(k * dt, dt, others, robot, walls)
+            p.step(k * dt, dt, present, robot, walls)
         track.append([p.position.copy() for p in people])
     return np.array(track)

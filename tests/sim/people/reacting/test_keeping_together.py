@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from peopleboy.sim.people.person import PlanarState, Waypoint
+from peopleboy.sim.people.crowd import those_present
+from peopleboy.sim.people.person import Waypoint
 from peopleboy.sim.people.reacting.keeping_together import pace_among
 from tests.helpers.worlds.walkers import NO_WALLS, make_person
 
@@ -31,11 +32,9 @@ def test_a_group_waits_for_one_who_starts_late_and_is_slow():
     people = [member("ann", 0.0, 1.3), member("bob", 0.8, 0.6)]
     apart = []
     for k in range(120):
-        states = {p.name: PlanarState(p.position.copy(), p.velocity.copy()) for p in people}
-        progress = {p.name: p.progress for p in people}
-        for p in people:
-            others = {name: state for name, state in states.items() if name != p.name}
-            p.step(k / 15, 1 / 15, others, None, NO_WALLS, [progress[name] for name in others])
+        present, progress = those_present(people), [p.progress for p in people]
+        for p, company in zip(people, reversed(progress), strict=True):
+            p.step(k / 15, 1 / 15, present, None, NO_WALLS, [company])
         apart.append(people[0].position[0] - people[1].position[0])
     assert max(apart) < 1.3
     assert np.hypot(*people[0].velocity) == pytest.approx(0.6, abs=0.05)

@@ -9,6 +9,7 @@ from peopleboy.sim.people.person import PlanarState, Waypoint
 from peopleboy.sim.people.reacting.reaction import Reaction
 from peopleboy.sim.people.scripted.script import WALK, is_scripted, join_scripts, start_walk, write_script
 from peopleboy.sim.people.scripted.walk_scripts import walk_on
+from peopleboy.sim.people.walking.surroundings import NOBODY
 from tests.helpers.worlds.walkers import NO_WALLS, make_person
 
 DT_S = 1 / 15
@@ -46,7 +47,7 @@ def test_records_walk_to_the_last_bit_as_people_do_with_a_robot_in_their_way():
         place = (2.0 * math.sin(0.02 * k), 1.5 * math.cos(0.013 * k))
         robot = PlanarState(position=np.array(place), velocity=np.zeros(2), radius_m=0.355)
         for person in people:
-            person.step(k * DT_S, DT_S, {}, robot, NO_WALLS)
+            person.step(k * DT_S, DT_S, NOBODY, robot, NO_WALLS)
         walk_on(0, len(people), walks, scripts, k * DT_S, DT_S, place, 2.0)
         for person, walk in zip(people, walks, strict=True):
             assert person.present == walk["is_present"]

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from peopleboy.sim.people.person import PlanarState, Posture, Waypoint, timetable
 from peopleboy.sim.people.walking.path import CORNER_CUT_M, abreast, route
+from peopleboy.sim.people.walking.surroundings import Present
 from peopleboy.sim.people.walking.walk import ACCELERATION_M_S2, TURN_RATE_RAD_S
 from tests.helpers.worlds.walkers import make_person, settle, walk, walk_together
 
@@ -117,11 +118,11 @@ def test_the_length_of_the_steps_does_not_change_the_way():
 
 def test_a_pausing_person_faces_the_point_the_robot_or_the_other():
     robot = PlanarState(position=np.array([2.0, -5.0]), velocity=np.zeros(2))
-    other = PlanarState(position=np.array([-3.0, 0.0]), velocity=np.zeros(2))
+    other = Present({"bob": 0}, np.array([[-3.0, 0.0, 0.0, 0.0]]))
     for face, expected in (((2.0, 7.0), math.pi / 2), ("robot", -math.pi / 2), ("bob", math.pi)):
         person = make_person(path=(Waypoint(at_m=(0.0, 0.0)), Waypoint(at_m=(2.0, 0.0), face=face)))
         for k in range(400):
-            person.step(k / 60, 1 / 60, {"bob": other}, robot, np.empty((0, 4)))
+            person.step(k / 60, 1 / 60, other, robot, np.empty((0, 4)))
         assert math.cos(person.heading - expected) > 0.999, face
 
 
